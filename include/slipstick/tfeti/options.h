@@ -1,0 +1,28 @@
+// Choices of the dual problem.
+#pragma once
+
+namespace slipstick::tfeti
+{
+  enum class Preconditioner
+  {
+    automatic,
+    none,
+    lumped,
+    dirichlet
+  };
+
+  enum class DualOperatorKind
+  {
+    automatic,
+    explicit_blocks,
+    implicit
+  };
+
+  struct DualOptions
+  {
+    DualOperatorKind dual_operator         = DualOperatorKind::automatic;
+    Preconditioner   preconditioner        = Preconditioner::automatic;
+    unsigned int     max_norm_iterations   = 40;   // of the power method for |PFP|
+    double           norm_tolerance        = 1e-3; // relative change at which it stops
+  };
+} // namespace slipstick::tfeti
