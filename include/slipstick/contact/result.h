@@ -1,0 +1,50 @@
+// What contact returns, node by node and pair by pair.
+//
+// Sign conventions: normal = outward normal of the slave body; tangent = normal turned by +90 degrees (2D). Positive
+// pressure is compression. Gap >= 0 open, < 0 penetrating, in the deformed configuration (linearised). Slip is the
+// tangential displacement of the slave relative to the other side. Traction acts on the slave body.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace slipstick::contact
+{
+  enum class ContactStatus
+  {
+    open,
+    stick,
+    slip
+  };
+
+  /// "open", "stick", "slip"
+  std::string to_string(const ContactStatus status);
+
+  /// One slave node of a contact pair, as found from the recovered displacement.
+  struct ContactNode
+  {
+    unsigned int          pair = 0; // index into Scene::contacts
+    std::array<double, 3> position{{0, 0, 0}}; // reference configuration [mm]
+    std::array<double, 3> normal{{0, 0, 0}};
+    double                arc_length          = 0; // along the slave boundary from its first node [mm]
+    double                area                = 0; // tributary length times thickness [mm^2]
+    double                gap                 = 0; // [mm]
+    double                pressure            = 0; // [MPa]
+    double                tangential_traction = 0; // [MPa]
+    double                slip                = 0; // [mm]
+    ContactStatus         status              = ContactStatus::open;
+  };
+
+  struct PairResult
+  {
+    std::string  pair;
+    double       normal_force     = 0; // sum of pressure times area [N]
+    double       tangential_force = 0; // [N]
+    double       max_pressure     = 0; // [MPa]
+    double       contact_length   = 0; // of the nodes that are not open [mm]
+    unsigned int open_nodes       = 0;
+    unsigned int stick_nodes      = 0;
+    unsigned int slip_nodes       = 0;
+  };
+} // namespace slipstick::contact
