@@ -17,6 +17,13 @@ namespace slipstick::qp
     double       proportioning  = 1.0;   // Gamma > 0, Dostal 2009, section 5.8
     double       step_length    = 2.0;   // alpha times |A|, in (0, 2]
     unsigned int max_iterations = 10000; // per call
+
+    double norm_growth = 1.1; // >= 1: |A| becomes this times a Rayleigh quotient found above it (own choice)
+    double rounding = 2.2e-16; // a gradient below this times (|A||x| + |b|) is noise; unit roundoff of double
+    double smallest_curvature = 1e-15; // p'Ap over |A| p'p: below it A counts as singular along p; a few roundoffs
+
+    unsigned int stagnation_window   = 1000; // iterations in which the least |gP| so far must fall ... (own choice)
+    double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
   };
 
   struct SmalbeOptions
@@ -26,10 +33,50 @@ namespace slipstick::qp
     double       regularization       = 1.0; // rho over |PFP|
     unsigned int max_outer_iterations = 400;
     MpgpOptions  inner;
+
+    double       certificate_radius  = 100; // |x| times this: up to where a certificate must exclude points (own choice)
+    unsigned int stagnation_window   = 50;   // outer steps in which the least residual so far must fall ... (own choice)
+    double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
+  };
+
+  /// Which directions PCPG makes a new one F-orthogonal to.
+  enum class Reorthogonalization
+  {
+    automatic, // full with a preconditioner, else none: Farhat, Crivelli, Roux 1994
+    full,      // to all so far; two vectors are kept for each
+    none       // to the last one
   };
 
   struct PcpgOptions
   {
-    unsigned int max_iterations = 1000;
+    unsigned int        max_iterations      = 1000;
+    Reorthogonalization reorthogonalization = Reorthogonalization::automatic;
+
+    double rounding           = 2.2e-16; // a residual below this times (|Fx| + |b|) is noise; unit roundoff of double
+    double smallest_curvature = 1e-15; // p'Fp over p'p and the largest such quotient so far: below it F is singular
+
+    unsigned int stagnation_window   = 200;  // iterations in which the least residual so far must fall ... (own choice)
+    double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
+  };
+
+  /// Options of the point nearest to zero within the bounds and the equalities (own choice).
+  struct FeasiblePointOptions
+  {
+    double       tolerance             = 1e-12; // |Q(x - x_e)| over max(|Q x_e|, |projection of 0 on the bounds|)
+    unsigned int max_newton_steps      = 100;
+    unsigned int max_cg_iterations     = 200;  // per Newton step
+    double       cg_tolerance          = 1e-2; // at most: residual of the Newton equation over its right-hand side
+    double       newton_regularization = 1e-8; // Newton matrix: Q D Q + this Q
+    unsigned int max_line_search_steps = 40;
+    double       line_search_slope     = 0.1; // accepted slope of the dual function over the slope at the start
+    double       line_search_growth    = 4.0; // > 1: factor on the step length while the dual function rises
+    double       longest_step          = 1e4; // times the Newton step
+
+    double certificate_radius = 1e4;  // a certificate excludes all points up to this times the reference length
+    double certificate_margin = 1e-9; // ... with this margin relative to the numbers that are summed
+
+    unsigned int stagnation_window   = 20;   // Newton steps in which the least residual so far must fall ...
+    double       stagnation_progress = 0.99; // ... below this times its old value
+    MpgpOptions  fallback;                   // least squares of Q(x - x_e) within the bounds, when Newton does not end
   };
 } // namespace slipstick::qp

@@ -1,0 +1,177 @@
+// Two-sided bounds: projection, parts of the gradient, longest step, active entries, Farkas gap.
+//
+// Signs: steps go along minus the gradient, x - a g. An entry is free strictly inside its bounds; an entry with
+// lower == upper is fixed: never free, without chopped gradient, no violation.
+#pragma once
+
+#include <slipstick/qp/kernels.h>
+
+#include <limits>
+
+namespace slipstick::qp
+{
+  /// lower <= x <= upper, entry by entry; +-infinity = no bound.
+  template <typename Vector>
+  struct Box
+  {
+    Vector lower;
+    Vector upper;
+  };
+
+  struct ActiveEntries
+  {
+    std::size_t lower = 0; // at the lower bound; fixed entries are counted here
+    std::size_t upper = 0; // at the upper bound only
+  };
+
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  inline double clip(const double x, const double lower, const double upper)
+  {
+    return std::max(lower, std::min(upper, x));
+  }
+
+  inline bool is_free(const double x, const double lower, const double upper) { return lower < x && x < upper; }
+
+  /// phi_i: the gradient g_i of a free entry, else 0.
+  inline double free_gradient(const double x, const double g, const double lower, const double upper)
+  {
+    return is_free(x, lower, upper) ? g : 0.0;
+  }
+
+  /// beta_i: the part of g_i along which an active entry may leave its bound, else 0.
+  inline double chopped_gradient(const double x, const double g, const double lower, const double upper)
+  {
+    if (is_free(x, lower, upper) || !(lower < upper))
+      return 0.0;
+    return x <= lower ? std::min(g, 0.0) : std::max(g, 0.0);
+  }
+
+  /// gP_i = phi_i + beta_i
+  inline double projected_gradient(const double x, const double g, const double lower, const double upper)
+  {
+    return is_free(x, lower, upper) ? g : chopped_gradient(x, g, lower, upper);
+  }
+
+  /// phi~_i: phi_i cut such that x - step phi~ stays within the bounds.
+  inline double reduced_free_gradient(const double x,
+                                      const double phi,
+                                      const double lower,
+                                      const double upper,
+                                      const double step)
+  {
+    if (phi > 0)
+      return std::min((x - lower) / step, phi);
+    return phi < 0 ? std::max((x - upper) / step, phi) : phi;
+  }
+
+  /// Longest a >= 0 such that lower <= x - a p <= upper; infinity if nothing stops it.
+  inline double longest_step(const double x, const double p, const double lower, const double upper)
+  {
+    if (p > 0)
+      return (x - lower) / p;
+    return p < 0 ? (x - upper) / p : infinity;
+  }
+
+  /// x := projection of x on the box.
+  template <typename Vector>
+  void project(const Box<Vector> &box, Vector &x)
+  {
+    const auto        l = box.lower.begin(), u = box.upper.begin();
+    const auto        xi = x.begin();
+    const std::size_t n  = local_size(x);
+    for (std::size_t i = 0; i < n; ++i)
+      xi[i] = clip(xi[i], l[i], u[i]);
+  }
+
+  /// Longest a >= 0 such that x - a p stays within the box (x within it), over all processes.
+  template <typename Vector, typename Reduction>
+  double longest_step(const Box<Vector> &box, const Vector &x, const Vector &p, const Reduction &reduction)
+  {
+    const auto        l = box.lower.begin(), u = box.upper.begin();
+    const auto        xi = x.begin(), pi = p.begin();
+    const std::size_t n    = local_size(x);
+    double            step = infinity;
+    for (std::size_t i = 0; i < n; ++i)
+      step = std::min(step, longest_step(xi[i], pi[i], l[i], u[i]));
+    return reduction.min(step);
+  }
+
+  /// x := x - a p within the box, where a <= longest_step(): entries that a brings to a bound are set on it exactly.
+  template <typename Vector>
+  void step_within(const Box<Vector> &box, const double a, const Vector &p, Vector &x)
+  {
+    const auto        l = box.lower.begin(), u = box.upper.begin();
+    const auto        xi = x.begin();
+    const auto        pi = p.begin();
+    const std::size_t n  = local_size(x);
+    for (std::size_t i = 0; i < n; ++i)
+      if (pi[i] != 0)
+        {
+          const bool hits = longest_step(xi[i], pi[i], l[i], u[i]) <= a;
+          xi[i]           = hits ? (pi[i] > 0 ? l[i] : u[i]) : clip(xi[i] - a * pi[i], l[i], u[i]);
+        }
+  }
+
+  /// Entries at their bounds, over all processes. One reduction.
+  template <typename Vector, typename Reduction>
+  ActiveEntries count_active(const Box<Vector> &box, const Vector &x, const Reduction &reduction)
+  {
+    const auto            l = box.lower.begin(), u = box.upper.begin();
+    const auto            xi = x.begin();
+    const std::size_t     n  = local_size(x);
+    std::array<double, 2> active{{0, 0}};
+    for (std::size_t i = 0; i < n; ++i)
+      {
+        active[0] += xi[i] <= l[i];
+        active[1] += xi[i] >= u[i] && l[i] < u[i];
+      }
+    active = reduction.sum(active);
+    return {static_cast<std::size_t>(active[0]), static_cast<std::size_t>(active[1])};
+  }
+
+  /// |gP|, over all processes. One reduction.
+  template <typename Vector, typename Reduction>
+  double projected_gradient_norm(const Box<Vector> &box, const Vector &x, const Vector &g, const Reduction &reduction)
+  {
+    const auto        l = box.lower.begin(), u = box.upper.begin();
+    const auto        xi = x.begin(), gi = g.begin();
+    const std::size_t n   = local_size(x);
+    double            sum = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      {
+        const double gp = projected_gradient(xi[i], gi[i], l[i], u[i]);
+        sum += gp * gp;
+      }
+    return std::sqrt(reduction.sum(std::array<double, 1>{{sum}})[0]);
+  }
+
+  /// Does r, a vector in the range of Q, prove that no x with Q(x - x_e) = 0 and |x| <= radius lies within the box?
+  /// It does if r'x_e > max r'x over the box; unbounded entries are taken as bounded by the radius, r'x <= |r||x|, and
+  /// rounding is left a margin: `rounding` times |r| |x_e| and |r_i l_i|, |r_i u_i|. Farkas. One reduction.
+  template <typename Vector, typename Reduction>
+  bool is_farkas_certificate(const Box<Vector> &box,
+                             const Vector &     r,
+                             const Vector &     x_e,
+                             const double       radius,
+                             const double       rounding,
+                             const Reduction &  reduction)
+  {
+    const auto        l = box.lower.begin(), u = box.upper.begin();
+    const auto        ri = r.begin(), xi = x_e.begin();
+    const std::size_t n = local_size(r);
+    // r'x_e - sup over the bounded entries; |r|^2 of the unbounded ones; magnitude of the terms summed
+    std::array<double, 3> s{{0, 0, 0}};
+    for (std::size_t i = 0; i < n; ++i)
+      {
+        const double bound      = ri[i] > 0 ? u[i] : l[i];
+        const bool   is_bounded = std::isfinite(bound);
+        const double support    = ri[i] != 0 && is_bounded ? ri[i] * bound : 0.0;
+        s[0] += ri[i] * xi[i] - support;
+        s[1] += is_bounded ? 0.0 : ri[i] * ri[i];
+        s[2] += std::abs(ri[i] * xi[i]) + std::abs(support);
+      }
+    s = reduction.sum(s);
+    return s[0] > std::sqrt(s[1]) * radius + rounding * s[2];
+  }
+} // namespace slipstick::qp

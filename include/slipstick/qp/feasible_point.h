@@ -1,0 +1,245 @@
+// The point nearest to zero within bounds and equalities, or the proof that there is none.
+//
+// min 1/2 |x|^2 over the box and Q x = Q x_e. Dual: x = clip(y), y in the range of Q, maximise the concave
+//   theta(y) = 1/2 |clip(y)|^2 - y'clip(y) + y'x_e,   grad theta = r = Q(x_e - clip(y)),
+// by a semismooth Newton method (Newton matrix Q D Q, D = 1 where y is strictly inside its bounds) with line search.
+// If there is no such point, theta is unbounded and r tends to Q(x_e - x) of least length within the box, a Farkas
+// certificate: r'x <= r'x_e - |r|^2 for all x of the box, while Q x = Q x_e would need r'x = r'x_e.
+#pragma once
+
+#include <slipstick/qp/mpgp.h>
+
+namespace slipstick::qp
+{
+  template <typename Vector>
+  struct FeasiblePoint
+  {
+    Status       status;      // converged; infeasible, with a certificate; else neither was reached
+    Vector       x;           // within the box, exactly
+    Vector       certificate; // infeasible: r in the range of Q, r'x_e > r'x for all x of the box; else Q(x_e - x)
+    double       residual;    // |Q(x - x_e)| over the reference length max(|Q x_e|, |projection of 0 on the box|)
+    bool         is_nearest;  // converged: is x the point nearest to zero, or just any?
+    unsigned int newton_steps;
+    unsigned int projections; // multiplications with Q
+  };
+
+  namespace detail
+  {
+    template <typename Vector, typename Problem>
+    class NearestPoint
+    {
+    public:
+      NearestPoint(const Problem &             problem_,
+                   const Vector &              x_e,
+                   const Box<Vector> &         box_,
+                   const FeasiblePointOptions &options_)
+        : problem(problem_)
+        , reduction(problem.reduction())
+        , box(box_)
+        , options(options_)
+        , Qx_e(x_e)
+        , y(zero_like(x_e))
+        , x(y)
+        , r(y)
+        , d(y)
+        , p(y)
+        , Ap(y)
+        , residual(y)
+      {
+        project_range(x_e, Qx_e);
+        project(box, x);
+        const auto s = reduction.sum(std::array<double, 3>{{local_dot(Qx_e, Qx_e), local_dot(x, x), contradictions()}});
+        reference    = std::sqrt(std::max(s[0], s[1]));
+        is_empty     = s[2] > 0;
+      }
+
+      FeasiblePoint<Vector> run()
+      {
+        Status status = is_empty ? Status::infeasible : newton();
+        if (status != Status::converged && status != Status::infeasible)
+          status = least_squares(status);
+        const double scale = reference > 0 ? reference : 1.0;
+        return {status, std::move(x), std::move(r), norm_r / scale, is_nearest, newton_steps, projections};
+      }
+
+    private:
+      double contradictions() const
+      {
+        const auto        l = box.lower.begin(), u = box.upper.begin();
+        const std::size_t n     = local_size(y);
+        double            count = 0;
+        for (std::size_t i = 0; i < n; ++i)
+          count += !(l[i] <= u[i]);
+        return count;
+      }
+
+      void project_range(const Vector &v, Vector &Qv)
+      {
+        problem.project_range(v, Qv);
+        ++projections;
+      }
+
+      bool proves_infeasibility(const Vector &v) const
+      {
+        return is_farkas_certificate(
+          box, v, Qx_e, options.certificate_radius * reference, options.certificate_margin, reduction);
+      }
+
+      // x = clip(y), r = Q(x_e - x)
+      void update_residual()
+      {
+        std::copy(y.begin(), y.end(), x.begin());
+        project(box, x);
+        project_range(x, r);
+        combine(1.0, Qx_e, -1.0, r);
+        norm_r = norm(r, reduction);
+      }
+
+      Status newton()
+      {
+        StagnationWatch stagnates(options.stagnation_window, options.stagnation_progress);
+        for (update_residual();; ++newton_steps, update_residual())
+          {
+            if (norm_r <= options.tolerance * reference)
+              return Status::converged;
+            if (proves_infeasibility(r))
+              return Status::infeasible;
+            if (stagnates(norm_r))
+              return Status::stagnated;
+            if (newton_steps == options.max_newton_steps)
+              return Status::iteration_limit;
+            find_direction();
+            add(line_search(), d, y);
+          }
+      }
+
+      // (Q D Q + regularization Q) d = r by conjugate gradients; d is a direction of ascent wherever they are stopped.
+      void find_direction()
+      {
+        const double tolerance = std::min(options.cg_tolerance, norm_r / reference) * norm_r;
+        set_zero(d);
+        std::copy(r.begin(), r.end(), residual.begin());
+        std::copy(r.begin(), r.end(), p.begin());
+        double square = norm_r * norm_r;
+        for (unsigned int k = 0; k < options.max_cg_iterations && std::sqrt(square) > tolerance; ++k)
+          {
+            multiply_newton_matrix();
+            const double pAp = dot(p, Ap, reduction);
+            if (!(pAp > 0))
+              break;
+            add(square / pAp, p, d);
+            add(-square / pAp, Ap, residual);
+            const double next = dot(residual, residual, reduction);
+            combine(1.0, residual, next / square, p);
+            square = next;
+          }
+        if (!(dot(d, r, reduction) > 0))
+          std::copy(r.begin(), r.end(), d.begin());
+      }
+
+      // Ap = (Q D Q + regularization Q) p, p in the range of Q
+      void multiply_newton_matrix()
+      {
+        const auto        l = box.lower.begin(), u = box.upper.begin();
+        const auto        yi = y.begin(), wi = x.begin();
+        const auto        pi = p.begin();
+        const std::size_t n  = local_size(y);
+        for (std::size_t i = 0; i < n; ++i)
+          wi[i] = is_free(yi[i], l[i], u[i]) ? pi[i] : 0.0;
+        project_range(x, Ap);
+        add(options.newton_regularization, p, Ap);
+      }
+
+      // d/dt theta(y + t d), falling in t
+      double slope(const double t) const
+      {
+        const auto        l = box.lower.begin(), u = box.upper.begin(), e = Qx_e.begin();
+        const auto        yi = y.begin(), di = d.begin();
+        const std::size_t n   = local_size(y);
+        double            sum = 0;
+        for (std::size_t i = 0; i < n; ++i)
+          sum += di[i] * (e[i] - clip(yi[i] + t * di[i], l[i], u[i]));
+        return reduction.sum(std::array<double, 1>{{sum}})[0];
+      }
+
+      // Step length t > 0 with |slope(t)| small against slope(0): growth, then regula falsi (Illinois).
+      double line_search() const
+      {
+        double       low = 0, low_slope = slope(0), high = 1, high_slope = slope(high);
+        const double accepted = options.line_search_slope * low_slope;
+        while (high_slope > accepted && high < options.longest_step)
+          {
+            low       = high;
+            low_slope = high_slope;
+            high *= options.line_search_growth;
+            high_slope = slope(high);
+          }
+        if (high_slope >= -accepted)
+          return high;
+        int last_side = 0;
+        for (unsigned int k = 0; k < options.max_line_search_steps; ++k)
+          {
+            const double t = (low * high_slope - high * low_slope) / (high_slope - low_slope);
+            const double s = slope(t);
+            if (std::abs(s) <= accepted || !(low < t && t < high))
+              return t;
+            if (s > 0)
+              {
+                low       = t;
+                low_slope = s;
+                high_slope *= last_side == 1 ? 0.5 : 1.0;
+                last_side = 1;
+              }
+            else
+              {
+                high       = t;
+                high_slope = s;
+                low_slope *= last_side == -1 ? 0.5 : 1.0;
+                last_side = -1;
+              }
+          }
+        return low > 0 ? low : high;
+      }
+
+      // Newton did not end: least |Q(x - x_e)| within the box, by MPGP. It is positive if there is no such point.
+      Status least_squares(const Status failure)
+      {
+        const auto multiply = [this](const Vector &v, Vector &Qv) { project_range(v, Qv); };
+        const auto stop     = [this](const Vector &, const double gP) {
+          return gP <= options.tolerance * reference;
+        };
+        auto result = mpgp(multiply, 1.0, Qx_e, box, MpgpStart<Vector>{std::move(x)}, stop, options.fallback, reduction);
+        x           = std::move(result.x);
+        is_nearest  = false;
+        std::copy(result.gradient.begin(), result.gradient.end(), r.begin());
+        combine(0.0, r, -1.0, r);
+        norm_r = norm(r, reduction);
+        if (norm_r <= options.tolerance * reference)
+          return Status::converged;
+        return proves_infeasibility(r) ? Status::infeasible : failure;
+      }
+
+      const Problem &                                     problem;
+      decltype(std::declval<const Problem &>().reduction()) reduction;
+      const Box<Vector> &                                 box;
+      const FeasiblePointOptions &                        options;
+
+      Vector       Qx_e, y, x, r, d, p, Ap, residual;
+      double       reference = 0, norm_r = 0;
+      bool         is_empty = false, is_nearest = true;
+      unsigned int newton_steps = 0, projections = 0;
+    };
+  } // namespace detail
+
+  /// The point nearest to zero of the box with Q x = Q x_e. Uses `problem.project_range` and `problem.reduction` only.
+  /// status: infeasible with a certificate, see FeasiblePoint (without, if some lower > upper); iteration_limit or
+  /// stagnated if neither a point nor a certificate was found.
+  template <typename Vector, typename Problem>
+  FeasiblePoint<Vector> feasible_point(const Problem &             problem,
+                                       const Vector &              x_e,
+                                       const Box<Vector> &         box,
+                                       const FeasiblePointOptions &options = {})
+  {
+    return detail::NearestPoint<Vector, Problem>(problem, x_e, box, options).run();
+  }
+} // namespace slipstick::qp

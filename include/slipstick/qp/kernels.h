@@ -1,0 +1,74 @@
+// Vector kernels: local loops over the owned entries; each function with a Reduction does one global reduction.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace slipstick::qp
+{
+  /// Number of entries owned by this process.
+  template <typename Vector>
+  std::size_t local_size(const Vector &x)
+  {
+    return static_cast<std::size_t>(x.end() - x.begin());
+  }
+
+  template <typename Vector>
+  void set_zero(Vector &x)
+  {
+    std::fill(x.begin(), x.end(), 0.0);
+  }
+
+  template <typename Vector>
+  Vector zero_like(const Vector &x)
+  {
+    Vector y(x);
+    set_zero(y);
+    return y;
+  }
+
+  /// y = a x + b y
+  template <typename Vector>
+  void combine(const double a, const Vector &x, const double b, Vector &y)
+  {
+    const auto        xi = x.begin();
+    const auto        yi = y.begin();
+    const std::size_t n  = local_size(y);
+    for (std::size_t i = 0; i < n; ++i)
+      yi[i] = a * xi[i] + b * yi[i];
+  }
+
+  /// y += a x
+  template <typename Vector>
+  void add(const double a, const Vector &x, Vector &y)
+  {
+    combine(a, x, 1.0, y);
+  }
+
+  /// x'y of the owned entries: to be summed over the processes.
+  template <typename Vector>
+  double local_dot(const Vector &x, const Vector &y)
+  {
+    const auto        xi  = x.begin();
+    const auto        yi  = y.begin();
+    const std::size_t n   = local_size(x);
+    double            sum = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      sum += xi[i] * yi[i];
+    return sum;
+  }
+
+  template <typename Vector, typename Reduction>
+  double dot(const Vector &x, const Vector &y, const Reduction &reduction)
+  {
+    return reduction.sum(std::array<double, 1>{{local_dot(x, y)}})[0];
+  }
+
+  template <typename Vector, typename Reduction>
+  double norm(const Vector &x, const Reduction &reduction)
+  {
+    return std::sqrt(dot(x, x, reduction));
+  }
+} // namespace slipstick::qp

@@ -1,0 +1,233 @@
+// PCPG: preconditioned conjugate gradients in the kernel of Q, for min 1/2 x'Fx - x'b without bounds.
+// Farhat, Crivelli, Roux 1994.
+#pragma once
+
+#include <slipstick/qp/kernels.h>
+#include <slipstick/qp/options.h>
+#include <slipstick/qp/stagnation.h>
+#include <slipstick/qp/types.h>
+
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace slipstick::qp
+{
+  /// Where PCPG starts. The product F x, if known, saves a multiplication.
+  template <typename Vector>
+  struct PcpgStart
+  {
+    Vector                x;
+    std::optional<Vector> product = std::nullopt;
+  };
+
+  template <typename Vector>
+  struct PcpgResult
+  {
+    Status status;
+    Vector x;                 // the start plus a vector in the range of P
+    Vector product;           // F x
+    Vector residual;          // P(b - F x)
+    double relative_residual; // |P(b - F x)| over the reference of the goal
+    double reference;
+    Counts counts; // cg_steps, hessian_multiplications, preconditioner_applications
+  };
+
+  /// y = r; not counted as a preconditioner.
+  struct NoPreconditioner
+  {};
+
+  namespace detail
+  {
+    /// Directions p with F p and p'Fp, and the projection along them.
+    template <typename Vector>
+    class DirectionHistory
+    {
+    public:
+      explicit DirectionHistory(const bool keeps_all_)
+        : keeps_all(keeps_all_)
+      {}
+
+      void push(Vector p, Vector Fp, const double pFp)
+      {
+        if (!keeps_all)
+          directions.clear();
+        directions.push_back({std::move(p), std::move(Fp), pFp});
+      }
+
+      /// p -= sum_j (p'F q_j / q_j'F q_j) q_j. One reduction for a batch of directions.
+      template <typename Reduction>
+      void orthogonalize(Vector &p, const Reduction &reduction) const
+      {
+        const Vector z(p);
+        for (std::size_t first = 0; first < directions.size(); first += batch)
+          {
+            const std::size_t         n = std::min(batch, directions.size() - first);
+            std::array<double, batch> zFq{};
+            for (std::size_t j = 0; j < n; ++j)
+              zFq[j] = local_dot(z, directions[first + j].Fq);
+            zFq = reduction.sum(zFq);
+            for (std::size_t j = 0; j < n; ++j)
+              add(-zFq[j] / directions[first + j].qFq, directions[first + j].q, p);
+          }
+      }
+
+    private:
+      struct Direction
+      {
+        Vector q, Fq;
+        double qFq;
+      };
+
+      static constexpr std::size_t batch = 32; // scalars of one reduction: latency against wasted length
+
+      const bool             keeps_all;
+      std::vector<Direction> directions;
+    };
+
+    template <typename Vector, typename Problem, typename Preconditioner>
+    class Pcpg
+    {
+    public:
+      Pcpg(const Problem &       problem_,
+           const Vector &        b_,
+           PcpgStart<Vector>     start,
+           const Goal &          goal,
+           const PcpgOptions &   options_,
+           const Preconditioner &preconditioner_)
+        : problem(problem_)
+        , b(b_)
+        , options(options_)
+        , preconditioner(preconditioner_)
+        , x(std::move(start.x))
+        , Fx(start.product ? std::move(*start.product) : zero_like(b))
+        , r(b)
+        , w(b)
+        , directions(keeps_all_directions(options_))
+      {
+        const auto s = problem.reduction().sum(std::array<double, 2>{{local_dot(b, b), local_dot(x, x)}});
+        if (!start.product && s[1] > 0)
+          multiply(x, Fx);
+        update_residual();
+        norm_b    = std::sqrt(s[0]);
+        reference = goal.reference > 0 ? goal.reference : norm_b > 0 ? norm_b : norm_Fx > 0 ? norm_Fx : 1.0;
+        target    = goal.tolerance * reference;
+      }
+
+      PcpgResult<Vector> run()
+      {
+        const Status status = iterate();
+        return {status, std::move(x), std::move(Fx), std::move(r), norm_r / reference, reference, counts};
+      }
+
+    private:
+      static constexpr bool is_preconditioned = !std::is_same_v<Preconditioner, NoPreconditioner>;
+
+      static bool keeps_all_directions(const PcpgOptions &options)
+      {
+        return options.reorthogonalization == Reorthogonalization::full ||
+               (options.reorthogonalization == Reorthogonalization::automatic && is_preconditioned);
+      }
+
+      Status iterate()
+      {
+        StagnationWatch stagnates(options.stagnation_window, options.stagnation_progress);
+        for (unsigned int iteration = 0;; ++iteration)
+          {
+            if (norm_r <= target)
+              return Status::converged;
+            if (stagnates(norm_r) || norm_r <= noise())
+              return Status::stagnated;
+            if (iteration == options.max_iterations)
+              return Status::iteration_limit;
+            if (const auto outcome = step())
+              return *outcome;
+          }
+      }
+
+      double noise() const { return options.rounding * (norm_Fx + norm_b); }
+
+      void multiply(const Vector &v, Vector &Fv)
+      {
+        problem.multiply(v, Fv);
+        ++counts.hessian_multiplications;
+      }
+
+      // z = P M r
+      Vector new_direction()
+      {
+        Vector z(r);
+        if constexpr (is_preconditioned)
+          {
+            preconditioner(static_cast<const Vector &>(r), z);
+            ++counts.preconditioner_applications;
+            problem.project_range(z, w);
+            add(-1.0, w, z);
+          }
+        directions.orthogonalize(z, problem.reduction());
+        return z;
+      }
+
+      // nullopt: go on.
+      std::optional<Status> step()
+      {
+        Vector p = new_direction();
+        Vector Fp(p);
+        multiply(p, Fp);
+        const auto [pr, pFp, pp] = problem.reduction().sum(
+          std::array<double, 3>{{local_dot(p, r), local_dot(p, Fp), local_dot(p, p)}});
+        if (!std::isfinite(pr) || !std::isfinite(pFp) || pr <= noise() * std::sqrt(pp))
+          return Status::stagnated;
+        if (pFp <= options.smallest_curvature * largest_curvature * pp)
+          return Status::infeasible;
+        largest_curvature = std::max(largest_curvature, pFp / pp);
+        add(pr / pFp, p, x);
+        add(pr / pFp, Fp, Fx);
+        update_residual();
+        directions.push(std::move(p), std::move(Fp), pFp);
+        ++counts.cg_steps;
+        return {};
+      }
+
+      // r = P(b - F x)
+      void update_residual()
+      {
+        std::copy(b.begin(), b.end(), r.begin());
+        add(-1.0, Fx, r);
+        problem.project_range(r, w);
+        add(-1.0, w, r);
+        const auto s = problem.reduction().sum(std::array<double, 2>{{local_dot(r, r), local_dot(Fx, Fx)}});
+        norm_r       = std::sqrt(s[0]);
+        norm_Fx      = std::sqrt(s[1]);
+      }
+
+      const Problem &       problem;
+      const Vector &        b;
+      const PcpgOptions &   options;
+      const Preconditioner &preconditioner;
+
+      Vector                   x, Fx, r, w;
+      DirectionHistory<Vector> directions;
+      double                   norm_b = 0, norm_r = 0, norm_Fx = 0;
+      double                   reference = 0, target = 0, largest_curvature = 0;
+      Counts                   counts;
+    };
+  } // namespace detail
+
+  /// Minimise 1/2 x'Fx - x'b over start + range of P until |P(b - F x)| <= goal.tolerance times goal.reference (default
+  /// |b|). So Q x stays that of the start; b need not be in the range of P. `preconditioner(r, y)`: y = M r, symmetric
+  /// positive (semi)definite. From x = 0, or from a start with product, nothing is multiplied before the first step.
+  /// Full reorthogonalisation keeps two vectors a step.
+  /// status: infeasible if F is singular along a direction of descent (unbounded from below).
+  template <typename Vector, typename Problem, typename Preconditioner = NoPreconditioner>
+  PcpgResult<Vector> pcpg(const Problem &       problem,
+                          const Vector &        b,
+                          PcpgStart<Vector>     start,
+                          const Goal &          goal,
+                          const PcpgOptions &   options        = {},
+                          const Preconditioner &preconditioner = {})
+  {
+    return detail::Pcpg<Vector, Problem, Preconditioner>(problem, b, std::move(start), goal, options, preconditioner).run();
+  }
+} // namespace slipstick::qp

@@ -1,0 +1,258 @@
+// SMALBE-M: semimonotonic augmented Lagrangians for bounds and equalities, with MPGP inside.
+// Dostal, Horak 2004; Dostal 2009, sections 8.1-8.9; Dostal et al. 2010, doi:10.1016/j.cam.2010.05.042.
+#pragma once
+
+#include <slipstick/qp/mpgp.h>
+
+namespace slipstick::qp
+{
+  /// Where SMALBE starts. shift = G'mu, the multiplier of the equalities in the range of G', if known.
+  template <typename Vector>
+  struct SmalbeStart
+  {
+    Vector                x;
+    std::optional<Vector> shift = std::nullopt;
+  };
+
+  template <typename Vector>
+  struct SmalbeResult
+  {
+    Status status;
+    Vector x;                  // within the box, exactly
+    Vector gradient;           // (P F P + rho Q) x - b + shift
+    Vector shift;              // G'mu
+    double projected_gradient; // |gP| over the reference of the goal
+    double equality_residual;  // |PFP| |Gx| over the reference of the goal
+    double reference;          // the norm that the residuals refer to
+    Counts counts;
+  };
+
+  namespace detail
+  {
+    /// A = P F P + rho Q. Follows Q x through the steps of MPGP (a Tracker), which saves a projection each.
+    template <typename Vector, typename Problem>
+    class AugmentedOperator
+    {
+    public:
+      AugmentedOperator(const Problem &problem_, const double rho_, const Vector &layout)
+        : problem(problem_)
+        , rho(rho_)
+        , Qx(zero_like(layout))
+        , Qv(Qx)
+        , w(Qx)
+      {}
+
+      void operator()(const Vector &v, Vector &Av)
+      {
+        problem.project_range(v, Qv);
+        std::copy(v.begin(), v.end(), w.begin());
+        add(-1.0, Qv, w);
+        problem.multiply(w, Av);
+        problem.project_range(Av, w);
+        const auto        a = Av.begin();
+        const auto        q = Qv.begin(), wi = w.begin();
+        const std::size_t n = local_size(v);
+        for (std::size_t i = 0; i < n; ++i)
+          a[i] += rho * q[i] - wi[i];
+      }
+
+      void stepped(const double a) { add(-a, Qv, Qx); }
+      void replaced() { std::copy(Qv.begin(), Qv.end(), Qx.begin()); }
+
+      /// Q x, as followed.
+      const Vector &range_part() const { return Qx; }
+
+      /// Q x, anew.
+      const Vector &range_part(const Vector &x)
+      {
+        problem.project_range(x, Qx);
+        return Qx;
+      }
+
+    private:
+      const Problem &problem;
+      const double   rho;
+      Vector         Qx, Qv, w;
+    };
+
+    template <typename Vector, typename Problem>
+    class Smalbe
+    {
+    public:
+      Smalbe(const Problem &      problem_,
+             const double         norm_,
+             const Vector &       b,
+             const Box<Vector> &  box_,
+             SmalbeStart<Vector>  start,
+             const Goal &         goal,
+             const SmalbeOptions &options_,
+             const Observer &     observer_)
+        : problem(problem_)
+        , reduction(problem.reduction())
+        , norm(norm_)
+        , rho(options_.regularization * norm_)
+        , box(box_)
+        , options(options_)
+        , observer(observer_)
+        , A(problem, rho, b)
+        , x(std::move(start.x))
+        , shift(start.shift ? std::move(*start.shift) : zero_like(b))
+        , rhs(b)
+        , inner_norm(std::max(norm, rho))
+        , M(options_.initial_balance)
+      {
+        project(box, x);
+        add(-1.0, shift, rhs);
+        const auto s = reduction.sum(std::array<double, 2>{{local_dot(b, b), local_dot(x, x)}});
+        reference    = goal.reference;
+        if (!(reference > 0))
+          reference = s[0] > 0 ? std::sqrt(s[0]) : s[1] > 0 ? norm * std::sqrt(s[1]) : norm;
+        target = goal.tolerance * reference;
+      }
+
+      SmalbeResult<Vector> run()
+      {
+        const Status status = iterate();
+        return {status,
+                std::move(x),
+                std::move(*g),
+                std::move(shift),
+                gP / reference,
+                feasibility / reference,
+                reference,
+                counts};
+      }
+
+    private:
+      Status iterate()
+      {
+        StagnationWatch stagnates(options.stagnation_window, options.stagnation_progress);
+        for (;;)
+          {
+            const Status inner = minimise();
+            measure();
+            if (inner == Status::infeasible)
+              return inner;
+            if (gP <= target && feasibility <= target)
+              return Status::converged;
+            if (inner == Status::iteration_limit || counts.outer_iterations >= options.max_outer_iterations)
+              return Status::iteration_limit;
+            if (inner == Status::stagnated && feasibility <= target)
+              return Status::stagnated;
+            if (stagnates(std::max(gP, feasibility) / reference))
+              return is_contradictory() ? Status::infeasible : Status::stagnated;
+            update_multiplier(inner == Status::converged);
+          }
+      }
+
+      // MPGP on the augmented Lagrangian of the present multiplier.
+      Status minimise()
+      {
+        const auto stop = [this](const Vector &, const double gradient) {
+          if (gradient > reference)
+            return false;
+          const double residual = norm * qp::norm(A.range_part(), reduction);
+          const double balanced = std::min(M * residual, reference);
+          return gradient <= (residual <= target ? std::max(balanced, target) : balanced);
+        };
+        auto inner = mpgp(A, inner_norm, rhs, box, MpgpStart<Vector>{std::move(x), std::move(g)}, stop,
+                          options.inner, reduction, A);
+        x          = std::move(inner.x);
+        g          = std::move(inner.gradient);
+        inner_norm = inner.norm;
+        counts += inner.counts;
+        ++counts.outer_iterations;
+        return inner.status;
+      }
+
+      // Residuals, augmented Lagrangian, active entries at x: one reduction, one projection.
+      void measure()
+      {
+        const Vector &        Qx = A.range_part(x);
+        const auto            l = box.lower.begin(), u = box.upper.begin();
+        const auto            q  = Qx.begin();
+        const auto            xi = x.begin(), gi = g->begin(), ri = rhs.begin();
+        const std::size_t     n = local_size(x);
+        std::array<double, 5> s{{0, 0, 0, 0, 0}};
+        for (std::size_t i = 0; i < n; ++i)
+          {
+            const double gp = projected_gradient(xi[i], gi[i], l[i], u[i]);
+            s[0] += gp * gp;
+            s[1] += q[i] * q[i];
+            s[2] += 0.5 * xi[i] * (gi[i] - ri[i]);
+            s[3] += xi[i] <= l[i];
+            s[4] += xi[i] >= u[i] && l[i] < u[i];
+          }
+        s           = reduction.sum(s);
+        gP          = std::sqrt(s[0]);
+        Gx          = std::sqrt(s[1]);
+        feasibility = norm * Gx;
+        lagrangian  = s[2];
+        if (observer)
+          observer({counts.outer_iterations,
+                    counts.hessian_multiplications,
+                    gP / reference,
+                    feasibility / reference,
+                    static_cast<std::size_t>(s[3]),
+                    static_cast<std::size_t>(s[4])});
+      }
+
+      // mu += rho G x; the gradient follows without a multiplication. M falls unless the Lagrangian rose enough.
+      void update_multiplier(const bool may_balance)
+      {
+        if (may_balance && lagrangian_before && lagrangian < *lagrangian_before + 0.5 * rho * Gx * Gx)
+          M /= options.balance_reduction;
+        lagrangian_before = lagrangian;
+        add(rho, A.range_part(), shift);
+        add(rho, A.range_part(), *g);
+        add(-rho, A.range_part(), rhs);
+      }
+
+      // Does -Qx prove that nothing within the box has Q x = 0?
+      bool is_contradictory() const
+      {
+        Vector r = zero_like(x);
+        add(-1.0, A.range_part(), r);
+        const double radius = options.certificate_radius * qp::norm(x, reduction);
+        return is_farkas_certificate(box, r, zero_like(x), radius, options.inner.rounding, reduction);
+      }
+
+      const Problem &                            problem;
+      decltype(std::declval<const Problem &>().reduction()) reduction;
+
+      const double                      norm, rho;
+      const Box<Vector> &               box;
+      const SmalbeOptions &             options;
+      const Observer &                  observer;
+      AugmentedOperator<Vector, Problem> A;
+
+      Vector                x;
+      std::optional<Vector> g;
+      Vector                shift, rhs; // rhs = b - shift
+      double                inner_norm, M;
+      double                reference = 0, target = 0;
+      double                gP = 0, Gx = 0, feasibility = 0, lagrangian = 0;
+      std::optional<double> lagrangian_before;
+      Counts                counts;
+    };
+  } // namespace detail
+
+  /// Minimise 1/2 x'PFPx - x'b, b in the range of P, over the box and Q x = 0, until |gP| and |PFP| |Gx| are at most
+  /// goal.tolerance times goal.reference (default |b|; if that is 0, |PFP| times |start|). `norm` is |PFP|. A start
+  /// outside of the box is projected on it; from 0 nothing is multiplied before the first step. The observer is called
+  /// after every outer step, on every process.
+  /// status: infeasible if bounds contradict each other (x is then of no use), or them the equalities (provably; if in
+  /// doubt the status is stagnated), or if the objective is unbounded from below.
+  template <typename Vector, typename Problem>
+  SmalbeResult<Vector> smalbe(const Problem &      problem,
+                              const double         norm,
+                              const Vector &       b,
+                              const Box<Vector> &  box,
+                              SmalbeStart<Vector>  start,
+                              const Goal &         goal,
+                              const SmalbeOptions &options  = {},
+                              const Observer &     observer = {})
+  {
+    return detail::Smalbe<Vector, Problem>(problem, norm, b, box, std::move(start), goal, options, observer).run();
+  }
+} // namespace slipstick::qp
