@@ -6,16 +6,11 @@
 #include <memory>
 #include <string>
 
-namespace dealii
-{
-  template <int dim>
-  class FunctionParser;
-}
-
 namespace slipstick::scene
 {
   /// A scalar function of position and load factor t, given as a number or as a muParser formula such as
-  /// "-250*sin(pi*x/10)*t". Copies share the parsed formula. Evaluation is not thread safe.
+  /// "-250*sin(pi*x/10)*t". Copies share the parsed formula. Evaluation is not thread safe. muParser is used
+  /// directly: dealii::FunctionParser prints to standard error on a wrong formula and takes "1,5" for 5.
   template <int dim>
   class Field
   {
@@ -23,9 +18,11 @@ namespace slipstick::scene
     /// The constant 0.
     Field();
 
-    /// @throws InputError naming @p where (the path of the parameter) when @p formula does not parse.
+    /// @throws InputError naming @p where (the path of the parameter) when @p formula does not parse, uses names
+    /// other than x, y, t, pi and muParser's functions, or is a number that is not finite.
     Field(const std::string &formula, const std::string &where);
 
+    /// @throws InputError when a formula gives no finite number there (on the calling rank only).
     double value(const dealii::Point<dim> &x, const double t) const;
 
     /// True when the formula is a plain number; then value() costs nothing.
@@ -34,8 +31,10 @@ namespace slipstick::scene
     const std::string &formula() const;
 
   private:
-    std::string                                  text;
-    double                                       constant = 0;
-    std::shared_ptr<dealii::FunctionParser<dim>> parser; // empty for a constant
+    struct Formula; // the parser with its variables
+
+    std::string              text     = "0";
+    double                   constant = 0;
+    std::shared_ptr<Formula> parsed; // empty for a constant
   };
 } // namespace slipstick::scene

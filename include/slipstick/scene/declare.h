@@ -1,0 +1,128 @@
+// Declaring parameters: the default is the member's value, the text carries unit, range and meaning.
+#pragma once
+
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/point.h>
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace slipstick::scene
+{
+  /// Numbers between two limits; an open limit is excluded itself. Infinite numbers are never inside.
+  struct Interval
+  {
+    double lower      = -std::numeric_limits<double>::infinity();
+    double upper      = std::numeric_limits<double>::infinity();
+    bool   lower_open = false;
+    bool   upper_open = false;
+
+    static Interval above(const double lower);
+    static Interval inside(const double lower, const double upper);
+
+    bool        contains(const double value) const;
+    std::string text() const; // "> 0", "in (0, 1)"
+  };
+
+  /// One value of an enumeration with its spelling in the .prm.
+  template <typename Enum>
+  using Choices = std::vector<std::pair<std::string, Enum>>;
+
+  /// The description of a pattern that allows a few words starts so; the words follow, separated by commas.
+  extern const std::string choice_prefix;
+
+  /// Declares a parameter that allows the texts for which @p allows holds; @p store receives the text, at once
+  /// the default and later every value set. @p unit is empty or a text such as "MPa".
+  void add_entry(dealii::ParameterHandler                             &prm,
+                 const std::string                                    &name,
+                 const std::string                                    &default_text,
+                 const std::string                                    &unit,
+                 const std::string                                    &meaning,
+                 const std::string                                    &allowed,
+                 const std::function<bool(const std::string &)>       &allows,
+                 const std::function<void(const std::string &)>       &store);
+
+  void add_number(dealii::ParameterHandler &prm,
+                  const std::string        &name,
+                  double                   &value,
+                  const std::string        &unit,
+                  const Interval           &interval,
+                  const std::string        &meaning);
+
+  /// A whole number from @p least to @p most.
+  void add_count(dealii::ParameterHandler &prm,
+                 const std::string        &name,
+                 unsigned int             &value,
+                 const unsigned int        least,
+                 const unsigned int        most,
+                 const std::string        &meaning);
+
+  /// A whole number from 1 to @p most, or `auto`, which is 0 in the program.
+  void add_count_or_auto(dealii::ParameterHandler &prm,
+                         const std::string        &name,
+                         unsigned int             &value,
+                         const unsigned int        most,
+                         const std::string        &meaning);
+
+  /// @p dim numbers separated by commas.
+  template <int dim>
+  void add_point(dealii::ParameterHandler &prm,
+                 const std::string        &name,
+                 dealii::Point<dim>       &value,
+                 const std::string        &unit,
+                 const Interval           &interval,
+                 const std::string        &meaning);
+
+  /// @p dim whole numbers from 1 to @p most, or `auto`, which is nothing in the program.
+  template <int dim>
+  void add_counts_or_auto(dealii::ParameterHandler                     &prm,
+                          const std::string                            &name,
+                          std::optional<std::array<unsigned int, dim>> &value,
+                          const unsigned int                            most,
+                          const std::string                            &meaning);
+
+  void add_flag(dealii::ParameterHandler &prm, const std::string &name, bool &value, const std::string &meaning);
+
+  /// Free text, checked where it is read; @p allowed describes it.
+  void add_text(dealii::ParameterHandler &prm,
+                const std::string        &name,
+                std::string              &value,
+                const std::string        &unit,
+                const std::string        &allowed,
+                const std::string        &meaning);
+
+  /// One of a few words; see add_choice().
+  void add_word(dealii::ParameterHandler                       &prm,
+                const std::string                              &name,
+                const std::string                              &default_word,
+                const std::vector<std::string>                 &words,
+                const std::string                              &meaning,
+                const std::function<void(const std::string &)> &store);
+
+  template <typename Enum>
+  void add_choice(dealii::ParameterHandler &prm,
+                  const std::string        &name,
+                  Enum                     &value,
+                  const Choices<Enum>      &choices,
+                  const std::string        &meaning)
+  {
+    std::string              default_word;
+    std::vector<std::string> words;
+    for (const auto &choice : choices)
+      {
+        words.push_back(choice.first);
+        if (choice.second == value)
+          default_word = choice.first;
+      }
+    add_word(prm, name, default_word, words, meaning, [&value, choices](const std::string &word) {
+      for (const auto &choice : choices)
+        if (choice.first == word)
+          value = choice.second;
+    });
+  }
+} // namespace slipstick::scene

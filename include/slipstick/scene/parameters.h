@@ -1,0 +1,57 @@
+// The generic part around dealii::ParameterHandler: lists of names, values, diagnosis.
+#pragma once
+
+#include <slipstick/base/exceptions.h>
+#include <slipstick/scene/prm_file.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <string>
+#include <vector>
+
+namespace slipstick::scene
+{
+  /// Subsections "KIND NAME" whose names the top level parameter LIST declares: {"Body", "Bodies"}.
+  struct NamedKind
+  {
+    std::string kind;
+    std::string list;
+  };
+
+  /// What one .prm file with overrides sets. First give_names() for every list, then apply() to a handler that
+  /// declares everything.
+  class Parameters
+  {
+  public:
+    /// @throws InputError as read_settings() does.
+    Parameters(const std::string              &file,
+               const std::vector<std::string> &overrides,
+               const std::vector<NamedKind>   &named_kinds);
+
+    /// The names that the list of @p kind declares, in its order.
+    /// @throws InputError for a name that is empty, declared twice, holds '/' or '=', or has no subsection.
+    std::vector<std::string> names(const NamedKind &kind) const;
+
+    /// Sets in @p prm all that file and overrides set.
+    /// @throws InputError for an unknown section or parameter and for a value that is not allowed.
+    void apply(dealii::ParameterHandler &prm) const;
+
+    bool is_set(const std::string &path) const;
+
+    /// @throws InputError when nothing sets the parameter. @p remedy says what to set.
+    void require(const std::string &path, const std::string &remedy) const;
+
+    /// Place and path for a message about the parameter or section: "prm/box.prm:12: Contact circle/Law".
+    std::string locate(const std::string &path) const;
+
+    /// The message "PLACE: PATH = 'VALUE': REASON" for a parameter that is set.
+    InputError error(const std::string &path, const std::string &reason, const std::string &remedy) const;
+
+  private:
+    const Setting *find(const std::string &path) const; // the last one
+
+    std::string            file;
+    std::vector<NamedKind> kinds;
+    std::vector<Setting>   settings;
+  };
+} // namespace slipstick::scene

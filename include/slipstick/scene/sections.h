@@ -1,0 +1,111 @@
+// One struct per kind of subsection of the .prm: declare, then read what refers to other names. Their members are
+// bound to the ParameterHandler by reference, so they must neither move nor die before the last value is set.
+#pragma once
+
+#include <slipstick/scene/parameters.h>
+#include <slipstick/scene/scene.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace slipstick::scene
+{
+  /// Names of the sides of @p shape.
+  std::vector<std::string> boundary_names(const Shape shape);
+
+  /// The body and boundary that the parameter @p path, "BODY/BOUNDARY", names.
+  /// @throws InputError for an unknown body or boundary.
+  template <int dim>
+  BoundaryName read_boundary(const std::string             &text,
+                             const std::string             &path,
+                             const Parameters              &parameters,
+                             const std::vector<Body<dim>>  &bodies);
+
+  /// Every read() returns the checked value and throws InputError for what is wrong in its own section; names are
+  /// looked up in the part of the scene that is already read.
+  struct MaterialSection
+  {
+    explicit MaterialSection(const std::string &name);
+
+    std::string name;
+    Material    material;
+
+    void     declare(dealii::ParameterHandler &prm);
+    Material read() const;
+  };
+
+  template <int dim>
+  struct BodySection
+  {
+    explicit BodySection(const std::string &name);
+
+    std::string name;
+    std::string material;
+    Body<dim>   body;
+
+    void      declare(dealii::ParameterHandler &prm);
+    Body<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
+  template <int dim>
+  struct ObstacleSection
+  {
+    explicit ObstacleSection(const std::string &name);
+
+    std::string   name;
+    Obstacle<dim> obstacle;
+
+    void          declare(dealii::ParameterHandler &prm);
+    Obstacle<dim> read(const Parameters &parameters) const;
+  };
+
+  template <int dim>
+  struct SupportSection
+  {
+    explicit SupportSection(const std::string &name);
+
+    std::string                  name;
+    std::string                  boundary;
+    std::array<std::string, dim> components;
+
+    void                        declare(dealii::ParameterHandler &prm);
+    PrescribedDisplacement<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
+  template <int dim>
+  struct TractionSection
+  {
+    explicit TractionSection(const std::string &name);
+
+    std::string                  name;
+    std::string                  boundary;
+    std::array<std::string, dim> components;
+
+    void          declare(dealii::ParameterHandler &prm);
+    Traction<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
+  template <int dim>
+  struct ContactSection
+  {
+    explicit ContactSection(const std::string &name);
+
+    std::string name;
+    std::string slave;
+    std::string master;
+    ContactLaw  law        = ContactLaw::frictionless;
+    std::string slip_bound = "0";
+
+    void             declare(dealii::ParameterHandler &prm);
+    ContactPair<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
+  // Concerns without names of their own; each declares its own subsection.
+  void declare(dealii::ParameterHandler &prm, Decomposition &decomposition);
+  void declare(dealii::ParameterHandler &prm, Discretization &discretization);
+  void declare(dealii::ParameterHandler &prm, SolverOptions &solver);
+  void declare(dealii::ParameterHandler &prm, OutputOptions &output);
+} // namespace slipstick::scene

@@ -1,0 +1,101 @@
+#include <slipstick/scene/checks.h>
+
+#include <map>
+#include <utility>
+
+namespace slipstick::scene
+{
+  namespace
+  {
+    using Boundary = std::pair<unsigned int, std::string>;
+
+    Boundary boundary_of(const BoundaryName &name)
+    {
+      return {name.body, name.boundary};
+    }
+
+    template <int dim>
+    void check_bodies_held(const Scene<dim> &scene, const Parameters &parameters)
+    {
+      if (scene.bodies.empty())
+        throw InputError(parameters.locate("Bodies") + " declares no body",
+                         "declare one, for example: set Bodies = box, and describe it in a subsection Body box");
+      for (unsigned int body = 0; body < scene.bodies.size(); ++body)
+        {
+          bool held = false;
+          for (const auto &support : scene.supports)
+            held = held || support.where.body == body;
+          for (const auto &contact : scene.contacts)
+            held = held || contact.slave.body == body;
+          if (!held)
+            throw InputError(parameters.locate("Body " + scene.bodies[body].name) + ": nothing holds body '" +
+                               scene.bodies[body].name + "'",
+                             "add a support or a contact pair on one of its boundaries (lists Supports, Contacts)");
+        }
+    }
+
+    template <int dim>
+    void check_boundaries_used_once(const Scene<dim> &scene, const Parameters &parameters)
+    {
+      std::map<Boundary, std::string> contacts;
+      for (const auto &contact : scene.contacts)
+        {
+          const auto [first, is_new] = contacts.emplace(boundary_of(contact.slave), contact.name);
+          if (!is_new)
+            throw parameters.error("Contact " + contact.name + "/Slave",
+                                   "Contact " + first->second + " has the same slave boundary",
+                                   "keep one of the two, or choose another boundary");
+        }
+
+      std::map<std::pair<Boundary, unsigned int>, std::string> supports;
+      for (const auto &support : scene.supports)
+        for (unsigned int d = 0; d < dim; ++d)
+          if (support.components[d])
+            {
+              const auto [first, is_new] = supports.emplace(std::make_pair(boundary_of(support.where), d), support.name);
+              if (!is_new)
+                throw parameters.error("Support " + support.name + "/Boundary",
+                                       std::string("Support ") + first->second + " prescribes the displacement along " +
+                                         "xyz"[d] + " there already",
+                                       "set one of the two to free, or choose another boundary");
+            }
+    }
+
+    template <int dim>
+    void check_decomposition(const Scene<dim> &scene, const Parameters &parameters)
+    {
+      if (scene.decomposition.method != DecompositionMethod::blocks)
+        return;
+      const unsigned int blocks = scene.decomposition.blocks;
+      for (const Body<dim> &body : scene.bodies)
+        if (body.cells)
+          for (const unsigned int n : *body.cells)
+            if (n % blocks != 0)
+              throw parameters.error("Body " + body.name + "/Cells",
+                                     std::to_string(n) + " cells cannot be divided by Decomposition/Blocks = " +
+                                       std::to_string(blocks),
+                                     "give a multiple of " + std::to_string(blocks) + ", or set Cells = auto");
+    }
+
+    template <int dim>
+    void check_algorithm(const Scene<dim> &scene, const Parameters &parameters)
+    {
+      const Algorithm algorithm = scene.solver.algorithm;
+      if (algorithm == Algorithm::pcg && scene.has_contact())
+        throw parameters.error("Solver/Algorithm", "solves linear scenes only, and this one has contact", "set it to auto");
+      if (algorithm == Algorithm::smalbe && !scene.has_contact())
+        throw parameters.error("Solver/Algorithm", "needs contact, and this scene has none", "set it to auto");
+    }
+  } // namespace
+
+  template <int dim>
+  void check_scene(const Scene<dim> &scene, const Parameters &parameters)
+  {
+    check_bodies_held(scene, parameters);
+    check_boundaries_used_once(scene, parameters);
+    check_decomposition(scene, parameters);
+    check_algorithm(scene, parameters);
+  }
+
+  template void check_scene(const Scene<2> &, const Parameters &);
+} // namespace slipstick::scene

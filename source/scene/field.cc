@@ -1,0 +1,146 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/base/nearest_name.h>
+#include <slipstick/base/text.h>
+#include <slipstick/scene/field.h>
+
+#include <deal.II/base/numbers.h>
+
+#include <muParser.h>
+
+#include <array>
+#include <cctype>
+#include <cmath>
+
+namespace slipstick::scene
+{
+  namespace
+  {
+    const std::array<std::string, 3> coordinate_names = {{"x", "y", "z"}};
+
+    InputError formula_error(const std::string &where, const std::string &formula, const std::string &reason)
+    {
+      return InputError(where + " = '" + formula + "': " + reason,
+                        "give a finite number or a formula of x, y, t and pi such as -250*sin(pi*x/10)*t");
+    }
+
+    /// muParser's "=" assigns: x=3 would overwrite the variable.
+    bool has_assignment(const std::string &formula)
+    {
+      for (std::size_t i = formula.find('='); i != std::string::npos; i = formula.find('=', i + 1))
+        {
+          const bool second = i > 0 && std::string("=<>!").find(formula[i - 1]) != std::string::npos;
+          const bool first  = i + 1 < formula.size() && formula[i + 1] == '=';
+          if (!first && !second)
+            return true;
+        }
+      return false;
+    }
+  } // namespace
+
+  template <int dim>
+  struct Field<dim>::Formula
+  {
+    Formula(const std::string &formula, const std::string &path);
+
+    double evaluate(const dealii::Point<dim> &x, const double t);
+
+    std::string             where;
+    mu::Parser              parser;
+    std::array<double, dim> position = {};
+    double                  load_factor = 0;
+  };
+
+  template <int dim>
+  Field<dim>::Formula::Formula(const std::string &formula, const std::string &path)
+    : where(path)
+  {
+    if (has_assignment(formula))
+      throw formula_error(where, formula, "'=' assigns; compare with '=='");
+    std::vector<std::string> names = {"t", "pi"};
+    try
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            parser.DefineVar(coordinate_names[d], &position[d]);
+            names.push_back(coordinate_names[d]);
+          }
+        parser.DefineVar("t", &load_factor);
+        parser.DefineConst("pi", dealii::numbers::PI);
+        parser.SetExpr(formula);
+        parser.Eval();
+        if (parser.GetNumResults() != 1)
+          throw formula_error(where, formula, "more than one value (the decimal sign is the point, not the comma)");
+      }
+    catch (const mu::Parser::exception_type &error)
+      {
+        const std::string token = error.GetToken();
+        const bool is_name = !token.empty() && std::isalpha(static_cast<unsigned char>(token[0]));
+        const auto        near  = nearest_name(token, names);
+        throw formula_error(where,
+                            formula,
+                            error.GetMsg() +
+                              (is_name && error.GetCode() == mu::ecUNASSIGNABLE_TOKEN ?
+                                 "; known names: " + join_names(names) + (near ? ", nearest " + *near : "") :
+                                 ""));
+      }
+    if (parser.GetUsedVar().empty() && !std::isfinite(parser.Eval()))
+      throw formula_error(where, formula, "not a finite number");
+  }
+
+  template <int dim>
+  double Field<dim>::Formula::evaluate(const dealii::Point<dim> &x, const double t)
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      position[d] = x[d];
+    load_factor         = t;
+    const double result = parser.Eval();
+    if (!std::isfinite(result))
+      {
+        std::string at;
+        for (unsigned int d = 0; d < dim; ++d)
+          at += coordinate_names[d] + " = " + number_text(x[d]) + ", ";
+        throw formula_error(where,
+                            parser.GetExpr(),
+                            number_text(result) + " at " + at + "t = " + number_text(t));
+      }
+    return result;
+  }
+
+  template <int dim>
+  Field<dim>::Field() = default;
+
+  template <int dim>
+  Field<dim>::Field(const std::string &formula, const std::string &where)
+    : text(trim(formula))
+  {
+    if (text.empty())
+      throw formula_error(where, text, "empty");
+    const auto number = parse_number(text);
+    if (!number)
+      parsed = std::make_shared<Formula>(text, where);
+    else if (std::isfinite(*number))
+      constant = *number;
+    else
+      throw formula_error(where, text, "not a finite number");
+  }
+
+  template <int dim>
+  double Field<dim>::value(const dealii::Point<dim> &x, const double t) const
+  {
+    return parsed ? parsed->evaluate(x, t) : constant;
+  }
+
+  template <int dim>
+  bool Field<dim>::is_constant() const
+  {
+    return !parsed;
+  }
+
+  template <int dim>
+  const std::string &Field<dim>::formula() const
+  {
+    return text;
+  }
+
+  template class Field<2>;
+} // namespace slipstick::scene

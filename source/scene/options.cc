@@ -1,0 +1,156 @@
+#include <slipstick/scene/declare.h>
+#include <slipstick/scene/sections.h>
+
+namespace slipstick::scene
+{
+  namespace
+  {
+    const unsigned int max_iterations = 1000000000;
+
+    void declare_smalbe(dealii::ParameterHandler &prm, qp::SmalbeOptions &smalbe)
+    {
+      using qp::Expansion;
+      prm.enter_subsection("SMALBE");
+      add_choice(prm,
+                 "Expansion",
+                 smalbe.inner.expansion,
+                 Choices<Expansion>{{"gradient projection", Expansion::gradient_projection},
+                                    {"boundary then projection", Expansion::boundary_then_projection},
+                                    {"projected CG", Expansion::projected_cg}},
+                 "what MPGP does when a conjugate gradient step would leave the bounds");
+      add_number(prm,
+                 "Proportioning",
+                 smalbe.inner.proportioning,
+                 "-",
+                 Interval::above(0),
+                 "Gamma: how much the chopped gradient may exceed the free one (Dostal 2009, section 5.8)");
+      add_number(prm,
+                 "Step length",
+                 smalbe.inner.step_length,
+                 "-",
+                 Interval{0, 2, true, false},
+                 "fixed step alpha times the norm of the Hessian");
+      add_number(prm,
+                 "Initial balance",
+                 smalbe.initial_balance,
+                 "-",
+                 Interval::above(0),
+                 "M_0: inner precision relative to the violation of G x = 0, Hessian scaled to norm 1");
+      add_number(prm,
+                 "Balance reduction",
+                 smalbe.balance_reduction,
+                 "-",
+                 Interval::above(1),
+                 "beta: M is divided by it when the Lagrangian did not increase enough");
+      add_number(prm,
+                 "Regularization",
+                 smalbe.regularization,
+                 "-",
+                 Interval::above(0),
+                 "penalty rho over the norm of P F P");
+      add_count(prm,
+                "Max outer iterations",
+                smalbe.max_outer_iterations,
+                1,
+                max_iterations,
+                "multiplier updates before giving up");
+      add_count(prm,
+                "Max inner iterations",
+                smalbe.inner.max_iterations,
+                1,
+                max_iterations,
+                "MPGP steps per outer iteration");
+      prm.leave_subsection();
+    }
+
+    void declare_dual(dealii::ParameterHandler &prm, tfeti::DualOptions &dual)
+    {
+      using tfeti::DualOperatorKind;
+      using tfeti::Preconditioner;
+      add_choice(prm,
+                 "Preconditioner",
+                 dual.preconditioner,
+                 Choices<Preconditioner>{{"auto", Preconditioner::automatic},
+                                         {"none", Preconditioner::none},
+                                         {"lumped", Preconditioner::lumped},
+                                         {"Dirichlet", Preconditioner::dirichlet}},
+                 "preconditioner of the dual problem");
+      add_choice(prm,
+                 "Dual operator",
+                 dual.dual_operator,
+                 Choices<DualOperatorKind>{{"auto", DualOperatorKind::automatic},
+                                           {"explicit", DualOperatorKind::explicit_blocks},
+                                           {"implicit", DualOperatorKind::implicit}},
+                 "F as dense blocks (explicit) or by a forward and backward solve per multiplication (implicit)");
+      prm.enter_subsection("Norm estimate");
+      add_count(prm,
+                "Max iterations",
+                dual.max_norm_iterations,
+                1,
+                max_iterations,
+                "steps of the power method for the norm of P F P");
+      add_number(
+        prm, "Tolerance", dual.norm_tolerance, "-", Interval::inside(0, 1), "relative change at which it stops");
+      prm.leave_subsection();
+    }
+  } // namespace
+
+  void declare(dealii::ParameterHandler &prm, Decomposition &decomposition)
+  {
+    prm.enter_subsection("Decomposition");
+    add_choice(prm,
+               "Method",
+               decomposition.method,
+               Choices<DecompositionMethod>{{"blocks", DecompositionMethod::blocks},
+                                            {"METIS", DecompositionMethod::metis},
+                                            {"none", DecompositionMethod::none}},
+               "blocks: N x N of every rectangle; METIS: graph partition; none: a subdomain per body");
+    add_count(prm, "Blocks", decomposition.blocks, 1, 1000, "N: N x N blocks of every rectangle");
+    add_count(prm,
+              "Cells per block",
+              decomposition.cells_per_block,
+              1,
+              10000,
+              "cells along each edge of a block; with Blocks it gives the mesh where Cells = auto");
+    add_count_or_auto(
+      prm, "Subdomains", decomposition.subdomains, 1000000, "METIS: number of subdomains over all bodies");
+    prm.leave_subsection();
+  }
+
+  void declare(dealii::ParameterHandler &prm, Discretization &discretization)
+  {
+    prm.enter_subsection("Discretization");
+    add_count(prm, "Degree", discretization.degree, 1, 2, "polynomial degree of the elements");
+    add_count(prm, "Refinements", discretization.refinements, 0, 10, "extra uniform refinements of the mesh");
+    prm.leave_subsection();
+  }
+
+  void declare(dealii::ParameterHandler &prm, SolverOptions &solver)
+  {
+    prm.enter_subsection("Solver");
+    add_choice(prm,
+               "Algorithm",
+               solver.algorithm,
+               Choices<Algorithm>{{"auto", Algorithm::automatic}, {"smalbe", Algorithm::smalbe}, {"pcg", Algorithm::pcg}},
+               "smalbe: scenes with contact; pcg: linear scenes; auto: whichever fits");
+    add_number(prm,
+               "Tolerance",
+               solver.tolerance,
+               "-",
+               Interval::inside(0, 1),
+               "eps: projected gradient and G x relative to P d");
+    declare_dual(prm, solver.dual);
+    declare_smalbe(prm, solver.smalbe);
+    prm.enter_subsection("PCG");
+    add_count(prm, "Max iterations", solver.pcpg.max_iterations, 1, max_iterations, "iterations before giving up");
+    prm.leave_subsection();
+    prm.leave_subsection();
+  }
+
+  void declare(dealii::ParameterHandler &prm, OutputOptions &output)
+  {
+    prm.enter_subsection("Output");
+    add_flag(prm, "VTU", output.vtu, "write the fields for ParaView");
+    prm.leave_subsection();
+  }
+} // namespace slipstick::scene

@@ -1,0 +1,228 @@
+#include <slipstick/base/nearest_name.h>
+#include <slipstick/base/text.h>
+#include <slipstick/scene/declare.h>
+#include <slipstick/scene/listing.h>
+#include <slipstick/scene/parameters.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace slipstick::scene
+{
+  namespace
+  {
+    /// "a/b/c" -> "a/b", "c"
+    std::pair<std::string, std::string> split_path(const std::string &path)
+    {
+      const auto slash = path.rfind('/');
+      return slash == std::string::npos ? std::make_pair(std::string(), path) :
+                                          std::make_pair(path.substr(0, slash), path.substr(slash + 1));
+    }
+
+    /// What is declared, for look-up and suggestions.
+    class Declarations
+    {
+    public:
+      Declarations(const dealii::ParameterHandler &prm, const std::vector<NamedKind> &named_kinds);
+
+      /// Throws unless all of @p setting's sections and its name exist.
+      void check_name(const Setting &setting) const;
+
+      /// The error for a value that the pattern of @p setting does not allow.
+      InputError value_error(const Setting &setting) const;
+
+    private:
+      void check_section(const std::string &path, const Setting &setting) const;
+
+      std::vector<std::string> children_of(const std::string &section, const bool sections) const;
+
+      std::vector<NamedKind>                   kinds;
+      std::vector<std::string>                 sections; // in order, every level
+      std::map<std::string, DeclaredParameter> parameters;
+      std::vector<std::string>                 order; // paths of the parameters
+    };
+
+    Declarations::Declarations(const dealii::ParameterHandler &prm, const std::vector<NamedKind> &named_kinds)
+      : kinds(named_kinds)
+    {
+      for (const DeclaredParameter &parameter : declared_parameters(prm))
+        {
+          parameters.emplace(parameter.path, parameter);
+          order.push_back(parameter.path);
+          for (auto slash = parameter.path.find('/'); slash != std::string::npos;
+               slash      = parameter.path.find('/', slash + 1))
+            {
+              const std::string section = parameter.path.substr(0, slash);
+              if (std::find(sections.begin(), sections.end(), section) == sections.end())
+                sections.push_back(section);
+            }
+        }
+    }
+
+    std::vector<std::string> Declarations::children_of(const std::string &section, const bool of_sections) const
+    {
+      std::vector<std::string> children;
+      for (const std::string &path : of_sections ? sections : order)
+        if (split_path(path).first == section)
+          children.push_back(split_path(path).second);
+      return children;
+    }
+
+    void Declarations::check_section(const std::string &path, const Setting &setting) const
+    {
+      if (path.empty())
+        return;
+      const auto [parent, name] = split_path(path);
+      check_section(parent, setting);
+      if (std::find(sections.begin(), sections.end(), path) != sections.end())
+        return;
+
+      std::string remedy = suggest_name(name, children_of(parent, true));
+      for (const NamedKind &kind : kinds)
+        if (name.compare(0, kind.kind.size() + 1, kind.kind + " ") == 0)
+          {
+            const std::string        own_name = name.substr(kind.kind.size() + 1);
+            std::vector<std::string> declared;
+            for (const std::string &section : children_of(parent, true))
+              if (section.compare(0, kind.kind.size() + 1, kind.kind + " ") == 0)
+                declared.push_back(section.substr(kind.kind.size() + 1));
+            remedy = "declare it: set " + kind.list + " = " + join_names(declared) + (declared.empty() ? "" : ", ") +
+                     own_name;
+            if (const auto near = nearest_name(own_name, declared))
+              remedy += "; or did you mean '" + kind.kind + " " + *near + "'?";
+          }
+      throw InputError(setting.where + ": there is no section '" + path + "'", remedy);
+    }
+
+    void Declarations::check_name(const Setting &setting) const
+    {
+      if (setting.is_section)
+        return check_section(setting.path, setting);
+      const auto [section, name] = split_path(setting.path);
+      check_section(section, setting);
+      if (parameters.count(setting.path) > 0)
+        return;
+
+      std::string remedy = suggest_name(name, children_of(section, false));
+      for (const std::string &path : order)
+        if (split_path(path).second == name)
+          {
+            remedy = "did you mean '" + path + "'?";
+            break;
+          }
+      throw InputError(setting.where + ": there is no parameter '" + setting.path + "' (set to '" + setting.value +
+                         "')",
+                       remedy);
+    }
+
+    InputError Declarations::value_error(const Setting &setting) const
+    {
+      const DeclaredParameter &parameter = parameters.at(setting.path);
+      const bool               is_choice = parameter.allowed.compare(0, choice_prefix.size(), choice_prefix) == 0;
+      return InputError(setting.where + ": " + setting.path + " = '" + setting.value + "' is not available; allowed: " +
+                          parameter.allowed,
+                        is_choice ? suggest_name(setting.value, split_list(parameter.allowed.substr(choice_prefix.size()))) :
+                                    "give " + parameter.allowed + " (" + parameter.meaning +
+                                      (parameter.unit.empty() ? "" : " [" + parameter.unit + "]") + ")");
+    }
+
+    void set_value(dealii::ParameterHandler &prm, const Setting &setting)
+    {
+      const auto [section, name] = split_path(setting.path);
+      const auto levels          = split_list(section, '/');
+      for (const std::string &level : levels)
+        prm.enter_subsection(level);
+      prm.set(name, setting.value);
+      for (unsigned int level = 0; level < levels.size(); ++level)
+        prm.leave_subsection();
+    }
+
+  } // namespace
+
+  Parameters::Parameters(const std::string              &file_name,
+                         const std::vector<std::string> &overrides,
+                         const std::vector<NamedKind>   &named_kinds)
+    : file(file_name)
+    , kinds(named_kinds)
+    , settings(read_settings(file_name, overrides))
+  {}
+
+  const Setting *Parameters::find(const std::string &path) const
+  {
+    const auto found = std::find_if(settings.rbegin(), settings.rend(), [&path](const Setting &setting) {
+      return setting.path == path;
+    });
+    return found == settings.rend() ? nullptr : &*found;
+  }
+
+  bool Parameters::is_set(const std::string &path) const
+  {
+    const Setting *setting = find(path);
+    return setting != nullptr && !setting->is_section;
+  }
+
+  void Parameters::require(const std::string &path, const std::string &remedy) const
+  {
+    if (!is_set(path))
+      throw InputError(locate(split_path(path).first) + ": " + split_path(path).second + " is not set", remedy);
+  }
+
+  std::string Parameters::locate(const std::string &path) const
+  {
+    const Setting *setting = find(path);
+    return (setting != nullptr ? setting->where : file) + ": " + path;
+  }
+
+  InputError Parameters::error(const std::string &path, const std::string &reason, const std::string &remedy) const
+  {
+    return InputError(locate(path) + (is_set(path) ? " = '" + find(path)->value + "'" : "") + ": " + reason, remedy);
+  }
+
+  std::vector<std::string> Parameters::names(const NamedKind &kind) const
+  {
+    if (!is_set(kind.list))
+      return {};
+    std::vector<std::string> names = split_list(find(kind.list)->value);
+    std::set<std::string>    seen;
+    for (std::string &name : names)
+      {
+        name = collapse_blanks(name);
+        if (name.empty() || name.find_first_of("/=") != std::string::npos)
+          throw error(kind.list, "'" + name + "' is no valid name", "separate names by commas; use no / and no = in them");
+        if (!seen.insert(name).second)
+          throw error(kind.list, "'" + name + "' is declared twice", "give every " + kind.kind + " its own name");
+      }
+    return names;
+  }
+
+  void Parameters::apply(dealii::ParameterHandler &prm) const
+  {
+    const Declarations declarations(prm, kinds);
+    for (const Setting &setting : settings)
+      {
+        declarations.check_name(setting);
+        if (setting.is_section)
+          continue;
+        try
+          {
+            set_value(prm, setting);
+          }
+        catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
+          {
+            throw declarations.value_error(setting);
+          }
+      }
+
+    // Names without a subsection come last: a misspelt subsection has been reported as such by now.
+    for (const NamedKind &kind : kinds)
+      for (const std::string &name : names(kind))
+        {
+          const std::string section = kind.kind + " " + name;
+          if (std::none_of(settings.begin(), settings.end(), [&section](const Setting &setting) {
+                return setting.path == section || setting.path.compare(0, section.size() + 1, section + "/") == 0;
+              }))
+            throw error(kind.list, "nothing describes '" + name + "'", "add a subsection " + section);
+        }
+  }
+} // namespace slipstick::scene

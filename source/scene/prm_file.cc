@@ -1,0 +1,201 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/base/nearest_name.h>
+#include <slipstick/base/text.h>
+#include <slipstick/scene/prm_file.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+namespace slipstick::scene
+{
+  namespace
+  {
+    /// Splits "set Name = value" into "set" and "Name = value".
+    std::pair<std::string, std::string> split_first_word(const std::string &line)
+    {
+      const auto end = line.find_first_of(" \t");
+      return end == std::string::npos ? std::make_pair(line, std::string()) :
+                                        std::make_pair(line.substr(0, end), trim(line.substr(end)));
+    }
+
+    std::ifstream open(const std::string &file, const std::string &included_from)
+    {
+      namespace fs = std::filesystem;
+      std::error_code ignore;
+      std::ifstream   stream(file);
+      if (stream && !fs::is_directory(file, ignore))
+        return stream;
+
+      std::vector<std::string> names;
+      const fs::path           directory = fs::path(file).has_parent_path() ? fs::path(file).parent_path() : ".";
+      for (fs::directory_iterator entry(directory, ignore), end; !ignore && entry != end; entry.increment(ignore))
+        if (entry->path().extension() == ".prm")
+          names.push_back(entry->path().filename().string());
+      std::sort(names.begin(), names.end());
+      throw InputError((included_from.empty() ? "" : included_from + ": include ") + "'" + file +
+                         "' cannot be read as a scene file",
+                       "name an existing .prm file; in " + directory.string() + ": " +
+                         suggest_name(fs::path(file).filename().string(), names));
+    }
+
+    /// Reads one file and what it includes.
+    class Reader
+    {
+    public:
+      Reader(const std::string &file, const std::string &included_from, const unsigned int depth,
+             std::vector<Setting> &settings);
+
+    private:
+      void read_line(const std::string &line);
+      void read_assignment(const std::string &text);
+      void enter(const std::string &text);
+      void leave(const std::string &text);
+      void include(const std::string &text);
+
+      std::string where() const
+      {
+        return file + ":" + std::to_string(line_number);
+      }
+
+      std::string path(const std::string &name) const
+      {
+        std::string result;
+        for (const auto &section : sections)
+          result += section.first + "/";
+        return result + name;
+      }
+
+      std::string                                      file;
+      unsigned int                                     depth;
+      std::vector<Setting>                            &settings;
+      unsigned int                                     line_number = 0; // where the present statement begins
+      std::vector<std::pair<std::string, std::string>> sections;        // open ones: name, where
+      std::map<std::string, std::string>               places;          // path of a parameter -> where it was set
+    };
+
+    Reader::Reader(const std::string    &file_name,
+                   const std::string    &included_from,
+                   const unsigned int    include_depth,
+                   std::vector<Setting> &all_settings)
+      : file(file_name)
+      , depth(include_depth)
+      , settings(all_settings)
+    {
+      std::ifstream stream = open(file, included_from);
+      std::string   line, statement;
+      unsigned int  n_lines = 0;
+      while (std::getline(stream, line))
+        {
+          if (n_lines == 0 && line.compare(0, 3, "\xEF\xBB\xBF") == 0) // byte order mark
+            line.erase(0, 3);
+          ++n_lines;
+          if (statement.empty())
+            line_number = n_lines;
+          line = trim(line.substr(0, line.find('#')));
+          if (!line.empty() && line.back() == '\\')
+            {
+              statement += line.substr(0, line.size() - 1);
+              continue;
+            }
+          read_line(trim(statement + line));
+          statement.clear();
+        }
+      read_line(trim(statement));
+      if (!sections.empty())
+        throw InputError(sections.back().second + ": subsection '" + sections.back().first + "' has no end",
+                         "close every subsection with a line 'end'");
+    }
+
+    void Reader::read_line(const std::string &line)
+    {
+      if (line.empty())
+        return;
+      const auto [word, rest] = split_first_word(line);
+      if (word == "set" || word == "SET")
+        read_assignment(rest);
+      else if (word == "subsection" || word == "SUBSECTION")
+        enter(rest);
+      else if (word == "end" || word == "END")
+        leave(rest);
+      else if (word == "include" || word == "INCLUDE")
+        include(rest);
+      else
+        throw InputError(where() + ": '" + line + "' is no statement",
+                         "start a line with one of set, subsection, end, include, #: " +
+                           suggest_name(word, {"set", "subsection", "end", "include"}));
+    }
+
+    void Reader::read_assignment(const std::string &text)
+    {
+      const auto        equals = text.find('=');
+      const std::string name   = collapse_blanks(text.substr(0, equals));
+      if (equals == std::string::npos || name.empty())
+        throw InputError(where() + ": 'set " + text + "' sets nothing", "write: set NAME = VALUE");
+      const auto [place, is_new] = places.emplace(path(name), where());
+      if (!is_new)
+        throw InputError(where() + ": " + path(name) + " = '" + trim(text.substr(equals + 1)) +
+                           "' is set a second time (first: " + place->second + ")",
+                         "keep one of the two lines");
+      settings.push_back({path(name), trim(text.substr(equals + 1)), where(), false});
+    }
+
+    void Reader::enter(const std::string &text)
+    {
+      const std::string name = collapse_blanks(text);
+      if (name.empty() || name.find_first_of("/=") != std::string::npos)
+        throw InputError(where() + ": 'subsection " + text + "' is no valid name of a subsection",
+                         "write: subsection NAME, without / and =");
+      settings.push_back({path(name), "", where(), true});
+      sections.emplace_back(name, where());
+    }
+
+    void Reader::leave(const std::string &text)
+    {
+      if (!text.empty() || sections.empty())
+        throw InputError(where() + ": 'end' " +
+                           (sections.empty() ? "without an open subsection" : "is followed by '" + text + "'"),
+                         "write 'end' alone on its line, once for every subsection");
+      sections.pop_back();
+    }
+
+    void Reader::include(const std::string &text)
+    {
+      if (depth == 10)
+        throw InputError(where() + ": include '" + text + "' is nested more than 10 deep",
+                         "look for a file that includes itself");
+      if (!sections.empty())
+        throw InputError(where() + ": include '" + text + "' inside of subsection '" + sections.back().first + "'",
+                         "include files at top level");
+      const auto directory = std::filesystem::path(file).parent_path();
+      Reader((directory / text).string(), where(), depth + 1, settings);
+    }
+
+    Setting read_override(const std::string &text)
+    {
+      const std::string where  = "--set " + text;
+      const auto        equals = text.find('=');
+      std::string       path;
+      for (const std::string &part : split_list(text.substr(0, equals), '/'))
+        path += (path.empty() ? "" : "/") + collapse_blanks(part);
+      if (equals == std::string::npos || path.empty())
+        throw InputError("'" + where + "' has no '=' that separates name and value",
+                         "write: --set 'Section/Sub/Name=value', for example --set 'Solver/Tolerance=1e-6'");
+      const std::string value = trim(text.substr(equals + 1));
+      if (value.find_first_of("#\n") != std::string::npos || (!value.empty() && value.back() == '\\'))
+        throw InputError("'" + where + "': a value cannot hold '#' or a line break, nor end with a backslash",
+                         "leave these characters out");
+      return {path, value, where, false};
+    }
+  } // namespace
+
+  std::vector<Setting> read_settings(const std::string &file, const std::vector<std::string> &overrides)
+  {
+    std::vector<Setting> settings;
+    Reader(file, "", 0, settings);
+    for (const std::string &text : overrides)
+      settings.push_back(read_override(text));
+    return settings;
+  }
+} // namespace slipstick::scene

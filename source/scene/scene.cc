@@ -1,0 +1,150 @@
+#include <slipstick/base/nearest_name.h>
+#include <slipstick/scene/checks.h>
+#include <slipstick/scene/declare.h>
+#include <slipstick/scene/listing.h>
+#include <slipstick/scene/scene.h>
+#include <slipstick/scene/sections.h>
+
+#include <filesystem>
+#include <map>
+
+namespace slipstick::scene
+{
+  namespace
+  {
+    // The top level lists and the subsections whose names they declare.
+    const NamedKind material_kind = {"Material", "Materials"};
+    const NamedKind body_kind     = {"Body", "Bodies"};
+    const NamedKind obstacle_kind = {"Obstacle", "Obstacles"};
+    const NamedKind support_kind  = {"Support", "Supports"};
+    const NamedKind traction_kind = {"Traction", "Tractions"};
+    const NamedKind contact_kind  = {"Contact", "Contacts"};
+
+    const std::vector<NamedKind> named_kinds =
+      {material_kind, body_kind, obstacle_kind, support_kind, traction_kind, contact_kind};
+
+    /// Names of each kind, by its list.
+    using Names = std::map<std::string, std::vector<std::string>>;
+
+    /// The whole .prm: declared at construction, read when the values are set.
+    template <int dim>
+    class SceneParameters
+    {
+    public:
+      explicit SceneParameters(const Names &names);
+
+      SceneParameters(const SceneParameters &) = delete;
+
+      Scene<dim> read(const Parameters &parameters) const;
+
+      dealii::ParameterHandler prm; // bound to the members below
+
+    private:
+      void declare_top_level(const Names &names);
+
+      Scene<dim>                        options; // those concerns that refer to no names
+      std::vector<MaterialSection>      materials;
+      std::vector<BodySection<dim>>     bodies;
+      std::vector<ObstacleSection<dim>> obstacles;
+      std::vector<SupportSection<dim>>  supports;
+      std::vector<TractionSection<dim>> tractions;
+      std::vector<ContactSection<dim>>  contacts;
+    };
+
+    template <int dim>
+    SceneParameters<dim>::SceneParameters(const Names &names)
+      : materials(names.at(material_kind.list).begin(), names.at(material_kind.list).end())
+      , bodies(names.at(body_kind.list).begin(), names.at(body_kind.list).end())
+      , obstacles(names.at(obstacle_kind.list).begin(), names.at(obstacle_kind.list).end())
+      , supports(names.at(support_kind.list).begin(), names.at(support_kind.list).end())
+      , tractions(names.at(traction_kind.list).begin(), names.at(traction_kind.list).end())
+      , contacts(names.at(contact_kind.list).begin(), names.at(contact_kind.list).end())
+    {
+      declare_top_level(names);
+      const auto declare_all = [this](auto &sections) {
+        for (auto &section : sections)
+          section.declare(prm);
+      };
+      declare_all(materials);
+      declare_all(bodies);
+      declare_all(obstacles);
+      declare_all(supports);
+      declare_all(tractions);
+      declare_all(contacts);
+      declare(prm, options.discretization);
+      declare(prm, options.decomposition);
+      declare(prm, options.solver);
+      declare(prm, options.output);
+    }
+
+    template <int dim>
+    void SceneParameters<dim>::declare_top_level(const Names &names)
+    {
+      add_text(prm, "Title", options.title, "", "one line of text", "what the scene shows");
+      add_choice(prm,
+                 "Plane state",
+                 options.plane_state,
+                 Choices<PlaneState>{{"plane stress", PlaneState::plane_stress},
+                                     {"plane strain", PlaneState::plane_strain}},
+                 "state of every body");
+      for (const NamedKind &kind : named_kinds)
+        add_entry(
+          prm,
+          kind.list,
+          "",
+          "",
+          "names, each described by a subsection " + kind.kind + " NAME",
+          "names separated by commas",
+          [](const std::string &) { return true; },
+          [](const std::string &) {});
+      for (const NamedKind &kind : named_kinds)
+        prm.set(kind.list, join_names(names.at(kind.list))); // the lists of an example have no file to be read from
+    }
+
+    template <int dim>
+    Scene<dim> SceneParameters<dim>::read(const Parameters &parameters) const
+    {
+      Scene<dim> scene = options;
+      for (const auto &section : materials)
+        scene.materials.push_back(section.read());
+      for (const auto &section : bodies)
+        scene.bodies.push_back(section.read(parameters, scene));
+      for (const auto &section : obstacles)
+        scene.obstacles.push_back(section.read(parameters));
+      for (const auto &section : supports)
+        scene.supports.push_back(section.read(parameters, scene));
+      for (const auto &section : tractions)
+        scene.tractions.push_back(section.read(parameters, scene));
+      for (const auto &section : contacts)
+        scene.contacts.push_back(section.read(parameters, scene));
+      scene.parameters = print_values(prm);
+      return scene;
+    }
+  } // namespace
+
+  Scene<2> read_scene(const std::string &file, const std::vector<std::string> &overrides)
+  {
+    const Parameters parameters(file, overrides, named_kinds);
+    Names            names;
+    for (const NamedKind &kind : named_kinds)
+      names[kind.list] = parameters.names(kind);
+
+    SceneParameters<2> declared(names);
+    parameters.apply(declared.prm);
+    Scene<2> scene = declared.read(parameters);
+    scene.name     = std::filesystem::path(file).stem().string();
+    check_scene(scene, parameters);
+    return scene;
+  }
+
+  void list_parameters(std::ostream &out, const ListFormat format)
+  {
+    const SceneParameters<2> declared({{material_kind.list, {"elastic"}},
+                                       {body_kind.list, {"box"}},
+                                       {obstacle_kind.list, {"disc"}},
+                                       {support_kind.list, {"held"}},
+                                       {traction_kind.list, {"pressed"}},
+                                       {contact_kind.list, {"circle"}}});
+    write_parameters(out, declared.prm, format);
+  }
+} // namespace slipstick::scene
