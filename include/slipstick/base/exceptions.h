@@ -23,18 +23,27 @@ namespace slipstick
     Error(const std::string &problem, const std::string &remedy)
       : std::runtime_error(problem + "\n  remedy: " + remedy)
     {}
+
+    /// A text that already carries its remedy, passed on from another rank.
+    struct Ready
+    {};
+    Error(Ready, const std::string &text)
+      : std::runtime_error(text)
+    {}
   };
 
   /// The scene cannot be solved as given: file, parameter or mesh. Thrown on all ranks alike (see
   /// base/collective.h for how an error found by one rank is made so).
   class InputError : public Error
   {
+  public:
     using Error::Error;
   };
 
   /// The loads cannot be balanced: names body, motion and what to add. Thrown on all ranks alike.
   class NoEquilibrium : public Error
   {
+  public:
     using Error::Error;
   };
 
@@ -42,6 +51,7 @@ namespace slipstick
   /// larger than the rigid motions).
   class NumericalError : public Error
   {
+  public:
     using Error::Error;
   };
 } // namespace slipstick

@@ -1,0 +1,64 @@
+// What a user sees while the program runs: rank 0 alone prints.
+#pragma once
+
+#include <mpi.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace slipstick
+{
+  enum class Verbosity
+  {
+    quiet,
+    normal,
+    verbose
+  };
+
+  /// Progress on standard output, from rank 0, flushed line by line. Warnings go to standard error.
+  class Log
+  {
+  public:
+    Log(const MPI_Comm comm, const Verbosity verbosity);
+
+    /// A line at normal verbosity.
+    void line(const std::string &text) const;
+
+    /// A line at verbose only.
+    void detail(const std::string &text) const;
+
+    /// "warning: TEXT" on standard error, at every verbosity.
+    void warning(const std::string &text) const;
+
+  private:
+    bool      prints;
+    Verbosity verbosity;
+  };
+
+  /// printf-style formatting into a string.
+  std::string format(const char *pattern, ...) __attribute__((format(printf, 1, 2)));
+
+  /// Wall time of the stages of a run [s]. Stages do not nest: entering one ends the one before, so that they add up
+  /// to the time since construction.
+  class StageClock
+  {
+  public:
+    StageClock();
+
+    void   enter(const std::string &stage);
+    /// Ends the present stage; time goes to "other" until the next.
+    void   leave();
+    double seconds(const std::string &stage) const;
+    double total() const;
+
+  private:
+    double                        start;
+    double                        entered;
+    std::string                   present = "other";
+    std::map<std::string, double> stages;
+  };
+
+  /// Largest resident memory of this process so far [MB].
+  double peak_memory_mb();
+} // namespace slipstick

@@ -1,0 +1,13 @@
+// Consecutive global numbers over the ranks.
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <utility>
+
+namespace slipstick
+{
+  /// First global number of this rank's @p n_owned things, and how many there are over all ranks. Collective.
+  std::pair<std::uint64_t, std::uint64_t> first_and_total(const std::uint64_t n_owned, const MPI_Comm comm);
+} // namespace slipstick

@@ -1,0 +1,57 @@
+// The torn mesh: one deal.II triangulation a subdomain, each rank holding its own subdomains only.
+#pragma once
+
+#include <slipstick/scene/scene.h>
+
+#include <deal.II/grid/tria.h>
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace slipstick::fem
+{
+  /// Number of a mesh vertex of the untorn bodies, the same in all subdomains and on all ranks.
+  using GlobalVertex = std::uint64_t;
+
+  /// Boundary id of the faces along which a body was cut into subdomains.
+  constexpr dealii::types::boundary_id cut_id = 1000000;
+
+  template <int dim>
+  struct SubdomainMesh
+  {
+    unsigned int               subdomain = 0; // global number
+    unsigned int               body      = 0; // index into Scene::bodies
+    dealii::Triangulation<dim> triangulation;
+    std::vector<GlobalVertex>  global_vertices; // of every vertex of the triangulation
+  };
+
+  template <int dim>
+  struct Mesh
+  {
+    MPI_Comm                                                      comm;
+    std::vector<std::unique_ptr<SubdomainMesh<dim>>>              subdomains; // of this rank
+    std::vector<unsigned int>                                     first_subdomain; // of each rank, and their number
+    std::vector<std::map<std::string, dealii::types::boundary_id>> boundary_ids; // by body and name
+    std::uint64_t                                                 n_cells = 0; // over all ranks
+    std::vector<std::string>                                      remarks; // for the log, on rank 0
+
+    unsigned int n_subdomains() const
+    {
+      return first_subdomain.back();
+    }
+
+    unsigned int rank_of_subdomain(const unsigned int subdomain) const;
+  };
+
+  /// Builds the mesh of every body and cuts it as Scene::decomposition says. With blocks every rank makes its own
+  /// subdomains and nothing else; with METIS rank 0 meshes and partitions, the others receive their subdomains.
+  /// Subdomains that METIS leaves disconnected or hinged at a vertex are split into parts connected through faces.
+  /// Collective. @throws InputError when there are fewer cells than subdomains.
+  template <int dim>
+  Mesh<dim> make_mesh(const scene::Scene<dim> &scene, const MPI_Comm comm);
+} // namespace slipstick::fem

@@ -1,0 +1,30 @@
+// Rigid motions from coordinates: the kernels of the torn subdomains.
+#pragma once
+
+#include <slipstick/fem/spaces.h>
+
+#include <Eigen/Dense>
+
+namespace slipstick::fem
+{
+  /// Point about which a body's rotation is measured and the length that makes it dimensionless.
+  template <int dim>
+  struct Frame
+  {
+    dealii::Point<dim> center;
+    double             length = 1; // [mm]
+  };
+
+  /// Centre and half diagonal of the bounding box of every body. Collective.
+  template <int dim>
+  std::vector<Frame<dim>> body_frames(const scene::Scene<dim> &scene, const Mesh<dim> &mesh);
+
+  /// Columns (1,0), (0,1), (-(y - y_c), x - x_c) / L at every node, with centre and length of the subdomain; and the
+  /// k x k matrix that turns them into the same motions about the body's frame.
+  template <int dim>
+  void rigid_modes(const Spaces<dim>             &spaces,
+                   const dealii::DoFHandler<dim> &dof_handler,
+                   const Frame<dim>              &body,
+                   Eigen::MatrixXd               &kernel,
+                   Eigen::MatrixXd               &body_modes);
+} // namespace slipstick::fem

@@ -1,0 +1,79 @@
+// The rows of B: what holds the torn subdomains together, fixes them and keeps them from penetrating.
+//
+// Sign conventions of contact rows: see contact/result.h. A row reads b u = c (equality) or b u <= c (normal).
+#pragma once
+
+#include <deal.II/base/partitioner.h>
+#include <deal.II/lac/la_parallel_vector.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace slipstick::tfeti
+{
+  /// Dual vectors [N], and vectors over interface unknowns. Entries owned by this rank, with the ghosts of its
+  /// partitioner where there are any.
+  using DistributedVector = dealii::LinearAlgebra::distributed::Vector<double>;
+  using Partitioner       = std::shared_ptr<const dealii::Utilities::MPI::Partitioner>;
+
+  enum class RowKind : unsigned char
+  {
+    tangential, // friction: multiplier between -slip bound and +slip bound
+    normal,     // contact: multiplier >= 0, b u = closing of the gap, c = gap [mm]
+    gluing,     // equality of two copies of a node
+    prescribed  // prescribed displacement [mm]
+  };
+
+  constexpr unsigned int invalid_row = static_cast<unsigned int>(-1);
+
+  /// A node that may touch. The rows and the interface unknowns of a contact node are owned by one rank.
+  struct ContactPoint
+  {
+    unsigned int          pair = 0; // index into Scene::contacts
+    std::array<double, 3> position{{0, 0, 0}};
+    std::array<double, 3> normal{{0, 0, 0}}; // outward normal of the slave body
+    double                gap  = 0;          // reference configuration [mm]
+    double                area = 0;          // tributary length times thickness [mm^2]
+    std::array<std::uint64_t, 2> key{{0, 0}}; // the mesh's name of the node
+    unsigned int          normal_row     = invalid_row; // owned rows; invalid where a support takes their place
+    unsigned int          tangential_row = invalid_row;
+    unsigned int          interface_dof  = 0; // owned number of the node's first interface unknown
+  };
+
+  /// B, c and the contact nodes, distributed: every row has one owner; a rank whose subdomains a row touches has it as
+  /// a ghost. Interface unknowns are the displacements of nodes that rows touch, one for all copies of a node.
+  struct Constraints
+  {
+    struct Entry
+    {
+      unsigned int row;   // local number in `rows`, ghosts behind the owned ones
+      unsigned int dof;   // of the subdomain
+      double       value; // coefficient of B
+    };
+    struct InterfaceEntry
+    {
+      unsigned int dof;           // of the subdomain
+      unsigned int interface_dof; // local number in `interface_dofs`, ghosts behind the owned ones
+    };
+    struct Counts
+    {
+      unsigned long long tangential = 0, normal = 0, gluing = 0, prescribed = 0, candidates = 0;
+      unsigned long long total() const
+      {
+        return tangential + normal + gluing + prescribed;
+      }
+    };
+
+    Partitioner                              rows;
+    std::vector<std::vector<Entry>>          blocks; // B_p of the subdomains of this rank, sorted by row
+    std::vector<RowKind>                     kind;   // of the owned rows
+    std::vector<double>                      c;      // of the owned rows [mm]
+    std::vector<std::uint64_t>               label;  // of the owned rows, the same for every number of ranks
+    std::vector<ContactPoint>                contact_points; // whose rows this rank owns
+    Partitioner                              interface_dofs;
+    std::vector<std::vector<InterfaceEntry>> interface_blocks; // of the subdomains of this rank
+    std::vector<bool>                        interface_held;   // owned unknowns: does an outside force act (support, contact)?
+    Counts                                   counts;           // over all ranks
+  };
+} // namespace slipstick::tfeti

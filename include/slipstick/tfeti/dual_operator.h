@@ -1,0 +1,71 @@
+// F = B K+ B', the Hessian of the dual problem.
+#pragma once
+
+#include <slipstick/tfeti/constraints.h>
+#include <slipstick/tfeti/options.h>
+#include <slipstick/tfeti/subdomain_system.h>
+
+namespace slipstick::tfeti
+{
+  /// B_p of one subdomain with its unknowns numbered among the touched ones.
+  struct LocalGluing
+  {
+    struct Entry
+    {
+      unsigned int row;     // local dual number, ghosts included
+      unsigned int touched; // index into SubdomainSystem::touched()
+      double       value;
+    };
+    std::vector<Entry> entries;
+
+    /// Touched unknowns and the entries renumbered.
+    static std::pair<LocalGluing, std::vector<unsigned int>> make(const std::vector<Constraints::Entry> &block);
+  };
+
+  /// y = F x, F = B K+ B' (symmetric positive semidefinite). Either by sparse solves with every K_p (implicit), or
+  /// with the dense block of K_p+ at the touched unknowns (explicit).
+  class DualOperator
+  {
+  public:
+    DualOperator(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+                 const std::vector<LocalGluing>                      &gluing,
+                 const Partitioner                                   &rows,
+                 const bool                                           explicit_blocks);
+
+    /// y = F x; x: multipliers [N], y: displacement jumps [mm], owned entries. Collective. Farhat, Roux 1991.
+    void apply(const DistributedVector &x, DistributedVector &y) const;
+
+    /// B' x on subdomain p of this rank: forces at the touched unknowns; x needs its ghosts.
+    Eigen::VectorXd scatter(const unsigned int p, const DistributedVector &x) const;
+
+    /// Adds B_p v to y (ghosts included; compress afterwards).
+    void gather(const unsigned int p, const Eigen::VectorXd &v, DistributedVector &y) const;
+
+    /// A vector with ghosts.
+    DistributedVector ghosted() const;
+
+    /// Copies the owned entries of x and fetches the ghosts.
+    void import(const DistributedVector &x, DistributedVector &with_ghosts) const;
+
+    unsigned long long n_applications() const
+    {
+      return applications;
+    }
+
+    bool is_explicit() const
+    {
+      return !blocks.empty();
+    }
+
+    /// Memory of the dense blocks on this rank [bytes].
+    std::size_t block_bytes() const;
+
+  private:
+    const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
+    const std::vector<LocalGluing>                      &gluing;
+    Partitioner                                          rows;
+    std::vector<std::vector<double>>                     blocks; // packed lower triangles, column by column
+    mutable DistributedVector                            source, target;
+    mutable unsigned long long                           applications = 0;
+  };
+} // namespace slipstick::tfeti

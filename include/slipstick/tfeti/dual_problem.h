@@ -1,0 +1,100 @@
+// The dual problem of the torn bodies: F, d, G, e, P, and the way back to displacements.
+#pragma once
+
+#include <slipstick/tfeti/dual_operator.h>
+#include <slipstick/tfeti/projector.h>
+#include <slipstick/tfeti/reduction.h>
+#include <slipstick/tfeti/rigid_motions.h>
+
+namespace slipstick::tfeti
+{
+  /// min 1/2 x'F x - x'd  s.t.  G x = e and bounds on x (which the contact layer knows). x: multipliers [N], one a row
+  /// of B. Serves qp's Problem concept with F scaled by |P F P|, so that its norm is about 1 in any units.
+  class DualProblem
+  {
+  public:
+    /// Factorises the subdomains and the coarse problem and estimates |P F P|. Collective.
+    /// @throws NoEquilibrium naming body and motion when the rows of B leave a rigid motion of a body free.
+    /// @throws NumericalError when a subdomain cannot be factorised.
+    DualProblem(std::vector<SubdomainMatrices>  matrices,
+                Constraints                     constraints,
+                const DualOptions              &options,
+                const std::vector<std::string> &body_names,
+                const MPI_Comm                  comm);
+
+    // qp's Problem concept
+    void                multiply(const DistributedVector &x, DistributedVector &y) const; // y = F x / |P F P|
+    void                project_range(const DistributedVector &x, DistributedVector &y) const; // y = Q x
+    const MpiReduction &reduction() const;
+
+    /// |P F P| [mm/N].
+    double norm() const
+    {
+      return norm_PFP;
+    }
+
+    /// d = B K+ f - c, owned entries [mm].
+    const DistributedVector &d() const
+    {
+      return dual_load;
+    }
+
+    /// The smallest x with G x = e [N].
+    DistributedVector particular() const;
+
+    /// A zero vector of multipliers, owned entries only.
+    DistributedVector zero() const;
+
+    /// Displacements [mm] of this rank's subdomains, u = K+(f - B'x) + R a. The amplitudes a of the rigid motions make
+    /// the rows with `free` (those that hold with equality) fit. Collective.
+    /// @throws NoEquilibrium naming the body that slides or lifts off when the free rows do not fix a.
+    std::vector<Eigen::VectorXd> recover(const DistributedVector &x, const std::vector<bool> &free) const;
+
+    /// B u of displacements of this rank's subdomains, owned rows [mm]. Collective.
+    DistributedVector jumps(const std::vector<Eigen::VectorXd> &u) const;
+
+    /// The rigid motion of the bodies behind a dual vector r = G'a. Collective.
+    RigidMotion motion_behind(const DistributedVector &r) const;
+
+    const Constraints &constraints() const
+    {
+      return rows;
+    }
+    const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains() const
+    {
+      return systems;
+    }
+    const DualOperator &dual_operator() const
+    {
+      return *F;
+    }
+    unsigned long long kernel_dimension() const
+    {
+      return projector->dimension();
+    }
+    unsigned long long n_setup_multiplications() const
+    {
+      return setup_multiplications;
+    }
+    MPI_Comm communicator() const
+    {
+      return comm;
+    }
+
+  private:
+    double power_method(const DualOptions &options) const;
+
+    MPI_Comm                                      comm;
+    MpiReduction                                  reduce;
+    Constraints                                   rows;
+    Partitioner                                   owned_rows; // without ghosts
+    std::vector<std::string>                      body_names;
+    std::vector<LocalGluing>                      gluing;
+    std::vector<std::unique_ptr<SubdomainSystem>> systems;
+    std::unique_ptr<DualOperator>                 F;
+    std::unique_ptr<Projector>                    projector;
+    DistributedVector                             dual_load;
+    double                                        norm_PFP              = 1;
+    unsigned long long                            setup_multiplications = 0;
+  };
+} // namespace slipstick::tfeti

@@ -1,0 +1,22 @@
+// What a subdomain gives to the dual problem: plain data, filled by the finite element layer.
+#pragma once
+
+#include <Eigen/Dense>
+#include <Eigen/Sparse>
+
+#include <vector>
+
+namespace slipstick::tfeti
+{
+  /// K_p, f_p, R_p of one floating subdomain with n unknowns and k rigid motions.
+  struct SubdomainMatrices
+  {
+    unsigned int                subdomain = 0; // global number
+    unsigned int                body      = 0;
+    Eigen::SparseMatrix<double> stiffness;     // n x n [N/mm], lower triangle only, columns compressed and sorted
+    Eigen::VectorXd             load;          // n [N]
+    Eigen::MatrixXd             kernel;        // n x k: motions of unit size about the subdomain's centre
+    Eigen::MatrixXd             body_modes;    // k x k: kernel * body_modes = rigid motions of the body, seen here
+    std::vector<unsigned int>   boundary_dofs; // unknowns on the boundary of the subdomain, sorted
+  };
+} // namespace slipstick::tfeti

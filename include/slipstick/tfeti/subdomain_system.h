@@ -1,0 +1,87 @@
+// One floating subdomain: its stiffness, a generalised inverse of it, its rigid motions.
+#pragma once
+
+#include <slipstick/tfeti/cholesky.h>
+#include <slipstick/tfeti/subdomain_matrices.h>
+
+namespace slipstick::tfeti
+{
+  /// K, K+ and R of a subdomain with n unknowns.
+  ///
+  /// K+ = (K + rho N N')^-1, where N picks as many unknowns as there are rigid motions k and N'R is nonsingular. Then
+  /// K K+ K = K exactly: K+ K = I - (projection on R along the kernel of N'). The picked unknowns (fixing nodes,
+  /// Brzobohaty et al., IJNME 88, 2011) are found from R by pivoting, which spreads them as far as can be; N N' is
+  /// diagonal, so the factor fills in no more than that of K.
+  class SubdomainSystem
+  {
+  public:
+    /// @param touched unknowns that rows of B touch, sorted; the fixing unknowns are taken from them if they can hold
+    ///        the subdomain, else from its boundary.
+    /// @param with_trailing_block order the touched and fixing unknowns last, for the dense blocks below.
+    /// @throws NumericalError when the kernel of K is not spanned by R.
+    SubdomainSystem(const std::shared_ptr<CholmodSession> &session,
+                    SubdomainMatrices                      matrices,
+                    std::vector<unsigned int>              touched,
+                    const bool                             with_trailing_block);
+
+    /// x := K+ x; n entries [N] to [mm].
+    void apply_pseudo_inverse(Eigen::VectorXd &x) const
+    {
+      cholesky.solve(x);
+    }
+
+    /// K x; n entries [mm] to [N].
+    Eigen::VectorXd apply_stiffness(const Eigen::VectorXd &x) const
+    {
+      return matrices.stiffness.selfadjointView<Eigen::Lower>() * x;
+    }
+
+    /// Rows and columns of K+ at the touched unknowns, in their order; symmetric, full. Needs the trailing block.
+    Eigen::MatrixXd pseudo_inverse_block() const;
+
+    const Eigen::VectorXd &load() const
+    {
+      return matrices.load;
+    }
+    const Eigen::MatrixXd &kernel() const
+    {
+      return matrices.kernel;
+    }
+    const Eigen::MatrixXd &body_modes() const
+    {
+      return matrices.body_modes;
+    }
+    unsigned int body() const
+    {
+      return matrices.body;
+    }
+    unsigned int subdomain() const
+    {
+      return matrices.subdomain;
+    }
+    unsigned int n_unknowns() const
+    {
+      return matrices.load.size();
+    }
+    const std::vector<unsigned int> &touched() const
+    {
+      return touched_unknowns;
+    }
+    std::size_t factor_nonzeros() const
+    {
+      return cholesky.n_nonzeros();
+    }
+
+  private:
+    SubdomainMatrices         matrices;
+    std::vector<unsigned int> touched_unknowns;
+    std::vector<unsigned int> fixing_unknowns;
+    double                    regularization; // rho [N/mm]
+    Cholesky                  cholesky;
+  };
+
+  /// As many of the @p candidates as R has columns, chosen by pivoting so that the rows of R there are as independent
+  /// as can be. @return their list, and the smallest pivot (about 1 when they hold all motions well, 0 when they do not).
+  std::pair<std::vector<unsigned int>, double> fixing_unknowns(const Eigen::MatrixXd           &kernel,
+                                                               const std::vector<unsigned int> &candidates);
+} // namespace slipstick::tfeti

@@ -1,0 +1,82 @@
+#include <slipstick/base/log.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <cstdarg>
+#include <cstdio>
+#include <iostream>
+
+namespace slipstick
+{
+  Log::Log(const MPI_Comm comm, const Verbosity verbosity)
+    : prints(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
+    , verbosity(verbosity)
+  {}
+
+  void Log::line(const std::string &text) const
+  {
+    if (prints && verbosity != Verbosity::quiet)
+      std::cout << text << std::endl;
+  }
+
+  void Log::detail(const std::string &text) const
+  {
+    if (prints && verbosity == Verbosity::verbose)
+      std::cout << text << std::endl;
+  }
+
+  void Log::warning(const std::string &text) const
+  {
+    if (prints)
+      std::cerr << "warning: " << text << std::endl;
+  }
+
+  std::string format(const char *pattern, ...)
+  {
+    va_list arguments, again;
+    va_start(arguments, pattern);
+    va_copy(again, arguments);
+    std::string text(static_cast<std::size_t>(std::vsnprintf(nullptr, 0, pattern, arguments)), ' ');
+    std::vsnprintf(text.data(), text.size() + 1, pattern, again);
+    va_end(again);
+    va_end(arguments);
+    return text;
+  }
+
+  StageClock::StageClock()
+    : start(MPI_Wtime())
+    , entered(start)
+  {}
+
+  void StageClock::enter(const std::string &stage)
+  {
+    const double now = MPI_Wtime();
+    stages[present] += now - entered;
+    present = stage;
+    entered = now;
+  }
+
+  void StageClock::leave()
+  {
+    enter("other");
+  }
+
+  double StageClock::seconds(const std::string &stage) const
+  {
+    const auto found = stages.find(stage);
+    return (found == stages.end() ? 0. : found->second) + (stage == present ? MPI_Wtime() - entered : 0.);
+  }
+
+  double StageClock::total() const
+  {
+    return MPI_Wtime() - start;
+  }
+
+  double peak_memory_mb()
+  {
+    dealii::Utilities::System::MemoryStats memory;
+    dealii::Utilities::System::get_memory_stats(memory);
+    return memory.VmHWM / 1024.; // VmHWM is in kB
+  }
+} // namespace slipstick

@@ -1,0 +1,228 @@
+#include <slipstick/fem/assembly.h>
+#include <slipstick/fem/rigid_modes.h>
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <set>
+
+namespace slipstick::fem
+{
+  namespace
+  {
+    // A cell is taken for a translation of the one before when its vertices agree to this part of its diameter.
+    constexpr double translation_tolerance = 1e-11;
+
+    /// Lower triangle of the pattern, columns sorted, values zero.
+    template <int dim>
+    Eigen::SparseMatrix<double> lower_pattern(const dealii::DoFHandler<dim> &dof_handler)
+    {
+      const unsigned int n = dof_handler.n_dofs();
+      // neighbours of every node through cells; components of a node couple with all of the neighbour
+      std::vector<std::vector<unsigned int>> neighbours(n / dim);
+      std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
+      std::vector<unsigned int>                    nodes;
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        {
+          cell->get_dof_indices(dofs);
+          nodes.clear();
+          for (const auto i : dofs)
+            if (i % dim == 0)
+              nodes.push_back(i / dim);
+          for (const unsigned int i : nodes)
+            for (const unsigned int j : nodes)
+              if (j >= i)
+                neighbours[i].push_back(j);
+        }
+      Eigen::VectorXi sizes(n);
+      for (unsigned int i = 0; i < n / dim; ++i)
+        {
+          std::sort(neighbours[i].begin(), neighbours[i].end());
+          neighbours[i].erase(std::unique(neighbours[i].begin(), neighbours[i].end()), neighbours[i].end());
+          for (unsigned int c = 0; c < dim; ++c)
+            sizes[dim * i + c] = dim * neighbours[i].size() - c;
+        }
+      Eigen::SparseMatrix<double> lower(n, n);
+      lower.reserve(sizes);
+      for (unsigned int i = 0; i < n / dim; ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (const unsigned int j : neighbours[i])
+            for (unsigned int d = (j == i ? c : 0); d < dim; ++d)
+              lower.insert(dim * j + d, dim * i + c) = 0;
+      lower.makeCompressed();
+      return lower;
+    }
+
+    template <int dim>
+    void add_lower(const dealii::FullMatrix<double>                          &local,
+                   const std::vector<dealii::types::global_dof_index> &dofs,
+                   Eigen::SparseMatrix<double>                        &lower)
+    {
+      for (unsigned int b = 0; b < dofs.size(); ++b)
+        {
+          const int *begin = lower.innerIndexPtr() + lower.outerIndexPtr()[dofs[b]];
+          const int *end   = lower.innerIndexPtr() + lower.outerIndexPtr()[dofs[b] + 1];
+          for (unsigned int a = 0; a < dofs.size(); ++a)
+            if (dofs[a] >= dofs[b])
+              {
+                const int *position = std::lower_bound(begin, end, static_cast<int>(dofs[a]));
+                lower.valuePtr()[position - lower.innerIndexPtr()] += local(a, b);
+              }
+        }
+    }
+
+    /// Stiffness of one cell: sum over points of lambda div div + 2 mu eps : eps, times thickness.
+    template <int dim>
+    void cell_stiffness(const dealii::FEValues<dim> &values,
+                        const dealii::FESystem<dim> &element,
+                        const LameCoefficients      &lame,
+                        const double                 thickness,
+                        dealii::FullMatrix<double>  &local)
+    {
+      const unsigned int n_nodes = values.dofs_per_cell;
+      local                      = 0;
+      for (unsigned int i = 0; i < n_nodes; ++i)
+        for (unsigned int j = 0; j < n_nodes; ++j)
+          {
+            dealii::Tensor<2, dim> products; // integral of d_c phi_i d_d phi_j
+            for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
+              products += outer_product(values.shape_grad(i, q), values.shape_grad(j, q)) * values.JxW(q);
+            products *= thickness;
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int d = 0; d < dim; ++d)
+                local(element.component_to_system_index(c, i), element.component_to_system_index(d, j)) =
+                  lame.lambda * products[c][d] + lame.mu * products[d][c] + (c == d ? lame.mu * trace(products) : 0.);
+          }
+    }
+
+    template <int dim>
+    bool is_translation(const typename dealii::Triangulation<dim>::cell_iterator &a,
+                        const typename dealii::Triangulation<dim>::cell_iterator &b)
+    {
+      const double tolerance = translation_tolerance * a->diameter();
+      for (unsigned int v = 1; v < a->n_vertices(); ++v)
+        if (((a->vertex(v) - a->vertex(0)) - (b->vertex(v) - b->vertex(0))).norm() > tolerance)
+          return false;
+      return true;
+    }
+
+    template <int dim>
+    Eigen::SparseMatrix<double> assemble_stiffness(const scene::Scene<dim>       &scene,
+                                                   const unsigned int             body,
+                                                   const Spaces<dim>             &spaces,
+                                                   const dealii::DoFHandler<dim> &dof_handler)
+    {
+      const auto lame = lame_coefficients(scene.materials[scene.bodies[body].material], scene.plane_state);
+      auto       lower = lower_pattern(dof_handler);
+      dealii::FEValues<dim> values(spaces.mapping,
+                                   spaces.scalar_element,
+                                   dealii::QGauss<dim>(spaces.element.degree + 1),
+                                   dealii::update_gradients | dealii::update_JxW_values);
+      dealii::FullMatrix<double>                        local(spaces.element.n_dofs_per_cell());
+      std::vector<dealii::types::global_dof_index>      dofs(spaces.element.n_dofs_per_cell());
+      typename dealii::Triangulation<dim>::cell_iterator previous;
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        {
+          // straight-sided cells that are translations of each other have the same matrix
+          if (previous.state() != dealii::IteratorState::valid || spaces.element.degree > 1 || !is_translation<dim>(cell, previous))
+            {
+              values.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell));
+              cell_stiffness(values, spaces.element, lame, scene.bodies[body].thickness, local);
+              previous = cell;
+            }
+          cell->get_dof_indices(dofs);
+          add_lower<dim>(local, dofs, lower);
+        }
+      return lower;
+    }
+
+    /// Tractions of the scene on the boundary of one subdomain.
+    template <int dim>
+    Eigen::VectorXd assemble_load(const scene::Scene<dim>       &scene,
+                                  const Mesh<dim>               &mesh,
+                                  const SubdomainMesh<dim>      &subdomain,
+                                  const Spaces<dim>             &spaces,
+                                  const dealii::DoFHandler<dim> &dof_handler,
+                                  const double                   t)
+    {
+      Eigen::VectorXd                 load = Eigen::VectorXd::Zero(dof_handler.n_dofs());
+      const dealii::QGauss<dim - 1>   quadrature(spaces.element.degree + 2); // loads may be formulas
+      dealii::FEFaceValues<dim>       values(spaces.mapping,
+                                       spaces.element,
+                                       quadrature,
+                                       dealii::update_values | dealii::update_quadrature_points | dealii::update_JxW_values);
+      std::vector<dealii::types::global_dof_index> dofs(spaces.element.n_dofs_per_cell());
+      for (const auto &traction : scene.tractions)
+        {
+          if (traction.where.body != subdomain.body)
+            continue;
+          const auto id = mesh.boundary_ids[subdomain.body].at(traction.where.boundary);
+          for (const auto &cell : dof_handler.active_cell_iterators())
+            for (const unsigned int f : cell->face_indices())
+              if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() == id)
+                {
+                  values.reinit(cell, f);
+                  cell->get_dof_indices(dofs);
+                  for (unsigned int q = 0; q < quadrature.size(); ++q)
+                    for (unsigned int i = 0; i < dofs.size(); ++i)
+                      {
+                        const unsigned int c = spaces.element.system_to_component_index(i).first;
+                        load[dofs[i]] += traction.components[c].value(values.quadrature_point(q), t) *
+                                         values.shape_value(i, q) * values.JxW(q) * scene.bodies[subdomain.body].thickness;
+                      }
+                }
+        }
+      return load;
+    }
+
+    template <int dim>
+    std::vector<unsigned int> boundary_dofs(const dealii::DoFHandler<dim> &dof_handler)
+    {
+      std::set<unsigned int>                       found;
+      std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_face());
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary())
+            {
+              face->get_dof_indices(dofs);
+              found.insert(dofs.begin(), dofs.end());
+            }
+      return {found.begin(), found.end()};
+    }
+  } // namespace
+
+  LameCoefficients lame_coefficients(const scene::Material &material, const scene::PlaneState state)
+  {
+    const double E = material.young_modulus, nu = material.poisson_ratio;
+    const double mu     = E / (2 * (1 + nu));
+    const double lambda = state == scene::PlaneState::plane_strain ? E * nu / ((1 + nu) * (1 - 2 * nu)) : E * nu / (1 - nu * nu);
+    return {lambda, mu};
+  }
+
+  template <int dim>
+  std::vector<tfeti::SubdomainMatrices> assemble(const scene::Scene<dim> &scene,
+                                                 const Mesh<dim>         &mesh,
+                                                 const Spaces<dim>       &spaces,
+                                                 const double             t)
+  {
+    const auto                            frames = body_frames(scene, mesh);
+    std::vector<tfeti::SubdomainMatrices> systems;
+    for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+      {
+        const auto &subdomain   = *mesh.subdomains[p];
+        const auto &dof_handler = *spaces.dof_handlers[p];
+        tfeti::SubdomainMatrices system;
+        system.subdomain     = subdomain.subdomain;
+        system.body          = subdomain.body;
+        system.stiffness     = assemble_stiffness(scene, subdomain.body, spaces, dof_handler);
+        system.load          = assemble_load(scene, mesh, subdomain, spaces, dof_handler, t);
+        system.boundary_dofs = boundary_dofs(dof_handler);
+        rigid_modes(spaces, dof_handler, frames[subdomain.body], system.kernel, system.body_modes);
+        systems.push_back(std::move(system));
+      }
+    return systems;
+  }
+
+  template std::vector<tfeti::SubdomainMatrices> assemble(const scene::Scene<2> &, const Mesh<2> &, const Spaces<2> &, const double);
+} // namespace slipstick::fem

@@ -1,0 +1,79 @@
+#include <slipstick/fem/rigid_modes.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+
+#include <limits>
+
+namespace slipstick::fem
+{
+  template <int dim>
+  std::vector<Frame<dim>> body_frames(const scene::Scene<dim> &scene, const Mesh<dim> &mesh)
+  {
+    const unsigned int  n = scene.bodies.size();
+    std::vector<double> low(n * dim, std::numeric_limits<double>::max()), minus_high(low);
+    for (const auto &subdomain : mesh.subdomains)
+      for (const auto &x : subdomain->triangulation.get_vertices())
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            double &l = low[subdomain->body * dim + d], &h = minus_high[subdomain->body * dim + d];
+            l         = std::min(l, x[d]);
+            h         = std::min(h, -x[d]);
+          }
+    dealii::Utilities::MPI::min(low, mesh.comm, low);
+    dealii::Utilities::MPI::min(minus_high, mesh.comm, minus_high);
+    std::vector<Frame<dim>> frames(n);
+    for (unsigned int b = 0; b < n; ++b)
+      {
+        dealii::Tensor<1, dim> diagonal;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            frames[b].center[d] = (low[b * dim + d] - minus_high[b * dim + d]) / 2;
+            diagonal[d]         = -minus_high[b * dim + d] - low[b * dim + d];
+          }
+        frames[b].length = diagonal.norm() / 2;
+      }
+    return frames;
+  }
+
+  template <int dim>
+  void rigid_modes(const Spaces<dim>             &spaces,
+                   const dealii::DoFHandler<dim> &dof_handler,
+                   const Frame<dim>              &body,
+                   Eigen::MatrixXd               &kernel,
+                   Eigen::MatrixXd               &body_modes)
+  {
+    static_assert(dim == 2, "one rotation: two dimensions");
+    std::vector<dealii::Point<dim>> points(dof_handler.n_dofs());
+    dealii::DoFTools::map_dofs_to_support_points(spaces.mapping, dof_handler, points);
+
+    Frame<dim> own;
+    for (const auto &x : points)
+      own.center += x / static_cast<double>(points.size());
+    double squares = 0;
+    for (const auto &x : points)
+      squares += x.distance_square(own.center);
+    own.length = std::sqrt(squares / points.size());
+
+    kernel = Eigen::MatrixXd::Zero(points.size(), 3);
+    for (unsigned int i = 0; i < points.size(); ++i)
+      {
+        const dealii::Tensor<1, dim> r = (points[i] - own.center) / own.length;
+        kernel(i, i % dim)             = 1;
+        kernel(i, dim)                 = i % dim == 0 ? -r[1] : r[0];
+      }
+    // rotation about the body's centre = scaled own rotation + translation of the own centre
+    const dealii::Tensor<1, dim> offset = (own.center - body.center) / body.length;
+    body_modes                          = Eigen::MatrixXd::Identity(3, 3);
+    body_modes(0, 2)                    = -offset[1];
+    body_modes(1, 2)                    = offset[0];
+    body_modes(2, 2)                    = own.length / body.length;
+  }
+
+  template std::vector<Frame<2>> body_frames(const scene::Scene<2> &, const Mesh<2> &);
+  template void                  rigid_modes(const Spaces<2> &,
+                            const dealii::DoFHandler<2> &,
+                            const Frame<2> &,
+                            Eigen::MatrixXd &,
+                            Eigen::MatrixXd &);
+} // namespace slipstick::fem

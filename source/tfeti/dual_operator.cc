@@ -1,0 +1,130 @@
+#include <slipstick/tfeti/dual_operator.h>
+
+#include <set>
+
+extern "C" void dspmv_(const char   *uplo,
+                       const int    *n,
+                       const double *alpha,
+                       const double *ap,
+                       const double *x,
+                       const int    *incx,
+                       const double *beta,
+                       double       *y,
+                       const int    *incy);
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    std::vector<double> packed_lower(const Eigen::MatrixXd &matrix)
+    {
+      std::vector<double> packed;
+      packed.reserve(matrix.rows() * (matrix.rows() + 1) / 2);
+      for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+        packed.insert(packed.end(), matrix.col(j).data() + j, matrix.col(j).data() + matrix.rows());
+      return packed;
+    }
+
+    void multiply_packed(const std::vector<double> &matrix, const Eigen::VectorXd &x, Eigen::VectorXd &y)
+    {
+      const int    n = x.size(), one = 1;
+      const double alpha = 1, beta = 0;
+      y.resize(n);
+      if (n > 0)
+        dspmv_("L", &n, &alpha, matrix.data(), x.data(), &one, &beta, y.data(), &one);
+    }
+  } // namespace
+
+  std::pair<LocalGluing, std::vector<unsigned int>> LocalGluing::make(const std::vector<Constraints::Entry> &block)
+  {
+    std::set<unsigned int> dofs;
+    for (const auto &entry : block)
+      dofs.insert(entry.dof);
+    const std::vector<unsigned int> touched(dofs.begin(), dofs.end());
+    LocalGluing                     gluing;
+    for (const auto &entry : block)
+      {
+        const unsigned int k = std::lower_bound(touched.begin(), touched.end(), entry.dof) - touched.begin();
+        gluing.entries.push_back({entry.row, k, entry.value});
+      }
+    return {gluing, touched};
+  }
+
+  DualOperator::DualOperator(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+                             const std::vector<LocalGluing>                      &gluing,
+                             const Partitioner                                   &rows,
+                             const bool                                           explicit_blocks)
+    : subdomains(subdomains)
+    , gluing(gluing)
+    , rows(rows)
+    , source(rows)
+    , target(rows)
+  {
+    if (explicit_blocks)
+      for (const auto &subdomain : subdomains)
+        blocks.push_back(packed_lower(subdomain->pseudo_inverse_block()));
+  }
+
+  Eigen::VectorXd DualOperator::scatter(const unsigned int p, const DistributedVector &x) const
+  {
+    Eigen::VectorXd v = Eigen::VectorXd::Zero(subdomains[p]->touched().size());
+    for (const auto &entry : gluing[p].entries)
+      v[entry.touched] += entry.value * x.local_element(entry.row);
+    return v;
+  }
+
+  void DualOperator::gather(const unsigned int p, const Eigen::VectorXd &v, DistributedVector &y) const
+  {
+    for (const auto &entry : gluing[p].entries)
+      y.local_element(entry.row) += entry.value * v[entry.touched];
+  }
+
+  DistributedVector DualOperator::ghosted() const
+  {
+    return DistributedVector(rows);
+  }
+
+  void DualOperator::import(const DistributedVector &x, DistributedVector &with_ghosts) const
+  {
+    with_ghosts.zero_out_ghost_values();
+    with_ghosts.copy_locally_owned_data_from(x);
+    with_ghosts.update_ghost_values();
+  }
+
+  void DualOperator::apply(const DistributedVector &x, DistributedVector &y) const
+  {
+    ++applications;
+    import(x, source);
+    target.zero_out_ghost_values();
+    target = 0;
+    Eigen::VectorXd at_touched;
+    for (unsigned int p = 0; p < subdomains.size(); ++p)
+      {
+        const Eigen::VectorXd force = scatter(p, source);
+        if (is_explicit())
+          multiply_packed(blocks[p], force, at_touched);
+        else
+          {
+            const auto     &touched = subdomains[p]->touched();
+            Eigen::VectorXd full    = Eigen::VectorXd::Zero(subdomains[p]->n_unknowns());
+            for (unsigned int k = 0; k < touched.size(); ++k)
+              full[touched[k]] = force[k];
+            subdomains[p]->apply_pseudo_inverse(full);
+            at_touched.resize(touched.size());
+            for (unsigned int k = 0; k < touched.size(); ++k)
+              at_touched[k] = full[touched[k]];
+          }
+        gather(p, at_touched, target);
+      }
+    target.compress(dealii::VectorOperation::add);
+    y.copy_locally_owned_data_from(target);
+  }
+
+  std::size_t DualOperator::block_bytes() const
+  {
+    std::size_t n = 0;
+    for (const auto &block : blocks)
+      n += block.size() * sizeof(double);
+    return n;
+  }
+} // namespace slipstick::tfeti

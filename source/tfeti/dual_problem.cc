@@ -1,0 +1,182 @@
+#include <slipstick/base/collective.h>
+#include <slipstick/base/exceptions.h>
+#include <slipstick/tfeti/dual_problem.h>
+#include <slipstick/tfeti/rigid_motions.h>
+
+#include <deal.II/base/mpi.h>
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    /// A number in (-1, 1) from a label: the start of the power method is the same for every number of ranks.
+    double random_number(std::uint64_t label)
+    {
+      label ^= label >> 33; // finaliser of MurmurHash3
+      label *= 0xff51afd7ed558ccdull;
+      label ^= label >> 33;
+      label *= 0xc4ceb9fe1a85ec53ull;
+      label ^= label >> 33;
+      return static_cast<double>(label >> 11) / static_cast<double>(1ull << 52) - 1.;
+    }
+
+    void require_support(const std::vector<RigidMotion> &motions, const std::vector<std::string> &body_names)
+    {
+      if (!motions.empty())
+        throw NoEquilibrium("nothing holds " + describe(motions.front(), body_names),
+                            "add a support or a contact that acts against this motion");
+    }
+  } // namespace
+
+  DualProblem::DualProblem(std::vector<SubdomainMatrices>  matrices,
+                           Constraints                     constraints,
+                           const DualOptions              &options,
+                           const std::vector<std::string> &body_names,
+                           const MPI_Comm                  comm)
+    : comm(comm)
+    , reduce(comm)
+    , rows(std::move(constraints))
+    , owned_rows(std::make_shared<dealii::Utilities::MPI::Partitioner>(rows.rows->locally_owned_range(), comm))
+    , body_names(body_names)
+  {
+    const bool explicit_blocks = options.dual_operator != DualOperatorKind::implicit;
+    const auto session         = std::make_shared<CholmodSession>();
+    collectively(comm, [&] {
+      for (unsigned int p = 0; p < matrices.size(); ++p)
+        {
+          auto [local, touched] = LocalGluing::make(rows.blocks[p]);
+          gluing.push_back(std::move(local));
+          systems.push_back(std::make_unique<SubdomainSystem>(session, std::move(matrices[p]), std::move(touched), explicit_blocks));
+        }
+      F = std::make_unique<DualOperator>(systems, gluing, rows.rows, explicit_blocks);
+    });
+    require_support(free_motions(systems, gluing, rows, {}, body_names.size(), comm), body_names);
+    projector = std::make_unique<Projector>(systems, gluing, *F, rows.rows, std::vector<bool>(), comm);
+
+    // d = B K+ f - c
+    std::vector<Eigen::VectorXd> u;
+    for (const auto &system : systems)
+      {
+        u.push_back(system->load());
+        system->apply_pseudo_inverse(u.back());
+      }
+    dual_load = jumps(u);
+    for (unsigned int r = 0; r < rows.c.size(); ++r)
+      dual_load.local_element(r) -= rows.c[r];
+    norm_PFP              = power_method(options);
+    setup_multiplications = F->n_applications();
+  }
+
+  double DualProblem::power_method(const DualOptions &options) const
+  {
+    DistributedVector x = zero(), y = zero(), q = zero();
+    for (unsigned int r = 0; r < rows.label.size(); ++r)
+      x.local_element(r) = random_number(rows.label[r]);
+    double norm = 0;
+    for (unsigned int k = 0; k < options.max_norm_iterations; ++k)
+      {
+        projector->project_range(x, q);
+        x -= q;
+        const double length = x.l2_norm();
+        if (length == 0)
+          break;
+        x /= length;
+        F->apply(x, y);
+        const double previous = norm;
+        norm                  = x * y;
+        if (std::abs(norm - previous) <= options.norm_tolerance * norm)
+          break;
+        std::swap(x, y);
+      }
+    return norm > 0 ? norm : 1.;
+  }
+
+  void DualProblem::multiply(const DistributedVector &x, DistributedVector &y) const
+  {
+    F->apply(x, y);
+    y /= norm_PFP;
+  }
+
+  void DualProblem::project_range(const DistributedVector &x, DistributedVector &y) const
+  {
+    projector->project_range(x, y);
+  }
+
+  const MpiReduction &DualProblem::reduction() const
+  {
+    return reduce;
+  }
+
+  DistributedVector DualProblem::zero() const
+  {
+    return DistributedVector(owned_rows);
+  }
+
+  DistributedVector DualProblem::particular() const
+  {
+    Eigen::VectorXd e(0);
+    for (const auto &system : systems)
+      {
+        const Eigen::VectorXd part = system->kernel().transpose() * system->load();
+        e.conservativeResize(e.size() + part.size());
+        e.tail(part.size()) = part;
+      }
+    DistributedVector x = zero();
+    projector->particular(e, x);
+    return x;
+  }
+
+  DistributedVector DualProblem::jumps(const std::vector<Eigen::VectorXd> &u) const
+  {
+    DistributedVector sum = F->ghosted(), y = zero();
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        const auto     &touched = systems[p]->touched();
+        Eigen::VectorXd v(touched.size());
+        for (unsigned int k = 0; k < touched.size(); ++k)
+          v[k] = u[p][touched[k]];
+        F->gather(p, v, sum);
+      }
+    sum.compress(dealii::VectorOperation::add);
+    y.copy_locally_owned_data_from(sum);
+    return y;
+  }
+
+  std::vector<Eigen::VectorXd> DualProblem::recover(const DistributedVector &x, const std::vector<bool> &free) const
+  {
+    require_support(free_motions(systems, gluing, rows, free, body_names.size(), comm), body_names);
+
+    DistributedVector ghosted = F->ghosted();
+    F->import(x, ghosted);
+    std::vector<Eigen::VectorXd> u;
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        const Eigen::VectorXd force   = F->scatter(p, ghosted);
+        const auto           &touched = systems[p]->touched();
+        u.push_back(systems[p]->load());
+        for (unsigned int k = 0; k < touched.size(); ++k)
+          u[p][touched[k]] -= force[k];
+        systems[p]->apply_pseudo_inverse(u[p]);
+      }
+
+    // a: B u = c on the free rows, in the sense of least squares
+    DistributedVector missing = jumps(u);
+    for (unsigned int r = 0; r < rows.c.size(); ++r)
+      missing.local_element(r) = free[r] ? rows.c[r] - missing.local_element(r) : 0.;
+    const Projector       on_free(systems, gluing, *F, rows.rows, free, comm);
+    const Eigen::VectorXd a    = on_free.amplitudes(missing);
+    unsigned int          next = 0;
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        const unsigned int k = systems[p]->kernel().cols();
+        u[p] += systems[p]->kernel() * a.segment(next, k);
+        next += k;
+      }
+    return u;
+  }
+
+  RigidMotion DualProblem::motion_behind(const DistributedVector &r) const
+  {
+    return body_motion(systems, projector->amplitudes(r), body_names.size(), comm);
+  }
+} // namespace slipstick::tfeti

@@ -1,0 +1,163 @@
+#include <slipstick/base/numbering.h>
+#include <slipstick/tfeti/coarse_solver.h>
+#include <slipstick/tfeti/projector.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/vector.hpp>
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    /// Column of G at one row, as far as one subdomain makes it.
+    struct ColumnPart
+    {
+      std::uint64_t       row = 0;   // global
+      long long           first = 0; // global number of the subdomain's first rigid motion
+      std::vector<double> values;
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &row &first &values;
+      }
+    };
+
+    /// Sums of outer products of the columns of G over the active rows of this rank.
+    CoarseSolver::Entries gram_entries(std::vector<ColumnPart> &parts, const Partitioner &rows, const std::vector<bool> &active)
+    {
+      std::sort(parts.begin(), parts.end(), [](const auto &a, const auto &b) { return std::tie(a.row, a.first) < std::tie(b.row, b.first); });
+      CoarseSolver::Entries entries;
+      for (auto begin = parts.begin(); begin != parts.end();)
+        {
+          const auto end = std::find_if(begin, parts.end(), [row = begin->row](const auto &part) { return part.row != row; });
+          if (active.empty() || active[rows->global_to_local(begin->row)])
+            for (auto a = begin; a != end; ++a)
+              for (auto b = begin; b != end; ++b)
+                for (unsigned int i = 0; i < a->values.size(); ++i)
+                  for (unsigned int j = 0; j < b->values.size(); ++j)
+                    entries[{a->first + i, b->first + j}] += a->values[i] * b->values[j];
+          begin = end;
+        }
+      return entries;
+    }
+
+    /// G of a subdomain: the rigid motions' share in every row that touches it.
+    std::map<unsigned int, Eigen::VectorXd> columns_of(const SubdomainSystem &subdomain, const LocalGluing &gluing)
+    {
+      std::map<unsigned int, Eigen::VectorXd> columns; // by local row
+      for (const auto &entry : gluing.entries)
+        {
+          const Eigen::VectorXd part      = entry.value * subdomain.kernel().row(subdomain.touched()[entry.touched]).transpose();
+          const auto [position, is_new] = columns.emplace(entry.row, part);
+          if (!is_new)
+            position->second += part;
+        }
+      return columns;
+    }
+  } // namespace
+
+  Projector::Projector(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+                       const std::vector<LocalGluing>                      &gluing,
+                       const DualOperator                                  &scatter_gather,
+                       const Partitioner                                   &rows,
+                       const std::vector<bool>                             &active,
+                       const MPI_Comm                                       comm)
+    : scatter_gather(scatter_gather)
+    , source(rows)
+    , target(rows)
+  {
+    // is a row active? owners know, ghosts ask
+    DistributedVector indicator(rows);
+    for (unsigned int r = 0; r < rows->locally_owned_size(); ++r)
+      indicator.local_element(r) = active.empty() || active[r];
+    indicator.update_ghost_values();
+
+    for (const auto &subdomain : subdomains)
+      n_motions += subdomain->kernel().cols();
+    const long long first = first_and_total(n_motions, comm).first;
+
+    const auto                                                   ghost_owners = rows->ghost_targets();
+    std::vector<ColumnPart>                                      own;
+    std::map<unsigned int, std::vector<ColumnPart>>              to_send;
+    std::vector<unsigned int>                                    owner_of_ghost;
+    for (const auto &[rank, n] : ghost_owners)
+      owner_of_ghost.insert(owner_of_ghost.end(), n, rank);
+
+    unsigned int next = 0;
+    for (unsigned int p = 0; p < subdomains.size(); ++p)
+      {
+        const auto columns = columns_of(*subdomains[p], gluing[p]);
+        Block      block;
+        block.first = next;
+        block.values.resize(subdomains[p]->kernel().cols(), columns.size());
+        for (const auto &[row, column] : columns)
+          {
+            ColumnPart part;
+            part.row   = rows->local_to_global(row);
+            part.first = first + next;
+            part.values.assign(column.data(), column.data() + column.size());
+            if (row < rows->locally_owned_size())
+              own.push_back(std::move(part));
+            else
+              to_send[owner_of_ghost[row - rows->locally_owned_size()]].push_back(std::move(part));
+            block.values.col(block.rows.size()) = column * indicator.local_element(row);
+            block.rows.push_back(row);
+          }
+        next += subdomains[p]->kernel().cols();
+        blocks.push_back(std::move(block));
+      }
+    for (auto &[rank, parts] : dealii::Utilities::MPI::some_to_some(comm, to_send))
+      std::move(parts.begin(), parts.end(), std::back_inserter(own));
+    coarse = std::make_unique<CoarseSolver>(n_motions, gram_entries(own, rows, active), comm);
+  }
+
+  Projector::~Projector() = default;
+
+  Eigen::VectorXd Projector::multiply(const DistributedVector &x) const
+  {
+    scatter_gather.import(x, source);
+    Eigen::VectorXd a = Eigen::VectorXd::Zero(n_motions);
+    for (const Block &block : blocks)
+      for (unsigned int k = 0; k < block.rows.size(); ++k)
+        a.segment(block.first, block.values.rows()) += block.values.col(k) * source.local_element(block.rows[k]);
+    return a;
+  }
+
+  void Projector::multiply_transpose(const Eigen::VectorXd &a, DistributedVector &y) const
+  {
+    target.zero_out_ghost_values();
+    target = 0;
+    for (const Block &block : blocks)
+      for (unsigned int k = 0; k < block.rows.size(); ++k)
+        target.local_element(block.rows[k]) += block.values.col(k).dot(a.segment(block.first, block.values.rows()));
+    target.compress(dealii::VectorOperation::add);
+    y.copy_locally_owned_data_from(target);
+  }
+
+  Eigen::VectorXd Projector::solve(const Eigen::VectorXd &a) const
+  {
+    return coarse->solve(a);
+  }
+
+  Eigen::VectorXd Projector::amplitudes(const DistributedVector &x) const
+  {
+    return coarse->solve(multiply(x));
+  }
+
+  void Projector::project_range(const DistributedVector &x, DistributedVector &y) const
+  {
+    multiply_transpose(amplitudes(x), y);
+  }
+
+  void Projector::particular(const Eigen::VectorXd &e, DistributedVector &y) const
+  {
+    multiply_transpose(coarse->solve(e), y);
+  }
+
+  unsigned long long Projector::dimension() const
+  {
+    return coarse->dimension();
+  }
+} // namespace slipstick::tfeti

@@ -1,0 +1,144 @@
+#include <slipstick/base/log.h>
+#include <slipstick/tfeti/rigid_motions.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/vector.hpp>
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    // Eigenvalues below this part of the largest count as zero.
+    constexpr double singular_tolerance = 1e-12;
+    // A component of a motion is named when it is at least this part of the largest.
+    constexpr double named_part = 1e-3;
+
+    /// Share of one subdomain in what a row sees of its body's motions.
+    struct RowPart
+    {
+      std::uint64_t       row  = 0; // global
+      unsigned int        body = 0;
+      std::vector<double> values;
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &row &body &values;
+      }
+    };
+
+    bool is_gluing(const Constraints &constraints, const unsigned int owned_row)
+    {
+      return constraints.kind[owned_row] == RowKind::gluing;
+    }
+
+    /// Parts of all rows that this rank owns, gluing left out.
+    std::vector<RowPart> parts_of_owned_rows(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+                                             const std::vector<LocalGluing>                      &gluing,
+                                             const Constraints                                   &constraints,
+                                             const MPI_Comm                                       comm)
+    {
+      std::vector<unsigned int> owner_of_ghost;
+      for (const auto &[rank, n] : constraints.rows->ghost_targets())
+        owner_of_ghost.insert(owner_of_ghost.end(), n, rank);
+      const unsigned int                           n_owned = constraints.rows->locally_owned_size();
+      std::map<unsigned int, std::vector<RowPart>> to_send;
+      std::vector<RowPart>                         own;
+      for (unsigned int p = 0; p < subdomains.size(); ++p)
+        {
+          const Eigen::MatrixXd motions = subdomains[p]->kernel() * subdomains[p]->body_modes();
+          for (const auto &entry : gluing[p].entries)
+            {
+              if (entry.row < n_owned && is_gluing(constraints, entry.row))
+                continue;
+              const Eigen::VectorXd share = entry.value * motions.row(subdomains[p]->touched()[entry.touched]).transpose();
+              RowPart               part;
+              part.row  = constraints.rows->local_to_global(entry.row);
+              part.body = subdomains[p]->body();
+              part.values.assign(share.data(), share.data() + share.size());
+              (entry.row < n_owned ? own : to_send[owner_of_ghost[entry.row - n_owned]]).push_back(std::move(part));
+            }
+        }
+      for (auto &[rank, parts] : dealii::Utilities::MPI::some_to_some(comm, to_send))
+        for (auto &part : parts)
+          if (!is_gluing(constraints, constraints.rows->global_to_local(part.row)))
+            own.push_back(std::move(part));
+      std::sort(own.begin(), own.end(), [](const auto &a, const auto &b) { return a.row < b.row; });
+      return own;
+    }
+  } // namespace
+
+  std::vector<RigidMotion> free_motions(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+                                        const std::vector<LocalGluing>                      &gluing,
+                                        const Constraints                                   &constraints,
+                                        const std::vector<bool>                             &active,
+                                        const unsigned int                                   n_bodies,
+                                        const MPI_Comm                                       comm)
+  {
+    const unsigned int k =
+      dealii::Utilities::MPI::max(subdomains.empty() ? 0u : static_cast<unsigned int>(subdomains[0]->kernel().cols()), comm);
+    const unsigned int  n = k * n_bodies;
+    Eigen::MatrixXd     gram = Eigen::MatrixXd::Zero(n, n);
+    const auto          parts = parts_of_owned_rows(subdomains, gluing, constraints, comm);
+    for (auto begin = parts.begin(); begin != parts.end();)
+      {
+        Eigen::VectorXd row = Eigen::VectorXd::Zero(n);
+        const auto      number = begin->row;
+        for (; begin != parts.end() && begin->row == number; ++begin)
+          for (unsigned int i = 0; i < k; ++i)
+            row[begin->body * k + i] += begin->values[i];
+        if (active.empty() || active[constraints.rows->global_to_local(number)])
+          gram += row * row.transpose();
+      }
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(n);
+    for (const auto &subdomain : subdomains)
+      load.segment(subdomain->body() * k, k) += subdomain->body_modes().transpose() * (subdomain->kernel().transpose() * subdomain->load());
+    MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, comm);
+    MPI_Allreduce(MPI_IN_PLACE, load.data(), load.size(), MPI_DOUBLE, MPI_SUM, comm);
+
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+    std::vector<RigidMotion>                             motions;
+    for (unsigned int i = 0; i < n; ++i)
+      if (eigen.eigenvalues()[i] <= singular_tolerance * std::max(eigen.eigenvalues()[n - 1], 1.))
+        {
+          const Eigen::VectorXd mode = eigen.eigenvectors().col(i);
+          motions.push_back({mode, load.norm() > 0 ? mode.dot(load) / load.norm() : 0.});
+        }
+    return motions;
+  }
+
+  RigidMotion body_motion(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+                          const Eigen::VectorXd                               &amplitudes,
+                          const unsigned int                                   n_bodies,
+                          const MPI_Comm                                       comm)
+  {
+    const unsigned int k =
+      dealii::Utilities::MPI::max(subdomains.empty() ? 0u : static_cast<unsigned int>(subdomains[0]->kernel().cols()), comm);
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(k * n_bodies);
+    for (unsigned int p = 0; p < subdomains.size(); ++p)
+      sum.segment(subdomains[p]->body() * k, k) += subdomains[p]->body_modes().inverse() * amplitudes.segment(p * k, k);
+    MPI_Allreduce(MPI_IN_PLACE, sum.data(), sum.size(), MPI_DOUBLE, MPI_SUM, comm);
+    return {sum.normalized(), 0.};
+  }
+
+  std::string describe(const RigidMotion &motion, const std::vector<std::string> &body_names)
+  {
+    const unsigned int k       = motion.amplitudes.size() / body_names.size();
+    const double       largest = motion.amplitudes.cwiseAbs().maxCoeff();
+    std::string        text;
+    for (unsigned int b = 0; b < body_names.size(); ++b)
+      {
+        const Eigen::VectorXd part = motion.amplitudes.segment(b * k, k);
+        if (part.cwiseAbs().maxCoeff() < named_part * largest)
+          continue;
+        const Eigen::VectorXd translation = part.head(k - 1);
+        text += (text.empty() ? "body " : "; body ") + body_names[b] + ": ";
+        if (translation.norm() >= named_part * part.norm())
+          text += format("translation along (%.3g, %.3g)", translation[0] / translation.norm(), translation[1] / translation.norm());
+        if (std::abs(part[k - 1]) >= named_part * part.norm())
+          text += translation.norm() >= named_part * part.norm() ? " with rotation about its centre" : "rotation about its centre";
+      }
+    return text;
+  }
+} // namespace slipstick::tfeti

@@ -1,0 +1,116 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/base/log.h>
+#include <slipstick/tfeti/subdomain_system.h>
+
+#include <set>
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    // Pivots below this mean that the touched unknowns do not hold the subdomain well (1 = perfectly).
+    constexpr double smallest_good_pivot = 0.1;
+    // |K R| over |K| |R| above this means that R is not the kernel.
+    constexpr double kernel_tolerance = 1e-8;
+
+    std::string name_of(const SubdomainMatrices &matrices)
+    {
+      return "subdomain " + std::to_string(matrices.subdomain);
+    }
+
+    void check_kernel(const SubdomainMatrices &matrices)
+    {
+      const Eigen::MatrixXd KR = matrices.stiffness.selfadjointView<Eigen::Lower>() * matrices.kernel;
+      const double          relative =
+        KR.cwiseAbs().maxCoeff() / (matrices.stiffness.diagonal().maxCoeff() * matrices.kernel.cwiseAbs().maxCoeff());
+      if (!(relative < kernel_tolerance))
+        throw NumericalError(name_of(matrices) + format(": a rigid motion strains it (|K R| = %g relative)", relative),
+                             "look for inverted or degenerate cells in the mesh");
+    }
+
+    std::vector<unsigned int> choose_fixing(const SubdomainMatrices &matrices, const std::vector<unsigned int> &touched)
+    {
+      if (touched.size() >= static_cast<std::size_t>(matrices.kernel.cols()))
+        {
+          const auto [chosen, pivot] = fixing_unknowns(matrices.kernel, touched);
+          if (pivot > smallest_good_pivot)
+            return chosen;
+        }
+      return fixing_unknowns(matrices.kernel, matrices.boundary_dofs).first;
+    }
+
+    Eigen::SparseMatrix<double> regularised(const Eigen::SparseMatrix<double> &stiffness,
+                                            const std::vector<unsigned int>   &fixing,
+                                            const double                       rho)
+    {
+      Eigen::SparseMatrix<double> sum = stiffness;
+      for (const unsigned int i : fixing)
+        sum.coeffRef(i, i) += rho;
+      return sum;
+    }
+
+    std::vector<unsigned int> merged(const std::vector<unsigned int> &a, const std::vector<unsigned int> &b)
+    {
+      std::set<unsigned int> all(a.begin(), a.end());
+      all.insert(b.begin(), b.end());
+      return {all.begin(), all.end()};
+    }
+  } // namespace
+
+  std::pair<std::vector<unsigned int>, double> fixing_unknowns(const Eigen::MatrixXd           &kernel,
+                                                               const std::vector<unsigned int> &candidates)
+  {
+    Eigen::MatrixXd rows(candidates.size(), kernel.cols());
+    for (unsigned int i = 0; i < candidates.size(); ++i)
+      rows.row(i) = kernel.row(candidates[i]);
+
+    std::vector<unsigned int> chosen;
+    double                    smallest = std::numeric_limits<double>::max();
+    for (int k = 0; k < kernel.cols(); ++k)
+      {
+        Eigen::Index i;
+        smallest = std::min(smallest, std::sqrt(rows.rowwise().squaredNorm().maxCoeff(&i)));
+        if (smallest == 0)
+          break;
+        chosen.push_back(candidates[i]);
+        const Eigen::RowVectorXd direction = rows.row(i).normalized();
+        rows -= (rows * direction.transpose()) * direction;
+      }
+    return {chosen, smallest};
+  }
+
+  SubdomainSystem::SubdomainSystem(const std::shared_ptr<CholmodSession> &session,
+                                   SubdomainMatrices                      given,
+                                   std::vector<unsigned int>              touched,
+                                   const bool                             with_trailing_block)
+    : matrices((check_kernel(given), std::move(given)))
+    , touched_unknowns(std::move(touched))
+    , fixing_unknowns(choose_fixing(matrices, touched_unknowns))
+    , regularization(matrices.stiffness.diagonal().mean())
+    , cholesky(session,
+               regularised(matrices.stiffness, fixing_unknowns, regularization),
+               with_trailing_block ? merged(touched_unknowns, fixing_unknowns) : std::vector<unsigned int>(),
+               name_of(matrices))
+  {}
+
+  Eigen::MatrixXd SubdomainSystem::pseudo_inverse_block() const
+  {
+    const Eigen::MatrixXd L = cholesky.trailing_block();
+    Eigen::MatrixXd       inverse_factor =
+      L.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(L.rows(), L.cols()));
+    Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(L.rows(), L.cols());
+    inverse.selfadjointView<Eigen::Lower>().rankUpdate(inverse_factor.transpose());
+
+    std::vector<int> position(n_unknowns(), -1);
+    for (unsigned int k = 0; k < cholesky.last_order().size(); ++k)
+      position[cholesky.last_order()[k]] = static_cast<int>(k);
+    Eigen::MatrixXd block(touched_unknowns.size(), touched_unknowns.size());
+    for (unsigned int a = 0; a < touched_unknowns.size(); ++a)
+      for (unsigned int b = 0; b <= a; ++b)
+        {
+          const int i = position[touched_unknowns[a]], j = position[touched_unknowns[b]];
+          block(a, b) = block(b, a) = inverse(std::max(i, j), std::min(i, j));
+        }
+    return block;
+  }
+} // namespace slipstick::tfeti
