@@ -98,12 +98,12 @@ namespace slipstick::scene
   std::string Interval::text() const
   {
     if (std::isinf(lower) && std::isinf(upper))
-      return "finite";
+      return "";
     if (std::isinf(upper))
-      return (lower_open ? "> " : ">= ") + number_text(lower);
+      return std::string(" ") + (lower_open ? "> " : ">= ") + number_text(lower);
     if (std::isinf(lower))
-      return (upper_open ? "< " : "<= ") + number_text(upper);
-    return std::string("in ") + (lower_open ? "(" : "[") + number_text(lower) + ", " + number_text(upper) +
+      return std::string(" ") + (upper_open ? "< " : "<= ") + number_text(upper);
+    return std::string(" in ") + (lower_open ? "(" : "[") + number_text(lower) + ", " + number_text(upper) +
            (upper_open ? ")" : "]");
   }
 
@@ -136,7 +136,7 @@ namespace slipstick::scene
       number_text(value),
       unit,
       meaning,
-      "a number " + interval.text(),
+      "a number" + interval.text(),
       [interval](const std::string &text) { return is_number(text, interval); },
       [&value](const std::string &text) { value = *parse_number(text); });
   }
@@ -203,7 +203,7 @@ namespace slipstick::scene
               join_names(defaults),
               unit,
               meaning,
-              std::to_string(dim) + " numbers " + interval.text() + ", separated by a comma",
+              std::to_string(dim) + " numbers" + interval.text() + ", separated by a comma",
               allows,
               store);
   }

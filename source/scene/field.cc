@@ -35,6 +35,27 @@ namespace slipstick::scene
         }
       return false;
     }
+
+    /// The message of muParser, and for an unknown name the known ones.
+    std::string explain(const mu::Parser::exception_type &error,
+                        const mu::Parser                 &parser,
+                        const std::vector<std::string>   &variables)
+    {
+      std::string message = error.GetMsg();
+      while (!message.empty() && message.back() == '.')
+        message.pop_back();
+      const std::string &token = error.GetToken();
+      if (error.GetCode() != mu::ecUNASSIGNABLE_TOKEN || token.empty() ||
+          !std::isalpha(static_cast<unsigned char>(token[0])))
+        return message;
+
+      std::vector<std::string> names = variables;
+      for (const auto &function : parser.GetFunDef())
+        names.push_back(function.first);
+      const auto near = nearest_name(token, names);
+      return message + "; known are " + join_names(variables) + " and muParser's functions" +
+             (near ? "; nearest: " + *near : "");
+    }
   } // namespace
 
   template <int dim>
@@ -56,7 +77,7 @@ namespace slipstick::scene
   {
     if (has_assignment(formula))
       throw formula_error(where, formula, "'=' assigns; compare with '=='");
-    std::vector<std::string> names = {"t", "pi"};
+    std::vector<std::string> names;
     try
       {
         for (unsigned int d = 0; d < dim; ++d)
@@ -66,6 +87,7 @@ namespace slipstick::scene
           }
         parser.DefineVar("t", &load_factor);
         parser.DefineConst("pi", dealii::numbers::PI);
+        names.insert(names.end(), {"t", "pi"});
         parser.SetExpr(formula);
         parser.Eval();
         if (parser.GetNumResults() != 1)
@@ -73,15 +95,7 @@ namespace slipstick::scene
       }
     catch (const mu::Parser::exception_type &error)
       {
-        const std::string token = error.GetToken();
-        const bool is_name = !token.empty() && std::isalpha(static_cast<unsigned char>(token[0]));
-        const auto        near  = nearest_name(token, names);
-        throw formula_error(where,
-                            formula,
-                            error.GetMsg() +
-                              (is_name && error.GetCode() == mu::ecUNASSIGNABLE_TOKEN ?
-                                 "; known names: " + join_names(names) + (near ? ", nearest " + *near : "") :
-                                 ""));
+        throw formula_error(where, formula, explain(error, parser, names));
       }
     if (parser.GetUsedVar().empty() && !std::isfinite(parser.Eval()))
       throw formula_error(where, formula, "not a finite number");

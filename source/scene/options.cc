@@ -35,7 +35,7 @@ namespace slipstick::scene
                  smalbe.initial_balance,
                  "-",
                  Interval::above(0),
-                 "M_0: inner precision relative to the violation of G x = 0, Hessian scaled to norm 1");
+                 "M0: inner precision relative to the violation of G x = 0, Hessian scaled to norm 1");
       add_number(prm,
                  "Balance reduction",
                  smalbe.balance_reduction,

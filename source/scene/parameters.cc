@@ -119,25 +119,18 @@ namespace slipstick::scene
     InputError Declarations::value_error(const Setting &setting) const
     {
       const DeclaredParameter &parameter = parameters.at(setting.path);
-      const bool               is_choice = parameter.allowed.compare(0, choice_prefix.size(), choice_prefix) == 0;
-      return InputError(setting.where + ": " + setting.path + " = '" + setting.value + "' is not available; allowed: " +
-                          parameter.allowed,
-                        is_choice ? suggest_name(setting.value, split_list(parameter.allowed.substr(choice_prefix.size()))) :
-                                    "give " + parameter.allowed + " (" + parameter.meaning +
-                                      (parameter.unit.empty() ? "" : " [" + parameter.unit + "]") + ")");
+      const std::string        problem   = setting.where + ": " + setting.path + " = '" + setting.value + "' is not ";
+      if (parameter.allowed.compare(0, choice_prefix.size(), choice_prefix) == 0)
+        {
+          const std::string words = parameter.allowed.substr(choice_prefix.size());
+          const auto        near  = nearest_name(setting.value, split_list(words));
+          return InputError(problem + "available; available: " + words,
+                            near ? "did you mean '" + *near + "'?" : "choose one of these");
+        }
+      return InputError(problem + "allowed; allowed: " + parameter.allowed,
+                        "give " + parameter.allowed + " (" + parameter.meaning +
+                          (parameter.unit.empty() ? "" : " [" + parameter.unit + "]") + ")");
     }
-
-    void set_value(dealii::ParameterHandler &prm, const Setting &setting)
-    {
-      const auto [section, name] = split_path(setting.path);
-      const auto levels          = split_list(section, '/');
-      for (const std::string &level : levels)
-        prm.enter_subsection(level);
-      prm.set(name, setting.value);
-      for (unsigned int level = 0; level < levels.size(); ++level)
-        prm.leave_subsection();
-    }
-
   } // namespace
 
   Parameters::Parameters(const std::string              &file_name,
@@ -196,6 +189,17 @@ namespace slipstick::scene
     return names;
   }
 
+  void set_value(dealii::ParameterHandler &prm, const std::string &path, const std::string &value)
+  {
+    const auto [section, name] = split_path(path);
+    const auto levels          = split_list(section, '/');
+    for (const std::string &level : levels)
+      prm.enter_subsection(level);
+    prm.set(name, value);
+    for (unsigned int level = 0; level < levels.size(); ++level)
+      prm.leave_subsection();
+  }
+
   void Parameters::apply(dealii::ParameterHandler &prm) const
   {
     const Declarations declarations(prm, kinds);
@@ -206,7 +210,7 @@ namespace slipstick::scene
           continue;
         try
           {
-            set_value(prm, setting);
+            set_value(prm, setting.path, setting.value);
           }
         catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
           {

@@ -139,12 +139,25 @@ namespace slipstick::scene
 
   void list_parameters(std::ostream &out, const ListFormat format)
   {
-    const SceneParameters<2> declared({{material_kind.list, {"elastic"}},
-                                       {body_kind.list, {"box"}},
-                                       {obstacle_kind.list, {"disc"}},
-                                       {support_kind.list, {"held"}},
-                                       {traction_kind.list, {"pressed"}},
-                                       {contact_kind.list, {"circle"}}});
-    write_parameters(out, declared.prm, format);
+    SceneParameters<2> example({{material_kind.list, {"elastic"}},
+                                {body_kind.list, {"box"}},
+                                {obstacle_kind.list, {"disc"}},
+                                {support_kind.list, {"held"}},
+                                {traction_kind.list, {"pressed"}},
+                                {contact_kind.list, {"circle"}}});
+    const std::vector<std::pair<std::string, std::string>> must_be_set = {{"Body box/Size", "10, 10"},
+                                                                          {"Body box/Material", "elastic"},
+                                                                          {"Obstacle disc/Center", "5, -20"},
+                                                                          {"Obstacle disc/Radius", "20"},
+                                                                          {"Support held/Boundary", "box/left"},
+                                                                          {"Support held/Displacement x", "0"},
+                                                                          {"Support held/Displacement y", "0"},
+                                                                          {"Traction pressed/Boundary", "box/top"},
+                                                                          {"Traction pressed/Traction y", "-250"},
+                                                                          {"Contact circle/Slave", "box/bottom"},
+                                                                          {"Contact circle/Master", "disc"}};
+    for (const auto &[path, value] : must_be_set)
+      set_value(example.prm, path, value);
+    write_parameters(out, example.prm, format);
   }
 } // namespace slipstick::scene

@@ -34,6 +34,7 @@ namespace slipstick::contact
     double                tangential_traction = 0; // [MPa]
     double                slip                = 0; // [mm]
     ContactStatus         status              = ContactStatus::open;
+    double                slip_bound          = 0; // [MPa], of the law: Tresca bound or mu times pressure
   };
 
   struct PairResult

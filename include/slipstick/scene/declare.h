@@ -26,7 +26,7 @@ namespace slipstick::scene
     static Interval inside(const double lower, const double upper);
 
     bool        contains(const double value) const;
-    std::string text() const; // "> 0", "in (0, 1)"
+    std::string text() const; // to follow "a number": " > 0", " in (0, 1)", or nothing
   };
 
   /// One value of an enumeration with its spelling in the .prm.

@@ -18,7 +18,10 @@ namespace slipstick::scene
     std::string list;
   };
 
-  /// What one .prm file with overrides sets. First give_names() for every list, then apply() to a handler that
+  /// Sets the declared parameter @p path, "Solver/Tolerance", whose value must be allowed.
+  void set_value(dealii::ParameterHandler &prm, const std::string &path, const std::string &value);
+
+  /// What one .prm file with overrides sets. First names() of every list, then apply() to a handler that
   /// declares everything.
   class Parameters
   {

@@ -1,0 +1,29 @@
+// The command line of the program slipstick.
+#pragma once
+
+#include <slipstick/scene/list_format.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace slipstick::app
+{
+  /// What the user asks for. When `message` or `list_parameters` is set there may be no case file.
+  struct CommandLine
+  {
+    std::string                           case_file;
+    std::vector<std::string>              overrides;        // "Section/Sub/Name=value"
+    std::string                           output_directory; // default: output/<name of the case>
+    bool                                  check   = false;
+    bool                                  quiet   = false;
+    bool                                  verbose = false;
+    std::optional<scene::ListFormat>      list_parameters;
+    std::optional<std::string>            message; // text of --help or --version: print it and exit with 0
+  };
+
+  /// Prints nothing and never exits; knows no MPI.
+  /// @throws InputError for an unknown or incomplete option (names the nearest), for a missing case file, and for an
+  /// override without '='.
+  CommandLine parse_command_line(int argc, const char *const *argv);
+} // namespace slipstick::app

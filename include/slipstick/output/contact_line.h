@@ -1,0 +1,36 @@
+// Contact along the slave boundaries: contact.csv for tables and plots, contact_NNN.vtp for ParaView. Signs: see
+// contact/result.h.
+#pragma once
+
+#include <slipstick/contact/result.h>
+#include <slipstick/output/directory.h>
+
+#include <string>
+#include <vector>
+
+namespace slipstick::output
+{
+  /// Names for people, index ContactNode::pair.
+  struct ContactNames
+  {
+    std::vector<std::string> pairs;
+    std::vector<std::string> slave_bodies;
+  };
+
+  /// All contact nodes after one load step.
+  struct ContactStep
+  {
+    unsigned int                      step = 0;
+    std::vector<contact::ContactNode> nodes;
+  };
+
+  /// Writes contact.csv from rank 0, whose arguments count: one row a node, steps in the given order, in a step by pair
+  /// and arc length. Collective.
+  void write_contact_csv(const OutputDirectory          &directory,
+                         const ContactNames             &names,
+                         const std::vector<ContactStep> &steps);
+
+  /// Writes contact_NNN.vtp (NNN: the step) from rank 0, whose arguments count: one line a pair along the arc length (a
+  /// vertex for a pair of one node), the node values as point data, status 0 open, 1 stick, 2 slip. Collective.
+  void write_contact_vtp(const OutputDirectory &directory, const ContactStep &step);
+} // namespace slipstick::output

@@ -1,0 +1,13 @@
+// Numbers and words as they stand in the text files.
+#pragma once
+
+#include <string>
+
+namespace slipstick::output
+{
+  /// Fewest digits that read back as the same number, independent of the locale; "nan", "inf", "-inf".
+  std::string to_text(const double value);
+
+  /// A word as a field of a .csv: quoted when it holds a comma, a quote or a line break (RFC 4180).
+  std::string csv_field(const std::string &word);
+} // namespace slipstick::output

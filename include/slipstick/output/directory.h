@@ -1,0 +1,37 @@
+// The output directory, and files that appear in it only when they are complete.
+#pragma once
+
+#include <mpi.h>
+
+#include <functional>
+#include <iosfwd>
+#include <string>
+
+namespace slipstick::output
+{
+  /// A directory that exists and takes files.
+  class OutputDirectory
+  {
+  public:
+    /// Creates @p path and its parents where missing and tries a file in it. Collective over @p comm: rank 0
+    /// does the work.
+    /// @throws InputError on all ranks alike: empty path, a file in its place, no permission, a full or read-only disk.
+    OutputDirectory(const std::string &path, const MPI_Comm comm);
+
+    /// Path of the file @p name in the directory; empty @p name: of the directory itself.
+    std::string path(const std::string &name = "") const;
+
+    /// Writes the file @p name on this rank alone: @p content fills a stream beside it, then the file takes its name.
+    /// A file of that name from before is replaced; when anything fails it stays, and nothing else is left behind.
+    /// @throws Error on this rank alone when the disk does not take it; what @p content throws passes through.
+    void write(const std::string &name, const std::function<void(std::ostream &)> &content) const;
+
+    /// As write(), on rank 0 alone, and all ranks throw alike. @p content runs on rank 0 and must not communicate.
+    /// Collective.
+    void write_from_root(const std::string &name, const std::function<void(std::ostream &)> &content) const;
+
+  private:
+    std::string directory;
+    MPI_Comm    communicator;
+  };
+} // namespace slipstick::output

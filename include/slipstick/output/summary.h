@@ -1,0 +1,129 @@
+// summary.json: what a run did and found, in numbers. Keys and units: doc/interface.md.
+#pragma once
+
+#include <slipstick/contact/result.h>
+#include <slipstick/output/directory.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace slipstick::output
+{
+  enum class RunStatus
+  {
+    converged,
+    not_converged,
+    no_equilibrium
+  };
+
+  /// "converged", "not converged", "no equilibrium"
+  std::string to_string(const RunStatus status);
+
+  struct DualSummary
+  {
+    std::uint64_t total      = 0;
+    std::uint64_t equality   = 0; // gluing and prescribed displacements
+    std::uint64_t normal     = 0;
+    std::uint64_t tangential = 0;
+  };
+
+  struct ProblemSummary
+  {
+    unsigned int  dimension        = 2;
+    unsigned int  bodies           = 0;
+    unsigned int  subdomains       = 0;
+    std::uint64_t primal_dofs      = 0; // of the torn subdomains together
+    std::uint64_t kernel_dimension = 0;
+    std::uint64_t cells            = 0;
+    DualSummary   dual;
+    std::uint64_t contact_candidates = 0; // slave nodes that may touch
+  };
+
+  struct SolverSummary
+  {
+    std::string   algorithm;
+    std::string   preconditioner;
+    std::string   dual_operator;                   // "explicit", "implicit"
+    double        tolerance                   = 0; // relative, see Solver/Tolerance
+    std::uint64_t hessian_multiplications     = 0; // after set-up
+    std::uint64_t dual_setup_multiplications  = 0; // norm estimate and the like
+    std::uint64_t preconditioner_applications = 0;
+    unsigned int  outer_iterations            = 0;
+    std::uint64_t cg_steps                    = 0;
+    std::uint64_t expansion_steps             = 0;
+    std::uint64_t proportioning_steps         = 0;
+    unsigned int  coulomb_iterations          = 0;
+    unsigned int  fallbacks                   = 0;
+    std::uint64_t active_constraints          = 0; // inequality multipliers at a bound
+    double        dual_norm                   = 0; // estimate of |PFP|
+  };
+
+  /// All relative: as in the stopping test, and from the recovered displacement.
+  struct ResidualSummary
+  {
+    double projected_gradient = 0;
+    double equality           = 0;
+    double interface_jump     = 0;
+    double penetration        = 0;
+    double complementarity    = 0;
+    double friction_bound     = 0;
+    double force_balance      = 0;
+    double moment_balance     = 0;
+  };
+
+  struct ErrorSummary
+  {
+    double estimate_energy_relative = 0; // discretisation
+    double algebraic_relative       = 0;
+  };
+
+  struct ResultSummary
+  {
+    double                           max_displacement = 0; // [mm]
+    double                           max_von_mises    = 0; // [MPa]
+    double                           strain_energy    = 0; // [N mm]
+    std::vector<contact::PairResult> contact;
+  };
+
+  /// Wall clock [s], slowest rank.
+  struct TimeSummary
+  {
+    double total         = 0;
+    double mesh          = 0;
+    double assembly      = 0;
+    double factorization = 0;
+    double dual_setup    = 0;
+    double solve         = 0;
+    double recovery      = 0;
+    double output        = 0;
+  };
+
+  /// Resident memory [MB].
+  struct MemorySummary
+  {
+    double peak_rank_max = 0;
+    double peak_total    = 0;
+  };
+
+  struct Summary
+  {
+    std::string     case_name;
+    std::string     version;
+    unsigned int    ranks  = 1;
+    RunStatus       status = RunStatus::not_converged;
+    ProblemSummary  problem;
+    SolverSummary   solver;
+    ResidualSummary residuals;
+    ErrorSummary    error;
+    ResultSummary   results;
+    TimeSummary     time_s;
+    MemorySummary   memory_mb;
+  };
+
+  /// The text of summary.json. A number that is not finite becomes null, bytes that are not UTF-8 become U+FFFD.
+  std::string to_json(const Summary &summary);
+
+  /// Writes summary.json from rank 0, whose @p summary counts. Collective.
+  void write_summary(const OutputDirectory &directory, const Summary &summary);
+} // namespace slipstick::output

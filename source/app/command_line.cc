@@ -1,0 +1,112 @@
+#include <slipstick/app/command_line.h>
+#include <slipstick/base/exceptions.h>
+#include <slipstick/base/nearest_name.h>
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    const std::string usage = "slipstick CASE.prm [options]; see slipstick --help";
+
+    const std::vector<std::pair<std::string, scene::ListFormat>> list_formats = {{"text", scene::ListFormat::text},
+                                                                                 {"prm", scene::ListFormat::prm},
+                                                                                 {"json", scene::ListFormat::json},
+                                                                                 {"latex", scene::ListFormat::latex}};
+
+    scene::ListFormat read_list_format(const std::string &word)
+    {
+      std::vector<std::string> words;
+      for (const auto &[name, format] : list_formats)
+        {
+          if (name == word)
+            return format;
+          words.push_back(name);
+        }
+      throw InputError("--list-parameters " + word + ": there is no such format", suggest_name(word, words));
+    }
+
+    /// Arguments that CLI11 did not know: options, or case files after the first.
+    InputError unknown_argument(const std::string &argument, const CLI::App &app)
+    {
+      if (argument.empty() || argument[0] != '-')
+        return InputError("'" + argument + "' is one case file too many", "give one case file: " + usage);
+      std::vector<std::string> names;
+      for (const CLI::Option *option : app.get_options())
+        for (const std::string &name : option->get_lnames())
+          names.push_back("--" + name);
+      const std::string name = argument.substr(0, argument.find('='));
+      return InputError("there is no option '" + name + "'", suggest_name(name, names));
+    }
+
+    void check(const CommandLine &line)
+    {
+      for (const std::string &text : line.overrides)
+        if (text.find('=') == std::string::npos || text.find('=') == 0)
+          throw InputError("'--set " + text + "' does not say which value which parameter gets",
+                           "write: --set 'Section/Sub/Name=value', for example --set 'Solver/Tolerance=1e-6'");
+      if (line.quiet && line.verbose)
+        throw InputError("--quiet and --verbose exclude each other", "leave one of them out");
+      if (line.case_file.empty() && !line.list_parameters)
+        throw InputError("no case file is given", usage);
+    }
+  } // namespace
+
+  CommandLine parse_command_line(int argc, const char *const *argv)
+  {
+    CommandLine line;
+    std::string list_format;
+
+    CLI::App app("slipstick: frictional contact of elastic bodies by Total FETI.\n"
+                 "Runs alone or under mpirun -n N / srun; results agree for every N.");
+    app.name("slipstick");
+    app.allow_extras();
+    app.set_version_flag("--version", "slipstick " SLIPSTICK_VERSION, "print the version and exit");
+    app.add_option("case", line.case_file, "scene to solve, for example prm/box_on_circle.prm")->type_name("CASE.prm");
+    app.add_option("--set", line.overrides, "override one parameter of the scene; repeatable")
+      ->type_name("Section/Sub/Name=value")
+      ->allow_extra_args(false);
+    const CLI::Option *output =
+      app.add_option("--output", line.output_directory, "output directory, default output/<name of the case>")
+        ->type_name("DIR");
+    app.add_flag("--check", line.check, "build and check the scene, solve nothing");
+    const CLI::Option *list =
+      app.add_option("--list-parameters", list_format, "list all parameters as text (default), prm, json or latex")
+        ->expected(0, 1)
+        ->type_name("FORMAT");
+    app.add_flag("--quiet", line.quiet, "print errors only");
+    app.add_flag("--verbose", line.verbose, "print every iteration");
+
+    try
+      {
+        app.parse(argc, argv);
+      }
+    catch (const CLI::CallForHelp &)
+      {
+        line.message = app.help();
+        return line;
+      }
+    catch (const CLI::CallForVersion &)
+      {
+        line.message = app.version() + "\n";
+        return line;
+      }
+    catch (const CLI::ParseError &error)
+      {
+        throw InputError(error.what(), usage);
+      }
+    if (!app.remaining().empty())
+      throw unknown_argument(app.remaining().front(), app);
+    if (list->count() > 0)
+      line.list_parameters = read_list_format(list_format.empty() ? "text" : list_format);
+    check(line);
+    if (output->count() > 0 && line.output_directory.empty())
+      throw InputError("--output: the name of the directory is empty", "name a directory, for example --output /tmp/run");
+    if (output->count() == 0)
+      line.output_directory = (std::filesystem::path("output") / std::filesystem::path(line.case_file).stem()).string();
+    return line;
+  }
+} // namespace slipstick::app

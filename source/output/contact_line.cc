@@ -1,0 +1,177 @@
+#include <slipstick/output/contact_line.h>
+#include <slipstick/output/csv.h>
+
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/utilities.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <ostream>
+#include <tuple>
+
+namespace slipstick::output
+{
+  namespace
+  {
+    using contact::ContactNode;
+
+    std::vector<ContactNode> along_the_arc(std::vector<ContactNode> nodes)
+    {
+      std::stable_sort(nodes.begin(), nodes.end(), [](const ContactNode &a, const ContactNode &b) {
+        return std::tie(a.pair, a.arc_length) < std::tie(b.pair, b.arc_length);
+      });
+      return nodes;
+    }
+
+    void write_row(std::ostream &out, const ContactNames &names, const unsigned int step, const ContactNode &node)
+    {
+      AssertIndexRange(node.pair, names.pairs.size());
+      AssertIndexRange(node.pair, names.slave_bodies.size());
+      out << csv_field(names.pairs[node.pair]) << ',' << csv_field(names.slave_bodies[node.pair]);
+      for (const double value : {node.position[0],
+                                 node.position[1],
+                                 node.arc_length,
+                                 node.gap,
+                                 node.pressure,
+                                 node.tangential_traction,
+                                 node.slip})
+        out << ',' << to_text(value);
+      out << ',' << contact::to_string(node.status) << ',' << step << ',' << to_text(node.slip_bound) << '\n';
+    }
+
+    bool is_little_endian()
+    {
+      const std::uint16_t one = 1;
+      unsigned char       first;
+      std::memcpy(&first, &one, 1);
+      return first == 1;
+    }
+
+    const char *vtk_type(const double)
+    {
+      return "Float64";
+    }
+
+    const char *vtk_type(const std::int64_t)
+    {
+      return "Int64";
+    }
+
+    // A DataArray in base64: the number of bytes as UInt64, then the values. Exact, and not finite numbers are legal.
+    template <typename Number>
+    void write_array(std::ostream              &out,
+                     const std::string         &name,
+                     const std::vector<Number> &values,
+                     const unsigned int         n_components = 1)
+    {
+      const std::uint64_t        n_bytes = values.size() * sizeof(Number);
+      std::vector<unsigned char> bytes(sizeof(n_bytes) + n_bytes);
+      std::memcpy(bytes.data(), &n_bytes, sizeof(n_bytes));
+      if (n_bytes > 0)
+        std::memcpy(bytes.data() + sizeof(n_bytes), values.data(), n_bytes);
+      out << "<DataArray type=\"" << vtk_type(Number()) << "\" Name=\"" << name << "\" NumberOfComponents=\""
+          << n_components << "\" format=\"binary\">" << dealii::Utilities::encode_base64(bytes) << "</DataArray>\n";
+    }
+
+    template <typename Value>
+    void write_scalar(std::ostream                   &out,
+                      const std::string              &name,
+                      const std::vector<ContactNode> &nodes,
+                      const Value                    &value)
+    {
+      std::vector<decltype(value(nodes[0]))> values;
+      for (const ContactNode &node : nodes)
+        values.push_back(value(node));
+      write_array(out, name, values);
+    }
+
+    std::vector<double> components(const std::vector<ContactNode> &nodes, std::array<double, 3> ContactNode::*vector)
+    {
+      std::vector<double> values;
+      for (const ContactNode &node : nodes)
+        values.insert(values.end(), (node.*vector).begin(), (node.*vector).end());
+      return values;
+    }
+
+    void write_point_data(std::ostream &out, const std::vector<ContactNode> &nodes)
+    {
+      out << "<PointData Scalars=\"pressure\">\n";
+      write_scalar(out, "pair", nodes, [](const ContactNode &node) { return std::int64_t(node.pair); });
+      write_scalar(out, "s", nodes, [](const ContactNode &node) { return node.arc_length; });
+      write_scalar(out, "area", nodes, [](const ContactNode &node) { return node.area; });
+      write_scalar(out, "gap", nodes, [](const ContactNode &node) { return node.gap; });
+      write_scalar(out, "pressure", nodes, [](const ContactNode &node) { return node.pressure; });
+      write_scalar(out, "tangential_traction", nodes, [](const ContactNode &node) { return node.tangential_traction; });
+      write_scalar(out, "slip_bound", nodes, [](const ContactNode &node) { return node.slip_bound; });
+      write_scalar(out, "slip", nodes, [](const ContactNode &node) { return node.slip; });
+      write_scalar(out, "status", nodes, [](const ContactNode &node) {
+        return static_cast<std::int64_t>(node.status);
+      });
+      write_array(out, "normal", components(nodes, &ContactNode::normal), 3);
+      out << "</PointData>\n";
+    }
+
+    // Cells of a PolyData: numbers of the first nodes of pairs, one behind the last node of each.
+    struct Cells
+    {
+      std::vector<std::int64_t> connectivity;
+      std::vector<std::int64_t> offsets;
+    };
+
+    void write_cells(std::ostream &out, const std::string &kind, const Cells &cells)
+    {
+      if (cells.offsets.empty())
+        return;
+      out << "<" << kind << ">\n";
+      write_array(out, "connectivity", cells.connectivity);
+      write_array(out, "offsets", cells.offsets);
+      out << "</" << kind << ">\n";
+    }
+
+    void write_polydata(std::ostream &out, const std::vector<ContactNode> &nodes)
+    {
+      Cells lines, vertices;
+      for (auto first = nodes.begin(); first != nodes.end();)
+        {
+          const auto last =
+            std::find_if(first, nodes.end(), [&](const ContactNode &node) { return node.pair != first->pair; });
+          Cells &cells = last - first > 1 ? lines : vertices;
+          for (auto node = first; node != last; ++node)
+            cells.connectivity.push_back(node - nodes.begin());
+          cells.offsets.push_back(cells.connectivity.size());
+          first = last;
+        }
+      out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\""
+          << (is_little_endian() ? "LittleEndian" : "BigEndian") << "\" header_type=\"UInt64\">\n<PolyData>\n"
+          << "<Piece NumberOfPoints=\"" << nodes.size() << "\" NumberOfVerts=\"" << vertices.offsets.size()
+          << "\" NumberOfLines=\"" << lines.offsets.size() << "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
+      write_point_data(out, nodes);
+      out << "<Points>\n";
+      write_array(out, "Points", components(nodes, &ContactNode::position), 3);
+      out << "</Points>\n";
+      write_cells(out, "Verts", vertices);
+      write_cells(out, "Lines", lines);
+      out << "</Piece>\n</PolyData>\n</VTKFile>\n";
+    }
+  } // namespace
+
+  void write_contact_csv(const OutputDirectory          &directory,
+                         const ContactNames             &names,
+                         const std::vector<ContactStep> &steps)
+  {
+    directory.write_from_root("contact.csv", [&](std::ostream &out) {
+      out << "pair,slave body,x,y,s,gap,pressure,tangential_traction,slip,status,step,slip_bound\n";
+      for (const ContactStep &step : steps)
+        for (const ContactNode &node : along_the_arc(step.nodes))
+          write_row(out, names, step.step, node);
+    });
+  }
+
+  void write_contact_vtp(const OutputDirectory &directory, const ContactStep &step)
+  {
+    const std::string name = "contact_" + dealii::Utilities::int_to_string(step.step, 3) + ".vtp";
+    directory.write_from_root(name, [&](std::ostream &out) { write_polydata(out, along_the_arc(step.nodes)); });
+  }
+} // namespace slipstick::output

@@ -1,0 +1,133 @@
+#include <slipstick/output/summary.h>
+
+#include <deal.II/base/exceptions.h>
+
+#include <nlohmann/json.hpp>
+
+#include <ostream>
+
+namespace slipstick::output
+{
+  namespace
+  {
+    using Json = nlohmann::ordered_json; // keys in the order of doc/interface.md; not finite numbers become null
+
+    Json json(const ProblemSummary &problem)
+    {
+      return {{"dimension", problem.dimension},
+              {"bodies", problem.bodies},
+              {"subdomains", problem.subdomains},
+              {"primal_dofs", problem.primal_dofs},
+              {"kernel_dimension", problem.kernel_dimension},
+              {"cells", problem.cells},
+              {"dual",
+               {{"total", problem.dual.total},
+                {"equality", problem.dual.equality},
+                {"normal", problem.dual.normal},
+                {"tangential", problem.dual.tangential}}},
+              {"contact_candidates", problem.contact_candidates}};
+    }
+
+    Json json(const SolverSummary &solver)
+    {
+      return {{"algorithm", solver.algorithm},
+              {"preconditioner", solver.preconditioner},
+              {"dual_operator", solver.dual_operator},
+              {"tolerance", solver.tolerance},
+              {"hessian_multiplications", solver.hessian_multiplications},
+              {"dual_setup_multiplications", solver.dual_setup_multiplications},
+              {"preconditioner_applications", solver.preconditioner_applications},
+              {"outer_iterations", solver.outer_iterations},
+              {"cg_steps", solver.cg_steps},
+              {"expansion_steps", solver.expansion_steps},
+              {"proportioning_steps", solver.proportioning_steps},
+              {"coulomb_iterations", solver.coulomb_iterations},
+              {"fallbacks", solver.fallbacks},
+              {"active_constraints", solver.active_constraints},
+              {"dual_norm", solver.dual_norm}};
+    }
+
+    Json json(const ResidualSummary &residuals)
+    {
+      return {{"projected_gradient", residuals.projected_gradient},
+              {"equality", residuals.equality},
+              {"interface_jump", residuals.interface_jump},
+              {"penetration", residuals.penetration},
+              {"complementarity", residuals.complementarity},
+              {"friction_bound", residuals.friction_bound},
+              {"force_balance", residuals.force_balance},
+              {"moment_balance", residuals.moment_balance}};
+    }
+
+    Json json(const ResultSummary &results)
+    {
+      Json pairs = Json::array();
+      for (const contact::PairResult &pair : results.contact)
+        pairs.push_back({{"pair", pair.pair},
+                         {"normal_force", pair.normal_force},
+                         {"tangential_force", pair.tangential_force},
+                         {"max_pressure", pair.max_pressure},
+                         {"contact_length", pair.contact_length},
+                         {"open_nodes", pair.open_nodes},
+                         {"stick_nodes", pair.stick_nodes},
+                         {"slip_nodes", pair.slip_nodes}});
+      return {{"max_displacement", results.max_displacement},
+              {"max_von_mises", results.max_von_mises},
+              {"strain_energy", results.strain_energy},
+              {"contact", pairs}};
+    }
+
+    Json json(const TimeSummary &time)
+    {
+      return {{"total", time.total},
+              {"mesh", time.mesh},
+              {"assembly", time.assembly},
+              {"factorization", time.factorization},
+              {"dual_setup", time.dual_setup},
+              {"solve", time.solve},
+              {"recovery", time.recovery},
+              {"output", time.output}};
+    }
+  } // namespace
+
+  std::string to_string(const RunStatus status)
+  {
+    switch (status)
+      {
+        case RunStatus::converged:
+          return "converged";
+        case RunStatus::not_converged:
+          return "not converged";
+        case RunStatus::no_equilibrium:
+          return "no equilibrium";
+      }
+    AssertThrow(false, dealii::ExcInternalError());
+    return "";
+  }
+
+  std::string to_json(const Summary &summary)
+  {
+    const Json text = {{"case", summary.case_name},
+                       {"version", summary.version},
+                       {"ranks", summary.ranks},
+                       {"status", to_string(summary.status)},
+                       {"converged", summary.status == RunStatus::converged},
+                       {"problem", json(summary.problem)},
+                       {"solver", json(summary.solver)},
+                       {"residuals", json(summary.residuals)},
+                       {"error",
+                        {{"estimate_energy_relative", summary.error.estimate_energy_relative},
+                         {"algebraic_relative", summary.error.algebraic_relative}}},
+                       {"results", json(summary.results)},
+                       {"time_s", json(summary.time_s)},
+                       {"memory_mb",
+                        {{"peak_rank_max", summary.memory_mb.peak_rank_max},
+                         {"peak_total", summary.memory_mb.peak_total}}}};
+    return text.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  }
+
+  void write_summary(const OutputDirectory &directory, const Summary &summary)
+  {
+    directory.write_from_root("summary.json", [&](std::ostream &out) { out << to_json(summary); });
+  }
+} // namespace slipstick::output

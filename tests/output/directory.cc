@@ -1,0 +1,133 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/output/directory.h>
+
+#include "temporary_directory.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+using slipstick::InputError;
+using slipstick::output::OutputDirectory;
+
+namespace
+{
+  using Directory = TemporaryDirectory;
+
+  // The message with which a directory is rejected, empty when it is not.
+  std::string rejection(const std::string &path)
+  {
+    try
+      {
+        OutputDirectory directory(path, MPI_COMM_WORLD);
+        return "";
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+  }
+
+  std::ptrdiff_t n_files(const std::filesystem::path &directory)
+  {
+    return std::distance(std::filesystem::directory_iterator(directory), std::filesystem::directory_iterator());
+  }
+} // namespace
+
+TEST_F(Directory, missing_parents_are_created)
+{
+  const OutputDirectory directory(root / "a" / "b", MPI_COMM_WORLD);
+  EXPECT_TRUE(std::filesystem::is_directory(root / "a" / "b"));
+}
+
+TEST_F(Directory, construction_leaves_nothing_in_it)
+{
+  const OutputDirectory directory(root, MPI_COMM_WORLD);
+  EXPECT_EQ(n_files(root), 0);
+}
+
+TEST_F(Directory, file_in_its_place_is_rejected_on_all_ranks)
+{
+  if (is_root())
+    std::ofstream(root / "file") << "in the way";
+  const std::string message = rejection(root / "file");
+  EXPECT_NE(message.find("there is a file of that name"), std::string::npos) << message;
+  EXPECT_NE(message.find("remedy: "), std::string::npos) << message;
+}
+
+TEST_F(Directory, file_in_place_of_a_parent_is_rejected_on_all_ranks)
+{
+  if (is_root())
+    std::ofstream(root / "file") << "in the way";
+  EXPECT_NE(rejection(root / "file" / "below"), "");
+}
+
+TEST_F(Directory, empty_name_is_rejected_on_all_ranks)
+{
+  EXPECT_NE(rejection("").find("empty"), std::string::npos);
+}
+
+TEST_F(Directory, directory_that_cannot_be_created_is_rejected_for_root_too)
+{
+  EXPECT_NE(rejection("/proc/slipstick"), "");
+}
+
+TEST_F(Directory, directory_that_takes_no_file_is_rejected_for_root_too)
+{
+  const std::string message = rejection("/proc");
+  EXPECT_NE(message.find("no file can be written there"), std::string::npos) << message;
+}
+
+TEST_F(Directory, written_file_stands_under_its_final_name_only)
+{
+  const OutputDirectory directory(root, MPI_COMM_WORLD);
+  directory.write_from_root("x.txt", [](std::ostream &out) { out << "content\n"; });
+  EXPECT_EQ(content(directory.path("x.txt")), "content\n");
+  EXPECT_EQ(n_files(root), 1);
+}
+
+TEST_F(Directory, every_rank_can_write_its_own_file)
+{
+  const OutputDirectory directory(root, MPI_COMM_WORLD);
+  const unsigned int    rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+  directory.write(std::to_string(rank), [&](std::ostream &out) { out << rank; });
+  EXPECT_EQ(content(directory.path(std::to_string(rank))), std::to_string(rank));
+}
+
+TEST_F(Directory, file_from_before_is_replaced)
+{
+  const OutputDirectory directory(root, MPI_COMM_WORLD);
+  for (const char *text : {"a longer first content", "second"})
+    directory.write_from_root("x", [&](std::ostream &out) { out << text; });
+  EXPECT_EQ(content(directory.path("x")), "second");
+}
+
+TEST_F(Directory, failing_content_leaves_the_file_from_before)
+{
+  const OutputDirectory directory(root, MPI_COMM_WORLD);
+  directory.write_from_root("x", [](std::ostream &out) { out << "whole"; });
+  EXPECT_THROW(directory.write_from_root("x",
+                                         [](std::ostream &out) {
+                                           out << "half";
+                                           throw std::runtime_error("stop");
+                                         }),
+               std::runtime_error);
+  EXPECT_EQ(content(directory.path("x")), "whole");
+  EXPECT_EQ(n_files(root), 1);
+}
+
+TEST_F(Directory, full_disk_is_an_error_on_all_ranks)
+{
+  const OutputDirectory directory(root, MPI_COMM_WORLD);
+  if (is_root())
+    std::filesystem::create_symlink("/dev/full", root / "x.tmp");
+  try
+    {
+      directory.write_from_root("x", [](std::ostream &out) { out << "content"; });
+      ADD_FAILURE() << "the full disk went unnoticed";
+    }
+  catch (const std::runtime_error &error)
+    {
+      EXPECT_NE(std::string(error.what()).find("No space left"), std::string::npos) << error.what();
+    }
+  EXPECT_FALSE(std::filesystem::exists(root / "x"));
+}
