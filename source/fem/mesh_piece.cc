@@ -138,8 +138,8 @@ namespace slipstick::fem
     for (std::size_t k = 1; k < faces.size(); ++k)
       if (faces[k].first == faces[k - 1].first && part[faces[k].second] == part[faces[k - 1].second])
         {
-          const auto [a, b] = std::minmax(find(faces[k].second), find(faces[k - 1].second));
-          root[b]           = a;
+          const unsigned int a = find(faces[k].second), b = find(faces[k - 1].second);
+          root[std::max(a, b)] = std::min(a, b);
         }
 
     std::map<Face<dim>, dealii::types::boundary_id> boundary;

@@ -1,4 +1,4 @@
-// Direct solver for the coarse matrix, distributed by rows (Trilinos Tpetra, Amesos2).
+// Direct solver for the coarse matrix (Trilinos Tpetra, Amesos2 KLU2).
 #pragma once
 
 #include <Eigen/Dense>
@@ -8,10 +8,13 @@
 #include <map>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace slipstick::tfeti
 {
-  /// Sparse symmetric positive definite matrix of small dense blocks, factorised once.
+  /// Sparse symmetric positive definite matrix, factorised once. Right-hand sides and solutions are distributed over the
+  /// ranks; the matrix, whose size is that of the kernel, is held and factorised by every rank, so that a solve costs
+  /// one gather. (KLU2 with a distributed matrix is wrong in Trilinos 13.2, see doc/decisions.md.)
   class CoarseSolver
   {
   public:
@@ -30,6 +33,10 @@ namespace slipstick::tfeti
 
   private:
     struct Trilinos;
+
+    MPI_Comm                  comm;
+    unsigned int              n_owned;
+    std::vector<int>          first_of_rank, n_of_rank;
     std::unique_ptr<Trilinos> trilinos;
   };
 } // namespace slipstick::tfeti
