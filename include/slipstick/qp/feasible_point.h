@@ -116,7 +116,8 @@ namespace slipstick::qp
       // (Q D Q + regularization Q) d = r by conjugate gradients; d is a direction of ascent wherever they are stopped.
       void find_direction()
       {
-        const double tolerance = std::min(options.cg_tolerance, norm_r / reference) * norm_r;
+        const double tolerance =
+          std::max(options.least_cg_tolerance, std::min(options.cg_tolerance, norm_r / reference)) * norm_r;
         set_zero(d);
         std::copy(r.begin(), r.end(), residual.begin());
         std::copy(r.begin(), r.end(), p.begin());
@@ -133,8 +134,9 @@ namespace slipstick::qp
             combine(1.0, residual, next / square, p);
             square = next;
           }
-        if (!(dot(d, r, reduction) > 0))
-          std::copy(r.begin(), r.end(), d.begin());
+        project_range(d, p); // rounding must not carry y out of the range of Q
+        const bool ascends = dot(p, r, reduction) > 0;
+        std::copy(ascends ? p.begin() : r.begin(), ascends ? p.end() : r.end(), d.begin());
       }
 
       // Ap = (Q D Q + regularization Q) p, p in the range of Q
@@ -145,9 +147,8 @@ namespace slipstick::qp
         const auto        pi = p.begin();
         const std::size_t n  = local_size(y);
         for (std::size_t i = 0; i < n; ++i)
-          wi[i] = is_free(yi[i], l[i], u[i]) ? pi[i] : 0.0;
+          wi[i] = ((is_free(yi[i], l[i], u[i]) ? 1.0 : 0.0) + options.newton_regularization) * pi[i];
         project_range(x, Ap);
-        add(options.newton_regularization, p, Ap);
       }
 
       // d/dt theta(y + t d), falling in t

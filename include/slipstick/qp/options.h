@@ -66,6 +66,7 @@ namespace slipstick::qp
     unsigned int max_newton_steps      = 100;
     unsigned int max_cg_iterations     = 200;  // per Newton step
     double       cg_tolerance          = 1e-2; // at most: residual of the Newton equation over its right-hand side
+    double       least_cg_tolerance    = 1e-6; // at least; in between it is the residual over the reference length
     double       newton_regularization = 1e-8; // Newton matrix: Q D Q + this Q
     unsigned int max_line_search_steps = 40;
     double       line_search_slope     = 0.1; // accepted slope of the dual function over the slope at the start
