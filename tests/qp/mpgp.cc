@@ -227,22 +227,26 @@ TEST_P(Mpgp, counter_equals_the_number_of_calls_of_the_operator)
 
 TEST_P(Mpgp, tracker_follows_a_linear_function_of_the_point)
 {
-  Random       random(10);
-  const Matrix A = random.semidefinite(12, 12, 0.01);
-  const Vector b = random.vector(12), weights = random.vector(12);
-  const auto   box = random.box(12, false);
   struct Tracker
   {
     double of_x = 0, of_v = 0;
     void   stepped(const double a) { of_x -= a * of_v; }
-    void   replaced() { of_x = of_v; }
-  } tracker;
-  const auto multiply = [&](const Vector &v, Vector &Av) {
-    tracker.of_v = inner(weights, v);
-    Av           = A * v;
+    void   moved_towards(const double a) { of_x += a * (of_v - of_x); }
   };
-  const auto result = mpgp(multiply, spectral_norm(A), b, box, MpgpStart<Vector>{Vector(12, 0.0)},
-                           [](const Vector &, const double gP) { return gP <= 1e-9; }, options(), SerialReduction(), tracker);
-  EXPECT_EQ(result.status, Status::converged);
-  EXPECT_NEAR(tracker.of_x, inner(weights, result.x), 1e-12);
+  for (unsigned int seed = 0; seed < 50; ++seed)
+    {
+      Random       random(seed);
+      const Matrix A = random.semidefinite(12, 12, 0.01);
+      const Vector b = random.vector(12, 5), weights = random.vector(12);
+      const auto   box = random.box(12, false);
+      Tracker      tracker;
+      const auto   multiply = [&](const Vector &v, Vector &Av) {
+        tracker.of_v = inner(weights, v);
+        Av           = A * v;
+      };
+      const auto result = mpgp(multiply, spectral_norm(A), b, box, MpgpStart<Vector>{Vector(12, 0.0)},
+                               [](const Vector &, const double gP) { return gP <= 1e-9; }, options(), SerialReduction(), tracker);
+      EXPECT_EQ(result.status, Status::converged) << seed;
+      EXPECT_NEAR(tracker.of_x, inner(weights, result.x), 1e-12) << seed;
+    }
 }

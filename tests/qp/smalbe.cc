@@ -87,7 +87,7 @@ TEST_P(Smalbe, bounds_and_equalities_and_gradient_hold_to_the_tolerance)
         EXPECT_LE(length(p.problem.range(result.x)), (1 + 1e-9) * tolerance * length(p.b)) << seed;
         // the gradient anew: P F P x + rho Q x - b + shift
         Vector g = p.problem.kernel(p.problem.F * p.problem.kernel(result.x));
-        add(1.0, p.problem.range(result.x), g);
+        add(result.penalty, p.problem.range(result.x), g);
         add(1.0, result.shift, g);
         add(-1.0, p.b, g);
         EXPECT_LT(distance(g, result.gradient), 1e-11) << seed;

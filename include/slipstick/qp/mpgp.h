@@ -1,9 +1,9 @@
 // MPGP: modified proportioning with gradient projections, for min 1/2 x'Ax - x'b within two-sided bounds.
 // Dostal, Schoeberl 2005; Dostal 2009, section 5.8; expansions of Kruzik, Horak, Cermak, Pospisil, Pecha 2020.
 //
-// Every step lowers the objective: a gradient projection does when |A| is right (|A| grows when a Rayleigh quotient
-// above it is met), a projected conjugate gradient step is replaced by the step to the boundary when that is better,
-// a proportioning step along -beta is replaced by a gradient projection when it would be cut shorter than 1/|A|.
+// Every step lowers the objective: a projected step that does not is cut short, |A| grows when a Rayleigh quotient above
+// it is met, a proportioning step along -beta is replaced by a gradient projection when the bounds would cut it shorter
+// than 1/|A|. None of this costs a multiplication.
 #pragma once
 
 #include <slipstick/qp/mpgp_iterate.h>
@@ -87,25 +87,21 @@ namespace slipstick::qp
         return {};
       }
 
-      // The conjugate gradient step would leave the box.
+      // The conjugate gradient step would leave the box. From the boundary, projecting the rest of that step leads to
+      // the projection of all of it.
       Outcome expand(const Curvature &c)
       {
         ++steps.expansion_steps;
         if (options.expansion == Expansion::gradient_projection)
           return project_gradient();
         const double optimal = c.pg / c.pAp, longest = std::min(optimal, iterate.longest_step());
-        if (options.expansion == Expansion::projected_cg)
-          {
-            const double change_at_boundary = longest * (0.5 * longest * c.pAp - c.pg);
-            if (iterate.evaluate_trial(optimal).change <= change_at_boundary)
-              return accept_trial();
-            iterate.step(longest);
-            return restart();
-          }
         iterate.step(longest);
-        iterate.set_direction(free_gradient);
-        iterate.evaluate_trial(iterate.step_length());
-        return accept_trial();
+        if (options.expansion == Expansion::boundary_then_projection)
+          iterate.set_direction(free_gradient);
+        else if (optimal <= longest)
+          return restart();
+        project_step(options.expansion == Expansion::boundary_then_projection ? iterate.step_length() : optimal - longest);
+        return {};
       }
 
       // Along -beta, unless the bounds cut the step below 1/|A|, which is never more than the optimal length.
@@ -132,16 +128,23 @@ namespace slipstick::qp
       Outcome project_gradient()
       {
         iterate.set_direction(projected_gradient);
-        if (!(iterate.evaluate_trial(iterate.step_length()).distance > 0))
-          return Status::stagnated;
-        return accept_trial();
+        return project_step(iterate.step_length()) ? Outcome() : Outcome(Status::stagnated);
       }
 
-      Outcome accept_trial()
+      // x := projection of x - length p. If that hardly lowers the objective (a length of 2/|A| may lead to and fro
+      // between two points), the best point on the way. False if x does not move.
+      bool project_step(const double length)
       {
-        iterate.accept_trial();
-        is_conjugate = false;
-        return {};
+        const auto trial = iterate.evaluate_trial(length);
+        is_conjugate     = false;
+        if (trial.change <= options.sufficient_decrease * trial.best_change)
+          iterate.accept_trial();
+        else
+          {
+            iterate.move_towards_trial(trial.best_fraction);
+            iterate.restart();
+          }
+        return trial.distance > 0;
       }
 
       Outcome restart()

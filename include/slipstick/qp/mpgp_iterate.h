@@ -22,8 +22,8 @@ namespace slipstick::qp
   /// vector last multiplied by A.
   struct NoTracker
   {
-    void stepped(double) {} // x := x - a v
-    void replaced() {}      // x := v
+    void stepped(double) {}       // x := x - a v
+    void moved_towards(double) {} // x := x + a (v - x)
   };
 
   namespace detail
@@ -38,10 +38,11 @@ namespace slipstick::qp
         double pg, pAp, pp;
       };
 
-      /// What a step to `trial` would do: distance, change of the objective.
+      /// What a step to `trial` would do: distance, change of the objective; the fraction of the step, in [0, 1], at
+      /// which the objective is least, and its change there.
       struct Trial
       {
-        double distance, change;
+        double distance, change, best_fraction, best_change;
       };
 
       /// Squares of |phi|, |beta|, |x|, and phi~'phi.
@@ -111,7 +112,7 @@ namespace slipstick::qp
             if (s[3] > 0)
               {
                 multiply(x, g);
-                tracker.replaced();
+                tracker.moved_towards(1.0);
               }
             add(-1.0, b, g);
           }
@@ -217,7 +218,12 @@ namespace slipstick::qp
         const auto total = reduction.sum(std::array<double, 7>{{ss, sAs, sg, t.free, t.chopped, t.reduced, t.x}});
         trial_sums       = {total[3], total[4], total[5], total[6]};
         note_curvature(total[1], total[0]);
-        return {std::sqrt(total[0]), total[2] + 0.5 * total[1]};
+        // on the way: fraction sg + fraction^2 / 2 sAs
+        const double best = total[1] > 0 ? clip(-total[2] / total[1], 0, 1) : total[2] < 0 ? 1.0 : 0.0;
+        return {std::sqrt(total[0]),
+                total[2] + 0.5 * total[1],
+                best,
+                best * (total[2] + 0.5 * best * total[1])};
       }
 
       /// x := trial, p = phi.
@@ -226,9 +232,18 @@ namespace slipstick::qp
         using std::swap;
         swap(x, trial);
         swap(g, trial_g);
-        tracker.replaced();
+        tracker.moved_towards(1.0);
         sums = trial_sums;
         set_direction(free_gradient);
+      }
+
+      /// x := x + fraction (trial - x). To be followed by restart().
+      void move_towards_trial(const double fraction)
+      {
+        combine(fraction, trial, 1 - fraction, x);
+        combine(fraction, trial_g, 1 - fraction, g);
+        project(box, x);
+        tracker.moved_towards(fraction);
       }
 
     private:

@@ -18,6 +18,7 @@ namespace slipstick::qp
     double       step_length    = 2.0;   // alpha times |A|, in (0, 2]
     unsigned int max_iterations = 10000; // per call
 
+    double sufficient_decrease = 0.01; // of a projected step, over the most on its way; else it is cut (own choice)
     double norm_growth = 1.1; // >= 1: |A| becomes this times a Rayleigh quotient found above it (own choice)
     double rounding = 2.2e-16; // a gradient below this times (|A||x| + |b|) is noise; unit roundoff of double
     double smallest_curvature = 1e-15; // p'Ap over |A| p'p: below it A counts as singular along p; a few roundoffs
@@ -34,8 +35,12 @@ namespace slipstick::qp
     unsigned int max_outer_iterations = 400;
     MpgpOptions  inner;
 
+    unsigned int penalty_window   = 5;    // outer steps in which the least |Gx| so far must fall ... (own choice)
+    double       penalty_progress = 0.7;  // ... below this times its old value, else rho grows ... (own choice)
+    double       penalty_growth   = 10.0; // ... by this factor (own choice)
+
     double       certificate_radius  = 100; // |x| times this: up to where a certificate must exclude points (own choice)
-    unsigned int stagnation_window   = 50;   // outer steps in which the least residual so far must fall ... (own choice)
+    unsigned int stagnation_window   = 100;  // outer steps in which the least residual so far must fall ... (own choice)
     double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
   };
 

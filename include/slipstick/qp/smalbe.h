@@ -24,6 +24,7 @@ namespace slipstick::qp
     double projected_gradient; // |gP| over the reference of the goal
     double equality_residual;  // |PFP| |Gx| over the reference of the goal
     double reference;          // the norm that the residuals refer to
+    double penalty;            // rho
     Counts counts;
   };
 
@@ -57,7 +58,9 @@ namespace slipstick::qp
       }
 
       void stepped(const double a) { add(-a, Qv, Qx); }
-      void replaced() { std::copy(Qv.begin(), Qv.end(), Qx.begin()); }
+      void moved_towards(const double fraction) { combine(fraction, Qv, 1 - fraction, Qx); }
+
+      void set_penalty(const double penalty) { rho = penalty; }
 
       /// Q x, as followed.
       const Vector &range_part() const { return Qx; }
@@ -71,7 +74,7 @@ namespace slipstick::qp
 
     private:
       const Problem &problem;
-      const double   rho;
+      double         rho;
       Vector         Qx, Qv, w;
     };
 
@@ -120,6 +123,7 @@ namespace slipstick::qp
                 gP / reference,
                 feasibility / reference,
                 reference,
+                rho,
                 counts};
       }
 
@@ -127,6 +131,7 @@ namespace slipstick::qp
       Status iterate()
       {
         StagnationWatch stagnates(options.stagnation_window, options.stagnation_progress);
+        StagnationWatch crawls(options.penalty_window, options.penalty_progress);
         for (;;)
           {
             const Status inner = minimise();
@@ -137,11 +142,20 @@ namespace slipstick::qp
               return Status::converged;
             if (inner == Status::iteration_limit || counts.outer_iterations >= options.max_outer_iterations)
               return Status::iteration_limit;
-            if (inner == Status::stagnated && feasibility <= target)
+            if (inner == Status::stagnated && feasibility <= std::max(target, noise))
               return Status::stagnated;
-            if (stagnates(std::max(gP, feasibility) / reference))
-              return is_contradictory() ? Status::infeasible : Status::stagnated;
+            const bool gives_up = stagnates(std::max(gP, feasibility));
+            const bool is_slow  = crawls(feasibility) && feasibility > target;
+            if ((gives_up || is_slow) && is_contradictory())
+              return Status::infeasible;
+            if (gives_up)
+              return Status::stagnated;
             update_multiplier(inner == Status::converged);
+            if (is_slow)
+              {
+                raise_penalty();
+                crawls = StagnationWatch(options.penalty_window, options.penalty_progress);
+              }
           }
       }
 
@@ -173,7 +187,7 @@ namespace slipstick::qp
         const auto            q  = Qx.begin();
         const auto            xi = x.begin(), gi = g->begin(), ri = rhs.begin();
         const std::size_t     n = local_size(x);
-        std::array<double, 5> s{{0, 0, 0, 0, 0}};
+        std::array<double, 6> s{{0, 0, 0, 0, 0, 0}};
         for (std::size_t i = 0; i < n; ++i)
           {
             const double gp = projected_gradient(xi[i], gi[i], l[i], u[i]);
@@ -182,12 +196,14 @@ namespace slipstick::qp
             s[2] += 0.5 * xi[i] * (gi[i] - ri[i]);
             s[3] += xi[i] <= l[i];
             s[4] += xi[i] >= u[i] && l[i] < u[i];
+            s[5] += xi[i] * xi[i];
           }
         s           = reduction.sum(s);
         gP          = std::sqrt(s[0]);
         Gx          = std::sqrt(s[1]);
         feasibility = norm * Gx;
         lagrangian  = s[2];
+        noise       = options.inner.rounding * norm * std::sqrt(s[5]);
         if (observer)
           observer({counts.outer_iterations,
                     counts.hessian_multiplications,
@@ -208,6 +224,17 @@ namespace slipstick::qp
         add(-rho, A.range_part(), rhs);
       }
 
+      // rho too small for the bounds: in a small box |Gx| is small, and mu far.
+      void raise_penalty()
+      {
+        const double raise = (options.penalty_growth - 1) * rho;
+        add(raise, A.range_part(), *g);
+        rho += raise;
+        A.set_penalty(rho);
+        inner_norm = std::max(inner_norm, rho);
+        lagrangian_before.reset();
+      }
+
       // Does -Qx prove that nothing within the box has Q x = 0?
       bool is_contradictory() const
       {
@@ -220,7 +247,8 @@ namespace slipstick::qp
       const Problem &                            problem;
       decltype(std::declval<const Problem &>().reduction()) reduction;
 
-      const double                      norm, rho;
+      const double                      norm;
+      double                            rho;
       const Box<Vector> &               box;
       const SmalbeOptions &             options;
       const Observer &                  observer;
@@ -231,7 +259,7 @@ namespace slipstick::qp
       Vector                shift, rhs; // rhs = b - shift
       double                inner_norm, M;
       double                reference = 0, target = 0;
-      double                gP = 0, Gx = 0, feasibility = 0, lagrangian = 0;
+      double                gP = 0, Gx = 0, feasibility = 0, lagrangian = 0, noise = 0;
       std::optional<double> lagrangian_before;
       Counts                counts;
     };
