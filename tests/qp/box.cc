@@ -6,7 +6,7 @@ using namespace slipstick::qp::test;
 
 namespace
 {
-  const Box<Vector> box{{-1, -1, -1, 2, -infinity, 0, -infinity}, {1, 1, 1, 2, 3, infinity, infinity}};
+  const Box<Vector>     box{{-1, -1, -1, 2, -infinity, 0, -infinity}, {1, 1, 1, 2, 3, infinity, infinity}};
   const SerialReduction serial;
 } // namespace
 

@@ -13,11 +13,11 @@ namespace slipstick::qp::test
     };
 
     // Stationary point of the free entries under G x = e, the others held: (x, mu).
-    std::optional<Vector> stationary_point(const Matrix &            F,
-                                           const Vector &            b,
-                                           const Matrix &            G,
-                                           const Vector &            e,
-                                           const Box<Vector> &       box,
+    std::optional<Vector> stationary_point(const Matrix             &F,
+                                           const Vector             &b,
+                                           const Matrix             &G,
+                                           const Vector             &e,
+                                           const Box<Vector>        &box,
                                            const std::vector<State> &state)
     {
       const std::size_t n = F.n, m = G.m;
@@ -48,12 +48,12 @@ namespace slipstick::qp::test
       return solve(K, rhs);
     }
 
-    bool is_optimal(const Matrix &            F,
-                    const Vector &            b,
-                    const Matrix &            G,
-                    const Box<Vector> &       box,
+    bool is_optimal(const Matrix             &F,
+                    const Vector             &b,
+                    const Matrix             &G,
+                    const Box<Vector>        &box,
                     const std::vector<State> &state,
-                    const Vector &            x_mu,
+                    const Vector             &x_mu,
                     const double              tolerance)
     {
       const std::size_t n = F.n;
@@ -64,9 +64,8 @@ namespace slipstick::qp::test
             g += F(i, j) * x_mu[j];
           for (std::size_t k = 0; k < G.m; ++k)
             g += G(k, i) * x_mu[n + k];
-          const bool fits = state[i] == free  ? box.lower[i] - tolerance <= x_mu[i] && x_mu[i] <= box.upper[i] + tolerance :
-                            state[i] == lower ? g >= -tolerance :
-                                                g <= tolerance;
+          const bool is_inside = box.lower[i] - tolerance <= x_mu[i] && x_mu[i] <= box.upper[i] + tolerance;
+          const bool fits      = state[i] == free ? is_inside : state[i] == lower ? g >= -tolerance : g <= tolerance;
           if (!fits)
             return false;
         }
@@ -74,10 +73,10 @@ namespace slipstick::qp::test
     }
   } // namespace
 
-  std::optional<Vector> enumerate(const Matrix &     F,
-                                  const Vector &     b,
-                                  const Matrix &     G,
-                                  const Vector &     e,
+  std::optional<Vector> enumerate(const Matrix      &F,
+                                  const Vector      &b,
+                                  const Matrix      &G,
+                                  const Vector      &e,
                                   const Box<Vector> &box,
                                   const double       tolerance)
   {

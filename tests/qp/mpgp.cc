@@ -73,8 +73,7 @@ TEST_P(Mpgp, all_entries_fixed_is_converged)
 
 TEST_P(Mpgp, zero_right_hand_side_gives_zero_without_a_multiplication)
 {
-  const auto result =
-    run_mpgp(diagonal({1, 2}), {0, 0}, {{-1, -1}, {1, 1}}, {Vector(2, 0.0)}, 1e-12, options(), 2);
+  const auto result = run_mpgp(diagonal({1, 2}), {0, 0}, {{-1, -1}, {1, 1}}, {Vector(2, 0.0)}, 1e-12, options(), 2);
   EXPECT_EQ(result.status, Status::converged);
   EXPECT_EQ(result.x, Vector(2, 0.0));
   EXPECT_EQ(result.counts.hessian_multiplications, 0u);
@@ -82,8 +81,7 @@ TEST_P(Mpgp, zero_right_hand_side_gives_zero_without_a_multiplication)
 
 TEST_P(Mpgp, zero_right_hand_side_outside_of_zero_gives_the_nearest_bound)
 {
-  const auto result =
-    run_mpgp(diagonal({1, 2}), {0, 0}, {{1, -5}, {3, -1}}, {Vector(2, 0.0)}, 1e-12, options(), 2);
+  const auto result = run_mpgp(diagonal({1, 2}), {0, 0}, {{1, -5}, {3, -1}}, {Vector(2, 0.0)}, 1e-12, options(), 2);
   EXPECT_EQ(result.status, Status::converged);
   EXPECT_EQ(result.x, (Vector{1, -1}));
 }
@@ -126,7 +124,8 @@ TEST_P(Mpgp, contradicting_bounds_are_reported)
 
 TEST_P(Mpgp, not_a_number_in_the_operator_ends)
 {
-  const auto result = run_mpgp(diagonal({1, std::nan("")}), {1, 1}, {{0, 0}, {1, 1}}, {Vector(2, 0.5)}, 1e-12, options(), 1);
+  const Matrix A      = diagonal({1, std::nan("")});
+  const auto   result = run_mpgp(A, {1, 1}, {{0, 0}, {1, 1}}, {Vector(2, 0.5)}, 1e-12, options(), 1);
   EXPECT_EQ(result.status, Status::stagnated);
 }
 
@@ -144,11 +143,11 @@ TEST_P(Mpgp, unreachable_accuracy_ends_as_stagnation_at_the_solution)
 TEST_P(Mpgp, iteration_limit_is_kept)
 {
   Random       random(6);
-  const Matrix A       = random.semidefinite(30, 30, 1e-4);
-  auto         limited = options();
+  const Matrix A         = random.semidefinite(30, 30, 1e-4);
+  auto         limited   = options();
   limited.max_iterations = 3;
-  const auto result = run_mpgp(A, random.vector(30), random.box(30, true, 100), {Vector(30, 0.0)}, 1e-12, limited,
-                               spectral_norm(A));
+  const auto result =
+    run_mpgp(A, random.vector(30), random.box(30, true, 100), {Vector(30, 0.0)}, 1e-12, limited, spectral_norm(A));
   EXPECT_EQ(result.status, Status::iteration_limit);
 }
 
@@ -219,8 +218,9 @@ TEST_P(Mpgp, counter_equals_the_number_of_calls_of_the_operator)
         ++calls;
         Av = A * v;
       };
-      const auto result = mpgp(count, spectral_norm(A), b, box, MpgpStart<Vector>{random.vector(12)},
-                               [](const Vector &, const double gP) { return gP <= 1e-9; }, options(), SerialReduction());
+      const auto stop = [](const Vector &, const double gP) { return gP <= 1e-9; };
+      const auto result =
+        mpgp(count, spectral_norm(A), b, box, MpgpStart<Vector>{random.vector(12)}, stop, options(), SerialReduction());
       EXPECT_EQ(result.counts.hessian_multiplications, calls);
     }
 }
@@ -230,8 +230,14 @@ TEST_P(Mpgp, tracker_follows_a_linear_function_of_the_point)
   struct Tracker
   {
     double of_x = 0, of_v = 0;
-    void   stepped(const double a) { of_x -= a * of_v; }
-    void   moved_towards(const double a) { of_x += a * (of_v - of_x); }
+    void   stepped(const double a)
+    {
+      of_x -= a * of_v;
+    }
+    void moved_towards(const double a)
+    {
+      of_x += a * (of_v - of_x);
+    }
   };
   for (unsigned int seed = 0; seed < 50; ++seed)
     {
@@ -244,8 +250,16 @@ TEST_P(Mpgp, tracker_follows_a_linear_function_of_the_point)
         tracker.of_v = inner(weights, v);
         Av           = A * v;
       };
-      const auto result = mpgp(multiply, spectral_norm(A), b, box, MpgpStart<Vector>{Vector(12, 0.0)},
-                               [](const Vector &, const double gP) { return gP <= 1e-9; }, options(), SerialReduction(), tracker);
+      const auto stop   = [](const Vector &, const double gP) { return gP <= 1e-9; };
+      const auto result = mpgp(multiply,
+                               spectral_norm(A),
+                               b,
+                               box,
+                               MpgpStart<Vector>{Vector(12, 0.0)},
+                               stop,
+                               options(),
+                               SerialReduction(),
+                               tracker);
       EXPECT_EQ(result.status, Status::converged) << seed;
       EXPECT_NEAR(tracker.of_x, inner(weights, result.x), 1e-12) << seed;
     }

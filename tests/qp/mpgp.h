@@ -15,8 +15,8 @@ namespace slipstick::qp::test
   }
 
   /// Until |gP| <= tolerance.
-  inline MpgpResult<Vector> run_mpgp(const Matrix &     A,
-                                     const Vector &     b,
+  inline MpgpResult<Vector> run_mpgp(const Matrix      &A,
+                                     const Vector      &b,
                                      const Box<Vector> &box,
                                      MpgpStart<Vector>  start,
                                      const double       tolerance,
@@ -37,6 +37,9 @@ namespace slipstick::qp::test
   class WithExpansion : public testing::TestWithParam<Expansion>
   {
   protected:
-    MpgpOptions options() const { return with_expansion(GetParam()); }
+    MpgpOptions options() const
+    {
+      return with_expansion(GetParam());
+    }
   };
 } // namespace slipstick::qp::test

@@ -48,11 +48,11 @@ TEST_P(MpgpRandom, every_two_sided_box_problem_converges)
 TEST_P(MpgpRandom, solution_does_not_depend_on_the_start)
 {
   Random       random(1);
-  const Matrix A      = random.semidefinite(20, 20, 0.05);
-  const Vector b      = random.vector(20, 5);
-  const auto   box    = random.box(20, false);
-  const double norm   = spectral_norm(A);
-  const Vector x      = run_mpgp(A, b, box, {Vector(20, 0.0)}, 1e-11, options(), norm).x;
+  const Matrix A    = random.semidefinite(20, 20, 0.05);
+  const Vector b    = random.vector(20, 5);
+  const auto   box  = random.box(20, false);
+  const double norm = spectral_norm(A);
+  const Vector x    = run_mpgp(A, b, box, {Vector(20, 0.0)}, 1e-11, options(), norm).x;
   for (const Vector &start : {box.lower, box.upper, Vector(20, 100.0)})
     EXPECT_LT(distance(x, run_mpgp(A, b, box, {start}, 1e-11, options(), norm).x), 1e-9);
 }
@@ -63,9 +63,9 @@ TEST_P(MpgpRandom, iterates_do_not_depend_on_the_unit_of_the_objective)
   for (unsigned int seed = 0; seed < 20; ++seed)
     {
       Random       random(seed);
-      Matrix       A   = random.semidefinite(20, 20, 0.05);
-      Vector       b   = random.vector(20, 5);
-      const auto   box = random.box(20, false);
+      Matrix       A     = random.semidefinite(20, 20, 0.05);
+      Vector       b     = random.vector(20, 5);
+      const auto   box   = random.box(20, false);
       const double norm  = spectral_norm(A);
       const auto   plain = run_mpgp(A, b, box, {Vector(20, 0.0)}, 1e-9, options(), norm);
       for (double &entry : A.entries)

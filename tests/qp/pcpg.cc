@@ -73,8 +73,10 @@ TEST(Pcpg, agrees_with_a_dense_solve_when_preconditioned)
         Instance     p(seed, 20, seed % 5);
         const Matrix M = p.random.semidefinite(20, 20, 0.1);
         const Vector start(20, 0.0);
-        const auto   result = pcpg(p.problem, p.b, PcpgStart<Vector>{start}, 1e-11, with(way),
-                                 [&](const Vector &r, Vector &y) { y = M * r; });
+        const auto   result =
+          pcpg(p.problem, p.b, PcpgStart<Vector>{start}, 1e-11, with(way), [&](const Vector &r, Vector &y) {
+            y = M * r;
+          });
         EXPECT_EQ(result.status, Status::converged) << seed;
         EXPECT_LT(distance(result.x, p.exact(start)), 1e-7) << seed;
       }
@@ -116,12 +118,12 @@ TEST(Pcpg, full_reorthogonalisation_solves_an_ill_conditioned_system_within_its_
 TEST(Pcpg, counters_equal_the_calls)
 {
   Instance     p(3, 20, 3);
-  unsigned int calls  = 0;
-  const auto   result = pcpg(p.problem, p.b, PcpgStart<Vector>{p.random.vector(20)}, 1e-9, {},
-                           [&](const Vector &r, Vector &y) {
-                             ++calls;
-                             y = r;
-                           });
+  unsigned int calls = 0;
+  const auto   result =
+    pcpg(p.problem, p.b, PcpgStart<Vector>{p.random.vector(20)}, 1e-9, {}, [&](const Vector &r, Vector &y) {
+      ++calls;
+      y = r;
+    });
   EXPECT_GT(calls, 0u);
   EXPECT_EQ(result.counts.preconditioner_applications, calls);
   EXPECT_EQ(result.counts.hessian_multiplications, p.problem.n_multiplications);
@@ -169,8 +171,8 @@ TEST(Pcpg, inconsistent_system_does_not_converge)
 TEST(Pcpg, preconditioner_that_annihilates_the_residual_ends)
 {
   const Instance p(6, 10, 2);
-  const auto     result = pcpg(p.problem, p.b, PcpgStart<Vector>{Vector(10, 0.0)}, 1e-8, {},
-                           [](const Vector &, Vector &y) { set_zero(y); });
+  const auto     result =
+    pcpg(p.problem, p.b, PcpgStart<Vector>{Vector(10, 0.0)}, 1e-8, {}, [](const Vector &, Vector &y) { set_zero(y); });
   EXPECT_EQ(result.status, Status::stagnated);
 }
 

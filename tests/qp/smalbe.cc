@@ -29,7 +29,9 @@ namespace
       b    = problem.kernel(random.vector(n));
     }
 
-    SmalbeResult<Vector> solve(const double tolerance, const SmalbeOptions &options = {}, const Observer &observer = {}) const
+    SmalbeResult<Vector> solve(const double         tolerance,
+                               const SmalbeOptions &options  = {},
+                               const Observer      &observer = {}) const
     {
       return smalbe(problem, norm, b, box, SmalbeStart<Vector>{Vector(b.size(), 0.0)}, tolerance, options, observer);
     }
@@ -91,8 +93,7 @@ TEST_P(Smalbe, bounds_and_equalities_and_gradient_hold_to_the_tolerance)
         add(1.0, result.shift, g);
         add(-1.0, p.b, g);
         EXPECT_LT(distance(g, result.gradient), 1e-11) << seed;
-        EXPECT_LE(projected_gradient_norm(p.box, result.x, g, SerialReduction()),
-                  (1 + 1e-4) * tolerance * length(p.b))
+        EXPECT_LE(projected_gradient_norm(p.box, result.x, g, SerialReduction()), (1 + 1e-4) * tolerance * length(p.b))
           << seed;
       }
 }
@@ -102,7 +103,7 @@ TEST_P(Smalbe, one_sided_bounds_with_free_entries)
   for (unsigned int seed = 0; seed < 50; ++seed)
     {
       Instance p(seed, 5, 2);
-      p.box = {{0, 0, -infinity, -0.2, -infinity}, {infinity, infinity, infinity, 0.2, infinity}};
+      p.box             = {{0, 0, -infinity, -0.2, -infinity}, {infinity, infinity, infinity, 0.2, infinity}};
       const auto exact  = enumerate(p.problem.F, p.b, p.problem.G, {0, 0}, p.box);
       const auto result = p.solve(1e-10, with(GetParam()));
       ASSERT_TRUE(exact) << seed;
@@ -116,7 +117,7 @@ TEST_P(Smalbe, entries_fixed_at_zero_drop_out)
   Instance p(11, 5, 1);
   p.box.lower[1] = p.box.upper[1] = 0;
   p.box.lower[3] = p.box.upper[3] = 0;
-  const auto result = p.solve(1e-10, with(GetParam()));
+  const auto result               = p.solve(1e-10, with(GetParam()));
   EXPECT_EQ(result.status, Status::converged);
   EXPECT_LT(distance(result.x, *enumerate(p.problem.F, p.b, p.problem.G, {0}, p.box)), 1e-7);
 }
@@ -139,7 +140,7 @@ TEST_P(Smalbe, iterates_do_not_depend_on_the_unit_of_the_objective)
 
 TEST_P(Smalbe, iterates_do_not_depend_on_the_unit_of_the_multipliers)
 {
-  const double unit = 1048576;
+  const double   unit = 1048576;
   const Instance p(2, 30, 4);
   Instance       q(2, 30, 4);
   for (Vector *v : {&q.b, &q.box.lower, &q.box.upper})
@@ -209,8 +210,8 @@ TEST(SmalbeStart, solution_with_its_multiplier_is_recognised_with_one_multiplica
 TEST(SmalbeStart, reference_of_the_goal_replaces_that_of_the_right_hand_side)
 {
   const Instance p(5, 20, 3);
-  const auto     result = smalbe(p.problem, 1.0, p.b, p.box, SmalbeStart<Vector>{Vector(20, 0.0)},
-                             Goal(1e-10, 1e4 * length(p.b)));
+  const auto     result =
+    smalbe(p.problem, 1.0, p.b, p.box, SmalbeStart<Vector>{Vector(20, 0.0)}, Goal(1e-10, 1e4 * length(p.b)));
   EXPECT_EQ(result.status, Status::converged);
   EXPECT_LE(length(p.problem.range(result.x)), 1e-6 * length(p.b));
   EXPECT_DOUBLE_EQ(result.reference, 1e4 * length(p.b));

@@ -72,7 +72,7 @@ namespace
       })[0];
     }
 
-    Team &      team;
+    Team       &team;
     std::size_t rank;
   };
 
@@ -87,9 +87,15 @@ namespace
       return team_reduction.team.gather(team_reduction.rank, padded, add_up);
     }
 
-    void take(const Vector &all, Vector &y) const { std::copy_n(all.begin() + first, y.size(), y.begin()); }
+    void take(const Vector &all, Vector &y) const
+    {
+      std::copy_n(all.begin() + first, y.size(), y.begin());
+    }
 
-    void multiply(const Vector &x, Vector &y) const { take(serial.F * whole(x), y); }
+    void multiply(const Vector &x, Vector &y) const
+    {
+      take(serial.F * whole(x), y);
+    }
 
     void project_range(const Vector &x, Vector &y) const
     {
@@ -97,7 +103,10 @@ namespace
       take(copy.range(whole(x)), y);
     }
 
-    const TeamReduction &reduction() const { return team_reduction; }
+    const TeamReduction &reduction() const
+    {
+      return team_reduction;
+    }
 
     const DenseProblem &serial;
     TeamReduction       team_reduction;
@@ -112,14 +121,14 @@ INSTANTIATE_TEST_SUITE_P(AllExpansions, SplitVector, testing::ValuesIn(all_expan
 
 TEST_P(SplitVector, smalbe_on_three_threads_gives_the_serial_solution)
 {
-  Random       random(1);
-  DenseProblem problem(random.semidefinite(20, 20, 0.05), random.orthonormal(3, 20));
-  const double norm = spectral_norm(problem.F);
-  const auto   box  = random.box(20, true);
-  const Vector b    = problem.kernel(random.vector(20));
+  Random        random(1);
+  DenseProblem  problem(random.semidefinite(20, 20, 0.05), random.orthonormal(3, 20));
+  const double  norm = spectral_norm(problem.F);
+  const auto    box  = random.box(20, true);
+  const Vector  b    = problem.kernel(random.vector(20));
   SmalbeOptions options;
   options.inner.expansion = GetParam();
-  const auto serial = smalbe(problem, norm, b, box, SmalbeStart<Vector>{Vector(20, 0.0)}, 1e-9, options);
+  const auto serial       = smalbe(problem, norm, b, box, SmalbeStart<Vector>{Vector(20, 0.0)}, 1e-9, options);
 
   const std::vector<std::ptrdiff_t> first{0, 13, 13, 20}; // one member owns nothing
   Team                              team(3);

@@ -19,8 +19,14 @@ namespace slipstick::qp::test
                                           Expansion::boundary_then_projection,
                                           Expansion::projected_cg};
 
-  inline double inner(const Vector &x, const Vector &y) { return local_dot(x, y); }
-  inline double length(const Vector &x) { return std::sqrt(inner(x, x)); }
+  inline double inner(const Vector &x, const Vector &y)
+  {
+    return local_dot(x, y);
+  }
+  inline double length(const Vector &x)
+  {
+    return std::sqrt(inner(x, x));
+  }
 
   inline Vector minus(Vector x, const Vector &y)
   {
@@ -28,7 +34,10 @@ namespace slipstick::qp::test
     return x;
   }
 
-  inline double distance(const Vector &x, const Vector &y) { return length(minus(x, y)); }
+  inline double distance(const Vector &x, const Vector &y)
+  {
+    return length(minus(x, y));
+  }
 
   /// Dense matrix, by rows.
   struct Matrix
@@ -39,8 +48,14 @@ namespace slipstick::qp::test
       , entries(m_ * n_, 0.0)
     {}
 
-    double &operator()(const std::size_t i, const std::size_t j) { return entries[i * n + j]; }
-    double  operator()(const std::size_t i, const std::size_t j) const { return entries[i * n + j]; }
+    double &operator()(const std::size_t i, const std::size_t j)
+    {
+      return entries[i * n + j];
+    }
+    double operator()(const std::size_t i, const std::size_t j) const
+    {
+      return entries[i * n + j];
+    }
 
     Vector operator*(const Vector &x) const
     {
@@ -124,7 +139,10 @@ namespace slipstick::qp::test
       y = z;
     }
 
-    const SerialReduction &reduction() const { return serial; }
+    const SerialReduction &reduction() const
+    {
+      return serial;
+    }
 
     Vector range(const Vector &x) const
     {
@@ -133,7 +151,10 @@ namespace slipstick::qp::test
       return y;
     }
 
-    Vector kernel(const Vector &x) const { return minus(x, range(x)); }
+    Vector kernel(const Vector &x) const
+    {
+      return minus(x, range(x));
+    }
 
     Matrix               F, G;
     SerialReduction      serial;
@@ -147,7 +168,10 @@ namespace slipstick::qp::test
       : engine(seed)
     {}
 
-    double uniform(const double a, const double b) { return std::uniform_real_distribution<double>(a, b)(engine); }
+    double uniform(const double a, const double b)
+    {
+      return std::uniform_real_distribution<double>(a, b)(engine);
+    }
 
     Vector vector(const std::size_t n, const double size = 1.0)
     {
@@ -229,7 +253,10 @@ namespace slipstick::qp::test
     return norm;
   }
 
-  inline Vector gradient(const Matrix &A, const Vector &x, const Vector &b) { return minus(A * x, b); }
+  inline Vector gradient(const Matrix &A, const Vector &x, const Vector &b)
+  {
+    return minus(A * x, b);
+  }
 
   /// |gP|, from the gradient computed anew.
   inline double kkt_residual(const Matrix &A, const Vector &x, const Vector &b, const Box<Vector> &box)
@@ -246,10 +273,10 @@ namespace slipstick::qp::test
   }
 
   /// The solution of min 1/2 x'Fx - x'b, Gx = e, x in the box, by trying all 3^n active sets; nothing if none fits.
-  std::optional<Vector> enumerate(const Matrix &     F,
-                                  const Vector &     b,
-                                  const Matrix &     G,
-                                  const Vector &     e,
+  std::optional<Vector> enumerate(const Matrix      &F,
+                                  const Vector      &b,
+                                  const Matrix      &G,
+                                  const Vector      &e,
                                   const Box<Vector> &box,
                                   double             tolerance = 1e-9);
 } // namespace slipstick::qp::test

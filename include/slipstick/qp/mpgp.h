@@ -1,9 +1,9 @@
 // MPGP: modified proportioning with gradient projections, for min 1/2 x'Ax - x'b within two-sided bounds.
 // Dostal, Schoeberl 2005; Dostal 2009, section 5.8; expansions of Kruzik, Horak, Cermak, Pospisil, Pecha 2020.
 //
-// Every step lowers the objective: a projected step that does not is cut short, |A| grows when a Rayleigh quotient above
-// it is met, a proportioning step along -beta is replaced by a gradient projection when the bounds would cut it shorter
-// than 1/|A|. None of this costs a multiplication.
+// Every step lowers the objective: a projected step that does not is cut short, |A| grows when a Rayleigh quotient
+// above it is met, a proportioning step along -beta is replaced by a gradient projection when the bounds would cut it
+// shorter than 1/|A|. None of this costs a multiplication.
 #pragma once
 
 #include <slipstick/qp/mpgp_iterate.h>
@@ -51,9 +51,8 @@ namespace slipstick::qp
               return Status::stagnated;
             if (k == options.max_iterations)
               return Status::iteration_limit;
-            const auto & split = iterate.split();
-            const bool   is_proportional =
-              split.chopped <= options.proportioning * options.proportioning * split.reduced;
+            const auto &split          = iterate.split();
+            const bool is_proportional = split.chopped <= options.proportioning * options.proportioning * split.reduced;
             if (const Outcome outcome = is_proportional ? conjugate_gradients() : proportioning())
               return *outcome;
           }
@@ -61,7 +60,7 @@ namespace slipstick::qp
 
       Counts counts() const
       {
-        Counts all                 = steps;
+        Counts all                  = steps;
         all.hessian_multiplications = iterate.n_multiplications();
         return all;
       }
@@ -100,7 +99,8 @@ namespace slipstick::qp
           iterate.set_direction(free_gradient);
         else if (optimal <= longest)
           return restart();
-        project_step(options.expansion == Expansion::boundary_then_projection ? iterate.step_length() : optimal - longest);
+        const bool projects_gradient = options.expansion == Expansion::boundary_then_projection;
+        project_step(projects_gradient ? iterate.step_length() : optimal - longest);
         return {};
       }
 
@@ -111,7 +111,7 @@ namespace slipstick::qp
         if (options.expansion == Expansion::gradient_projection)
           return project_gradient();
         iterate.set_direction(chopped_gradient);
-        is_conjugate = false;
+        is_conjugate         = false;
         const double longest = iterate.longest_step();
         if (longest * iterate.norm() < 1)
           return project_gradient();
@@ -159,7 +159,10 @@ namespace slipstick::qp
         return std::isfinite(c.pg) && std::isfinite(c.pAp) ? Outcome() : Outcome(Status::stagnated);
       }
 
-      bool is_flat(const Curvature &c) const { return c.pAp <= options.smallest_curvature * iterate.norm() * c.pp; }
+      bool is_flat(const Curvature &c) const
+      {
+        return c.pAp <= options.smallest_curvature * iterate.norm() * c.pp;
+      }
 
       // A p = 0 up to rounding: descend as far as the bounds allow.
       Outcome leave_flat(const Curvature &c)
@@ -174,7 +177,7 @@ namespace slipstick::qp
         return restart();
       }
 
-      Iterate &          iterate;
+      Iterate           &iterate;
       const MpgpOptions &options;
       Counts             steps;
       bool               is_conjugate = false; // p is no part of the gradient at x alone
@@ -187,15 +190,15 @@ namespace slipstick::qp
   /// status: converged if and only if stop() was true; stagnated at rounding level; infeasible if some lower > upper
   /// (x is then of no use) or if the objective is unbounded from below.
   template <typename Vector, typename Operator, typename Stop, typename Reduction, typename Tracker = NoTracker>
-  MpgpResult<Vector> mpgp(Operator &&        A,
+  MpgpResult<Vector> mpgp(Operator         &&A,
                           const double       norm,
-                          const Vector &     b,
+                          const Vector      &b,
                           const Box<Vector> &box,
                           MpgpStart<Vector>  start,
-                          const Stop &       stop,
+                          const Stop        &stop,
                           const MpgpOptions &options,
-                          const Reduction &  reduction,
-                          Tracker &&         tracker = Tracker())
+                          const Reduction   &reduction,
+                          Tracker          &&tracker = Tracker())
   {
     using Iterate =
       detail::MpgpIterate<Vector, std::remove_reference_t<Operator>, Reduction, std::remove_reference_t<Tracker>>;

@@ -51,14 +51,14 @@ namespace slipstick::qp
         double free = 0, chopped = 0, reduced = 0, x = 0;
       };
 
-      MpgpIterate(Operator &         A_,
+      MpgpIterate(Operator          &A_,
                   const double       norm_A_,
-                  const Vector &     b_,
+                  const Vector      &b_,
                   const Box<Vector> &box_,
                   MpgpStart<Vector>  start,
                   const MpgpOptions &options_,
-                  const Reduction &  reduction_,
-                  Tracker &          tracker_)
+                  const Reduction   &reduction_,
+                  Tracker           &tracker_)
         : A(A_)
         , b(b_)
         , box(box_)
@@ -75,16 +75,46 @@ namespace slipstick::qp
         , trial_g(x)
       {}
 
-      double        norm() const { return norm_A; }
-      double        gradient_norm() const { return std::sqrt(sums.free + sums.chopped); }
-      double        step_length() const { return options.step_length / norm_A; }
-      double        noise() const { return options.rounding * (norm_A * std::sqrt(sums.x) + norm_b); }
-      double        longest_step() const { return qp::longest_step(box, x, p, reduction); }
-      const Sums &  split() const { return sums; }
-      const Vector &point() const { return x; }
-      Vector        take_point() { return std::move(x); }
-      Vector        take_gradient() { return std::move(g); }
-      unsigned int  n_multiplications() const { return multiplications; }
+      double norm() const
+      {
+        return norm_A;
+      }
+      double gradient_norm() const
+      {
+        return std::sqrt(sums.free + sums.chopped);
+      }
+      double step_length() const
+      {
+        return options.step_length / norm_A;
+      }
+      double noise() const
+      {
+        return options.rounding * (norm_A * std::sqrt(sums.x) + norm_b);
+      }
+      double longest_step() const
+      {
+        return qp::longest_step(box, x, p, reduction);
+      }
+      const Sums &split() const
+      {
+        return sums;
+      }
+      const Vector &point() const
+      {
+        return x;
+      }
+      Vector take_point()
+      {
+        return std::move(x);
+      }
+      Vector take_gradient()
+      {
+        return std::move(g);
+      }
+      unsigned int n_multiplications() const
+      {
+        return multiplications;
+      }
 
       /// Bring x into the box, find the gradient. False if some lower > upper, or a bound is not a number.
       bool prepare()
@@ -170,8 +200,7 @@ namespace slipstick::qp
             phi_Ap += free_gradient(y, gy, l[i], u[i]) * Api[i];
             add_entry(s, y, gy, l[i], u[i]);
           }
-        const auto total =
-          reduction.sum(std::array<double, 6>{{leaving, phi_Ap, s.free, s.chopped, s.reduced, s.x}});
+        const auto total = reduction.sum(std::array<double, 6>{{leaving, phi_Ap, s.free, s.chopped, s.reduced, s.x}});
         if (total[0] > 0)
           return false;
 
@@ -203,9 +232,9 @@ namespace slipstick::qp
         multiply(trial, trial_g);
         const auto        l = box.lower.begin(), u = box.upper.begin(), bi = b.begin();
         const auto        xi = x.begin(), gi = g.begin(), yi = trial.begin(), gyi = trial_g.begin();
-        const std::size_t n = local_size(x);
+        const std::size_t n  = local_size(x);
         double            ss = 0, sAs = 0, sg = 0; // s = trial - x
-        Sums   t;
+        Sums              t;
         for (std::size_t i = 0; i < n; ++i)
           {
             gyi[i] -= bi[i];
@@ -220,10 +249,7 @@ namespace slipstick::qp
         note_curvature(total[1], total[0]);
         // on the way: fraction sg + fraction^2 / 2 sAs
         const double best = total[1] > 0 ? clip(-total[2] / total[1], 0, 1) : total[2] < 0 ? 1.0 : 0.0;
-        return {std::sqrt(total[0]),
-                total[2] + 0.5 * total[1],
-                best,
-                best * (total[2] + 0.5 * best * total[1])};
+        return {std::sqrt(total[0]), total[2] + 0.5 * total[1], best, best * (total[2] + 0.5 * best * total[1])};
       }
 
       /// x := trial, p = phi.
@@ -270,12 +296,12 @@ namespace slipstick::qp
           norm_A = options.norm_growth * sAs / ss;
       }
 
-      Operator &         A;
-      const Vector &     b;
+      Operator          &A;
+      const Vector      &b;
       const Box<Vector> &box;
       const MpgpOptions &options;
-      const Reduction &  reduction;
-      Tracker &          tracker;
+      const Reduction   &reduction;
+      Tracker           &tracker;
 
       double       norm_A, norm_b = 0;
       Vector       x;

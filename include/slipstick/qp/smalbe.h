@@ -57,13 +57,25 @@ namespace slipstick::qp
           a[i] += rho * q[i] - wi[i];
       }
 
-      void stepped(const double a) { add(-a, Qv, Qx); }
-      void moved_towards(const double fraction) { combine(fraction, Qv, 1 - fraction, Qx); }
+      void stepped(const double a)
+      {
+        add(-a, Qv, Qx);
+      }
+      void moved_towards(const double fraction)
+      {
+        combine(fraction, Qv, 1 - fraction, Qx);
+      }
 
-      void set_penalty(const double penalty) { rho = penalty; }
+      void set_penalty(const double penalty)
+      {
+        rho = penalty;
+      }
 
       /// Q x, as followed.
-      const Vector &range_part() const { return Qx; }
+      const Vector &range_part() const
+      {
+        return Qx;
+      }
 
       /// Q x, anew.
       const Vector &range_part(const Vector &x)
@@ -82,14 +94,14 @@ namespace slipstick::qp
     class Smalbe
     {
     public:
-      Smalbe(const Problem &      problem_,
+      Smalbe(const Problem       &problem_,
              const double         norm_,
-             const Vector &       b,
-             const Box<Vector> &  box_,
+             const Vector        &b,
+             const Box<Vector>   &box_,
              SmalbeStart<Vector>  start,
-             const Goal &         goal,
+             const Goal          &goal,
              const SmalbeOptions &options_,
-             const Observer &     observer_)
+             const Observer      &observer_)
         : problem(problem_)
         , reduction(problem.reduction())
         , norm(norm_)
@@ -169,8 +181,15 @@ namespace slipstick::qp
           const double balanced = std::min(M * residual, reference);
           return gradient <= (residual <= target ? std::max(balanced, target) : balanced);
         };
-        auto inner = mpgp(A, inner_norm, rhs, box, MpgpStart<Vector>{std::move(x), std::move(g)}, stop,
-                          options.inner, reduction, A);
+        auto inner = mpgp(A,
+                          inner_norm,
+                          rhs,
+                          box,
+                          MpgpStart<Vector>{std::move(x), std::move(g)},
+                          stop,
+                          options.inner,
+                          reduction,
+                          A);
         x          = std::move(inner.x);
         g          = std::move(inner.gradient);
         inner_norm = inner.norm;
@@ -182,7 +201,7 @@ namespace slipstick::qp
       // Residuals, augmented Lagrangian, active entries at x: one reduction, one projection.
       void measure()
       {
-        const Vector &        Qx = A.range_part(x);
+        const Vector         &Qx = A.range_part(x);
         const auto            l = box.lower.begin(), u = box.upper.begin();
         const auto            q  = Qx.begin();
         const auto            xi = x.begin(), gi = g->begin(), ri = rhs.begin();
@@ -244,14 +263,14 @@ namespace slipstick::qp
         return is_farkas_certificate(box, r, zero_like(x), radius, options.inner.rounding, reduction);
       }
 
-      const Problem &                            problem;
+      const Problem                                        &problem;
       decltype(std::declval<const Problem &>().reduction()) reduction;
 
-      const double                      norm;
-      double                            rho;
-      const Box<Vector> &               box;
-      const SmalbeOptions &             options;
-      const Observer &                  observer;
+      const double                       norm;
+      double                             rho;
+      const Box<Vector>                 &box;
+      const SmalbeOptions               &options;
+      const Observer                    &observer;
       AugmentedOperator<Vector, Problem> A;
 
       Vector                x;
@@ -272,14 +291,14 @@ namespace slipstick::qp
   /// status: infeasible if bounds contradict each other (x is then of no use), or them the equalities (provably; if in
   /// doubt the status is stagnated), or if the objective is unbounded from below.
   template <typename Vector, typename Problem>
-  SmalbeResult<Vector> smalbe(const Problem &      problem,
+  SmalbeResult<Vector> smalbe(const Problem       &problem,
                               const double         norm,
-                              const Vector &       b,
-                              const Box<Vector> &  box,
+                              const Vector        &b,
+                              const Box<Vector>   &box,
                               SmalbeStart<Vector>  start,
-                              const Goal &         goal,
+                              const Goal          &goal,
                               const SmalbeOptions &options  = {},
-                              const Observer &     observer = {})
+                              const Observer      &observer = {})
   {
     return detail::Smalbe<Vector, Problem>(problem, norm, b, box, std::move(start), goal, options, observer).run();
   }

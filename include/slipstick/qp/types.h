@@ -88,6 +88,9 @@ namespace slipstick::qp
       return values;
     }
 
-    double min(const double value) const { return value; }
+    double min(const double value) const
+    {
+      return value;
+    }
   };
 } // namespace slipstick::qp
