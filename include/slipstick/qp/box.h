@@ -31,7 +31,10 @@ namespace slipstick::qp
     return std::max(lower, std::min(upper, x));
   }
 
-  inline bool is_free(const double x, const double lower, const double upper) { return lower < x && x < upper; }
+  inline bool is_free(const double x, const double lower, const double upper)
+  {
+    return lower < x && x < upper;
+  }
 
   /// phi_i: the gradient g_i of a free entry, else 0.
   inline double free_gradient(const double x, const double g, const double lower, const double upper)
@@ -151,11 +154,11 @@ namespace slipstick::qp
   /// rounding is left a margin: `rounding` times |r| |x_e| and |r_i l_i|, |r_i u_i|. Farkas. One reduction.
   template <typename Vector, typename Reduction>
   bool is_farkas_certificate(const Box<Vector> &box,
-                             const Vector &     r,
-                             const Vector &     x_e,
+                             const Vector      &r,
+                             const Vector      &x_e,
                              const double       radius,
                              const double       rounding,
-                             const Reduction &  reduction)
+                             const Reduction   &reduction)
   {
     const auto        l = box.lower.begin(), u = box.upper.begin();
     const auto        ri = r.begin(), xi = x_e.begin();

@@ -29,9 +29,9 @@ namespace slipstick::qp
     class NearestPoint
     {
     public:
-      NearestPoint(const Problem &             problem_,
-                   const Vector &              x_e,
-                   const Box<Vector> &         box_,
+      NearestPoint(const Problem              &problem_,
+                   const Vector               &x_e,
+                   const Box<Vector>          &box_,
                    const FeasiblePointOptions &options_)
         : problem(problem_)
         , reduction(problem.reduction())
@@ -81,8 +81,12 @@ namespace slipstick::qp
 
       bool proves_infeasibility(const Vector &v) const
       {
-        return is_farkas_certificate(
-          box, v, Qx_e, options.certificate_radius * reference, options.certificate_margin, reduction);
+        return is_farkas_certificate(box,
+                                     v,
+                                     Qx_e,
+                                     options.certificate_radius * reference,
+                                     options.certificate_margin,
+                                     reduction);
       }
 
       // x = clip(y), r = Q(x_e - x)
@@ -116,7 +120,8 @@ namespace slipstick::qp
       // (Q D Q + regularization Q) d = r by conjugate gradients; d is a direction of ascent wherever they are stopped.
       void find_direction()
       {
-        const double tolerance = std::min(options.cg_tolerance, norm_r / reference) * norm_r;
+        const double tolerance =
+          std::max(options.least_cg_tolerance, std::min(options.cg_tolerance, norm_r / reference)) * norm_r;
         set_zero(d);
         std::copy(r.begin(), r.end(), residual.begin());
         std::copy(r.begin(), r.end(), p.begin());
@@ -133,8 +138,9 @@ namespace slipstick::qp
             combine(1.0, residual, next / square, p);
             square = next;
           }
-        if (!(dot(d, r, reduction) > 0))
-          std::copy(r.begin(), r.end(), d.begin());
+        project_range(d, p); // rounding must not carry y out of the range of Q
+        const bool ascends = dot(p, r, reduction) > 0;
+        std::copy(ascends ? p.begin() : r.begin(), ascends ? p.end() : r.end(), d.begin());
       }
 
       // Ap = (Q D Q + regularization Q) p, p in the range of Q
@@ -145,9 +151,8 @@ namespace slipstick::qp
         const auto        pi = p.begin();
         const std::size_t n  = local_size(y);
         for (std::size_t i = 0; i < n; ++i)
-          wi[i] = is_free(yi[i], l[i], u[i]) ? pi[i] : 0.0;
+          wi[i] = ((is_free(yi[i], l[i], u[i]) ? 1.0 : 0.0) + options.newton_regularization) * pi[i];
         project_range(x, Ap);
-        add(options.newton_regularization, p, Ap);
       }
 
       // d/dt theta(y + t d), falling in t
@@ -205,12 +210,11 @@ namespace slipstick::qp
       Status least_squares(const Status failure)
       {
         const auto multiply = [this](const Vector &v, Vector &Qv) { project_range(v, Qv); };
-        const auto stop     = [this](const Vector &, const double gP) {
-          return gP <= options.tolerance * reference;
-        };
-        auto result = mpgp(multiply, 1.0, Qx_e, box, MpgpStart<Vector>{std::move(x)}, stop, options.fallback, reduction);
-        x           = std::move(result.x);
-        is_nearest  = false;
+        const auto stop     = [this](const Vector &, const double gP) { return gP <= options.tolerance * reference; };
+        MpgpStart<Vector> start{std::move(x)};
+        auto              result = mpgp(multiply, 1.0, Qx_e, box, std::move(start), stop, options.fallback, reduction);
+        x                        = std::move(result.x);
+        is_nearest               = false;
         std::copy(result.gradient.begin(), result.gradient.end(), r.begin());
         combine(0.0, r, -1.0, r);
         norm_r = norm(r, reduction);
@@ -219,10 +223,10 @@ namespace slipstick::qp
         return proves_infeasibility(r) ? Status::infeasible : failure;
       }
 
-      const Problem &                                     problem;
+      const Problem                                        &problem;
       decltype(std::declval<const Problem &>().reduction()) reduction;
-      const Box<Vector> &                                 box;
-      const FeasiblePointOptions &                        options;
+      const Box<Vector>                                    &box;
+      const FeasiblePointOptions                           &options;
 
       Vector       Qx_e, y, x, r, d, p, Ap, residual;
       double       reference = 0, norm_r = 0;
@@ -235,9 +239,9 @@ namespace slipstick::qp
   /// status: infeasible with a certificate, see FeasiblePoint (without, if some lower > upper); iteration_limit or
   /// stagnated if neither a point nor a certificate was found.
   template <typename Vector, typename Problem>
-  FeasiblePoint<Vector> feasible_point(const Problem &             problem,
-                                       const Vector &              x_e,
-                                       const Box<Vector> &         box,
+  FeasiblePoint<Vector> feasible_point(const Problem              &problem,
+                                       const Vector               &x_e,
+                                       const Box<Vector>          &box,
                                        const FeasiblePointOptions &options = {})
   {
     return detail::NearestPoint<Vector, Problem>(problem, x_e, box, options).run();

@@ -6,9 +6,9 @@ namespace slipstick::qp
   /// What MPGP does when a conjugate gradient step would leave the bounds.
   enum class Expansion
   {
-    gradient_projection,     // step along the projected gradient, Dostal 2009, section 5.8
+    gradient_projection,      // step along the projected gradient, Dostal 2009, section 5.8
     boundary_then_projection, // to the boundary first, then along the free gradient, Dostal, Schoeberl 2005
-    projected_cg             // project the full conjugate gradient step, Kruzik et al. 2020
+    projected_cg              // project the full conjugate gradient step, Kruzik et al. 2020
   };
 
   struct MpgpOptions
@@ -18,9 +18,10 @@ namespace slipstick::qp
     double       step_length    = 2.0;   // alpha times |A|, in (0, 2]
     unsigned int max_iterations = 10000; // per call
 
-    double norm_growth = 1.1; // >= 1: |A| becomes this times a Rayleigh quotient found above it (own choice)
-    double rounding = 2.2e-16; // a gradient below this times (|A||x| + |b|) is noise; unit roundoff of double
-    double smallest_curvature = 1e-15; // p'Ap over |A| p'p: below it A counts as singular along p; a few roundoffs
+    double sufficient_decrease = 0.01;   // of a projected step, over the most on its way; else it is cut (own choice)
+    double norm_growth         = 1.1;    // >= 1: |A| becomes this times a Rayleigh quotient found above it (own choice)
+    double rounding           = 2.2e-16; // a gradient below this times (|A||x| + |b|) is noise; unit roundoff of double
+    double smallest_curvature = 1e-15;   // p'Ap over |A| p'p: below it A counts as singular along p; a few roundoffs
 
     unsigned int stagnation_window   = 1000; // iterations in which the least |gP| so far must fall ... (own choice)
     double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
@@ -28,14 +29,18 @@ namespace slipstick::qp
 
   struct SmalbeOptions
   {
-    double       initial_balance      = 1.0; // M_0 > 0 (Hessian scaled to norm 1)
-    double       balance_reduction    = 2.0; // beta > 1: M is divided by it; the paper's 10 buys inner precision too dearly
-    double       regularization       = 1.0; // rho over |PFP|
+    double initial_balance   = 1.0; // M_0 > 0 (Hessian scaled to norm 1)
+    double balance_reduction = 2.0; // beta > 1: M is divided by it; the paper's 10 buys inner precision too dearly
+    double regularization    = 1.0; // rho over |PFP|
     unsigned int max_outer_iterations = 400;
     MpgpOptions  inner;
 
-    double       certificate_radius  = 100; // |x| times this: up to where a certificate must exclude points (own choice)
-    unsigned int stagnation_window   = 50;   // outer steps in which the least residual so far must fall ... (own choice)
+    unsigned int penalty_window   = 5;    // outer steps in which the least |Gx| so far must fall ... (own choice)
+    double       penalty_progress = 0.7;  // ... below this times its old value, else rho grows ... (own choice)
+    double       penalty_growth   = 10.0; // ... by this factor (own choice)
+
+    double       certificate_radius  = 100;  // |x| times this: so far must a certificate exclude points (own choice)
+    unsigned int stagnation_window   = 100;  // outer steps in which the least residual must fall ... (own choice)
     double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
   };
 
@@ -53,7 +58,7 @@ namespace slipstick::qp
     Reorthogonalization reorthogonalization = Reorthogonalization::automatic;
 
     double rounding           = 2.2e-16; // a residual below this times (|Fx| + |b|) is noise; unit roundoff of double
-    double smallest_curvature = 1e-15; // p'Fp over p'p and the largest such quotient so far: below it F is singular
+    double smallest_curvature = 1e-15;   // p'Fp over p'p and the largest such quotient so far: below it F is singular
 
     unsigned int stagnation_window   = 200;  // iterations in which the least residual so far must fall ... (own choice)
     double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
@@ -66,6 +71,7 @@ namespace slipstick::qp
     unsigned int max_newton_steps      = 100;
     unsigned int max_cg_iterations     = 200;  // per Newton step
     double       cg_tolerance          = 1e-2; // at most: residual of the Newton equation over its right-hand side
+    double       least_cg_tolerance    = 1e-6; // at least; in between it is the residual over the reference length
     double       newton_regularization = 1e-8; // Newton matrix: Q D Q + this Q
     unsigned int max_line_search_steps = 40;
     double       line_search_slope     = 0.1; // accepted slope of the dual function over the slope at the start

@@ -90,11 +90,11 @@ namespace slipstick::qp
     class Pcpg
     {
     public:
-      Pcpg(const Problem &       problem_,
-           const Vector &        b_,
+      Pcpg(const Problem        &problem_,
+           const Vector         &b_,
            PcpgStart<Vector>     start,
-           const Goal &          goal,
-           const PcpgOptions &   options_,
+           const Goal           &goal,
+           const PcpgOptions    &options_,
            const Preconditioner &preconditioner_)
         : problem(problem_)
         , b(b_)
@@ -146,7 +146,10 @@ namespace slipstick::qp
           }
       }
 
-      double noise() const { return options.rounding * (norm_Fx + norm_b); }
+      double noise() const
+      {
+        return options.rounding * (norm_Fx + norm_b);
+      }
 
       void multiply(const Vector &v, Vector &Fv)
       {
@@ -175,8 +178,8 @@ namespace slipstick::qp
         Vector p = new_direction();
         Vector Fp(p);
         multiply(p, Fp);
-        const auto [pr, pFp, pp] = problem.reduction().sum(
-          std::array<double, 3>{{local_dot(p, r), local_dot(p, Fp), local_dot(p, p)}});
+        const auto [pr, pFp, pp] =
+          problem.reduction().sum(std::array<double, 3>{{local_dot(p, r), local_dot(p, Fp), local_dot(p, p)}});
         if (!std::isfinite(pr) || !std::isfinite(pFp) || pr <= noise() * std::sqrt(pp))
           return Status::stagnated;
         if (pFp <= options.smallest_curvature * largest_curvature * pp)
@@ -202,9 +205,9 @@ namespace slipstick::qp
         norm_Fx      = std::sqrt(s[1]);
       }
 
-      const Problem &       problem;
-      const Vector &        b;
-      const PcpgOptions &   options;
+      const Problem        &problem;
+      const Vector         &b;
+      const PcpgOptions    &options;
       const Preconditioner &preconditioner;
 
       Vector                   x, Fx, r, w;
@@ -221,13 +224,14 @@ namespace slipstick::qp
   /// Full reorthogonalisation keeps two vectors a step.
   /// status: infeasible if F is singular along a direction of descent (unbounded from below).
   template <typename Vector, typename Problem, typename Preconditioner = NoPreconditioner>
-  PcpgResult<Vector> pcpg(const Problem &       problem,
-                          const Vector &        b,
+  PcpgResult<Vector> pcpg(const Problem        &problem,
+                          const Vector         &b,
                           PcpgStart<Vector>     start,
-                          const Goal &          goal,
-                          const PcpgOptions &   options        = {},
+                          const Goal           &goal,
+                          const PcpgOptions    &options        = {},
                           const Preconditioner &preconditioner = {})
   {
-    return detail::Pcpg<Vector, Problem, Preconditioner>(problem, b, std::move(start), goal, options, preconditioner).run();
+    using Solver = detail::Pcpg<Vector, Problem, Preconditioner>;
+    return Solver(problem, b, std::move(start), goal, options, preconditioner).run();
   }
 } // namespace slipstick::qp

@@ -2,6 +2,7 @@
 // Dostal, Horak 2004; Dostal 2009, sections 8.1-8.9; Dostal et al. 2010, doi:10.1016/j.cam.2010.05.042.
 #pragma once
 
+#include <slipstick/qp/augmented_operator.h>
 #include <slipstick/qp/mpgp.h>
 
 namespace slipstick::qp
@@ -24,69 +25,24 @@ namespace slipstick::qp
     double projected_gradient; // |gP| over the reference of the goal
     double equality_residual;  // |PFP| |Gx| over the reference of the goal
     double reference;          // the norm that the residuals refer to
+    double penalty;            // rho
     Counts counts;
   };
 
   namespace detail
   {
-    /// A = P F P + rho Q. Follows Q x through the steps of MPGP (a Tracker), which saves a projection each.
-    template <typename Vector, typename Problem>
-    class AugmentedOperator
-    {
-    public:
-      AugmentedOperator(const Problem &problem_, const double rho_, const Vector &layout)
-        : problem(problem_)
-        , rho(rho_)
-        , Qx(zero_like(layout))
-        , Qv(Qx)
-        , w(Qx)
-      {}
-
-      void operator()(const Vector &v, Vector &Av)
-      {
-        problem.project_range(v, Qv);
-        std::copy(v.begin(), v.end(), w.begin());
-        add(-1.0, Qv, w);
-        problem.multiply(w, Av);
-        problem.project_range(Av, w);
-        const auto        a = Av.begin();
-        const auto        q = Qv.begin(), wi = w.begin();
-        const std::size_t n = local_size(v);
-        for (std::size_t i = 0; i < n; ++i)
-          a[i] += rho * q[i] - wi[i];
-      }
-
-      void stepped(const double a) { add(-a, Qv, Qx); }
-      void replaced() { std::copy(Qv.begin(), Qv.end(), Qx.begin()); }
-
-      /// Q x, as followed.
-      const Vector &range_part() const { return Qx; }
-
-      /// Q x, anew.
-      const Vector &range_part(const Vector &x)
-      {
-        problem.project_range(x, Qx);
-        return Qx;
-      }
-
-    private:
-      const Problem &problem;
-      const double   rho;
-      Vector         Qx, Qv, w;
-    };
-
     template <typename Vector, typename Problem>
     class Smalbe
     {
     public:
-      Smalbe(const Problem &      problem_,
+      Smalbe(const Problem       &problem_,
              const double         norm_,
-             const Vector &       b,
-             const Box<Vector> &  box_,
+             const Vector        &b,
+             const Box<Vector>   &box_,
              SmalbeStart<Vector>  start,
-             const Goal &         goal,
+             const Goal          &goal,
              const SmalbeOptions &options_,
-             const Observer &     observer_)
+             const Observer      &observer_)
         : problem(problem_)
         , reduction(problem.reduction())
         , norm(norm_)
@@ -120,6 +76,7 @@ namespace slipstick::qp
                 gP / reference,
                 feasibility / reference,
                 reference,
+                rho,
                 counts};
       }
 
@@ -127,6 +84,7 @@ namespace slipstick::qp
       Status iterate()
       {
         StagnationWatch stagnates(options.stagnation_window, options.stagnation_progress);
+        StagnationWatch crawls(options.penalty_window, options.penalty_progress);
         for (;;)
           {
             const Status inner = minimise();
@@ -137,11 +95,20 @@ namespace slipstick::qp
               return Status::converged;
             if (inner == Status::iteration_limit || counts.outer_iterations >= options.max_outer_iterations)
               return Status::iteration_limit;
-            if (inner == Status::stagnated && feasibility <= target)
+            if (inner == Status::stagnated && feasibility <= std::max(target, noise))
               return Status::stagnated;
-            if (stagnates(std::max(gP, feasibility) / reference))
-              return is_contradictory() ? Status::infeasible : Status::stagnated;
+            const bool gives_up = stagnates(std::max(gP, feasibility));
+            const bool is_slow  = crawls(feasibility) && feasibility > target;
+            if ((gives_up || is_slow) && is_contradictory())
+              return Status::infeasible;
+            if (gives_up)
+              return Status::stagnated;
             update_multiplier(inner == Status::converged);
+            if (is_slow)
+              {
+                raise_penalty();
+                crawls = StagnationWatch(options.penalty_window, options.penalty_progress);
+              }
           }
       }
 
@@ -155,8 +122,15 @@ namespace slipstick::qp
           const double balanced = std::min(M * residual, reference);
           return gradient <= (residual <= target ? std::max(balanced, target) : balanced);
         };
-        auto inner = mpgp(A, inner_norm, rhs, box, MpgpStart<Vector>{std::move(x), std::move(g)}, stop,
-                          options.inner, reduction, A);
+        auto inner = mpgp(A,
+                          inner_norm,
+                          rhs,
+                          box,
+                          MpgpStart<Vector>{std::move(x), std::move(g)},
+                          stop,
+                          options.inner,
+                          reduction,
+                          A);
         x          = std::move(inner.x);
         g          = std::move(inner.gradient);
         inner_norm = inner.norm;
@@ -168,12 +142,12 @@ namespace slipstick::qp
       // Residuals, augmented Lagrangian, active entries at x: one reduction, one projection.
       void measure()
       {
-        const Vector &        Qx = A.range_part(x);
+        const Vector         &Qx = A.range_part(x);
         const auto            l = box.lower.begin(), u = box.upper.begin();
         const auto            q  = Qx.begin();
         const auto            xi = x.begin(), gi = g->begin(), ri = rhs.begin();
         const std::size_t     n = local_size(x);
-        std::array<double, 5> s{{0, 0, 0, 0, 0}};
+        std::array<double, 6> s{{0, 0, 0, 0, 0, 0}};
         for (std::size_t i = 0; i < n; ++i)
           {
             const double gp = projected_gradient(xi[i], gi[i], l[i], u[i]);
@@ -182,12 +156,14 @@ namespace slipstick::qp
             s[2] += 0.5 * xi[i] * (gi[i] - ri[i]);
             s[3] += xi[i] <= l[i];
             s[4] += xi[i] >= u[i] && l[i] < u[i];
+            s[5] += xi[i] * xi[i];
           }
         s           = reduction.sum(s);
         gP          = std::sqrt(s[0]);
         Gx          = std::sqrt(s[1]);
         feasibility = norm * Gx;
         lagrangian  = s[2];
+        noise       = options.inner.rounding * norm * std::sqrt(s[5]);
         if (observer)
           observer({counts.outer_iterations,
                     counts.hessian_multiplications,
@@ -208,6 +184,17 @@ namespace slipstick::qp
         add(-rho, A.range_part(), rhs);
       }
 
+      // rho too small for the bounds: in a small box |Gx| is small, and mu far.
+      void raise_penalty()
+      {
+        const double raise = (options.penalty_growth - 1) * rho;
+        add(raise, A.range_part(), *g);
+        rho += raise;
+        A.set_penalty(rho);
+        inner_norm = std::max(inner_norm, rho);
+        lagrangian_before.reset();
+      }
+
       // Does -Qx prove that nothing within the box has Q x = 0?
       bool is_contradictory() const
       {
@@ -217,13 +204,14 @@ namespace slipstick::qp
         return is_farkas_certificate(box, r, zero_like(x), radius, options.inner.rounding, reduction);
       }
 
-      const Problem &                            problem;
+      const Problem                                        &problem;
       decltype(std::declval<const Problem &>().reduction()) reduction;
 
-      const double                      norm, rho;
-      const Box<Vector> &               box;
-      const SmalbeOptions &             options;
-      const Observer &                  observer;
+      const double                       norm;
+      double                             rho;
+      const Box<Vector>                 &box;
+      const SmalbeOptions               &options;
+      const Observer                    &observer;
       AugmentedOperator<Vector, Problem> A;
 
       Vector                x;
@@ -231,7 +219,7 @@ namespace slipstick::qp
       Vector                shift, rhs; // rhs = b - shift
       double                inner_norm, M;
       double                reference = 0, target = 0;
-      double                gP = 0, Gx = 0, feasibility = 0, lagrangian = 0;
+      double                gP = 0, Gx = 0, feasibility = 0, lagrangian = 0, noise = 0;
       std::optional<double> lagrangian_before;
       Counts                counts;
     };
@@ -244,14 +232,14 @@ namespace slipstick::qp
   /// status: infeasible if bounds contradict each other (x is then of no use), or them the equalities (provably; if in
   /// doubt the status is stagnated), or if the objective is unbounded from below.
   template <typename Vector, typename Problem>
-  SmalbeResult<Vector> smalbe(const Problem &      problem,
+  SmalbeResult<Vector> smalbe(const Problem       &problem,
                               const double         norm,
-                              const Vector &       b,
-                              const Box<Vector> &  box,
+                              const Vector        &b,
+                              const Box<Vector>   &box,
                               SmalbeStart<Vector>  start,
-                              const Goal &         goal,
+                              const Goal          &goal,
                               const SmalbeOptions &options  = {},
-                              const Observer &     observer = {})
+                              const Observer      &observer = {})
   {
     return detail::Smalbe<Vector, Problem>(problem, norm, b, box, std::move(start), goal, options, observer).run();
   }

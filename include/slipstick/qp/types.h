@@ -2,7 +2,8 @@
 //
 // Vector      copyable; `begin()`, `end()` are contiguous random access iterators over the entries OWNED BY THIS
 //             PROCESS; a copy has the same layout. std::vector<double> is one, so is
-//             dealii::LinearAlgebra::distributed::Vector<double> without ghost entries.
+//             dealii::LinearAlgebra::distributed::Vector<double> without ghost entries. An operator may replace the
+//             storage of the vector it writes, not its layout.
 // Reduction   `template <std::size_t n> std::array<double, n> sum(std::array<double, n>) const` and
 //             `double min(double) const`, over all processes, with the same result on each of them. Every decision is
 //             made from such numbers, so that every process takes the same branch.
@@ -87,6 +88,9 @@ namespace slipstick::qp
       return values;
     }
 
-    double min(const double value) const { return value; }
+    double min(const double value) const
+    {
+      return value;
+    }
   };
 } // namespace slipstick::qp

@@ -1,0 +1,314 @@
+// The iterate of MPGP: point, gradient, direction, and the passes over them. What to do with them: mpgp.h.
+#pragma once
+
+#include <slipstick/qp/box.h>
+#include <slipstick/qp/options.h>
+#include <slipstick/qp/types.h>
+
+#include <optional>
+#include <utility>
+
+namespace slipstick::qp
+{
+  /// Where MPGP starts. The gradient A x - b, if known, saves a multiplication; it is used only if x is within the box.
+  template <typename Vector>
+  struct MpgpStart
+  {
+    Vector                x;
+    std::optional<Vector> gradient = std::nullopt;
+  };
+
+  /// Follows what MPGP does to x, for who keeps a linear function of x up to date; this one does nothing. v is the
+  /// vector last multiplied by A.
+  struct NoTracker
+  {
+    void stepped(double) {}       // x := x - a v
+    void moved_towards(double) {} // x := x + a (v - x)
+  };
+
+  namespace detail
+  {
+    template <typename Vector, typename Operator, typename Reduction, typename Tracker>
+    class MpgpIterate
+    {
+    public:
+      /// p'g, p'Ap, p'p
+      struct Curvature
+      {
+        double pg, pAp, pp;
+      };
+
+      /// What a step to `trial` would do: distance, change of the objective; the fraction of the step, in [0, 1], at
+      /// which the objective is least, and its change there.
+      struct Trial
+      {
+        double distance, change, best_fraction, best_change;
+      };
+
+      /// Squares of |phi|, |beta|, |x|, and phi~'phi.
+      struct Sums
+      {
+        double free = 0, chopped = 0, reduced = 0, x = 0;
+      };
+
+      MpgpIterate(Operator          &A_,
+                  const double       norm_A_,
+                  const Vector      &b_,
+                  const Box<Vector> &box_,
+                  MpgpStart<Vector>  start,
+                  const MpgpOptions &options_,
+                  const Reduction   &reduction_,
+                  Tracker           &tracker_)
+        : A(A_)
+        , b(b_)
+        , box(box_)
+        , options(options_)
+        , reduction(reduction_)
+        , tracker(tracker_)
+        , norm_A(norm_A_)
+        , x(std::move(start.x))
+        , gradient_is_known(start.gradient.has_value())
+        , g(gradient_is_known ? std::move(*start.gradient) : b)
+        , p(x)
+        , Ap(x)
+        , trial(x)
+        , trial_g(x)
+      {}
+
+      double norm() const
+      {
+        return norm_A;
+      }
+      double gradient_norm() const
+      {
+        return std::sqrt(sums.free + sums.chopped);
+      }
+      double step_length() const
+      {
+        return options.step_length / norm_A;
+      }
+      double noise() const
+      {
+        return options.rounding * (norm_A * std::sqrt(sums.x) + norm_b);
+      }
+      double longest_step() const
+      {
+        return qp::longest_step(box, x, p, reduction);
+      }
+      const Sums &split() const
+      {
+        return sums;
+      }
+      const Vector &point() const
+      {
+        return x;
+      }
+      Vector take_point()
+      {
+        return std::move(x);
+      }
+      Vector take_gradient()
+      {
+        return std::move(g);
+      }
+      unsigned int n_multiplications() const
+      {
+        return multiplications;
+      }
+
+      /// Bring x into the box, find the gradient. False if some lower > upper, or a bound is not a number.
+      bool prepare()
+      {
+        const auto            l = box.lower.begin(), u = box.upper.begin(), bi = b.begin();
+        const auto            xi = x.begin();
+        const std::size_t     n  = local_size(x);
+        std::array<double, 4> s{{0, 0, 0, 0}}; // contradictions, moved entries, |b|^2, |x|^2
+        for (std::size_t i = 0; i < n; ++i)
+          {
+            const double old = xi[i];
+            s[0] += !(l[i] <= u[i]);
+            xi[i] = clip(old, l[i], u[i]);
+            s[1] += xi[i] != old;
+            s[2] += bi[i] * bi[i];
+            s[3] += xi[i] * xi[i];
+          }
+        s      = reduction.sum(s);
+        norm_b = std::sqrt(s[2]);
+        if (s[0] > 0)
+          return false;
+        if (!gradient_is_known || s[1] > 0)
+          {
+            set_zero(g); // A 0 = 0
+            if (s[3] > 0)
+              {
+                multiply(x, g);
+                tracker.moved_towards(1.0);
+              }
+            add(-1.0, b, g);
+          }
+        restart();
+        return true;
+      }
+
+      /// Split the gradient at x, begin conjugate gradients anew: p = phi.
+      void restart()
+      {
+        const auto        l = box.lower.begin(), u = box.upper.begin();
+        const auto        xi = x.begin(), gi = g.begin();
+        const std::size_t n = local_size(x);
+        Sums              s;
+        for (std::size_t i = 0; i < n; ++i)
+          add_entry(s, xi[i], gi[i], l[i], u[i]);
+        const auto total = reduction.sum(std::array<double, 4>{{s.free, s.chopped, s.reduced, s.x}});
+        sums             = {total[0], total[1], total[2], total[3]};
+        set_direction(free_gradient);
+      }
+
+      /// p_i = part(x_i, g_i, lower_i, upper_i), a part of the gradient.
+      template <typename Part>
+      void set_direction(const Part &part)
+      {
+        const auto        l = box.lower.begin(), u = box.upper.begin();
+        const auto        xi = x.begin(), gi = g.begin(), pi = p.begin();
+        const std::size_t n = local_size(x);
+        for (std::size_t i = 0; i < n; ++i)
+          pi[i] = part(xi[i], gi[i], l[i], u[i]);
+      }
+
+      /// Multiply A p.
+      Curvature curvature()
+      {
+        multiply(p, Ap);
+        const auto s = reduction.sum(std::array<double, 3>{{local_dot(p, g), local_dot(p, Ap), local_dot(p, p)}});
+        note_curvature(s[1], s[2]);
+        return {s[0], s[1], s[2]};
+      }
+
+      /// x := x - a p and the next conjugate direction, unless that leaves the box: then false and nothing has changed.
+      /// To end on a bound counts as leaving, as p must vanish on the active entries.
+      bool conjugate_step(const double a, const double pAp)
+      {
+        const auto        l = box.lower.begin(), u = box.upper.begin();
+        const auto        xi = x.begin(), gi = g.begin(), pi = p.begin(), Api = Ap.begin();
+        const std::size_t n       = local_size(x);
+        double            leaving = 0, phi_Ap = 0;
+        Sums              s;
+        for (std::size_t i = 0; i < n; ++i)
+          {
+            const double y = xi[i] - a * pi[i], gy = gi[i] - a * Api[i];
+            leaving += pi[i] != 0 && !is_free(y, l[i], u[i]);
+            phi_Ap += free_gradient(y, gy, l[i], u[i]) * Api[i];
+            add_entry(s, y, gy, l[i], u[i]);
+          }
+        const auto total = reduction.sum(std::array<double, 6>{{leaving, phi_Ap, s.free, s.chopped, s.reduced, s.x}});
+        if (total[0] > 0)
+          return false;
+
+        for (std::size_t i = 0; i < n; ++i)
+          {
+            xi[i] -= a * pi[i];
+            gi[i] -= a * Api[i];
+            pi[i] = free_gradient(xi[i], gi[i], l[i], u[i]) - total[1] / pAp * pi[i];
+          }
+        tracker.stepped(a);
+        sums = {total[2], total[3], total[4], total[5]};
+        return true;
+      }
+
+      /// x := x - a p, a no longer than the longest step; A p is known. To be followed by restart() or a trial.
+      void step(const double a)
+      {
+        step_within(box, a, p, x);
+        add(-a, Ap, g);
+        tracker.stepped(a);
+      }
+
+      /// trial = projection of x - a p: its gradient and the change of the objective.
+      Trial evaluate_trial(const double a)
+      {
+        std::copy(x.begin(), x.end(), trial.begin());
+        add(-a, p, trial);
+        project(box, trial);
+        multiply(trial, trial_g);
+        const auto        l = box.lower.begin(), u = box.upper.begin(), bi = b.begin();
+        const auto        xi = x.begin(), gi = g.begin(), yi = trial.begin(), gyi = trial_g.begin();
+        const std::size_t n  = local_size(x);
+        double            ss = 0, sAs = 0, sg = 0; // s = trial - x
+        Sums              t;
+        for (std::size_t i = 0; i < n; ++i)
+          {
+            gyi[i] -= bi[i];
+            const double s = yi[i] - xi[i];
+            ss += s * s;
+            sAs += s * (gyi[i] - gi[i]);
+            sg += s * gi[i];
+            add_entry(t, yi[i], gyi[i], l[i], u[i]);
+          }
+        const auto total = reduction.sum(std::array<double, 7>{{ss, sAs, sg, t.free, t.chopped, t.reduced, t.x}});
+        trial_sums       = {total[3], total[4], total[5], total[6]};
+        note_curvature(total[1], total[0]);
+        // on the way: fraction sg + fraction^2 / 2 sAs
+        const double best = total[1] > 0 ? clip(-total[2] / total[1], 0, 1) : total[2] < 0 ? 1.0 : 0.0;
+        return {std::sqrt(total[0]), total[2] + 0.5 * total[1], best, best * (total[2] + 0.5 * best * total[1])};
+      }
+
+      /// x := trial, p = phi.
+      void accept_trial()
+      {
+        using std::swap;
+        swap(x, trial);
+        swap(g, trial_g);
+        tracker.moved_towards(1.0);
+        sums = trial_sums;
+        set_direction(free_gradient);
+      }
+
+      /// x := x + fraction (trial - x). To be followed by restart().
+      void move_towards_trial(const double fraction)
+      {
+        combine(fraction, trial, 1 - fraction, x);
+        combine(fraction, trial_g, 1 - fraction, g);
+        project(box, x);
+        tracker.moved_towards(fraction);
+      }
+
+    private:
+      void multiply(const Vector &v, Vector &Av)
+      {
+        A(v, Av);
+        ++multiplications;
+      }
+
+      // Split the gradient g_y at y.
+      void add_entry(Sums &s, const double y, const double gy, const double l, const double u) const
+      {
+        const double phi = free_gradient(y, gy, l, u), beta = chopped_gradient(y, gy, l, u);
+        s.free += phi * phi;
+        s.chopped += beta * beta;
+        s.reduced += phi * reduced_free_gradient(y, phi, l, u, step_length());
+        s.x += y * y;
+      }
+
+      // Is |A| larger than thought? s'As against s's.
+      void note_curvature(const double sAs, const double ss)
+      {
+        if (sAs - norm_A * ss > noise() * std::sqrt(ss))
+          norm_A = options.norm_growth * sAs / ss;
+      }
+
+      Operator          &A;
+      const Vector      &b;
+      const Box<Vector> &box;
+      const MpgpOptions &options;
+      const Reduction   &reduction;
+      Tracker           &tracker;
+
+      double       norm_A, norm_b = 0;
+      Vector       x;
+      bool         gradient_is_known;
+      Vector       g, p, Ap, trial, trial_g;
+      Sums         sums, trial_sums;
+      unsigned int multiplications = 0;
+    };
+  } // namespace detail
+} // namespace slipstick::qp

@@ -1,0 +1,220 @@
+// Nearest feasible point: against enumeration, known answers, certificates.
+#include "support.h"
+
+#include <slipstick/qp/feasible_point.h>
+
+using namespace slipstick::qp;
+using namespace slipstick::qp::test;
+
+namespace
+{
+  Matrix identity(const std::size_t n)
+  {
+    return diagonal(Vector(n, 1.0));
+  }
+
+  // r in the range of Q, r'x_e > max r'x over the box but for entries without bound, where r is tiny.
+  void expect_certificate(const DenseProblem &problem, const Box<Vector> &box, const Vector &x_e, const Vector &r)
+  {
+    const double size = length(r);
+    ASSERT_GT(size, 0);
+    EXPECT_LT(distance(problem.range(r), r), 1e-9 * size);
+    double support = 0;
+    for (std::size_t i = 0; i < r.size(); ++i)
+      {
+        const double bound = r[i] > 0 ? box.upper[i] : box.lower[i];
+        if (std::isfinite(bound))
+          support += r[i] * bound;
+        else
+          EXPECT_LT(std::abs(r[i]), 1e-4 * size);
+      }
+    EXPECT_GT(inner(r, x_e), support);
+  }
+} // namespace
+
+TEST(FeasiblePoint, agrees_with_the_enumeration_of_all_active_sets)
+{
+  unsigned int n_infeasible = 0, n_feasible = 0;
+  for (unsigned int seed = 0; seed < 600; ++seed)
+    {
+      Random             random(seed);
+      const std::size_t  n = 3 + seed % 3, m = 1 + seed % 2;
+      const DenseProblem problem(identity(n), random.orthonormal(m, n));
+      const auto         box    = random.box(n, seed % 2 == 0);
+      const Vector       x_e    = random.vector(n, 1.2);
+      const auto         exact  = enumerate(identity(n), Vector(n, 0.0), problem.G, problem.G * x_e, box);
+      const auto         result = feasible_point(problem, x_e, box);
+      EXPECT_TRUE(is_within(box, result.x)) << seed;
+      if (exact)
+        {
+          ++n_feasible;
+          EXPECT_EQ(result.status, Status::converged) << seed;
+          EXPECT_TRUE(result.is_nearest) << seed;
+          EXPECT_LT(distance(result.x, *exact), 1e-8) << seed;
+        }
+      else
+        {
+          ++n_infeasible;
+          EXPECT_EQ(result.status, Status::infeasible) << seed;
+          expect_certificate(problem, box, x_e, result.certificate);
+        }
+    }
+  EXPECT_GT(n_feasible, 100u);
+  EXPECT_GT(n_infeasible, 100u);
+}
+
+TEST(FeasiblePoint, without_active_bounds_it_is_the_range_part)
+{
+  Random             random(1);
+  const DenseProblem problem(identity(10), random.orthonormal(3, 10));
+  const Vector       x_e    = random.vector(10);
+  const auto         result = feasible_point(problem, x_e, {Vector(10, -infinity), Vector(10, infinity)});
+  EXPECT_EQ(result.status, Status::converged);
+  EXPECT_LT(distance(result.x, problem.range(x_e)), 1e-11);
+}
+
+TEST(FeasiblePoint, free_and_one_sided_entries)
+{
+  for (unsigned int seed = 0; seed < 100; ++seed)
+    {
+      Random             random(seed);
+      const DenseProblem problem(identity(5), random.orthonormal(2, 5));
+      const Box<Vector>  box{{0, 0, -infinity, -0.1, 0}, {infinity, infinity, infinity, 0.1, infinity}};
+      const Vector       x_e    = random.vector(5);
+      const auto         exact  = enumerate(identity(5), Vector(5, 0.0), problem.G, problem.G * x_e, box);
+      const auto         result = feasible_point(problem, x_e, box);
+      if (exact)
+        {
+          EXPECT_EQ(result.status, Status::converged) << seed;
+          EXPECT_LT(distance(result.x, *exact), 1e-8) << seed;
+        }
+      else
+        EXPECT_EQ(result.status, Status::infeasible) << seed;
+    }
+}
+
+TEST(FeasiblePoint, larger_problems_hold_bounds_and_equalities)
+{
+  for (unsigned int seed = 0; seed < 30; ++seed)
+    {
+      Random             random(seed);
+      const DenseProblem problem(identity(80), random.orthonormal(12, 80));
+      const auto         box = random.box(80, false);
+      Vector             inside(80); // a point that is feasible, with many entries on their bounds
+      for (std::size_t i = 0; i < 80; ++i)
+        inside[i] = clip(random.uniform(-1, 1), box.lower[i], box.upper[i]);
+      const auto result = feasible_point(problem, inside, box);
+      EXPECT_EQ(result.status, Status::converged) << seed;
+      EXPECT_TRUE(is_within(box, result.x)) << seed;
+      EXPECT_LT(length(problem.range(minus(inside, result.x))), 1e-11 * length(inside)) << seed;
+      EXPECT_LE(length(result.x), length(inside)) << seed;
+    }
+}
+
+TEST(FeasiblePoint, larger_infeasible_problems_are_certified)
+{
+  // 20 equalities, 10 free entries: the bounded entries are far too small for the other 10 directions
+  for (unsigned int seed = 0; seed < 30; ++seed)
+    {
+      Random             random(seed);
+      const DenseProblem problem(identity(60), random.orthonormal(20, 60));
+      auto               box = random.box(60, true, 0.01);
+      for (std::size_t i = 0; i < 10; ++i)
+        box.lower[i] = -(box.upper[i] = infinity);
+      const Vector x_e    = random.vector(60);
+      const auto   result = feasible_point(problem, x_e, box);
+      EXPECT_EQ(result.status, Status::infeasible) << seed;
+      expect_certificate(problem, box, x_e, result.certificate);
+    }
+}
+
+TEST(FeasiblePoint, single_feasible_point_is_found)
+{
+  // sum of four entries = 4, all of them <= 1
+  Matrix G(1, 4);
+  G.entries = Vector(4, 0.5);
+  const DenseProblem problem(identity(4), G);
+  const auto         result = feasible_point(problem, Vector{4, 0, 0, 0}, {Vector(4, -1.0), Vector(4, 1.0)});
+  EXPECT_EQ(result.status, Status::converged);
+  EXPECT_LT(distance(result.x, Vector(4, 1.0)), 1e-11);
+}
+
+TEST(FeasiblePoint, barely_infeasible_is_certified)
+{
+  Matrix G(1, 4);
+  G.entries = Vector(4, 0.5);
+  const DenseProblem problem(identity(4), G);
+  const Box<Vector>  box{Vector(4, -1.0), Vector(4, 1.0)};
+  const Vector       x_e{4 + 1e-6, 0, 0, 0};
+  const auto         result = feasible_point(problem, x_e, box);
+  EXPECT_EQ(result.status, Status::infeasible);
+  expect_certificate(problem, box, x_e, result.certificate);
+}
+
+TEST(FeasiblePoint, unilateral_contact_that_cannot_pull_is_certified)
+{
+  // two normal forces >= 0 must balance a force that lifts the body off
+  Matrix G(1, 2);
+  G.entries = Vector(2, std::sqrt(0.5));
+  const DenseProblem problem(identity(2), G);
+  const Box<Vector>  box{{0, 0}, {infinity, infinity}};
+  const Vector       x_e{-3, 0};
+  const auto         result = feasible_point(problem, x_e, box);
+  EXPECT_EQ(result.status, Status::infeasible);
+  expect_certificate(problem, box, x_e, result.certificate);
+}
+
+TEST(FeasiblePoint, zero_within_the_bounds_is_its_own_answer)
+{
+  Random             random(2);
+  const DenseProblem problem(identity(6), random.orthonormal(2, 6));
+  const auto         result = feasible_point(problem, Vector(6, 0.0), random.box(6, true));
+  EXPECT_EQ(result.status, Status::converged);
+  EXPECT_EQ(result.x, Vector(6, 0.0));
+}
+
+TEST(FeasiblePoint, contradicting_bounds_are_reported)
+{
+  const DenseProblem problem(identity(2), Random(3).orthonormal(1, 2));
+  EXPECT_EQ(feasible_point(problem, Vector{1, 1}, {{0, 2}, {1, 1}}).status, Status::infeasible);
+}
+
+TEST(FeasiblePoint, does_not_depend_on_the_unit)
+{
+  const double unit = 1048576;
+  for (unsigned int seed = 0; seed < 50; ++seed)
+    {
+      Random             random(seed);
+      const DenseProblem problem(identity(10), random.orthonormal(3, 10));
+      auto               box      = random.box(10, true);
+      Vector             x_e      = random.vector(10);
+      const auto         plain    = feasible_point(problem, x_e, box);
+      Vector             expected = plain.x;
+      for (Vector *v : {&x_e, &box.lower, &box.upper, &expected})
+        for (double &entry : *v)
+          entry *= unit;
+      const auto scaled = feasible_point(problem, x_e, box);
+      EXPECT_EQ(scaled.status, plain.status) << seed;
+      EXPECT_EQ(scaled.x, expected) << seed;
+    }
+}
+
+TEST(FeasiblePoint, least_squares_takes_over_when_newton_may_not_step)
+{
+  FeasiblePointOptions options;
+  options.max_newton_steps = 0;
+  for (unsigned int seed = 0; seed < 100; ++seed)
+    {
+      Random             random(seed);
+      const DenseProblem problem(identity(6), random.orthonormal(2, 6));
+      const auto         box    = random.box(6, seed % 2 == 0);
+      const Vector       x_e    = random.vector(6, 1.2);
+      const auto         newton = feasible_point(problem, x_e, box);
+      const auto         result = feasible_point(problem, x_e, box, options);
+      EXPECT_EQ(result.status, newton.status) << seed;
+      if (result.status == Status::infeasible)
+        expect_certificate(problem, box, x_e, result.certificate);
+      else
+        EXPECT_LT(length(problem.range(minus(x_e, result.x))), 1e-10) << seed;
+    }
+}
