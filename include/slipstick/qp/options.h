@@ -15,7 +15,7 @@ namespace slipstick::qp
   {
     Expansion    expansion      = Expansion::boundary_then_projection;
     double       proportioning  = 1.0;   // Gamma > 0, Dostal 2009, section 5.8
-    double       step_length    = 2.0;   // alpha times |A|, in (0, 2]
+    double       step_length    = 1.5;   // alpha times |A|, in (0, 2]; see doc/decisions.md
     unsigned int max_iterations = 10000; // per call
 
     double sufficient_decrease = 0.01;   // of a projected step, over the most on its way; else it is cut (own choice)
@@ -30,13 +30,13 @@ namespace slipstick::qp
   struct SmalbeOptions
   {
     double initial_balance   = 1.0; // M_0 > 0 (Hessian scaled to norm 1)
-    double balance_reduction = 2.0; // beta > 1: M is divided by it; the paper's 10 buys inner precision too dearly
+    double balance_reduction = 1.5; // beta > 1: M is divided by it; the paper's 10 buys inner precision too dearly
     double regularization    = 1.0; // rho over |PFP|
     unsigned int max_outer_iterations = 400;
     MpgpOptions  inner;
 
-    unsigned int penalty_window   = 5;    // outer steps in which the least |Gx| so far must fall ... (own choice)
-    double       penalty_progress = 0.7;  // ... below this times its old value, else rho grows ... (own choice)
+    unsigned int penalty_window   = 15;   // outer steps in which the least |Gx| so far must fall ... (own choice)
+    double       penalty_progress = 0.5;  // ... below this times its old value, else rho grows ... (own choice)
     double       penalty_growth   = 10.0; // ... by this factor (own choice)
 
     double       certificate_radius  = 100;  // |x| times this: so far must a certificate exclude points (own choice)
