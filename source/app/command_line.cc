@@ -104,7 +104,8 @@ namespace slipstick::app
       line.list_parameters = read_list_format(list_format.empty() ? "text" : list_format);
     check(line);
     if (output->count() > 0 && line.output_directory.empty())
-      throw InputError("--output: the name of the directory is empty", "name a directory, for example --output /tmp/run");
+      throw InputError("--output: the name of the directory is empty",
+                       "name a directory, for example --output /tmp/run");
     if (output->count() == 0)
       line.output_directory = (std::filesystem::path("output") / std::filesystem::path(line.case_file).stem()).string();
     return line;

@@ -28,9 +28,8 @@ namespace slipstick
     for (unsigned int i = 1; i <= a.size(); ++i)
       for (unsigned int j = 1; j <= b.size(); ++j)
         {
-          distance[i][j] = std::min({distance[i - 1][j] + 1,
-                                     distance[i][j - 1] + 1,
-                                     distance[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+          distance[i][j] = std::min(
+            {distance[i - 1][j] + 1, distance[i][j - 1] + 1, distance[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
           if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
             distance[i][j] = std::min(distance[i][j], distance[i - 2][j - 2] + 1);
         }

@@ -30,14 +30,17 @@ namespace slipstick::contact
       return b;
     }
 
-    [[noreturn]] void no_equilibrium(const tfeti::DualProblem &dual, const Vector &certificate, const std::vector<std::string> &body_names)
+    [[noreturn]] void no_equilibrium(const tfeti::DualProblem &dual, const Vector &certificate)
     {
-      throw NoEquilibrium("no contact forces within their bounds balance the loads: they set in motion " +
-                            tfeti::describe(dual.motion_behind(certificate), body_names),
-                          "support the body against this motion, raise the slip bound, or turn the loads towards the contact");
+      throw NoEquilibrium(
+        "no contact forces within their bounds balance the loads: they set in motion " +
+          tfeti::describe(dual.motion_behind(certificate), dual.body_names()),
+        "support the body against this motion, raise the slip bound, or turn the loads towards the contact");
     }
 
-    DualSolution solve_linear(const tfeti::DualProblem &dual, const scene::SolverOptions &options, const qp::Observer &observer)
+    DualSolution solve_linear(const tfeti::DualProblem   &dual,
+                              const scene::SolverOptions &options,
+                              const qp::Observer         &observer)
     {
       Vector start  = dual.particular();
       auto   result = qp::pcpg(dual,
@@ -89,8 +92,9 @@ namespace slipstick::contact
             const auto  &contact = scene.contacts[point.pair];
             const double bound   = contact.slip_bound.value(x, t);
             if (!(bound >= 0 && std::isfinite(bound)))
-              throw InputError(format("Contact %s/Slip bound is %g MPa at (%g, %g)", contact.name.c_str(), bound, x[0], x[1]),
-                               "it must be zero or positive everywhere on the slave boundary");
+              throw InputError(
+                format("Contact %s/Slip bound is %g MPa at (%g, %g)", contact.name.c_str(), bound, x[0], x[1]),
+                "it must be zero or positive everywhere on the slave boundary");
             bounds[point.tangential_row] = bound * point.area;
           }
     });
@@ -123,11 +127,10 @@ namespace slipstick::contact
     return box;
   }
 
-  DualSolution solve(const tfeti::DualProblem       &dual,
-                     const std::vector<double>      &slip_bound,
-                     const scene::SolverOptions     &options,
-                     const std::vector<std::string> &body_names,
-                     const qp::Observer             &observer)
+  DualSolution solve(const tfeti::DualProblem   &dual,
+                     const std::vector<double>  &slip_bound,
+                     const scene::SolverOptions &options,
+                     const qp::Observer         &observer)
   {
     const auto &counts = dual.constraints().counts;
     if (counts.normal + counts.tangential == 0)
@@ -136,12 +139,12 @@ namespace slipstick::contact
     const Box  box   = multiplier_box(dual, slip_bound);
     const auto start = qp::feasible_point(dual, dual.particular(), box);
     if (start.status == qp::Status::infeasible)
-      no_equilibrium(dual, start.certificate, body_names);
+      no_equilibrium(dual, start.certificate);
 
     Box shifted = box;
     shifted.lower -= start.x;
     shifted.upper -= start.x;
-    auto result = qp::smalbe(dual,
+    auto         result = qp::smalbe(dual,
                              1.,
                              homogenised_load(dual, start.x),
                              shifted,

@@ -1,4 +1,5 @@
 #include <slipstick/fem/assembly.h>
+#include <slipstick/fem/cell_values.h>
 #include <slipstick/fem/rigid_modes.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -11,16 +12,13 @@ namespace slipstick::fem
 {
   namespace
   {
-    // A cell is taken for a translation of the one before when its vertices agree to this part of its diameter.
-    constexpr double translation_tolerance = 1e-11;
-
     /// Lower triangle of the pattern, columns sorted, values zero.
     template <int dim>
     Eigen::SparseMatrix<double> lower_pattern(const dealii::DoFHandler<dim> &dof_handler)
     {
       const unsigned int n = dof_handler.n_dofs();
       // neighbours of every node through cells; components of a node couple with all of the neighbour
-      std::vector<std::vector<unsigned int>> neighbours(n / dim);
+      std::vector<std::vector<unsigned int>>       neighbours(n / dim);
       std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
       std::vector<unsigned int>                    nodes;
       for (const auto &cell : dof_handler.active_cell_iterators())
@@ -55,7 +53,7 @@ namespace slipstick::fem
     }
 
     template <int dim>
-    void add_lower(const dealii::FullMatrix<double>                          &local,
+    void add_lower(const dealii::FullMatrix<double>                   &local,
                    const std::vector<dealii::types::global_dof_index> &dofs,
                    Eigen::SparseMatrix<double>                        &lower)
     {
@@ -97,40 +95,20 @@ namespace slipstick::fem
     }
 
     template <int dim>
-    bool is_translation(const typename dealii::Triangulation<dim>::cell_iterator &a,
-                        const typename dealii::Triangulation<dim>::cell_iterator &b)
-    {
-      const double tolerance = translation_tolerance * a->diameter();
-      for (unsigned int v = 1; v < a->n_vertices(); ++v)
-        if (((a->vertex(v) - a->vertex(0)) - (b->vertex(v) - b->vertex(0))).norm() > tolerance)
-          return false;
-      return true;
-    }
-
-    template <int dim>
     Eigen::SparseMatrix<double> assemble_stiffness(const scene::Scene<dim>       &scene,
                                                    const unsigned int             body,
                                                    const Spaces<dim>             &spaces,
                                                    const dealii::DoFHandler<dim> &dof_handler)
     {
-      const auto lame = lame_coefficients(scene.materials[scene.bodies[body].material], scene.plane_state);
-      auto       lower = lower_pattern(dof_handler);
-      dealii::FEValues<dim> values(spaces.mapping,
-                                   spaces.scalar_element,
-                                   dealii::QGauss<dim>(spaces.element.degree + 1),
-                                   dealii::update_gradients | dealii::update_JxW_values);
-      dealii::FullMatrix<double>                        local(spaces.element.n_dofs_per_cell());
-      std::vector<dealii::types::global_dof_index>      dofs(spaces.element.n_dofs_per_cell());
-      typename dealii::Triangulation<dim>::cell_iterator previous;
+      const auto      lame  = lame_coefficients(scene.materials[scene.bodies[body].material], scene.plane_state);
+      auto            lower = lower_pattern(dof_handler);
+      CellValues<dim> values(spaces.mapping, spaces.scalar_element, dealii::QGauss<dim>(spaces.element.degree + 1));
+      dealii::FullMatrix<double>                   local(spaces.element.n_dofs_per_cell());
+      std::vector<dealii::types::global_dof_index> dofs(spaces.element.n_dofs_per_cell());
       for (const auto &cell : dof_handler.active_cell_iterators())
         {
-          // straight-sided cells that are translations of each other have the same matrix
-          if (previous.state() != dealii::IteratorState::valid || spaces.element.degree > 1 || !is_translation<dim>(cell, previous))
-            {
-              values.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell));
-              cell_stiffness(values, spaces.element, lame, scene.bodies[body].thickness, local);
-              previous = cell;
-            }
+          if (values.reinit(cell))
+            cell_stiffness(*values, spaces.element, lame, scene.bodies[body].thickness, local);
           cell->get_dof_indices(dofs);
           add_lower<dim>(local, dofs, lower);
         }
@@ -146,12 +124,13 @@ namespace slipstick::fem
                                   const dealii::DoFHandler<dim> &dof_handler,
                                   const double                   t)
     {
-      Eigen::VectorXd                 load = Eigen::VectorXd::Zero(dof_handler.n_dofs());
-      const dealii::QGauss<dim - 1>   quadrature(spaces.element.degree + 2); // loads may be formulas
-      dealii::FEFaceValues<dim>       values(spaces.mapping,
+      Eigen::VectorXd                              load = Eigen::VectorXd::Zero(dof_handler.n_dofs());
+      const dealii::QGauss<dim - 1>                quadrature(spaces.element.degree + 2); // loads may be formulas
+      dealii::FEFaceValues<dim>                    values(spaces.mapping,
                                        spaces.element,
                                        quadrature,
-                                       dealii::update_values | dealii::update_quadrature_points | dealii::update_JxW_values);
+                                       dealii::update_values | dealii::update_quadrature_points |
+                                         dealii::update_JxW_values);
       std::vector<dealii::types::global_dof_index> dofs(spaces.element.n_dofs_per_cell());
       for (const auto &traction : scene.tractions)
         {
@@ -169,7 +148,8 @@ namespace slipstick::fem
                       {
                         const unsigned int c = spaces.element.system_to_component_index(i).first;
                         load[dofs[i]] += traction.components[c].value(values.quadrature_point(q), t) *
-                                         values.shape_value(i, q) * values.JxW(q) * scene.bodies[subdomain.body].thickness;
+                                         values.shape_value(i, q) * values.JxW(q) *
+                                         scene.bodies[subdomain.body].thickness;
                       }
                 }
         }
@@ -195,8 +175,9 @@ namespace slipstick::fem
   LameCoefficients lame_coefficients(const scene::Material &material, const scene::PlaneState state)
   {
     const double E = material.young_modulus, nu = material.poisson_ratio;
-    const double mu     = E / (2 * (1 + nu));
-    const double lambda = state == scene::PlaneState::plane_strain ? E * nu / ((1 + nu) * (1 - 2 * nu)) : E * nu / (1 - nu * nu);
+    const double mu = E / (2 * (1 + nu));
+    const double lambda =
+      state == scene::PlaneState::plane_strain ? E * nu / ((1 + nu) * (1 - 2 * nu)) : E * nu / (1 - nu * nu);
     return {lambda, mu};
   }
 
@@ -210,8 +191,8 @@ namespace slipstick::fem
     std::vector<tfeti::SubdomainMatrices> systems;
     for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
       {
-        const auto &subdomain   = *mesh.subdomains[p];
-        const auto &dof_handler = *spaces.dof_handlers[p];
+        const auto              &subdomain   = *mesh.subdomains[p];
+        const auto              &dof_handler = *spaces.dof_handlers[p];
         tfeti::SubdomainMatrices system;
         system.subdomain     = subdomain.subdomain;
         system.body          = subdomain.body;
@@ -224,5 +205,8 @@ namespace slipstick::fem
     return systems;
   }
 
-  template std::vector<tfeti::SubdomainMatrices> assemble(const scene::Scene<2> &, const Mesh<2> &, const Spaces<2> &, const double);
+  template std::vector<tfeti::SubdomainMatrices> assemble(const scene::Scene<2> &,
+                                                          const Mesh<2> &,
+                                                          const Spaces<2> &,
+                                                          const double);
 } // namespace slipstick::fem

@@ -72,7 +72,10 @@ namespace slipstick::fem
       std::uint64_t        n_interface = 0;
 
     private:
-      unsigned int new_row(const tfeti::RowKind kind, const double c, const InterfaceNode<dim> &node, const unsigned int which)
+      unsigned int new_row(const tfeti::RowKind      kind,
+                           const double              c,
+                           const InterfaceNode<dim> &node,
+                           const unsigned int        which)
       {
         constraints.kind.push_back(kind);
         constraints.c.push_back(c);
@@ -83,7 +86,10 @@ namespace slipstick::fem
         return constraints.kind.size() - 1;
       }
 
-      void entry(const unsigned int row, const std::pair<unsigned int, unsigned int> &copy, const unsigned int c, const double value)
+      void entry(const unsigned int                           row,
+                 const std::pair<unsigned int, unsigned int> &copy,
+                 const unsigned int                           c,
+                 const double                                 value)
       {
         messages.push_back({row, copy.first, copy.second * dim + c, value, true});
       }
@@ -128,6 +134,7 @@ namespace slipstick::fem
         point.key           = node.key;
         point.gap           = contact.gap;
         point.area          = area;
+        point.length        = area / scene.bodies[node.body].thickness;
         point.interface_dof = n_interface;
         if (has_tangent)
           {
@@ -156,11 +163,11 @@ namespace slipstick::fem
       tfeti::Constraints      &constraints;
     };
 
-    tfeti::Partitioner make_partitioner(const std::uint64_t                     first,
-                                        const std::uint64_t                     n_owned,
-                                        const std::uint64_t                     n_total,
+    tfeti::Partitioner make_partitioner(const std::uint64_t                           first,
+                                        const std::uint64_t                           n_owned,
+                                        const std::uint64_t                           n_total,
                                         std::vector<dealii::types::global_dof_index> &touched,
-                                        const MPI_Comm                          comm)
+                                        const MPI_Comm                                comm)
     {
       dealii::IndexSet owned(n_total), ghosts(n_total);
       owned.add_range(first, first + n_owned);
@@ -173,10 +180,13 @@ namespace slipstick::fem
 
     /// Sends every entry to the rank of its subdomain and numbers rows and interface unknowns there.
     template <int dim>
-    void distribute(const Mesh<dim> &mesh, const std::vector<Message> &messages, const std::uint64_t n_interface, tfeti::Constraints &constraints)
+    void distribute(const Mesh<dim>            &mesh,
+                    const std::vector<Message> &messages,
+                    const std::uint64_t         n_interface,
+                    tfeti::Constraints         &constraints)
     {
-      const auto [first_row, n_rows]            = first_and_total(constraints.kind.size(), mesh.comm);
-      const auto [first_unknown, n_unknowns]    = first_and_total(n_interface, mesh.comm);
+      const auto [first_row, n_rows]         = first_and_total(constraints.kind.size(), mesh.comm);
+      const auto [first_unknown, n_unknowns] = first_and_total(n_interface, mesh.comm);
       std::map<unsigned int, std::vector<Message>> to_send;
       for (Message message : messages)
         {
@@ -189,8 +199,9 @@ namespace slipstick::fem
       for (const auto &[rank, list] : received)
         for (const auto &message : list)
           (message.is_row ? touched_rows : touched_unknowns).push_back(message.index);
-      constraints.rows           = make_partitioner(first_row, constraints.kind.size(), n_rows, touched_rows, mesh.comm);
-      constraints.interface_dofs = make_partitioner(first_unknown, n_interface, n_unknowns, touched_unknowns, mesh.comm);
+      constraints.rows = make_partitioner(first_row, constraints.kind.size(), n_rows, touched_rows, mesh.comm);
+      constraints.interface_dofs =
+        make_partitioner(first_unknown, n_interface, n_unknowns, touched_unknowns, mesh.comm);
 
       constraints.blocks.resize(mesh.subdomains.size());
       constraints.interface_blocks.resize(mesh.subdomains.size());
@@ -200,17 +211,22 @@ namespace slipstick::fem
           {
             const unsigned int p = message.subdomain - first_subdomain;
             if (message.is_row)
-              constraints.blocks[p].push_back({constraints.rows->global_to_local(message.index), message.dof, message.value});
+              constraints.blocks[p].push_back(
+                {constraints.rows->global_to_local(message.index), message.dof, message.value});
             else
-              constraints.interface_blocks[p].push_back({message.dof, constraints.interface_dofs->global_to_local(message.index)});
+              constraints.interface_blocks[p].push_back(
+                {message.dof, constraints.interface_dofs->global_to_local(message.index)});
           }
       for (auto &block : constraints.blocks)
-        std::sort(block.begin(), block.end(), [](const auto &a, const auto &b) { return std::tie(a.row, a.dof) < std::tie(b.row, b.dof); });
+        std::sort(block.begin(), block.end(), [](const auto &a, const auto &b) {
+          return std::tie(a.row, a.dof) < std::tie(b.row, b.dof);
+        });
     }
 
     tfeti::Constraints::Counts sum(tfeti::Constraints::Counts counts, const MPI_Comm comm)
     {
-      for (unsigned long long *n : {&counts.tangential, &counts.normal, &counts.gluing, &counts.prescribed, &counts.candidates})
+      for (unsigned long long *n :
+           {&counts.tangential, &counts.normal, &counts.gluing, &counts.prescribed, &counts.candidates})
         *n = dealii::Utilities::MPI::sum(*n, comm);
       return counts;
     }
@@ -234,5 +250,8 @@ namespace slipstick::fem
     return constraints;
   }
 
-  template tfeti::Constraints contact_constraints(const scene::Scene<2> &, const Mesh<2> &, const Spaces<2> &, const double);
+  template tfeti::Constraints contact_constraints(const scene::Scene<2> &,
+                                                  const Mesh<2> &,
+                                                  const Spaces<2> &,
+                                                  const double);
 } // namespace slipstick::fem

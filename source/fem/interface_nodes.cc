@@ -22,7 +22,8 @@ namespace slipstick::fem
     template <int dim>
     void merge_support(InterfaceNode<dim> &node, const unsigned int c, const double value)
     {
-      if (node.held >> c & 1u && std::abs(node.prescribed[c] - value) > same_value_tolerance * std::max(std::abs(value), std::abs(node.prescribed[c])))
+      if (node.held >> c & 1u && std::abs(node.prescribed[c] - value) >
+                                   same_value_tolerance * std::max(std::abs(value), std::abs(node.prescribed[c])))
         throw InputError(format("supports prescribe both %g and %g for displacement %c at (%g, %g)",
                                 node.prescribed[c],
                                 value,
@@ -36,27 +37,29 @@ namespace slipstick::fem
 
     /// What supports and contact pairs say about the nodes of one boundary face.
     template <int dim>
-    void add_face(const scene::Scene<dim>                                       &scene,
-                  const Mesh<dim>                                               &mesh,
-                  const SubdomainMesh<dim>                                      &subdomain,
-                  const Spaces<dim>                                             &spaces,
+    void add_face(const scene::Scene<dim>                                      &scene,
+                  const Mesh<dim>                                              &mesh,
+                  const SubdomainMesh<dim>                                     &subdomain,
+                  const Spaces<dim>                                            &spaces,
                   const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-                  const unsigned int                                             f,
-                  const double                                                   t,
-                  dealii::FEFaceValues<dim>                                     &values,
-                  NodesOfSubdomain<dim>                                         &nodes)
+                  const unsigned int                                            f,
+                  const double                                                  t,
+                  dealii::FEFaceValues<dim>                                    &values,
+                  NodesOfSubdomain<dim>                                        &nodes)
     {
       const auto                face = cell->face(f);
       std::vector<unsigned int> on_face;
-      spaces.for_each_face_node(subdomain, face, [&](const unsigned int node, const NodeKey &key, const dealii::Point<dim> &x) {
-        InterfaceNode<dim> &entry = nodes[node];
-        entry.key                 = key;
-        entry.body                = subdomain.body;
-        entry.copies              = {{subdomain.subdomain, node}};
-        for (unsigned int d = 0; d < dim; ++d)
-          entry.position[d] = x[d];
-        on_face.push_back(node);
-      });
+      spaces.for_each_face_node(subdomain,
+                                face,
+                                [&](const unsigned int node, const NodeKey &key, const dealii::Point<dim> &x) {
+                                  InterfaceNode<dim> &entry = nodes[node];
+                                  entry.key                 = key;
+                                  entry.body                = subdomain.body;
+                                  entry.copies              = {{subdomain.subdomain, node}};
+                                  for (unsigned int d = 0; d < dim; ++d)
+                                    entry.position[d] = x[d];
+                                  on_face.push_back(node);
+                                });
       if (face->boundary_id() == cut_id)
         return;
 
@@ -118,7 +121,8 @@ namespace slipstick::fem
           merge_support(node, c, other.prescribed[c]);
       for (const auto &[pair, area] : other.areas)
         {
-          auto found = std::find_if(node.areas.begin(), node.areas.end(), [p = pair](const auto &a) { return a.first == p; });
+          auto found =
+            std::find_if(node.areas.begin(), node.areas.end(), [p = pair](const auto &a) { return a.first == p; });
           if (found == node.areas.end())
             node.areas.emplace_back(pair, area);
           else
@@ -185,5 +189,8 @@ namespace slipstick::fem
   }
 
   template struct InterfaceNode<2>;
-  template std::vector<InterfaceNode<2>> interface_nodes(const scene::Scene<2> &, const Mesh<2> &, const Spaces<2> &, const double);
+  template std::vector<InterfaceNode<2>> interface_nodes(const scene::Scene<2> &,
+                                                         const Mesh<2> &,
+                                                         const Spaces<2> &,
+                                                         const double);
 } // namespace slipstick::fem

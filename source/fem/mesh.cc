@@ -45,7 +45,8 @@ namespace slipstick::fem
     template <int dim>
     void make_blocks(const scene::Scene<dim> &scene, const std::vector<GlobalVertex> &first_vertex, Mesh<dim> &mesh)
     {
-      const unsigned int            N    = scene.decomposition.method == scene::DecompositionMethod::none ? 1 : scene.decomposition.blocks;
+      const unsigned int N =
+        scene.decomposition.method == scene::DecompositionMethod::none ? 1 : scene.decomposition.blocks;
       const unsigned int            rank = dealii::Utilities::MPI::this_mpi_process(mesh.comm);
       std::array<unsigned int, dim> n_blocks;
       n_blocks.fill(N);
@@ -54,9 +55,12 @@ namespace slipstick::fem
       for (unsigned int s = mesh.first_subdomain[rank]; s < mesh.first_subdomain[rank + 1]; ++s)
         {
           const unsigned int body = s / per_body, b = s % per_body;
-          auto piece      = rectangle_piece<dim>(scene.bodies[body], lattice_cells(scene, scene.bodies[body]), n_blocks, {{b % N, b / N}});
-          piece.subdomain = s;
-          piece.body      = body;
+          auto               piece = rectangle_piece<dim>(scene.bodies[body],
+                                            lattice_cells(scene, scene.bodies[body]),
+                                            n_blocks,
+                                            {{b % N, b / N}});
+          piece.subdomain          = s;
+          piece.body               = body;
           for (GlobalVertex &v : piece.global_vertices)
             v += first_vertex[body];
           mesh.subdomains.push_back(triangulate(piece));
@@ -76,7 +80,7 @@ namespace slipstick::fem
 
     /// Rank 0 meshes and cuts all bodies.
     template <int dim>
-    std::vector<MeshPiece<dim>> cut_bodies(const scene::Scene<dim>         &scene,
+    std::vector<MeshPiece<dim>> cut_bodies(const scene::Scene<dim>          &scene,
                                            const std::vector<std::uint64_t> &n_cells,
                                            const std::vector<GlobalVertex>  &first_vertex,
                                            std::vector<std::string>         &remarks)
@@ -109,13 +113,13 @@ namespace slipstick::fem
                     const std::vector<GlobalVertex>  &first_vertex,
                     Mesh<dim>                        &mesh)
     {
-      const unsigned int n_ranks = mesh.first_subdomain.size() - 1;
+      const unsigned int                                  n_ranks = mesh.first_subdomain.size() - 1;
       std::map<unsigned int, std::vector<MeshPiece<dim>>> to_send;
       unsigned int                                        n_pieces = 0;
       if (dealii::Utilities::MPI::this_mpi_process(mesh.comm) == 0)
         {
-          auto pieces = cut_bodies(scene, n_cells, first_vertex, mesh.remarks);
-          n_pieces    = pieces.size();
+          auto pieces      = cut_bodies(scene, n_cells, first_vertex, mesh.remarks);
+          n_pieces         = pieces.size();
           const auto first = equal_shares(n_pieces, n_ranks);
           for (unsigned int r = 0; r < n_ranks; ++r)
             for (unsigned int s = first[r]; s < first[r + 1]; ++s)
@@ -151,7 +155,7 @@ namespace slipstick::fem
     std::vector<GlobalVertex>  first_vertex(1, 0);
     for (const auto &body : scene.bodies)
       {
-        const auto n = lattice_cells(scene, body);
+        const auto n          = lattice_cells(scene, body);
         auto       n_vertices = n;
         for (unsigned int &k : n_vertices)
           ++k;

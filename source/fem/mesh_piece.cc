@@ -15,7 +15,8 @@ namespace slipstick::fem
     using Face = std::array<unsigned int, MeshPiece<dim>::vertices_per_face>;
 
     template <int dim>
-    Face<dim> face_of_cell(const std::array<unsigned int, MeshPiece<dim>::vertices_per_cell> &cell, const unsigned int f)
+    Face<dim> face_of_cell(const std::array<unsigned int, MeshPiece<dim>::vertices_per_cell> &cell,
+                           const unsigned int                                                 f)
     {
       Face<dim> face;
       for (unsigned int v = 0; v < face.size(); ++v)
@@ -39,12 +40,12 @@ namespace slipstick::fem
 
     /// Sub-piece of the given cells.
     template <int dim>
-    MeshPiece<dim> extract(const MeshPiece<dim>                                       &whole,
-                           const std::vector<unsigned int>                            &cells,
-                           const std::map<Face<dim>, dealii::types::boundary_id>      &boundary)
+    MeshPiece<dim> extract(const MeshPiece<dim>                                  &whole,
+                           const std::vector<unsigned int>                       &cells,
+                           const std::map<Face<dim>, dealii::types::boundary_id> &boundary)
     {
-      MeshPiece<dim>                                 piece;
-      std::map<unsigned int, unsigned int>           local;
+      MeshPiece<dim>                       piece;
+      std::map<unsigned int, unsigned int> local;
       piece.body = whole.body;
       for (const unsigned int c : cells)
         {
@@ -218,10 +219,10 @@ namespace slipstick::fem
   }
 
   template struct MeshPiece<2>;
-  template MeshPiece<2> rectangle_piece<2>(const scene::Body<2> &,
-                                        const std::array<unsigned int, 2> &,
-                                        const std::array<unsigned int, 2> &,
-                                        const std::array<unsigned int, 2> &);
+  template MeshPiece<2>                      rectangle_piece<2>(const scene::Body<2> &,
+                                           const std::array<unsigned int, 2> &,
+                                           const std::array<unsigned int, 2> &,
+                                           const std::array<unsigned int, 2> &);
   template std::vector<MeshPiece<2>>         cut(const MeshPiece<2> &, const std::vector<unsigned int> &);
   template std::vector<unsigned int>         metis_parts(const MeshPiece<2> &, const unsigned int);
   template std::unique_ptr<SubdomainMesh<2>> triangulate(const MeshPiece<2> &);

@@ -17,8 +17,8 @@ namespace slipstick::fem
         for (unsigned int d = 0; d < dim; ++d)
           {
             double &l = low[subdomain->body * dim + d], &h = minus_high[subdomain->body * dim + d];
-            l         = std::min(l, x[d]);
-            h         = std::min(h, -x[d]);
+            l = std::min(l, x[d]);
+            h = std::min(h, -x[d]);
           }
     dealii::Utilities::MPI::min(low, mesh.comm, low);
     dealii::Utilities::MPI::min(minus_high, mesh.comm, minus_high);
@@ -72,8 +72,8 @@ namespace slipstick::fem
 
   template std::vector<Frame<2>> body_frames(const scene::Scene<2> &, const Mesh<2> &);
   template void                  rigid_modes(const Spaces<2> &,
-                            const dealii::DoFHandler<2> &,
-                            const Frame<2> &,
-                            Eigen::MatrixXd &,
-                            Eigen::MatrixXd &);
+                                             const dealii::DoFHandler<2> &,
+                                             const Frame<2> &,
+                                             Eigen::MatrixXd &,
+                                             Eigen::MatrixXd &);
 } // namespace slipstick::fem

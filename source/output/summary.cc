@@ -56,7 +56,9 @@ namespace slipstick::output
               {"complementarity", residuals.complementarity},
               {"friction_bound", residuals.friction_bound},
               {"force_balance", residuals.force_balance},
-              {"moment_balance", residuals.moment_balance}};
+              {"moment_balance", residuals.moment_balance},
+              {"tension", residuals.tension},
+              {"nodal_equilibrium", residuals.nodal_equilibrium}};
     }
 
     Json json(const ResultSummary &results)
@@ -68,7 +70,8 @@ namespace slipstick::output
                          {"tangential_force", pair.tangential_force},
                          {"max_pressure", pair.max_pressure},
                          {"contact_length", pair.contact_length},
-                         {"open_nodes", pair.open_nodes},
+                         {"contact_nodes", pair.contact_nodes},
+{"open_nodes", pair.open_nodes},
                          {"stick_nodes", pair.stick_nodes},
                          {"slip_nodes", pair.slip_nodes}});
       return {{"max_displacement", results.max_displacement},

@@ -31,7 +31,9 @@ namespace slipstick::tfeti
     }
 
     /// Fill-reducing permutation (CAMD) that keeps the given unknowns last.
-    std::vector<int> constrained_ordering(cholmod_sparse &A, const std::vector<unsigned int> &last, cholmod_common &common)
+    std::vector<int> constrained_ordering(cholmod_sparse                  &A,
+                                          const std::vector<unsigned int> &last,
+                                          cholmod_common                  &common)
     {
       std::vector<int> constraint(A.nrow, 0), permutation(A.nrow);
       for (const unsigned int i : last)
@@ -104,8 +106,9 @@ namespace slipstick::tfeti
                            "use more or smaller subdomains (Decomposition), or more ranks on more machines");
     if (common.status != CHOLMOD_OK || factor->minor < factor->n ||
         cholmod_rcond(factor.get(), &common) < smallest_reciprocal_condition)
-      throw NumericalError(name + ": its regularised stiffness matrix is not positive definite, so its kernel is larger "
-                                  "than the rigid motions or its stiffness is zero to rounding",
+      throw NumericalError(name +
+                             ": its regularised stiffness matrix is not positive definite, so its kernel is larger "
+                             "than the rigid motions or its stiffness is zero to rounding",
                            "look for degenerate cells, a hinge inside the subdomain, or extreme material parameters");
   }
 
@@ -117,8 +120,9 @@ namespace slipstick::tfeti
     b.x                    = x.data();
     b.xtype                = CHOLMOD_REAL;
     b.dtype                = CHOLMOD_DOUBLE;
-    const std::unique_ptr<cholmod_dense, DenseDeleter> solution(cholmod_solve(CHOLMOD_A, factor.get(), &b, &session->common),
-                                                                DenseDeleter{session});
+    const std::unique_ptr<cholmod_dense, DenseDeleter> solution(
+      cholmod_solve(CHOLMOD_A, factor.get(), &b, &session->common),
+      DenseDeleter{session});
     std::copy_n(static_cast<const double *>(solution->x), x.size(), x.data());
   }
 
@@ -139,7 +143,8 @@ namespace slipstick::tfeti
         const int n_rows = pi[s + 1] - pi[s];
         for (int column = std::max(super[s], first); column < super[s + 1]; ++column)
           for (int k = column - super[s]; k < n_rows; ++k)
-            block(rows[pi[s] + k] - first, column - first) = values[px[s] + static_cast<std::ptrdiff_t>(column - super[s]) * n_rows + k];
+            block(rows[pi[s] + k] - first, column - first) =
+              values[px[s] + static_cast<std::ptrdiff_t>(column - super[s]) * n_rows + k];
       }
     return block;
   }

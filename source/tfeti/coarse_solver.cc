@@ -30,7 +30,8 @@ namespace slipstick::tfeti
     CoarseSolver::Entries gather(const CoarseSolver::Entries &entries, const MPI_Comm comm)
     {
       CoarseSolver::Entries sum;
-      for (const auto &part : dealii::Utilities::MPI::all_gather(comm, std::vector<Entry>(entries.begin(), entries.end())))
+      for (const auto &part :
+           dealii::Utilities::MPI::all_gather(comm, std::vector<Entry>(entries.begin(), entries.end())))
         for (const auto &[position, value] : part)
           sum[position] += value;
       return sum;
@@ -69,8 +70,8 @@ namespace slipstick::tfeti
         first_of_rank.push_back(first_of_rank.empty() ? 0 : first_of_rank.back() + n_of_rank.back());
         n_of_rank.push_back(static_cast<int>(n));
       }
-    const auto n     = static_cast<Tpetra::global_size_t>(first_of_rank.back() + n_of_rank.back());
-    trilinos->map    = Teuchos::rcp(new Map(n, 0, Teuchos::rcp(new Teuchos::SerialComm<int>())));
+    const auto n              = static_cast<Tpetra::global_size_t>(first_of_rank.back() + n_of_rank.back());
+    trilinos->map             = Teuchos::rcp(new Map(n, 0, Teuchos::rcp(new Teuchos::SerialComm<int>())));
     trilinos->solution        = Teuchos::rcp(new MultiVector(trilinos->map, 1));
     trilinos->right_hand_side = Teuchos::rcp(new MultiVector(trilinos->map, 1));
     if (n == 0)
@@ -99,7 +100,14 @@ namespace slipstick::tfeti
       return x;
     {
       auto view = trilinos->right_hand_side->getDataNonConst(0);
-      MPI_Allgatherv(b.data(), static_cast<int>(n_owned), MPI_DOUBLE, view.getRawPtr(), n_of_rank.data(), first_of_rank.data(), MPI_DOUBLE, comm);
+      MPI_Allgatherv(b.data(),
+                     static_cast<int>(n_owned),
+                     MPI_DOUBLE,
+                     view.getRawPtr(),
+                     n_of_rank.data(),
+                     first_of_rank.data(),
+                     MPI_DOUBLE,
+                     comm);
     }
     trilinos->solver->solve();
     const auto view = trilinos->solution->getData(0);

@@ -37,18 +37,21 @@ namespace slipstick::tfeti
     , reduce(comm)
     , rows(std::move(constraints))
     , owned_rows(std::make_shared<dealii::Utilities::MPI::Partitioner>(rows.rows->locally_owned_range(), comm))
-    , body_names(body_names)
+    , names_of_bodies(body_names)
   {
     const bool explicit_blocks = options.dual_operator != DualOperatorKind::implicit;
     const auto session         = std::make_shared<CholmodSession>();
     collectively(comm, [&] {
+      const double start = MPI_Wtime();
       for (unsigned int p = 0; p < matrices.size(); ++p)
         {
           auto [local, touched] = LocalGluing::make(rows.blocks[p]);
           gluing.push_back(std::move(local));
-          systems.push_back(std::make_unique<SubdomainSystem>(session, std::move(matrices[p]), std::move(touched), explicit_blocks));
+          systems.push_back(
+            std::make_unique<SubdomainSystem>(session, std::move(matrices[p]), std::move(touched), explicit_blocks));
         }
-      F = std::make_unique<DualOperator>(systems, gluing, rows.rows, explicit_blocks);
+      factorization_time = MPI_Wtime() - start;
+      F                  = std::make_unique<DualOperator>(systems, gluing, rows.rows, explicit_blocks);
     });
     require_support(free_motions(systems, gluing, rows, {}, body_names.size(), comm), body_names);
     projector = std::make_unique<Projector>(systems, gluing, *F, rows.rows, std::vector<bool>(), comm);
@@ -144,7 +147,7 @@ namespace slipstick::tfeti
 
   std::vector<Eigen::VectorXd> DualProblem::recover(const DistributedVector &x, const std::vector<bool> &free) const
   {
-    require_support(free_motions(systems, gluing, rows, free, body_names.size(), comm), body_names);
+    require_support(free_motions(systems, gluing, rows, free, names_of_bodies.size(), comm), names_of_bodies);
 
     DistributedVector ghosted = F->ghosted();
     F->import(x, ghosted);
@@ -177,6 +180,6 @@ namespace slipstick::tfeti
 
   RigidMotion DualProblem::motion_behind(const DistributedVector &r) const
   {
-    return body_motion(systems, projector->amplitudes(r), body_names.size(), comm);
+    return body_motion(systems, projector->amplitudes(r), names_of_bodies.size(), comm);
   }
 } // namespace slipstick::tfeti

@@ -13,7 +13,7 @@ namespace slipstick::tfeti
     /// Column of G at one row, as far as one subdomain makes it.
     struct ColumnPart
     {
-      std::uint64_t       row = 0;   // global
+      std::uint64_t       row   = 0; // global
       long long           first = 0; // global number of the subdomain's first rigid motion
       std::vector<double> values;
 
@@ -25,13 +25,18 @@ namespace slipstick::tfeti
     };
 
     /// Sums of outer products of the columns of G over the active rows of this rank.
-    CoarseSolver::Entries gram_entries(std::vector<ColumnPart> &parts, const Partitioner &rows, const std::vector<bool> &active)
+    CoarseSolver::Entries gram_entries(std::vector<ColumnPart> &parts,
+                                       const Partitioner       &rows,
+                                       const std::vector<bool> &active)
     {
-      std::sort(parts.begin(), parts.end(), [](const auto &a, const auto &b) { return std::tie(a.row, a.first) < std::tie(b.row, b.first); });
+      std::sort(parts.begin(), parts.end(), [](const auto &a, const auto &b) {
+        return std::tie(a.row, a.first) < std::tie(b.row, b.first);
+      });
       CoarseSolver::Entries entries;
       for (auto begin = parts.begin(); begin != parts.end();)
         {
-          const auto end = std::find_if(begin, parts.end(), [row = begin->row](const auto &part) { return part.row != row; });
+          const auto end =
+            std::find_if(begin, parts.end(), [row = begin->row](const auto &part) { return part.row != row; });
           if (active.empty() || active[rows->global_to_local(begin->row)])
             for (auto a = begin; a != end; ++a)
               for (auto b = begin; b != end; ++b)
@@ -49,7 +54,8 @@ namespace slipstick::tfeti
       std::map<unsigned int, Eigen::VectorXd> columns; // by local row
       for (const auto &entry : gluing.entries)
         {
-          const Eigen::VectorXd part      = entry.value * subdomain.kernel().row(subdomain.touched()[entry.touched]).transpose();
+          const Eigen::VectorXd part =
+            entry.value * subdomain.kernel().row(subdomain.touched()[entry.touched]).transpose();
           const auto [position, is_new] = columns.emplace(entry.row, part);
           if (!is_new)
             position->second += part;
@@ -78,10 +84,10 @@ namespace slipstick::tfeti
       n_motions += subdomain->kernel().cols();
     const long long first = first_and_total(n_motions, comm).first;
 
-    const auto                                                   ghost_owners = rows->ghost_targets();
-    std::vector<ColumnPart>                                      own;
-    std::map<unsigned int, std::vector<ColumnPart>>              to_send;
-    std::vector<unsigned int>                                    owner_of_ghost;
+    const auto                                      ghost_owners = rows->ghost_targets();
+    std::vector<ColumnPart>                         own;
+    std::map<unsigned int, std::vector<ColumnPart>> to_send;
+    std::vector<unsigned int>                       owner_of_ghost;
     for (const auto &[rank, n] : ghost_owners)
       owner_of_ghost.insert(owner_of_ghost.end(), n, rank);
 

@@ -52,8 +52,9 @@ namespace slipstick::tfeti
             {
               if (entry.row < n_owned && is_gluing(constraints, entry.row))
                 continue;
-              const Eigen::VectorXd share = entry.value * motions.row(subdomains[p]->touched()[entry.touched]).transpose();
-              RowPart               part;
+              const Eigen::VectorXd share =
+                entry.value * motions.row(subdomains[p]->touched()[entry.touched]).transpose();
+              RowPart part;
               part.row  = constraints.rows->local_to_global(entry.row);
               part.body = subdomains[p]->body();
               part.values.assign(share.data(), share.data() + share.size());
@@ -77,13 +78,14 @@ namespace slipstick::tfeti
                                         const MPI_Comm                                       comm)
   {
     const unsigned int k =
-      dealii::Utilities::MPI::max(subdomains.empty() ? 0u : static_cast<unsigned int>(subdomains[0]->kernel().cols()), comm);
-    const unsigned int  n = k * n_bodies;
-    Eigen::MatrixXd     gram = Eigen::MatrixXd::Zero(n, n);
-    const auto          parts = parts_of_owned_rows(subdomains, gluing, constraints, comm);
+      dealii::Utilities::MPI::max(subdomains.empty() ? 0u : static_cast<unsigned int>(subdomains[0]->kernel().cols()),
+                                  comm);
+    const unsigned int n     = k * n_bodies;
+    Eigen::MatrixXd    gram  = Eigen::MatrixXd::Zero(n, n);
+    const auto         parts = parts_of_owned_rows(subdomains, gluing, constraints, comm);
     for (auto begin = parts.begin(); begin != parts.end();)
       {
-        Eigen::VectorXd row = Eigen::VectorXd::Zero(n);
+        Eigen::VectorXd row    = Eigen::VectorXd::Zero(n);
         const auto      number = begin->row;
         for (; begin != parts.end() && begin->row == number; ++begin)
           for (unsigned int i = 0; i < k; ++i)
@@ -93,7 +95,8 @@ namespace slipstick::tfeti
       }
     Eigen::VectorXd load = Eigen::VectorXd::Zero(n);
     for (const auto &subdomain : subdomains)
-      load.segment(subdomain->body() * k, k) += subdomain->body_modes().transpose() * (subdomain->kernel().transpose() * subdomain->load());
+      load.segment(subdomain->body() * k, k) +=
+        subdomain->body_modes().transpose() * (subdomain->kernel().transpose() * subdomain->load());
     MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, comm);
     MPI_Allreduce(MPI_IN_PLACE, load.data(), load.size(), MPI_DOUBLE, MPI_SUM, comm);
 
@@ -114,7 +117,8 @@ namespace slipstick::tfeti
                           const MPI_Comm                                       comm)
   {
     const unsigned int k =
-      dealii::Utilities::MPI::max(subdomains.empty() ? 0u : static_cast<unsigned int>(subdomains[0]->kernel().cols()), comm);
+      dealii::Utilities::MPI::max(subdomains.empty() ? 0u : static_cast<unsigned int>(subdomains[0]->kernel().cols()),
+                                  comm);
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(k * n_bodies);
     for (unsigned int p = 0; p < subdomains.size(); ++p)
       sum.segment(subdomains[p]->body() * k, k) += subdomains[p]->body_modes().inverse() * amplitudes.segment(p * k, k);
@@ -135,9 +139,12 @@ namespace slipstick::tfeti
         const Eigen::VectorXd translation = part.head(k - 1);
         text += (text.empty() ? "body " : "; body ") + body_names[b] + ": ";
         if (translation.norm() >= named_part * part.norm())
-          text += format("translation along (%.3g, %.3g)", translation[0] / translation.norm(), translation[1] / translation.norm());
+          text += format("translation along (%.3g, %.3g)",
+                         translation[0] / translation.norm(),
+                         translation[1] / translation.norm());
         if (std::abs(part[k - 1]) >= named_part * part.norm())
-          text += translation.norm() >= named_part * part.norm() ? " with rotation about its centre" : "rotation about its centre";
+          text += translation.norm() >= named_part * part.norm() ? " with rotation about its centre"
+                                                                 : "rotation about its centre";
       }
     return text;
   }

@@ -12,14 +12,14 @@ namespace slipstick::app
   /// What the user asks for. When `message` or `list_parameters` is set there may be no case file.
   struct CommandLine
   {
-    std::string                           case_file;
-    std::vector<std::string>              overrides;        // "Section/Sub/Name=value"
-    std::string                           output_directory; // default: output/<name of the case>
-    bool                                  check   = false;
-    bool                                  quiet   = false;
-    bool                                  verbose = false;
-    std::optional<scene::ListFormat>      list_parameters;
-    std::optional<std::string>            message; // text of --help or --version: print it and exit with 0
+    std::string                      case_file;
+    std::vector<std::string>         overrides;        // "Section/Sub/Name=value"
+    std::string                      output_directory; // default: output/<name of the case>
+    bool                             check   = false;
+    bool                             quiet   = false;
+    bool                             verbose = false;
+    std::optional<scene::ListFormat> list_parameters;
+    std::optional<std::string>       message; // text of --help or --version: print it and exit with 0
   };
 
   /// Prints nothing and never exits; knows no MPI.

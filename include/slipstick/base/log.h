@@ -46,7 +46,7 @@ namespace slipstick
   public:
     StageClock();
 
-    void   enter(const std::string &stage);
+    void enter(const std::string &stage);
     /// Ends the present stage; time goes to "other" until the next.
     void   leave();
     double seconds(const std::string &stage) const;

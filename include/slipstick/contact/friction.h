@@ -21,8 +21,8 @@ namespace slipstick::contact
   struct DualSolution
   {
     qp::Status               status = qp::Status::converged;
-    tfeti::DistributedVector multipliers;            // [N], owned rows
-    std::vector<bool>        free;                   // owned rows: the multiplier is strictly inside its bounds
+    tfeti::DistributedVector multipliers; // [N], owned rows
+    std::vector<bool>        free;        // owned rows: the multiplier is strictly inside its bounds
     qp::Counts               counts;
     double                   projected_gradient = 0; // |gP| / |P d|
     double                   equality           = 0; // |G x - e| / |P d|, scaled
@@ -34,9 +34,8 @@ namespace slipstick::contact
   /// Solves min 1/2 x'F x - x'd, G x = e, within the bounds; linear problems by projected conjugate gradients.
   /// Non-convergence is in the status. Collective.
   /// @throws NoEquilibrium naming body and motion when no multipliers within the bounds balance the loads.
-  DualSolution solve(const tfeti::DualProblem       &dual,
-                     const std::vector<double>      &slip_bound,
-                     const scene::SolverOptions     &options,
-                     const std::vector<std::string> &body_names,
-                     const qp::Observer             &observer);
+  DualSolution solve(const tfeti::DualProblem   &dual,
+                     const std::vector<double>  &slip_bound,
+                     const scene::SolverOptions &options,
+                     const qp::Observer         &observer);
 } // namespace slipstick::contact

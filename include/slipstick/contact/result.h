@@ -21,20 +21,31 @@ namespace slipstick::contact
   /// "open", "stick", "slip"
   std::string to_string(const ContactStatus status);
 
-  /// One slave node of a contact pair, as found from the recovered displacement.
+  /// One slave node of a contact pair, as found from the recovered displacement. A Tresca bound that acts on the whole
+  /// declared boundary makes a node that is not closed slip too where the bound is reached; its status is then slip.
   struct ContactNode
   {
-    unsigned int          pair = 0; // index into Scene::contacts
+    unsigned int          pair = 0;            // index into Scene::contacts
     std::array<double, 3> position{{0, 0, 0}}; // reference configuration [mm]
     std::array<double, 3> normal{{0, 0, 0}};
     double                arc_length          = 0; // along the slave boundary from its first node [mm]
     double                area                = 0; // tributary length times thickness [mm^2]
+    double                length              = 0; // tributary length [mm]
     double                gap                 = 0; // [mm]
     double                pressure            = 0; // [MPa]
     double                tangential_traction = 0; // [MPa]
     double                slip                = 0; // [mm]
-    ContactStatus         status              = ContactStatus::open;
+    ContactStatus         status              = ContactStatus::open; // see is_closed
+    bool                  is_closed           = false;               // pressed on the other side
     double                slip_bound          = 0; // [MPa], of the law: Tresca bound or mu times pressure
+
+    /// For sending between ranks (Boost serialization, through deal.II's MPI utilities).
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &pair &position &normal &arc_length &area &length &gap &pressure &tangential_traction &slip &status
+        &is_closed &slip_bound;
+    }
   };
 
   struct PairResult
@@ -44,8 +55,9 @@ namespace slipstick::contact
     double       tangential_force = 0; // [N]
     double       max_pressure     = 0; // [MPa]
     double       contact_length   = 0; // of the nodes that are not open [mm]
-    unsigned int open_nodes       = 0;
-    unsigned int stick_nodes      = 0;
-    unsigned int slip_nodes       = 0;
+    unsigned int contact_nodes    = 0; // closed
+    unsigned int open_nodes       = 0; // not closed
+    unsigned int stick_nodes      = 0; // closed and not slipping
+    unsigned int slip_nodes       = 0; // slip bound reached, see ContactNode on nodes that are not closed
   };
 } // namespace slipstick::contact

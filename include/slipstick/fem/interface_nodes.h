@@ -16,10 +16,10 @@ namespace slipstick::fem
     NodeKey                                            key{{0, 0}};
     std::array<double, dim>                            position{};
     unsigned int                                       body = 0;
-    unsigned int                                       held = 0; // bit c: component c is prescribed
+    unsigned int                                       held = 0;     // bit c: component c is prescribed
     std::array<double, dim>                            prescribed{}; // [mm]
-    std::vector<std::pair<unsigned int, unsigned int>> copies; // subdomain, node there; sorted
-    std::vector<std::pair<unsigned int, double>>       areas;  // contact pair, tributary area [mm^2]; sorted
+    std::vector<std::pair<unsigned int, unsigned int>> copies;       // subdomain, node there; sorted
+    std::vector<std::pair<unsigned int, double>>       areas;        // contact pair, tributary area [mm^2]; sorted
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)

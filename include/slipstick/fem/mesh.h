@@ -33,12 +33,12 @@ namespace slipstick::fem
   template <int dim>
   struct Mesh
   {
-    MPI_Comm                                                      comm;
-    std::vector<std::unique_ptr<SubdomainMesh<dim>>>              subdomains; // of this rank
-    std::vector<unsigned int>                                     first_subdomain; // of each rank, and their number
-    std::vector<std::map<std::string, dealii::types::boundary_id>> boundary_ids; // by body and name
-    std::uint64_t                                                 n_cells = 0; // over all ranks
-    std::vector<std::string>                                      remarks; // for the log, on rank 0
+    MPI_Comm                                                       comm;
+    std::vector<std::unique_ptr<SubdomainMesh<dim>>>               subdomains;      // of this rank
+    std::vector<unsigned int>                                      first_subdomain; // of each rank, and their number
+    std::vector<std::map<std::string, dealii::types::boundary_id>> boundary_ids;    // by body and name
+    std::uint64_t                                                  n_cells = 0;     // over all ranks
+    std::vector<std::string>                                       remarks;         // for the log, on rank 0
 
     unsigned int n_subdomains() const
     {

@@ -48,10 +48,10 @@ namespace slipstick::fem
 
   /// Block @p block (of n_blocks per direction) of a rectangle meshed by a lattice of equal cells.
   template <int dim>
-  MeshPiece<dim> rectangle_piece(const scene::Body<dim>                &body,
-                                 const std::array<unsigned int, dim>   &n_cells,
-                                 const std::array<unsigned int, dim>   &n_blocks,
-                                 const std::array<unsigned int, dim>   &block);
+  MeshPiece<dim> rectangle_piece(const scene::Body<dim>              &body,
+                                 const std::array<unsigned int, dim> &n_cells,
+                                 const std::array<unsigned int, dim> &n_blocks,
+                                 const std::array<unsigned int, dim> &block);
 
   /// Cuts @p whole along @p part (a part number for every cell). Parts without cells are left out; parts that hang
   /// together through no face fall apart into several pieces. Pieces come in order of part and first cell.

@@ -29,9 +29,9 @@ namespace slipstick::fem
 
     /// Calls f(node, key, position) for the nodes of a face, in deal.II's order of the face.
     template <class F>
-    void for_each_face_node(const SubdomainMesh<dim>                                       &mesh,
+    void for_each_face_node(const SubdomainMesh<dim>                                     &mesh,
                             const typename dealii::DoFHandler<dim>::active_face_iterator &face,
-                            const F                                                        &f) const
+                            const F                                                      &f) const
     {
       std::array<GlobalVertex, 2> ends;
       for (unsigned int v = 0; v < 2; ++v)
@@ -40,7 +40,9 @@ namespace slipstick::fem
           f(face->vertex_dof_index(v, 0) / dim, NodeKey{{ends[v], ends[v]}}, face->vertex(v));
         }
       for (unsigned int k = 0; k + 1 < element.degree; ++k)
-        f(face->dof_index(k * dim) / dim, NodeKey{{std::min(ends[0], ends[1]), std::max(ends[0], ends[1])}}, face->center());
+        f(face->dof_index(k * dim) / dim,
+          NodeKey{{std::min(ends[0], ends[1]), std::max(ends[0], ends[1])}},
+          face->center());
     }
   };
 } // namespace slipstick::fem

@@ -70,6 +70,8 @@ namespace slipstick::output
     double friction_bound     = 0;
     double force_balance      = 0;
     double moment_balance     = 0;
+    double tension            = 0; // pull in contact
+    double nodal_equilibrium  = 0;
   };
 
   struct ErrorSummary

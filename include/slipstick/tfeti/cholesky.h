@@ -17,7 +17,7 @@ namespace slipstick::tfeti
   public:
     CholmodSession();
     ~CholmodSession();
-    CholmodSession(const CholmodSession &) = delete;
+    CholmodSession(const CholmodSession &)            = delete;
     CholmodSession &operator=(const CholmodSession &) = delete;
 
     cholmod_common common;

@@ -30,15 +30,16 @@ namespace slipstick::tfeti
   /// A node that may touch. The rows and the interface unknowns of a contact node are owned by one rank.
   struct ContactPoint
   {
-    unsigned int          pair = 0; // index into Scene::contacts
-    std::array<double, 3> position{{0, 0, 0}};
-    std::array<double, 3> normal{{0, 0, 0}}; // outward normal of the slave body
-    double                gap  = 0;          // reference configuration [mm]
-    double                area = 0;          // tributary length times thickness [mm^2]
-    std::array<std::uint64_t, 2> key{{0, 0}}; // the mesh's name of the node
-    unsigned int          normal_row     = invalid_row; // owned rows; invalid where a support takes their place
-    unsigned int          tangential_row = invalid_row;
-    unsigned int          interface_dof  = 0; // owned number of the node's first interface unknown
+    unsigned int                 pair = 0; // index into Scene::contacts
+    std::array<double, 3>        position{{0, 0, 0}};
+    std::array<double, 3>        normal{{0, 0, 0}};            // outward normal of the slave body
+    double                       gap    = 0;                   // reference configuration [mm]
+    double                       area   = 0;                   // tributary length times thickness [mm^2]
+    double                       length = 0;                   // tributary length [mm]
+    std::array<std::uint64_t, 2> key{{0, 0}};                  // the mesh's name of the node
+    unsigned int                 normal_row     = invalid_row; // owned rows; invalid where a support takes their place
+    unsigned int                 tangential_row = invalid_row;
+    unsigned int                 interface_dof  = 0; // owned number of the node's first interface unknown
   };
 
   /// B, c and the contact nodes, distributed: every row has one owner; a rank whose subdomains a row touches has it as
@@ -66,14 +67,14 @@ namespace slipstick::tfeti
     };
 
     Partitioner                              rows;
-    std::vector<std::vector<Entry>>          blocks; // B_p of the subdomains of this rank, sorted by row
-    std::vector<RowKind>                     kind;   // of the owned rows
-    std::vector<double>                      c;      // of the owned rows [mm]
-    std::vector<std::uint64_t>               label;  // of the owned rows, the same for every number of ranks
+    std::vector<std::vector<Entry>>          blocks;         // B_p of the subdomains of this rank, sorted by row
+    std::vector<RowKind>                     kind;           // of the owned rows
+    std::vector<double>                      c;              // of the owned rows [mm]
+    std::vector<std::uint64_t>               label;          // of the owned rows, the same for every number of ranks
     std::vector<ContactPoint>                contact_points; // whose rows this rank owns
     Partitioner                              interface_dofs;
     std::vector<std::vector<InterfaceEntry>> interface_blocks; // of the subdomains of this rank
-    std::vector<bool>                        interface_held;   // owned unknowns: does an outside force act (support, contact)?
-    Counts                                   counts;           // over all ranks
+    std::vector<bool> interface_held; // owned unknowns: does an outside force act (support, contact)?
+    Counts            counts;         // over all ranks
   };
 } // namespace slipstick::tfeti

@@ -23,7 +23,7 @@ namespace slipstick::tfeti
                 const MPI_Comm                  comm);
 
     // qp's Problem concept
-    void                multiply(const DistributedVector &x, DistributedVector &y) const; // y = F x / |P F P|
+    void                multiply(const DistributedVector &x, DistributedVector &y) const;      // y = F x / |P F P|
     void                project_range(const DistributedVector &x, DistributedVector &y) const; // y = Q x
     const MpiReduction &reduction() const;
 
@@ -64,6 +64,10 @@ namespace slipstick::tfeti
     {
       return systems;
     }
+    const std::vector<std::string> &body_names() const
+    {
+      return names_of_bodies;
+    }
     const DualOperator &dual_operator() const
     {
       return *F;
@@ -75,6 +79,11 @@ namespace slipstick::tfeti
     unsigned long long n_setup_multiplications() const
     {
       return setup_multiplications;
+    }
+    /// Time that this rank spent on Cholesky factors in the constructor [s].
+    double factorization_seconds() const
+    {
+      return factorization_time;
     }
     MPI_Comm communicator() const
     {
@@ -88,7 +97,7 @@ namespace slipstick::tfeti
     MpiReduction                                  reduce;
     Constraints                                   rows;
     Partitioner                                   owned_rows; // without ghosts
-    std::vector<std::string>                      body_names;
+    std::vector<std::string>                      names_of_bodies;
     std::vector<LocalGluing>                      gluing;
     std::vector<std::unique_ptr<SubdomainSystem>> systems;
     std::unique_ptr<DualOperator>                 F;
@@ -96,5 +105,6 @@ namespace slipstick::tfeti
     DistributedVector                             dual_load;
     double                                        norm_PFP              = 1;
     unsigned long long                            setup_multiplications = 0;
+    double                                        factorization_time    = 0;
   };
 } // namespace slipstick::tfeti

@@ -20,9 +20,9 @@ namespace slipstick::tfeti
 
   struct DualOptions
   {
-    DualOperatorKind dual_operator         = DualOperatorKind::automatic;
-    Preconditioner   preconditioner        = Preconditioner::automatic;
-    unsigned int     max_norm_iterations   = 40;   // of the power method for |PFP|
-    double           norm_tolerance        = 1e-3; // relative change at which it stops
+    DualOperatorKind dual_operator       = DualOperatorKind::automatic;
+    Preconditioner   preconditioner      = Preconditioner::automatic;
+    unsigned int     max_norm_iterations = 40;   // of the power method for |PFP|
+    double           norm_tolerance      = 1e-3; // relative change at which it stops
   };
 } // namespace slipstick::tfeti

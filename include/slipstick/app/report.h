@@ -1,0 +1,41 @@
+// What a run says on the console and in summary.json.
+#pragma once
+
+#include <slipstick/base/log.h>
+#include <slipstick/contact/checks.h>
+#include <slipstick/contact/friction.h>
+#include <slipstick/fem/stress.h>
+#include <slipstick/output/summary.h>
+
+namespace slipstick::app
+{
+  /// Greeting: program, libraries, ranks, case.
+  void print_header(const Log &log, const scene::Scene<2> &scene, const MPI_Comm comm);
+
+  /// Sizes of the problem, one line a stage.
+  void print_mesh(const Log &log, const scene::Scene<2> &scene, const fem::Mesh<2> &mesh, const fem::Spaces<2> &spaces);
+  void print_constraints(const Log &log, const tfeti::Constraints &constraints);
+  void print_dual(const Log &log, const tfeti::DualProblem &dual);
+
+  /// The checks from the recovered displacement; the limit above which an answer does not count as converged.
+  double check_limit(const double tolerance);
+  void   print_checks(const Log &log, const contact::Checks &checks, const double tolerance);
+
+  /// The figures that matter and the file to open.
+  void print_result(const Log             &log,
+                    const output::Summary &summary,
+                    const contact::Checks &checks,
+                    const std::string     &pvd);
+
+  /// Case, version, ranks.
+  output::Summary empty_summary(const scene::Scene<2> &scene, const MPI_Comm comm);
+
+  /// Everything in summary.json but times and memory.
+  output::Summary make_summary(const scene::Scene<2>       &scene,
+                               const fem::Mesh<2>          &mesh,
+                               const fem::Spaces<2>        &spaces,
+                               const tfeti::DualProblem    &dual,
+                               const contact::DualSolution &solution,
+                               const contact::Checks       &checks,
+                               const fem::StressResult     &stress);
+} // namespace slipstick::app

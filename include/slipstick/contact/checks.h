@@ -1,0 +1,52 @@
+// The answer, checked from the recovered displacement alone, and the contact nodes as found from it.
+#pragma once
+
+#include <slipstick/contact/result.h>
+#include <slipstick/tfeti/dual_problem.h>
+
+namespace slipstick::contact
+{
+  /// All relative: lengths to the largest displacement, contact forces to the largest nodal contact force, works to twice
+  /// the strain energy, forces and moments of a body to the sum of the force magnitudes on it. Nodal forces are K u - f,
+  /// summed over the copies of a node; multipliers enter the algebraic error only.
+  struct Checks
+  {
+    double interface_jump    = 0; // largest |u_a - u_b| of glued copies and |u - prescribed|
+    double penetration       = 0; // largest negative gap
+    double complementarity   = 0; // sum of |pressure force * gap| and of |slip bound| |slip| - friction work
+    double tension           = 0; // largest contact force that pulls
+    double friction_bound    = 0; // largest excess of the tangential force over the slip bound
+    double nodal_equilibrium = 0; // largest force left on a node that nothing holds, over the largest nodal force
+    double force_balance     = 0; // worst body: loads + supports + contact
+    double moment_balance    = 0;
+    double algebraic_error   = 0; // energy norm: root of |multipliers times violated constraints| over u'K u
+    double max_displacement  = 0; // [mm]
+    double energy            = 0; // u'K u, twice the strain energy [N mm]
+
+    /// Name and value of the worst of the relative ones.
+    std::pair<std::string, double> worst() const;
+  };
+
+  struct CheckedContact
+  {
+    Checks                                    checks;
+    std::vector<ContactNode>                  nodes; // whose rows this rank owns
+    std::vector<std::array<std::uint64_t, 2>> keys;  // the mesh's names of these nodes
+  };
+
+  /// @param u displacements of this rank's subdomains [mm].
+  /// @param multipliers [N], for the algebraic error alone.
+  /// @param slip_bound of every owned row [N].
+  /// @param free owned rows whose multiplier is strictly inside its bounds: tells open from closed, stick from slip.
+  /// Collective.
+  CheckedContact check(const tfeti::DualProblem           &dual,
+                       const tfeti::DistributedVector     &multipliers,
+                       const std::vector<Eigen::VectorXd> &u,
+                       const std::vector<double>          &slip_bound,
+                       const std::vector<bool>            &free,
+                       const unsigned int                  n_bodies);
+
+  /// Sums over the nodes of all pairs, from the nodes of all ranks.
+  std::vector<PairResult> pair_results(const std::vector<ContactNode> &nodes,
+                                       const std::vector<std::string> &pair_names);
+} // namespace slipstick::contact

@@ -1,0 +1,23 @@
+// Fields for ParaView: one .vtu a subdomain, the .pvtu that joins them, the .pvd over the load steps.
+#pragma once
+
+#include <slipstick/fem/stress.h>
+#include <slipstick/output/directory.h>
+
+namespace slipstick::output
+{
+  /// Writes subdomain_NNN_PPPP.vtu (NNN: step, PPPP: subdomain) on the ranks of the subdomains and solution_NNN.pvtu on
+  /// rank 0: displacement [mm], stress tensor, principal and von Mises stress [MPa] at the nodes; body, subdomain, rank
+  /// and error estimate [sqrt(N mm)] by cell. Compressed binary. Collective.
+  template <int dim>
+  void write_fields(const OutputDirectory              &directory,
+                    const scene::Scene<dim>            &scene,
+                    const fem::Mesh<dim>               &mesh,
+                    const fem::Spaces<dim>             &spaces,
+                    const std::vector<Eigen::VectorXd> &u,
+                    const fem::StressResult            &stress,
+                    const unsigned int                  step);
+
+  /// Writes solution.pvd over the steps, with the load factor of each as its time. Collective.
+  void write_pvd(const OutputDirectory &directory, const std::vector<double> &load_factors);
+} // namespace slipstick::output

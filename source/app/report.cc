@@ -1,0 +1,225 @@
+#include <slipstick/app/report.h>
+
+#include <deal.II/base/config.h>
+#include <deal.II/base/mpi.h>
+
+#include <Trilinos_version.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    // A check may exceed the solver's tolerance by this factor (checks compare with displacements and forces, the
+    // tolerance with |Pd|), but never this part of the answer.
+    constexpr double check_factor  = 1000;
+    constexpr double largest_limit = 0.05;
+
+    std::string line(const char *stage, const std::string &text)
+    {
+      return format("%-12s ", stage) + text;
+    }
+
+    const char *name_of(const scene::DecompositionMethod method)
+    {
+      switch (method)
+        {
+          case scene::DecompositionMethod::blocks:
+            return "blocks";
+          case scene::DecompositionMethod::metis:
+            return "METIS";
+          case scene::DecompositionMethod::none:
+            return "none";
+        }
+      return "";
+    }
+  } // namespace
+
+  void print_header(const Log &log, const scene::Scene<2> &scene, const MPI_Comm comm)
+  {
+    log.line(format("slipstick %s (deal.II %s, Trilinos %s) on %u rank(s)",
+                    SLIPSTICK_VERSION,
+                    DEAL_II_PACKAGE_VERSION,
+                    TRILINOS_VERSION_STRING,
+                    dealii::Utilities::MPI::n_mpi_processes(comm)));
+    log.line(scene.name + (scene.title.empty() ? "" : ": " + scene.title));
+  }
+
+  void print_mesh(const Log &log, const scene::Scene<2> &scene, const fem::Mesh<2> &mesh, const fem::Spaces<2> &spaces)
+  {
+    log.line(line("mesh",
+                  format("%zu body(ies), %llu cells of degree %u, %u subdomain(s) by %s, %llu unknowns",
+                         scene.bodies.size(),
+                         static_cast<unsigned long long>(mesh.n_cells),
+                         scene.discretization.degree,
+                         mesh.n_subdomains(),
+                         name_of(scene.decomposition.method),
+                         spaces.n_dofs)));
+    for (const auto &remark : mesh.remarks)
+      log.line(line("", remark));
+    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+      {
+        std::string names;
+        for (const auto &[name, id] : mesh.boundary_ids[b])
+          names += (names.empty() ? "" : ", ") + name + format(" (%u)", id);
+        log.detail(line("", "body " + scene.bodies[b].name + ": boundaries " + names));
+      }
+  }
+
+  void print_constraints(const Log &log, const tfeti::Constraints &constraints)
+  {
+    const auto &n = constraints.counts;
+    log.line(line(
+      "constraints",
+      format("%llu multipliers: %llu gluing, %llu prescribed, %llu normal, %llu tangential; %llu contact candidates",
+             n.total(),
+             n.gluing,
+             n.prescribed,
+             n.normal,
+             n.tangential,
+             n.candidates)));
+  }
+
+  void print_dual(const Log &log, const tfeti::DualProblem &dual)
+  {
+    log.line(line("dual",
+                  format("%s F, kernel %llu, |PFP| = %.4g mm/N found with %llu multiplications",
+                         dual.dual_operator().is_explicit() ? "explicit" : "implicit",
+                         dual.kernel_dimension(),
+                         dual.norm(),
+                         dual.n_setup_multiplications())));
+  }
+
+  double check_limit(const double tolerance)
+  {
+    return std::min(largest_limit, check_factor * tolerance);
+  }
+
+  void print_checks(const Log &log, const contact::Checks &checks, const double tolerance)
+  {
+    log.line(line("checks",
+                  format("jump %.1e, penetration %.1e, complementarity %.1e, tension %.1e, friction %.1e",
+                         checks.interface_jump,
+                         checks.penetration,
+                         checks.complementarity,
+                         checks.tension,
+                         checks.friction_bound)));
+    log.line(line("",
+                  format("equilibrium of nodes %.1e, of bodies: forces %.1e, moments %.1e",
+                         checks.nodal_equilibrium,
+                         checks.force_balance,
+                         checks.moment_balance)));
+    const auto [name, value] = checks.worst();
+    if (!(value <= check_limit(tolerance)))
+      log.warning(
+        format("the check from the recovered displacement fails: %s is %.2e, allowed is %.2e\n"
+               "  remedy: lower Solver/Tolerance (now %g); if it stays, look at the residuals in convergence.csv",
+               name.c_str(),
+               value,
+               check_limit(tolerance),
+               tolerance));
+  }
+
+  void print_result(const Log             &log,
+                    const output::Summary &summary,
+                    const contact::Checks &checks,
+                    const std::string     &pvd)
+  {
+    log.line("");
+    for (const auto &pair : summary.results.contact)
+      log.line(format(
+        "contact %s: largest pressure %.6g MPa; %u nodes in contact, %u stick, %u slip, %u open; force %.6g N normal, %.6g N tangential",
+        pair.pair.c_str(),
+        pair.max_pressure,
+        pair.contact_nodes,
+        pair.stick_nodes,
+        pair.slip_nodes,
+        pair.open_nodes,
+        pair.normal_force,
+        pair.tangential_force));
+    log.line(format(
+      "largest displacement %.6g mm, largest von Mises stress %.6g MPa, strain energy %.6g N mm; discretisation error about %.2g %%",
+      summary.results.max_displacement,
+      summary.results.max_von_mises,
+      summary.results.strain_energy,
+      100 * summary.error.estimate_energy_relative));
+    log.line(format("%s after %llu F-multiplications in %u outer steps; equilibrium error %.1e; %.2f s, %.0f MB",
+                    output::to_string(summary.status).c_str(),
+                    static_cast<unsigned long long>(summary.solver.hessian_multiplications),
+                    summary.solver.outer_iterations,
+                    std::max({checks.nodal_equilibrium, checks.force_balance, checks.moment_balance}),
+                    summary.time_s.total,
+                    summary.memory_mb.peak_total));
+    log.line("open " + pvd);
+  }
+
+  output::Summary empty_summary(const scene::Scene<2> &scene, const MPI_Comm comm)
+  {
+    output::Summary s;
+    s.case_name      = scene.name;
+    s.version        = SLIPSTICK_VERSION;
+    s.ranks          = dealii::Utilities::MPI::n_mpi_processes(comm);
+    s.problem.bodies = scene.bodies.size();
+    return s;
+  }
+
+  output::Summary make_summary(const scene::Scene<2>       &scene,
+                               const fem::Mesh<2>          &mesh,
+                               const fem::Spaces<2>        &spaces,
+                               const tfeti::DualProblem    &dual,
+                               const contact::DualSolution &solution,
+                               const contact::Checks       &checks,
+                               const fem::StressResult     &stress)
+  {
+    const auto     &n = dual.constraints().counts;
+    output::Summary s = empty_summary(scene, mesh.comm);
+    s.status = solution.status == qp::Status::converged && checks.worst().second <= check_limit(scene.solver.tolerance)
+                 ? output::RunStatus::converged
+                 : output::RunStatus::not_converged;
+
+    s.problem.dimension          = 2;
+    s.problem.bodies             = scene.bodies.size();
+    s.problem.subdomains         = mesh.n_subdomains();
+    s.problem.primal_dofs        = spaces.n_dofs;
+    s.problem.kernel_dimension   = dual.kernel_dimension();
+    s.problem.cells              = mesh.n_cells;
+    s.problem.dual               = {n.total(), n.gluing + n.prescribed, n.normal, n.tangential};
+    s.problem.contact_candidates = n.candidates;
+
+    s.solver.algorithm                   = solution.algorithm;
+    s.solver.preconditioner              = "none";
+    s.solver.dual_operator               = dual.dual_operator().is_explicit() ? "explicit" : "implicit";
+    s.solver.tolerance                   = scene.solver.tolerance;
+    s.solver.hessian_multiplications     = solution.counts.hessian_multiplications;
+    s.solver.dual_setup_multiplications  = dual.n_setup_multiplications();
+    s.solver.preconditioner_applications = solution.counts.preconditioner_applications;
+    s.solver.outer_iterations            = solution.counts.outer_iterations;
+    s.solver.cg_steps                    = solution.counts.cg_steps;
+    s.solver.expansion_steps             = solution.counts.expansion_steps;
+    s.solver.proportioning_steps         = solution.counts.proportioning_steps;
+    s.solver.fallbacks                   = solution.fallbacks;
+    s.solver.active_constraints          = solution.active_constraints;
+    s.solver.dual_norm                   = dual.norm();
+
+    s.residuals.projected_gradient = solution.projected_gradient;
+    s.residuals.equality           = solution.equality;
+    s.residuals.interface_jump     = checks.interface_jump;
+    s.residuals.penetration        = checks.penetration;
+    s.residuals.complementarity    = checks.complementarity;
+    s.residuals.friction_bound     = checks.friction_bound;
+    s.residuals.force_balance      = checks.force_balance;
+    s.residuals.moment_balance     = checks.moment_balance;
+    s.residuals.tension            = checks.tension;
+    s.residuals.nodal_equilibrium  = checks.nodal_equilibrium;
+
+    const double total               = stress.energy_squared + stress.error_squared;
+    s.error.estimate_energy_relative = total > 0 ? std::sqrt(stress.error_squared / total) : 0.;
+    s.error.algebraic_relative       = checks.algebraic_error;
+    s.results.max_displacement       = checks.max_displacement;
+    s.results.max_von_mises          = stress.max_von_mises;
+    s.results.strain_energy          = checks.energy / 2;
+    return s;
+  }
+} // namespace slipstick::app

@@ -1,0 +1,208 @@
+#include <slipstick/app/report.h>
+#include <slipstick/app/simulation.h>
+#include <slipstick/fem/arc_length.h>
+#include <slipstick/fem/assembly.h>
+#include <slipstick/fem/contact_constraints.h>
+#include <slipstick/output/contact_line.h>
+#include <slipstick/output/convergence.h>
+#include <slipstick/output/fields.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/vector.hpp>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    constexpr int    dim         = 2;
+    constexpr double load_factor = 1; // t of the one load step
+
+    std::vector<std::string> names_of(const std::vector<scene::Body<dim>> &bodies)
+    {
+      std::vector<std::string> names;
+      for (const auto &body : bodies)
+        names.push_back(body.name);
+      return names;
+    }
+
+    /// Observer of the solver: a line on the console and a row of convergence.csv.
+    qp::Observer convergence_observer(const Log                           &log,
+                                      const std::string                   &algorithm,
+                                      std::vector<output::ConvergenceRow> &rows)
+    {
+      log.line("             outer  F-multiplications  |gP|/|Pd|  |Gx|/|Pd|  at a bound");
+      return [&log, algorithm, &rows](const qp::OuterStep &step) {
+        output::ConvergenceRow row;
+        row.algorithm               = algorithm;
+        row.outer_step              = step.outer;
+        row.hessian_multiplications = step.hessian_multiplications;
+        row.projected_gradient      = step.projected_gradient;
+        row.equality                = step.equality_residual;
+        row.at_lower_bound          = step.active_lower;
+        row.at_upper_bound          = step.active_upper;
+        rows.push_back(row);
+        log.line(format("             %5u  %17u  %9.2e  %9.2e  %10zu",
+                        step.outer,
+                        step.hessian_multiplications,
+                        step.projected_gradient,
+                        step.equality_residual,
+                        step.active_lower + step.active_upper));
+      };
+    }
+
+    /// Contact nodes of all ranks on rank 0, with their arc lengths.
+    output::ContactStep gather_contact(const scene::Scene<dim>       &scene,
+                                       const fem::Mesh<dim>          &mesh,
+                                       const fem::Spaces<dim>        &spaces,
+                                       const contact::CheckedContact &own)
+    {
+      const auto          lengths = fem::arc_lengths(scene, mesh, spaces);
+      const auto          nodes   = dealii::Utilities::MPI::gather(mesh.comm, own.nodes);
+      const auto          keys    = dealii::Utilities::MPI::gather(mesh.comm, own.keys);
+      output::ContactStep step;
+      for (unsigned int rank = 0; rank < nodes.size(); ++rank)
+        for (unsigned int i = 0; i < nodes[rank].size(); ++i)
+          {
+            auto node       = nodes[rank][i];
+            node.arc_length = lengths.at({node.pair, keys[rank][i]});
+            step.nodes.push_back(node);
+          }
+      return step;
+    }
+
+    output::TimeSummary times(const StageClock &clock, const double factorization)
+    {
+      output::TimeSummary time;
+      time.mesh          = clock.seconds("mesh");
+      time.assembly      = clock.seconds("assembly");
+      time.factorization = factorization;
+      time.dual_setup    = clock.seconds("dual setup") - factorization;
+      time.solve         = clock.seconds("solve");
+      time.recovery      = clock.seconds("recovery");
+      time.output        = clock.seconds("output");
+      time.total         = clock.total();
+      return time;
+    }
+
+    /// What can be said of a run that ended without equilibrium.
+    output::Summary summary_without_equilibrium(const scene::Scene<dim> &scene, const MPI_Comm comm)
+    {
+      output::Summary summary = empty_summary(scene, comm);
+      summary.status          = output::RunStatus::no_equilibrium;
+      return summary;
+    }
+
+    output::MemorySummary memory(const MPI_Comm comm)
+    {
+      return {dealii::Utilities::MPI::max(peak_memory_mb(), comm), dealii::Utilities::MPI::sum(peak_memory_mb(), comm)};
+    }
+
+    ExitStatus solve_and_write(const scene::Scene<dim>       &scene,
+                               const output::OutputDirectory &directory,
+                               const Log                     &log,
+                               const MPI_Comm                 comm)
+    {
+      StageClock clock;
+      print_header(log, scene, comm);
+
+      clock.enter("mesh");
+      const auto             mesh = fem::make_mesh(scene, comm);
+      const fem::Spaces<dim> spaces(mesh, scene.discretization.degree);
+      print_mesh(log, scene, mesh, spaces);
+
+      clock.enter("assembly");
+      auto matrices    = fem::assemble(scene, mesh, spaces, load_factor);
+      auto constraints = fem::contact_constraints(scene, mesh, spaces, load_factor);
+      print_constraints(log, constraints);
+
+      clock.enter("dual setup");
+      const tfeti::DualProblem dual(std::move(matrices),
+                                    std::move(constraints),
+                                    scene.solver.dual,
+                                    names_of(scene.bodies),
+                                    comm);
+      const auto               slip_bound = contact::slip_bounds(scene, dual, load_factor);
+      print_dual(log, dual);
+
+      clock.enter("solve");
+      std::vector<output::ConvergenceRow> convergence;
+      const auto                          algorithm = scene.has_contact() ? "smalbe" : "pcg";
+      const auto                          solution =
+        contact::solve(dual, slip_bound, scene.solver, convergence_observer(log, algorithm, convergence));
+
+      clock.enter("recovery");
+      const auto u = dual.recover(solution.multipliers, solution.free);
+      const auto contact =
+        contact::check(dual, solution.multipliers, u, slip_bound, solution.free, scene.bodies.size());
+      const auto stress = fem::recover_stress(scene, mesh, spaces, dual.constraints(), u);
+      print_checks(log, contact.checks, scene.solver.tolerance);
+
+      clock.enter("output");
+      auto summary = make_summary(scene, mesh, spaces, dual, solution, contact.checks, stress);
+      if (scene.output.vtu)
+        {
+          output::write_fields(directory, scene, mesh, spaces, u, stress, 0);
+          output::write_pvd(directory, {load_factor});
+        }
+      output::write_convergence(directory, convergence);
+      directory.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
+      if (scene.has_contact())
+        {
+          output::ContactNames names;
+          for (const auto &pair : scene.contacts)
+            {
+              names.pairs.push_back(pair.name);
+              names.slave_bodies.push_back(scene.bodies[pair.slave.body].name);
+            }
+          const auto step         = gather_contact(scene, mesh, spaces, contact);
+          summary.results.contact = contact::pair_results(step.nodes, names.pairs);
+          output::write_contact_csv(directory, names, {step});
+          output::write_contact_vtp(directory, step);
+        }
+      clock.leave();
+      summary.time_s    = times(clock, dual.factorization_seconds());
+      summary.memory_mb = memory(comm);
+      output::write_summary(directory, summary);
+      print_result(log, summary, contact.checks, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
+      return summary.status == output::RunStatus::converged ? ExitStatus::converged : ExitStatus::not_converged;
+    }
+  } // namespace
+
+  void check_scene(const scene::Scene<dim> &scene, const Log &log, const MPI_Comm comm)
+  {
+    print_header(log, scene, comm);
+    const auto             mesh = fem::make_mesh(scene, comm);
+    const fem::Spaces<dim> spaces(mesh, scene.discretization.degree);
+    print_mesh(log, scene, mesh, spaces);
+    auto constraints = fem::contact_constraints(scene, mesh, spaces, load_factor);
+    print_constraints(log, constraints);
+    const tfeti::DualProblem dual(fem::assemble(scene, mesh, spaces, load_factor),
+                                  std::move(constraints),
+                                  scene.solver.dual,
+                                  names_of(scene.bodies),
+                                  comm);
+    print_dual(log, dual);
+    contact::slip_bounds(scene, dual, load_factor);
+    log.line(
+      "the scene is complete: every subdomain has its rigid motions as kernel, every body is held by supports or contact");
+  }
+
+  ExitStatus run(const scene::Scene<dim> &scene,
+                 const std::string       &output_directory,
+                 const Log               &log,
+                 const MPI_Comm           comm)
+  {
+    const output::OutputDirectory directory(output_directory, comm);
+    try
+      {
+        return solve_and_write(scene, directory, log, comm);
+      }
+    catch (const NoEquilibrium &) // on all ranks alike
+      {
+        output::write_summary(directory, summary_without_equilibrium(scene, comm));
+        throw;
+      }
+  }
+} // namespace slipstick::app

@@ -1,0 +1,249 @@
+#include <slipstick/contact/checks.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <cmath>
+
+namespace slipstick::contact
+{
+  namespace
+  {
+    using tfeti::DistributedVector;
+
+    double relative(const double value, const double scale)
+    {
+      return scale > 0 ? value / scale : value;
+    }
+
+    /// Nodal forces K u - f of every subdomain: what supports, contact and neighbours exert.
+    std::vector<Eigen::VectorXd> nodal_forces(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
+    {
+      std::vector<Eigen::VectorXd> forces;
+      for (unsigned int p = 0; p < u.size(); ++p)
+        forces.push_back(dual.subdomains()[p]->apply_stiffness(u[p]) - dual.subdomains()[p]->load());
+      return forces;
+    }
+
+    /// The same on interface nodes, summed over their copies; ghosts are up to date.
+    DistributedVector interface_forces(const tfeti::Constraints           &constraints,
+                                       const std::vector<Eigen::VectorXd> &forces)
+    {
+      DistributedVector sum(constraints.interface_dofs);
+      for (unsigned int p = 0; p < forces.size(); ++p)
+        for (const auto &entry : constraints.interface_blocks[p])
+          sum.local_element(entry.interface_dof) += forces[p][entry.dof];
+      sum.compress(dealii::VectorOperation::add);
+      sum.update_ghost_values();
+      return sum;
+    }
+
+    /// Forces and moments left on the nodes that nothing holds, by body, and the force scales.
+    struct Balance
+    {
+      Eigen::MatrixXd left;             // motions x bodies
+      Eigen::VectorXd scale;            // by body: sum of the magnitudes of all outside forces
+      double          largest_left = 0; // nodal
+      double          largest      = 0; // nodal: largest load or held force
+    };
+
+    Balance balance(const tfeti::DualProblem           &dual,
+                    const std::vector<Eigen::VectorXd> &forces,
+                    const DistributedVector            &shared,
+                    const unsigned int                  n_bodies)
+    {
+      const auto       &constraints = dual.constraints();
+      DistributedVector held(constraints.interface_dofs);
+      for (unsigned int i = 0; i < constraints.interface_held.size(); ++i)
+        held.local_element(i) = constraints.interface_held[i];
+      held.update_ghost_values();
+
+      const unsigned int k =
+        dealii::Utilities::MPI::max(dual.subdomains().empty()
+                                      ? 0u
+                                      : static_cast<unsigned int>(dual.subdomains()[0]->kernel().cols()),
+                                    dual.communicator());
+      Balance result{Eigen::MatrixXd::Zero(k, n_bodies), Eigen::VectorXd::Zero(n_bodies)};
+      for (unsigned int p = 0; p < forces.size(); ++p)
+        {
+          const auto     &system = *dual.subdomains()[p];
+          Eigen::VectorXd left   = forces[p]; // by node, without what is held
+          Eigen::VectorXd nodal  = forces[p]; // the same with sums over copies, for the largest
+          result.scale[system.body()] += system.load().cwiseAbs().sum();
+          result.largest = std::max(result.largest, system.load().cwiseAbs().maxCoeff());
+          for (const auto &entry : constraints.interface_blocks[p])
+            {
+              const double force = shared.local_element(entry.interface_dof);
+              nodal[entry.dof]   = force;
+              if (held.local_element(entry.interface_dof) > 0)
+                {
+                  result.scale[system.body()] += std::abs(forces[p][entry.dof]);
+                  result.largest  = std::max(result.largest, std::abs(force));
+                  left[entry.dof] = nodal[entry.dof] = 0;
+                }
+            }
+          result.left.col(system.body()) += system.body_modes().transpose() * (system.kernel().transpose() * left);
+          result.largest_left = std::max(result.largest_left, nodal.cwiseAbs().maxCoeff());
+        }
+      MPI_Allreduce(MPI_IN_PLACE, result.left.data(), result.left.size(), MPI_DOUBLE, MPI_SUM, dual.communicator());
+      MPI_Allreduce(MPI_IN_PLACE, result.scale.data(), result.scale.size(), MPI_DOUBLE, MPI_SUM, dual.communicator());
+      result.largest_left = dealii::Utilities::MPI::max(result.largest_left, dual.communicator());
+      result.largest      = dealii::Utilities::MPI::max(result.largest, dual.communicator());
+      return result;
+    }
+
+    /// One contact node from the force on it and the jump of displacement there.
+    ContactNode contact_node(const tfeti::DualProblem  &dual,
+                             const tfeti::ContactPoint &point,
+                             const DistributedVector   &shared,
+                             const DistributedVector   &jumps,
+                             const std::vector<double> &slip_bound,
+                             const std::vector<bool>   &free)
+    {
+      ContactNode node;
+      node.pair     = point.pair;
+      node.position = point.position;
+      node.normal   = point.normal;
+      node.area     = point.area;
+      node.length   = point.length;
+      // displacement and force in the plane: two components, tangent = normal turned by +90 degrees
+      const double fx = shared.local_element(point.interface_dof), fy = shared.local_element(point.interface_dof + 1);
+      const double nx = point.normal[0], ny = point.normal[1];
+      if (point.normal_row != tfeti::invalid_row)
+        {
+          node.pressure = -(fx * nx + fy * ny) / point.area;
+          node.gap      = dual.constraints().c[point.normal_row] - jumps.local_element(point.normal_row);
+        }
+      node.is_closed = point.normal_row == tfeti::invalid_row || free[point.normal_row];
+      node.status    = node.is_closed ? ContactStatus::stick : ContactStatus::open;
+      if (point.tangential_row == tfeti::invalid_row)
+        {
+          // without friction what touches is free to slide
+          if (node.is_closed)
+            node.status = ContactStatus::slip;
+          return node;
+        }
+      node.tangential_traction = (-fx * ny + fy * nx) / point.area;
+      node.slip                = jumps.local_element(point.tangential_row);
+      node.slip_bound          = slip_bound[point.tangential_row] / point.area;
+      // a bound that acts on open nodes too (Tresca on the whole boundary) makes them slip as well
+      if (!free[point.tangential_row] && (node.slip_bound > 0 || node.is_closed))
+        node.status = ContactStatus::slip;
+      return node;
+    }
+  } // namespace
+
+  std::pair<std::string, double> Checks::worst() const
+  {
+    return std::max<std::pair<std::string, double>>({{"interface jump", interface_jump},
+                                                     {"penetration", penetration},
+                                                     {"complementarity", complementarity},
+                                                     {"tension in contact", tension},
+                                                     {"friction bound", friction_bound},
+                                                     {"equilibrium of a node", nodal_equilibrium},
+                                                     {"force balance", force_balance},
+                                                     {"moment balance", moment_balance}},
+                                                    [](const auto &a, const auto &b) {
+                                                      // a number that is none is the worst of all
+                                                      return !std::isnan(a.second) &&
+                                                             (std::isnan(b.second) || a.second < b.second);
+                                                    });
+  }
+
+  CheckedContact check(const tfeti::DualProblem           &dual,
+                       const DistributedVector            &multipliers,
+                       const std::vector<Eigen::VectorXd> &u,
+                       const std::vector<double>          &slip_bound,
+                       const std::vector<bool>            &free,
+                       const unsigned int                  n_bodies)
+  {
+    const MPI_Comm comm        = dual.communicator();
+    const auto    &constraints = dual.constraints();
+    const auto     jumps       = dual.jumps(u);
+    const auto     forces      = nodal_forces(dual, u);
+    const auto     shared      = interface_forces(constraints, forces);
+    CheckedContact result;
+    Checks        &checks = result.checks;
+
+    for (unsigned int p = 0; p < u.size(); ++p)
+      {
+        checks.max_displacement = std::max(checks.max_displacement, u[p].cwiseAbs().maxCoeff());
+        checks.energy += u[p].dot(forces[p] + dual.subdomains()[p]->load());
+      }
+    const auto violation = [&](const unsigned int r) { return jumps.local_element(r) - constraints.c[r]; };
+    double     gap       = 0; // between primal and dual objective, as far as equalities make it
+    for (unsigned int r = 0; r < constraints.kind.size(); ++r)
+      if (constraints.kind[r] == tfeti::RowKind::gluing || constraints.kind[r] == tfeti::RowKind::prescribed)
+        checks.interface_jump = std::max(checks.interface_jump, std::abs(violation(r)));
+    for (unsigned int r = 0; r < constraints.kind.size(); ++r)
+      if (free[r])
+        gap += multipliers.local_element(r) * violation(r);
+
+    double largest_contact = 0;
+    for (const auto &point : constraints.contact_points)
+      {
+        const auto   node = contact_node(dual, point, shared, jumps, slip_bound, free);
+        const double N = node.pressure * node.area, T = node.tangential_traction * node.area;
+        const double bound = node.slip_bound * node.area;
+        largest_contact    = std::max({largest_contact, std::abs(N), std::abs(T)});
+        checks.penetration = std::max(checks.penetration, -node.gap);
+        checks.tension     = std::max(checks.tension, -N);
+        if (point.normal_row != tfeti::invalid_row)
+          checks.complementarity += std::abs(N * node.gap);
+        if (point.tangential_row != tfeti::invalid_row)
+          {
+            checks.friction_bound = std::max(checks.friction_bound, std::abs(T) - bound);
+            checks.complementarity += std::abs(bound * std::abs(node.slip) + T * node.slip);
+          }
+        result.nodes.push_back(node);
+        result.keys.push_back(point.key);
+      }
+    const auto on_bodies = balance(dual, forces, shared, n_bodies);
+
+    for (double *maximum : {&checks.max_displacement,
+                            &checks.interface_jump,
+                            &checks.penetration,
+                            &checks.tension,
+                            &checks.friction_bound,
+                            &largest_contact})
+      *maximum = dealii::Utilities::MPI::max(*maximum, comm);
+    for (double *sum : {&checks.energy, &checks.complementarity, &gap})
+      *sum = dealii::Utilities::MPI::sum(*sum, comm);
+    checks.algebraic_error   = std::sqrt(relative(std::abs(gap), checks.energy));
+    checks.interface_jump    = relative(checks.interface_jump, checks.max_displacement);
+    checks.penetration       = relative(checks.penetration, checks.max_displacement);
+    checks.tension           = relative(checks.tension, largest_contact);
+    checks.friction_bound    = relative(checks.friction_bound, largest_contact);
+    checks.complementarity   = relative(checks.complementarity, checks.energy);
+    checks.nodal_equilibrium = relative(on_bodies.largest_left, on_bodies.largest);
+    const unsigned int last  = on_bodies.left.rows() - 1; // the rotation
+    for (unsigned int b = 0; b < n_bodies; ++b)
+      {
+        checks.force_balance =
+          std::max(checks.force_balance, relative(on_bodies.left.col(b).head(last).norm(), on_bodies.scale[b]));
+        checks.moment_balance =
+          std::max(checks.moment_balance, relative(std::abs(on_bodies.left(last, b)), on_bodies.scale[b]));
+      }
+    return result;
+  }
+
+  std::vector<PairResult> pair_results(const std::vector<ContactNode> &nodes,
+                                       const std::vector<std::string> &pair_names)
+  {
+    std::vector<PairResult> results(pair_names.size());
+    for (unsigned int k = 0; k < pair_names.size(); ++k)
+      results[k].pair = pair_names[k];
+    for (const auto &node : nodes)
+      {
+        PairResult &result = results[node.pair];
+        result.normal_force += node.pressure * node.area;
+        result.tangential_force += node.tangential_traction * node.area;
+        result.max_pressure = std::max(result.max_pressure, node.pressure);
+        result.contact_length += node.is_closed ? node.length : 0.;
+        result.contact_nodes += node.is_closed;
+        result.open_nodes += !node.is_closed;
+        result.slip_nodes += node.status == ContactStatus::slip;
+        result.stick_nodes += node.status == ContactStatus::stick;
+      }
+    return results;
+  }
+} // namespace slipstick::contact
