@@ -29,13 +29,13 @@ namespace slipstick::app
 
     /// Observer of the solver: a line on the console and a row of convergence.csv.
     qp::Observer convergence_observer(const Log                           &log,
-                                      const std::string                   &algorithm,
+                                      const scene::Algorithm               algorithm,
                                       std::vector<output::ConvergenceRow> &rows)
     {
       log.line("             outer  F-multiplications  |gP|/|Pd|  |Gx|/|Pd|  at a bound");
       return [&log, algorithm, &rows](const qp::OuterStep &step) {
         output::ConvergenceRow row;
-        row.algorithm               = algorithm;
+        row.algorithm               = name_of(algorithm);
         row.outer_step              = step.outer;
         row.hessian_multiplications = step.hessian_multiplications;
         row.projected_gradient      = step.projected_gradient;
@@ -139,6 +139,7 @@ namespace slipstick::app
                                const MPI_Comm                 comm)
     {
       StageClock clock;
+      const auto options = contact::resolved_options(scene);
       print_header(log, scene, comm);
 
       clock.enter("mesh");
@@ -154,7 +155,7 @@ namespace slipstick::app
       clock.enter("dual setup");
       const tfeti::DualProblem dual(std::move(matrices),
                                     std::move(constraints),
-                                    scene.solver.dual,
+                                    options.dual,
                                     names_of(scene.bodies),
                                     comm);
       const auto               slip_bound = contact::slip_bounds(scene, dual, load_factor);
@@ -162,9 +163,8 @@ namespace slipstick::app
 
       clock.enter("solve");
       std::vector<output::ConvergenceRow> convergence;
-      const auto                          algorithm = scene.has_contact() ? "smalbe" : "pcg";
       const auto                          solution =
-        contact::solve(dual, slip_bound, scene.solver, convergence_observer(log, algorithm, convergence));
+        contact::solve(dual, slip_bound, options, convergence_observer(log, options.algorithm, convergence));
 
       clock.enter("recovery");
       const auto recovery = dual.recover(solution.multipliers, solution.free);
@@ -198,7 +198,7 @@ namespace slipstick::app
     print_constraints(log, constraints);
     const tfeti::DualProblem dual(fem::assemble(scene, mesh, spaces, load_factor),
                                   std::move(constraints),
-                                  scene.solver.dual,
+                                  contact::resolved_options(scene).dual,
                                   names_of(scene.bodies),
                                   comm);
     print_dual(log, dual);

@@ -67,7 +67,7 @@ namespace slipstick::scene
 
     std::string             where;
     mu::Parser              parser;
-    std::array<double, dim> position = {};
+    std::array<double, dim> position    = {};
     double                  load_factor = 0;
   };
 
@@ -113,9 +113,7 @@ namespace slipstick::scene
         std::string at;
         for (unsigned int d = 0; d < dim; ++d)
           at += coordinate_names[d] + " = " + number_text(x[d]) + ", ";
-        throw formula_error(where,
-                            parser.GetExpr(),
-                            number_text(result) + " at " + at + "t = " + number_text(t));
+        throw formula_error(where, parser.GetExpr(), number_text(result) + " at " + at + "t = " + number_text(t));
       }
     return result;
   }

@@ -39,21 +39,29 @@ namespace slipstick::tfeti
     , owned_rows(std::make_shared<dealii::Utilities::MPI::Partitioner>(rows.rows->locally_owned_range(), comm))
     , names_of_bodies(body_names)
   {
-    const bool explicit_blocks = options.dual_operator != DualOperatorKind::implicit;
-    const auto session         = std::make_shared<CholmodSession>();
+    const bool explicit_blocks     = options.dual_operator != DualOperatorKind::implicit;
+    const bool with_trailing_block = explicit_blocks || options.preconditioner == Preconditioner::dirichlet;
+    const auto session             = std::make_shared<CholmodSession>();
     collectively(comm, [&] {
       const double start = MPI_Wtime();
       for (unsigned int p = 0; p < matrices.size(); ++p)
         {
           auto [local, touched] = LocalGluing::make(rows.blocks[p]);
           gluing.push_back(std::move(local));
-          systems.push_back(
-            std::make_unique<SubdomainSystem>(session, std::move(matrices[p]), std::move(touched), explicit_blocks));
+          systems.push_back(std::make_unique<SubdomainSystem>(session,
+                                                              std::move(matrices[p]),
+                                                              std::move(touched),
+                                                              with_trailing_block));
         }
       factorization_time = MPI_Wtime() - start;
       F                  = std::make_unique<DualOperator>(systems, gluing, rows.rows, explicit_blocks);
     });
     require_support(free_motions(systems, gluing, rows, {}, body_names.size(), comm), body_names);
+    if (options.preconditioner == Preconditioner::lumped || options.preconditioner == Preconditioner::dirichlet)
+      {
+        weights        = std::make_unique<RowWeights>(systems, gluing, rows.rows, comm);
+        preconditioner = std::make_unique<PreconditionerBlocks>(systems, options.preconditioner);
+      }
     projector = std::make_unique<Projector>(systems, gluing, *F, rows.rows, std::vector<bool>(), comm);
 
     // d = B K+ f - c

@@ -25,6 +25,9 @@ namespace slipstick::tfeti
     /// y = Q x, owned entries. Collective.
     void project_range(const DistributedVector &x, DistributedVector &y) const;
 
+    /// As project_range(), but on all rows: y = G'a with the a that makes x - G'a least on the active ones. Collective.
+    void extend_range(const DistributedVector &x, DistributedVector &y) const;
+
     /// G x, the rigid motions of this rank's subdomains in turn; inactive rows count as zero. Collective.
     Eigen::VectorXd multiply(const DistributedVector &x) const;
 
@@ -50,11 +53,13 @@ namespace slipstick::tfeti
     };
 
     void multiply_transpose(const Eigen::VectorXd &a, DistributedVector &y) const;
+    void mask(DistributedVector &y) const;
 
     const DualOperator           &scatter_gather;
     std::vector<Block>            blocks;
     unsigned int                  n_motions = 0; // of this rank
     std::unique_ptr<CoarseSolver> coarse;
+    DistributedVector             indicator; // 1 on active rows, ghosts included
     mutable DistributedVector     source, target;
   };
 } // namespace slipstick::tfeti
