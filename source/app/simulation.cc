@@ -99,6 +99,40 @@ namespace slipstick::app
       return {dealii::Utilities::MPI::max(peak_memory_mb(), comm), dealii::Utilities::MPI::sum(peak_memory_mb(), comm)};
     }
 
+    void write_fields(const scene::Scene<dim>            &scene,
+                      const fem::Mesh<dim>               &mesh,
+                      const fem::Spaces<dim>             &spaces,
+                      const std::vector<Eigen::VectorXd> &u,
+                      const fem::StressResult            &stress,
+                      const output::OutputDirectory      &directory)
+    {
+      if (!scene.output.vtu)
+        return;
+      output::write_fields(directory, scene, mesh, spaces, u, stress, 0);
+      output::write_pvd(directory, {load_factor});
+    }
+
+    /// The contact line, and its sums (on rank 0).
+    std::vector<contact::PairResult> write_contact(const scene::Scene<dim>       &scene,
+                                                   const fem::Mesh<dim>          &mesh,
+                                                   const fem::Spaces<dim>        &spaces,
+                                                   const contact::CheckedContact &contact,
+                                                   const output::OutputDirectory &directory)
+    {
+      if (!scene.has_contact())
+        return {};
+      output::ContactNames names;
+      for (const auto &pair : scene.contacts)
+        {
+          names.pairs.push_back(pair.name);
+          names.slave_bodies.push_back(scene.bodies[pair.slave.body].name);
+        }
+      const auto step = gather_contact(scene, mesh, spaces, contact);
+      output::write_contact_csv(directory, names, {step});
+      output::write_contact_vtp(directory, step);
+      return contact::pair_results(step.nodes, names.pairs);
+    }
+
     ExitStatus solve_and_write(const scene::Scene<dim>       &scene,
                                const output::OutputDirectory &directory,
                                const Log                     &log,
@@ -133,34 +167,18 @@ namespace slipstick::app
         contact::solve(dual, slip_bound, scene.solver, convergence_observer(log, algorithm, convergence));
 
       clock.enter("recovery");
-      const auto u = dual.recover(solution.multipliers, solution.free);
+      const auto recovery = dual.recover(solution.multipliers, solution.free);
       const auto contact =
-        contact::check(dual, solution.multipliers, u, slip_bound, solution.free, scene.bodies.size());
-      const auto stress = fem::recover_stress(scene, mesh, spaces, dual.constraints(), u);
+        contact::check(dual, recovery.multipliers, recovery.u, slip_bound, solution.free, scene.bodies.size());
+      const auto stress = fem::recover_stress(scene, mesh, spaces, dual.constraints(), recovery.u);
       print_checks(log, contact.checks, scene.solver.tolerance);
 
       clock.enter("output");
       auto summary = make_summary(scene, mesh, spaces, dual, solution, contact.checks, stress);
-      if (scene.output.vtu)
-        {
-          output::write_fields(directory, scene, mesh, spaces, u, stress, 0);
-          output::write_pvd(directory, {load_factor});
-        }
+      write_fields(scene, mesh, spaces, recovery.u, stress, directory);
       output::write_convergence(directory, convergence);
       directory.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
-      if (scene.has_contact())
-        {
-          output::ContactNames names;
-          for (const auto &pair : scene.contacts)
-            {
-              names.pairs.push_back(pair.name);
-              names.slave_bodies.push_back(scene.bodies[pair.slave.body].name);
-            }
-          const auto step         = gather_contact(scene, mesh, spaces, contact);
-          summary.results.contact = contact::pair_results(step.nodes, names.pairs);
-          output::write_contact_csv(directory, names, {step});
-          output::write_contact_vtp(directory, step);
-        }
+      summary.results.contact = write_contact(scene, mesh, spaces, contact, directory);
       clock.leave();
       summary.time_s    = times(clock, dual.factorization_seconds());
       summary.memory_mb = memory(comm);

@@ -115,7 +115,7 @@ namespace slipstick::tfeti
     return DistributedVector(owned_rows);
   }
 
-  DistributedVector DualProblem::particular() const
+  Eigen::VectorXd DualProblem::resultants() const
   {
     Eigen::VectorXd e(0);
     for (const auto &system : systems)
@@ -124,8 +124,13 @@ namespace slipstick::tfeti
         e.conservativeResize(e.size() + part.size());
         e.tail(part.size()) = part;
       }
+    return e;
+  }
+
+  DistributedVector DualProblem::particular() const
+  {
     DistributedVector x = zero();
-    projector->particular(e, x);
+    projector->particular(resultants(), x);
     return x;
   }
 
@@ -145,13 +150,18 @@ namespace slipstick::tfeti
     return y;
   }
 
-  std::vector<Eigen::VectorXd> DualProblem::recover(const DistributedVector &x, const std::vector<bool> &free) const
+  DualProblem::Recovery DualProblem::recover(const DistributedVector &x, const std::vector<bool> &free) const
   {
     require_support(free_motions(systems, gluing, rows, free, names_of_bodies.size(), comm), names_of_bodies);
 
+    const Projector on_free(systems, gluing, *F, rows.rows, free, comm);
+    Recovery        result{{}, zero()};
+    on_free.particular(resultants() - projector->multiply(x), result.multipliers);
+    result.multipliers += x;
+
     DistributedVector ghosted = F->ghosted();
-    F->import(x, ghosted);
-    std::vector<Eigen::VectorXd> u;
+    F->import(result.multipliers, ghosted);
+    auto &u = result.u;
     for (unsigned int p = 0; p < systems.size(); ++p)
       {
         const Eigen::VectorXd force   = F->scatter(p, ghosted);
@@ -166,7 +176,6 @@ namespace slipstick::tfeti
     DistributedVector missing = jumps(u);
     for (unsigned int r = 0; r < rows.c.size(); ++r)
       missing.local_element(r) = free[r] ? rows.c[r] - missing.local_element(r) : 0.;
-    const Projector       on_free(systems, gluing, *F, rows.rows, free, comm);
     const Eigen::VectorXd a    = on_free.amplitudes(missing);
     unsigned int          next = 0;
     for (unsigned int p = 0; p < systems.size(); ++p)
@@ -175,7 +184,7 @@ namespace slipstick::tfeti
         u[p] += systems[p]->kernel() * a.segment(next, k);
         next += k;
       }
-    return u;
+    return result;
   }
 
   RigidMotion DualProblem::motion_behind(const DistributedVector &r) const

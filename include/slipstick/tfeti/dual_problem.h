@@ -13,6 +13,13 @@ namespace slipstick::tfeti
   class DualProblem
   {
   public:
+    /// The primal solution and the multipliers that belong to it.
+    struct Recovery
+    {
+      std::vector<Eigen::VectorXd> u;           // of this rank's subdomains [mm]
+      DistributedVector            multipliers; // [N]
+    };
+
     /// Factorises the subdomains and the coarse problem and estimates |P F P|. Collective.
     /// @throws NoEquilibrium naming body and motion when the rows of B leave a rigid motion of a body free.
     /// @throws NumericalError when a subdomain cannot be factorised.
@@ -45,10 +52,11 @@ namespace slipstick::tfeti
     /// A zero vector of multipliers, owned entries only.
     DistributedVector zero() const;
 
-    /// Displacements [mm] of this rank's subdomains, u = K+(f - B'x) + R a. The amplitudes a of the rigid motions make
-    /// the rows with `free` (those that hold with equality) fit. Collective.
+    /// Displacements u = K+(f - B'x) + R a. First x is moved, on the rows with `free` alone, to where G x = e holds to
+    /// rounding, so that u is in equilibrium with it; then the amplitudes a of the rigid motions make those rows (which
+    /// hold with equality) fit in the sense of least squares. Collective.
     /// @throws NoEquilibrium naming the body that slides or lifts off when the free rows do not fix a.
-    std::vector<Eigen::VectorXd> recover(const DistributedVector &x, const std::vector<bool> &free) const;
+    Recovery recover(const DistributedVector &x, const std::vector<bool> &free) const;
 
     /// B u of displacements of this rank's subdomains, owned rows [mm]. Collective.
     DistributedVector jumps(const std::vector<Eigen::VectorXd> &u) const;
@@ -91,7 +99,8 @@ namespace slipstick::tfeti
     }
 
   private:
-    double power_method(const DualOptions &options) const;
+    double          power_method(const DualOptions &options) const;
+    Eigen::VectorXd resultants() const; // e
 
     MPI_Comm                                      comm;
     MpiReduction                                  reduce;
