@@ -141,6 +141,11 @@ namespace slipstick::contact
     if (start.status == qp::Status::infeasible)
       no_equilibrium(dual, start.certificate);
 
+    const auto with_start = [&observer](qp::OuterStep step) {
+      ++step.hessian_multiplications; // F x~ in the homogenised load
+      if (observer)
+        observer(step);
+    };
     Box shifted = box;
     shifted.lower -= start.x;
     shifted.upper -= start.x;
@@ -151,7 +156,7 @@ namespace slipstick::contact
                              qp::SmalbeStart<Vector>{dual.zero()},
                              qp::Goal(options.tolerance),
                              options.smalbe,
-                             observer);
+                             with_start);
     DualSolution solution;
     solution.status             = result.status;
     solution.counts             = result.counts;
@@ -166,7 +171,7 @@ namespace slipstick::contact
         solution.multipliers.local_element(r) = box.lower.local_element(r);
       else if (result.x.local_element(r) >= shifted.upper.local_element(r))
         solution.multipliers.local_element(r) = box.upper.local_element(r);
-    ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
+    ++solution.counts.hessian_multiplications; // F x~
     find_active(box, dual.communicator(), solution);
     return solution;
   }
