@@ -217,6 +217,11 @@ namespace slipstick::app
       {
         return solve_and_write(scene, directory, log, comm);
       }
+    catch (const InputError &) // some of it shows in meshes and formulas only
+      {
+        directory.remove_if_new();
+        throw;
+      }
     catch (const NoEquilibrium &) // on all ranks alike
       {
         output::write_summary(directory, summary_without_equilibrium(scene, comm));

@@ -89,6 +89,11 @@ namespace slipstick::contact
                               const scene::SolverOptions &options,
                               const qp::Observer         &observer)
     {
+      const auto with_start = [&observer](qp::OuterStep step) {
+        ++step.hessian_multiplications; // F x~ in the homogenised load
+        if (observer)
+          observer(step);
+      };
       Box shifted = box;
       shifted.lower -= from;
       shifted.upper -= from;
@@ -99,7 +104,7 @@ namespace slipstick::contact
                                      qp::SmalbeStart<Vector>{dual.zero()},
                                      qp::Goal(tolerance, reference),
                                      options.smalbe,
-                                     observer);
+                                     with_start);
       DualSolution solution;
       solution.status             = result.status;
       solution.counts             = result.counts;

@@ -113,7 +113,9 @@ namespace slipstick::scene
         std::string at;
         for (unsigned int d = 0; d < dim; ++d)
           at += coordinate_names[d] + " = " + number_text(x[d]) + ", ";
-        throw formula_error(where, parser.GetExpr(), number_text(result) + " at " + at + "t = " + number_text(t));
+        throw formula_error(where,
+                            trim(parser.GetExpr()), // muParser appends a blank
+                            number_text(result) + " at " + at + "t = " + number_text(t));
       }
     return result;
   }
