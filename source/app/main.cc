@@ -1,5 +1,6 @@
 #include <slipstick/app/command_line.h>
 #include <slipstick/app/simulation.h>
+#include <slipstick/scene/read.h>
 
 #include <deal.II/base/mpi.h>
 

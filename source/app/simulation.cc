@@ -3,6 +3,7 @@
 #include <slipstick/fem/arc_length.h>
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/contact_constraints.h>
+#include <slipstick/fem/decomposition.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/convergence.h>
 #include <slipstick/output/fields.h>

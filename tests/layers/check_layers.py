@@ -42,7 +42,7 @@ RULES = {
     "contact": Rule(layers={"base", "qp", "scene", "tfeti"}, dealii={"base", "lac"}, libraries={"MPI", "Eigen"}),
     "output": Rule(layers={"base", "contact", "fem"}, dealii=ALL_OF_DEALII, libraries={"MPI", "JSON", "POSIX"}),
     "app": Rule(layers={"base", "contact", "fem", "output", "qp", "scene", "tfeti"}, dealii=ALL_OF_DEALII,
-                libraries={"MPI", "JSON", "CLI11", "POSIX"}),
+                libraries={"MPI", "Boost", "JSON", "CLI11", "POSIX", "Trilinos"}),
 }
 
 # First match counts; a header that matches none is an unknown library.

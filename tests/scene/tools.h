@@ -2,7 +2,7 @@
 #pragma once
 
 #include <slipstick/base/exceptions.h>
-#include <slipstick/scene/scene.h>
+#include <slipstick/scene/read.h>
 
 #include <gtest/gtest.h>
 

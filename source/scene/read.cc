@@ -2,7 +2,7 @@
 #include <slipstick/scene/checks.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/listing.h>
-#include <slipstick/scene/scene.h>
+#include <slipstick/scene/read.h>
 #include <slipstick/scene/sections.h>
 
 #include <filesystem>
