@@ -129,7 +129,10 @@ namespace slipstick::app
     return std::min(largest_limit, check_factor * tolerance);
   }
 
-  void print_checks(const Log &log, const contact::Checks &checks, const double tolerance)
+  void print_checks(const Log                   &log,
+                    const contact::DualSolution &solution,
+                    const contact::Checks       &checks,
+                    const double                 tolerance)
   {
     log.line(line("checks",
                   format("jump %.1e, penetration %.1e, complementarity %.1e, tension %.1e, friction %.1e",
@@ -143,6 +146,22 @@ namespace slipstick::app
                          checks.nodal_equilibrium,
                          checks.force_balance,
                          checks.moment_balance)));
+    if (solution.status != qp::Status::converged)
+      {
+        const bool limit = solution.status == qp::Status::iteration_limit;
+        log.warning(
+          format(
+            "not converged: the solver %s at residuals of %.1e and %.1e, asked for is %g; the results are no solution\n"
+            "  remedy: ",
+            limit ? "reached its limit of iterations" : "came to a standstill",
+            solution.projected_gradient,
+            solution.equality,
+            tolerance) +
+          (!limit                        ? "raise Solver/Tolerance, and look at the residuals in convergence.csv"
+           : solution.algorithm == "pcg" ? "raise Solver/PCG/Max iterations"
+                                         : "raise Solver/SMALBE/Max outer iterations or Max inner iterations"));
+        return;
+      }
     const auto [name, value] = checks.worst();
     if (!(value <= check_limit(tolerance)))
       log.warning(

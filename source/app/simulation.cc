@@ -172,7 +172,7 @@ namespace slipstick::app
       const auto contact =
         contact::check(dual, recovery.multipliers, recovery.u, slip_bound, solution.free, scene.bodies.size());
       const auto stress = fem::recover_stress(scene, mesh, spaces, dual.constraints(), recovery.u);
-      print_checks(log, contact.checks, scene.solver.tolerance);
+      print_checks(log, solution, contact.checks, scene.solver.tolerance);
 
       clock.enter("output");
       auto summary = make_summary(scene, mesh, spaces, dual, solution, contact.checks, stress);

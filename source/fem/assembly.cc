@@ -1,3 +1,4 @@
+#include <slipstick/base/collective.h>
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/cell_values.h>
 #include <slipstick/fem/rigid_modes.h>
@@ -189,19 +190,21 @@ namespace slipstick::fem
   {
     const auto                            frames = body_frames(scene, mesh);
     std::vector<tfeti::SubdomainMatrices> systems;
-    for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
-      {
-        const auto              &subdomain   = *mesh.subdomains[p];
-        const auto              &dof_handler = *spaces.dof_handlers[p];
-        tfeti::SubdomainMatrices system;
-        system.subdomain     = subdomain.subdomain;
-        system.body          = subdomain.body;
-        system.stiffness     = assemble_stiffness(scene, subdomain.body, spaces, dof_handler);
-        system.load          = assemble_load(scene, mesh, subdomain, spaces, dof_handler, t);
-        system.boundary_dofs = boundary_dofs(dof_handler);
-        rigid_modes(spaces, dof_handler, frames[subdomain.body], system.kernel, system.body_modes);
-        systems.push_back(std::move(system));
-      }
+    collectively(mesh.comm, [&] { // a formula may give no number on one rank alone
+      for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+        {
+          const auto              &subdomain   = *mesh.subdomains[p];
+          const auto              &dof_handler = *spaces.dof_handlers[p];
+          tfeti::SubdomainMatrices system;
+          system.subdomain     = subdomain.subdomain;
+          system.body          = subdomain.body;
+          system.stiffness     = assemble_stiffness(scene, subdomain.body, spaces, dof_handler);
+          system.load          = assemble_load(scene, mesh, subdomain, spaces, dof_handler, t);
+          system.boundary_dofs = boundary_dofs(dof_handler);
+          rigid_modes(spaces, dof_handler, frames[subdomain.body], system.kernel, system.body_modes);
+          systems.push_back(std::move(system));
+        }
+    });
     return systems;
   }
 

@@ -95,6 +95,8 @@ namespace slipstick::scene
           ++n_lines;
           if (statement.empty())
             line_number = n_lines;
+          if (line.find('\0') != std::string::npos)
+            throw InputError("'" + file + "' is no text file", "name a .prm file");
           line = trim(line.substr(0, line.find('#')));
           if (!line.empty() && line.back() == '\\')
             {

@@ -131,7 +131,8 @@ namespace slipstick::tfeti
     std::string        text;
     for (unsigned int b = 0; b < body_names.size(); ++b)
       {
-        const Eigen::VectorXd part = motion.amplitudes.segment(b * k, k);
+        const Eigen::VectorXd part = (motion.amplitudes.segment(b * k, k).array().abs() < named_part * largest)
+                                       .select(0., motion.amplitudes.segment(b * k, k)); // rounding left away
         if (part.cwiseAbs().maxCoeff() < named_part * largest)
           continue;
         const Eigen::VectorXd translation = part.head(k - 1);

@@ -40,7 +40,7 @@ class BadInput(unittest.TestCase):
         self.refused(str(pathlib.Path(shipped('x')).parent), {}, 'cannot be read as a scene file', ranks=(2,))
 
     def test_binary_file(self):
-        self.refused(PROGRAM, {}, 'slipstick:', ranks=(2,))
+        self.refused(PROGRAM, {}, 'is no text file', ranks=(2,))
 
     def test_no_case_file(self):
         for n in ALL_RANKS:

@@ -17,7 +17,7 @@ import tempfile
 SOURCE = pathlib.Path(os.environ.get('SLIPSTICK_SOURCE_DIR', pathlib.Path(__file__).resolve().parents[2]))
 PROGRAM = os.environ.get('SLIPSTICK', str(SOURCE / 'build' / 'slipstick'))
 MPIEXEC = os.environ.get('MPIEXEC', 'mpirun')
-TIME_LIMIT = 100  # seconds for one run: all of them end within a few, also on a busy machine; a hang is a failure
+TIME_LIMIT = 60  # seconds for one run: all of them end within a few, also on a busy machine; a hang is a failure
 
 WORK = pathlib.Path(tempfile.mkdtemp(prefix='slipstick-cases-'))
 atexit.register(shutil.rmtree, WORK, ignore_errors=True)

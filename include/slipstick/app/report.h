@@ -23,7 +23,10 @@ namespace slipstick::app
 
   /// The checks from the recovered displacement; the limit above which an answer does not count as converged.
   double check_limit(const double tolerance);
-  void   print_checks(const Log &log, const contact::Checks &checks, const double tolerance);
+  void   print_checks(const Log                   &log,
+                      const contact::DualSolution &solution,
+                      const contact::Checks       &checks,
+                      const double                 tolerance);
 
   /// The figures that matter and the file to open.
   void print_result(const Log             &log,
