@@ -71,7 +71,7 @@ namespace slipstick::app
 
   void print_header(const Log &log, const scene::Scene<2> &scene, const MPI_Comm comm)
   {
-    log.line(format("slipstick %s (deal.II %s, Trilinos %s) on %u rank(s)",
+    log.line(format("slipstick %s (deal.II %s, Trilinos %s), MPI ranks: %u",
                     SLIPSTICK_VERSION,
                     DEAL_II_PACKAGE_VERSION,
                     TRILINOS_VERSION_STRING,
@@ -82,7 +82,7 @@ namespace slipstick::app
   void print_mesh(const Log &log, const scene::Scene<2> &scene, const fem::Mesh<2> &mesh, const fem::Spaces<2> &spaces)
   {
     log.line(line("mesh",
-                  format("%zu body(ies), %llu cells of degree %u, %u subdomain(s) by %s, %llu unknowns",
+                  format("bodies: %zu, cells: %llu of degree %u, subdomains: %u (%s), unknowns: %llu",
                          scene.bodies.size(),
                          static_cast<unsigned long long>(mesh.n_cells),
                          scene.discretization.degree,
@@ -103,15 +103,15 @@ namespace slipstick::app
   void print_constraints(const Log &log, const tfeti::Constraints &constraints)
   {
     const auto &n = constraints.counts;
-    log.line(line(
-      "constraints",
-      format("%llu multipliers: %llu gluing, %llu prescribed, %llu normal, %llu tangential; %llu contact candidates",
-             n.total(),
-             n.gluing,
-             n.prescribed,
-             n.normal,
-             n.tangential,
-             n.candidates)));
+    log.line(
+      line("constraints",
+           format("%llu multipliers: %llu gluing, %llu supports, %llu normal, %llu tangential; %llu contact candidates",
+                  n.total(),
+                  n.gluing,
+                  n.prescribed,
+                  n.normal,
+                  n.tangential,
+                  n.candidates)));
   }
 
   void print_dual(const Log &log, const tfeti::DualProblem &dual)
@@ -134,7 +134,8 @@ namespace slipstick::app
                     const contact::Checks       &checks,
                     const double                 tolerance)
   {
-    log.line(line("checks",
+    log.line(line("checks", format("from the displacement, relative, allowed %.1e:", check_limit(tolerance))));
+    log.line(line("",
                   format("jump %.1e, penetration %.1e, complementarity %.1e, tension %.1e, friction %.1e",
                          checks.interface_jump,
                          checks.penetration,
@@ -181,13 +182,14 @@ namespace slipstick::app
     log.line("");
     for (const auto &pair : summary.results.contact)
       log.line(format(
-        "contact %s: largest pressure %.6g MPa; %u nodes in contact, %u stick, %u slip, %u open; force %.6g N normal, %.6g N tangential",
+        "contact %s: largest pressure %.6g MPa; %u nodes in contact, %u open; %u stick, %u slip%s; force %.6g N normal, %.6g N tangential",
         pair.pair.c_str(),
         pair.max_pressure,
         pair.contact_nodes,
+        pair.open_nodes,
         pair.stick_nodes,
         pair.slip_nodes,
-        pair.open_nodes,
+        pair.open_slip_nodes > 0 ? format(" (%u of them open)", pair.open_slip_nodes).c_str() : "",
         pair.normal_force,
         pair.tangential_force));
     log.line(format(

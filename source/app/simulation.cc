@@ -31,9 +31,13 @@ namespace slipstick::app
     /// Observer of the solver: a line on the console and a row of convergence.csv.
     qp::Observer convergence_observer(const Log                           &log,
                                       const scene::Algorithm               algorithm,
+                                      const double                         tolerance,
                                       std::vector<output::ConvergenceRow> &rows)
     {
-      log.line("             outer  F-multiplications  |gP|/|Pd|  |Gx|/|Pd|  at a bound");
+      log.line(format("solve        %s until projected gradient gP and violation of G x = e are below %g |Pd|",
+                      name_of(algorithm).c_str(),
+                      tolerance));
+      log.line("              step  F-multiplications  |gP|/|Pd|  |Gx|/|Pd|  at a bound");
       return [&log, algorithm, &rows](const qp::OuterStep &step) {
         output::ConvergenceRow row;
         row.algorithm               = name_of(algorithm);
@@ -141,6 +145,7 @@ namespace slipstick::app
     {
       StageClock clock;
       const auto options = contact::resolved_options(scene);
+      directory.remove_results();
       print_header(log, scene, comm);
 
       clock.enter("mesh");
@@ -165,7 +170,10 @@ namespace slipstick::app
       clock.enter("solve");
       std::vector<output::ConvergenceRow> convergence;
       const auto                          solution =
-        contact::solve(dual, slip_bound, options, convergence_observer(log, options.algorithm, convergence));
+        contact::solve(dual,
+                       slip_bound,
+                       options,
+                       convergence_observer(log, options.algorithm, options.tolerance, convergence));
 
       clock.enter("recovery");
       const auto recovery = dual.recover(solution.multipliers, solution.free);

@@ -10,6 +10,9 @@ namespace slipstick::contact
   {
     using tfeti::DistributedVector;
 
+    // Displacements below this part of the largest gap count as none.
+    constexpr double negligible_part_of_gap = 1e-3;
+
     double relative(const double value, const double scale)
     {
       return scale > 0 ? value / scale : value;
@@ -178,19 +181,21 @@ namespace slipstick::contact
       if (free[r])
         gap += multipliers.local_element(r) * violation(r);
 
-    double largest_contact = 0;
+    double largest_contact = 0, largest_gap = 0, all_bounds = 0;
     for (const auto &point : constraints.contact_points)
       {
         const auto   node = contact_node(dual, point, shared, jumps, slip_bound, free);
         const double N = node.pressure * node.area, T = node.tangential_traction * node.area;
         const double bound = node.slip_bound * node.area;
         largest_contact    = std::max({largest_contact, std::abs(N), std::abs(T)});
+        largest_gap        = std::max(largest_gap, std::abs(point.gap));
         checks.penetration = std::max(checks.penetration, -node.gap);
         checks.tension     = std::max(checks.tension, -N);
         if (point.normal_row != tfeti::invalid_row)
           checks.complementarity += std::abs(N * node.gap);
         if (point.tangential_row != tfeti::invalid_row)
           {
+            all_bounds += bound;
             checks.friction_bound = std::max(checks.friction_bound, std::abs(T) - bound);
             checks.complementarity += std::abs(bound * std::abs(node.slip) + T * node.slip);
           }
@@ -204,24 +209,33 @@ namespace slipstick::contact
                             &checks.penetration,
                             &checks.tension,
                             &checks.friction_bound,
-                            &largest_contact})
+                            &largest_contact,
+                            &largest_gap})
       *maximum = dealii::Utilities::MPI::max(*maximum, comm);
-    for (double *sum : {&checks.energy, &checks.complementarity, &gap})
+    for (double *sum : {&checks.energy, &checks.complementarity, &gap, &all_bounds})
       *sum = dealii::Utilities::MPI::sum(*sum, comm);
-    checks.algebraic_error   = std::sqrt(relative(std::abs(gap), checks.energy));
-    checks.interface_jump    = relative(checks.interface_jump, checks.max_displacement);
-    checks.penetration       = relative(checks.penetration, checks.max_displacement);
-    checks.tension           = relative(checks.tension, largest_contact);
-    checks.friction_bound    = relative(checks.friction_bound, largest_contact);
-    checks.complementarity   = relative(checks.complementarity, checks.energy);
-    checks.nodal_equilibrium = relative(on_bodies.largest_left, on_bodies.largest);
+    // a scene that hardly moves is measured against its gaps, as the solver's residual |Pd| is
+    const double no_length   = negligible_part_of_gap * largest_gap;
+    const double no_force    = no_length / dual.norm();
+    const double length      = std::max(checks.max_displacement, no_length);
+    const double force       = std::max(largest_contact, no_force);
+    const double energy      = std::max({checks.energy, no_force * no_length, all_bounds * no_length});
+    checks.algebraic_error   = std::sqrt(relative(std::abs(gap), energy));
+    checks.interface_jump    = relative(checks.interface_jump, length);
+    checks.penetration       = relative(checks.penetration, length);
+    checks.tension           = relative(checks.tension, force);
+    checks.friction_bound    = relative(checks.friction_bound, force);
+    checks.complementarity   = relative(checks.complementarity, energy);
+    checks.nodal_equilibrium = relative(on_bodies.largest_left, std::max(on_bodies.largest, no_force));
     const unsigned int last  = on_bodies.left.rows() - 1; // the rotation
     for (unsigned int b = 0; b < n_bodies; ++b)
       {
         checks.force_balance =
-          std::max(checks.force_balance, relative(on_bodies.left.col(b).head(last).norm(), on_bodies.scale[b]));
+          std::max(checks.force_balance,
+                   relative(on_bodies.left.col(b).head(last).norm(), std::max(on_bodies.scale[b], no_force)));
         checks.moment_balance =
-          std::max(checks.moment_balance, relative(std::abs(on_bodies.left(last, b)), on_bodies.scale[b]));
+          std::max(checks.moment_balance,
+                   relative(std::abs(on_bodies.left(last, b)), std::max(on_bodies.scale[b], no_force)));
       }
     return result;
   }
@@ -242,6 +256,7 @@ namespace slipstick::contact
         result.contact_nodes += node.is_closed;
         result.open_nodes += !node.is_closed;
         result.slip_nodes += node.status == ContactStatus::slip;
+        result.open_slip_nodes += node.status == ContactStatus::slip && !node.is_closed;
         result.stick_nodes += node.status == ContactStatus::stick;
       }
     return results;

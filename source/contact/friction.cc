@@ -34,7 +34,7 @@ namespace slipstick::contact
     [[noreturn]] void no_equilibrium(const tfeti::DualProblem &dual, const Vector &certificate)
     {
       throw NoEquilibrium(
-        "no contact forces within their bounds balance the loads: they set in motion " +
+        "no contact forces within their bounds balance the loads, which move " +
           tfeti::describe(dual.motion_behind(certificate), dual.body_names()),
         "support the body against this motion, raise the slip bound, or turn the loads towards the contact");
     }
@@ -51,9 +51,15 @@ namespace slipstick::contact
       const auto                  b    = homogenised_load(dual, start);
       const qp::PcpgStart<Vector> from_zero{dual.zero()};
       const auto                  precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
-      const auto                  result       = dual.is_preconditioned()
-                                                   ? qp::pcpg(dual, b, from_zero, qp::Goal(options.tolerance), options.pcpg, precondition)
-                                                   : qp::pcpg(dual, b, from_zero, qp::Goal(options.tolerance), options.pcpg);
+      const qp::Observer          counted      = [&observer](qp::OuterStep step) {
+        ++step.hessian_multiplications; // F x~ in the homogenised load
+        if (observer)
+          observer(step);
+      };
+      const qp::Goal goal(options.tolerance);
+      const auto     result = dual.is_preconditioned()
+                                ? qp::pcpg(dual, b, from_zero, goal, options.pcpg, precondition, counted)
+                                : qp::pcpg(dual, b, from_zero, goal, options.pcpg, qp::NoPreconditioner(), counted);
       start += result.x;
       solution.status             = result.status;
       solution.multipliers        = start;
@@ -61,8 +67,6 @@ namespace slipstick::contact
       solution.projected_gradient = result.relative_residual;
       ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
       solution.counts.outer_iterations = 1;
-      if (observer)
-        observer({1, solution.counts.hessian_multiplications, result.relative_residual, 0., 0, 0});
       return solution;
     }
 

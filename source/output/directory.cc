@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <locale>
+#include <regex>
 #include <system_error>
 
 namespace slipstick::output
@@ -71,6 +72,22 @@ namespace slipstick::output
     std::error_code ignored;
     for (auto path = created.rbegin(); path != created.rend(); ++path)
       std::filesystem::remove(*path, ignored); // fails on one that is not empty
+  }
+
+  void OutputDirectory::remove_results() const
+  {
+    static const std::regex result("solution\\.pvd|solution_\\d+\\.pvtu|subdomain_\\d+_\\d+\\.vtu|contact_\\d+\\.vtp|"
+                                   "contact\\.csv|convergence\\.csv|summary\\.json|parameters\\.prm");
+    collectively(communicator, [&] {
+      if (dealii::Utilities::MPI::this_mpi_process(communicator) != 0)
+        return;
+      std::vector<std::filesystem::path> old;
+      for (const auto &entry : std::filesystem::directory_iterator(directory))
+        if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), result))
+          old.push_back(entry.path());
+      for (const auto &file : old)
+        std::filesystem::remove(file);
+    });
   }
 
   std::string OutputDirectory::path(const std::string &name) const

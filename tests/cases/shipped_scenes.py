@@ -33,8 +33,6 @@ class ShippedScenes(unittest.TestCase):
     def test_circle_below_the_right_end(self):
         self.check(SOURCE / 'prm' / 'box_on_circle.prm', {'Obstacle disc/Center': '10, -20'})
 
-    # The checks are relative to the answer, here rounding; the stopping test is relative to the gaps.
-    @unittest.expectedFailure
     def test_prescribed_displacement_of_zero_gives_no_force(self):
         results = self.check(SOURCE / 'prm' / 'box_prescribed.prm', {'Support pressed/Displacement y': 0})
         self.assertLess(abs(results['contact'][0]['normal_force']), 1e-6)

@@ -6,7 +6,7 @@
 
 namespace slipstick::contact
 {
-  /// All relative: lengths to the largest displacement, contact forces to the largest nodal contact force, works to twice
+  /// All relative: lengths to the largest displacement (or a thousandth of the largest gap, in scenes that hardly move), contact forces to the largest nodal contact force, works to twice
   /// the strain energy, forces and moments of a body to the sum of the force magnitudes on it. Nodal forces are K u - f,
   /// summed over the copies of a node; multipliers enter the algebraic error only.
   struct Checks

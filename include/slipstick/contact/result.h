@@ -58,6 +58,7 @@ namespace slipstick::contact
     unsigned int contact_nodes    = 0; // closed
     unsigned int open_nodes       = 0; // not closed
     unsigned int stick_nodes      = 0; // closed and not slipping
+    unsigned int open_slip_nodes  = 0; // of them, not closed
     unsigned int slip_nodes       = 0; // slip bound reached, see ContactNode on nodes that are not closed
   };
 } // namespace slipstick::contact

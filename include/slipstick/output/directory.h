@@ -19,6 +19,9 @@ namespace slipstick::output
     /// @throws InputError on all ranks alike: empty path, a file in its place, no permission, a full or read-only disk.
     OutputDirectory(const std::string &path, const MPI_Comm comm);
 
+    /// Removes the files that an earlier run left here under the names of doc/interface.md. Collective.
+    void remove_results() const;
+
     /// Path of the file @p name in the directory; empty @p name: of the directory itself.
     std::string path(const std::string &name = "") const;
 

@@ -95,11 +95,13 @@ namespace slipstick::qp
            PcpgStart<Vector>     start,
            const Goal           &goal,
            const PcpgOptions    &options_,
-           const Preconditioner &preconditioner_)
+           const Preconditioner &preconditioner_,
+           const Observer       &observer_)
         : problem(problem_)
         , b(b_)
         , options(options_)
         , preconditioner(preconditioner_)
+        , observer(observer_)
         , x(std::move(start.x))
         , Fx(start.product ? std::move(*start.product) : zero_like(b))
         , r(b)
@@ -190,6 +192,8 @@ namespace slipstick::qp
         update_residual();
         directions.push(std::move(p), std::move(Fp), pFp);
         ++counts.cg_steps;
+        if (observer)
+          observer({counts.cg_steps, counts.hessian_multiplications, norm_r / reference, 0.0, 0, 0});
         return {};
       }
 
@@ -209,6 +213,7 @@ namespace slipstick::qp
       const Vector         &b;
       const PcpgOptions    &options;
       const Preconditioner &preconditioner;
+      const Observer       &observer;
 
       Vector                   x, Fx, r, w;
       DirectionHistory<Vector> directions;
@@ -222,6 +227,7 @@ namespace slipstick::qp
   /// |b|). So Q x stays that of the start; b need not be in the range of P. `preconditioner(r, y)`: y = M r, symmetric
   /// positive (semi)definite. From x = 0, or from a start with product, nothing is multiplied before the first step.
   /// Full reorthogonalisation keeps two vectors a step.
+  /// The observer is called after every step, on every process.
   /// status: infeasible if F is singular along a direction of descent (unbounded from below).
   template <typename Vector, typename Problem, typename Preconditioner = NoPreconditioner>
   PcpgResult<Vector> pcpg(const Problem        &problem,
@@ -229,9 +235,10 @@ namespace slipstick::qp
                           PcpgStart<Vector>     start,
                           const Goal           &goal,
                           const PcpgOptions    &options        = {},
-                          const Preconditioner &preconditioner = {})
+                          const Preconditioner &preconditioner = {},
+                          const Observer       &observer       = {})
   {
     using Solver = detail::Pcpg<Vector, Problem, Preconditioner>;
-    return Solver(problem, b, std::move(start), goal, options, preconditioner).run();
+    return Solver(problem, b, std::move(start), goal, options, preconditioner, observer).run();
   }
 } // namespace slipstick::qp
