@@ -44,14 +44,20 @@ namespace
     return 1e3 * median(values);
   }
 
+  /// The least: what a busy machine disturbs least.
+  double least_milliseconds(const std::vector<double> &values)
+  {
+    return 1e3 * *std::min_element(values.begin(), values.end());
+  }
+
   /// A way to factorise and solve, timed again and again.
   struct Variant
   {
-    std::string                                              name;
-    std::function<std::function<Vector(const Vector &)>()>   factorise; // returns the solver
-    std::function<std::size_t()>                             nonzeros;
-    std::vector<double>                                      factor_times, solve_times;
-    double                                                   error = 0; // |A x - b| / |b|
+    std::string                                            name;
+    std::function<std::function<Vector(const Vector &)>()> factorise; // returns the solver
+    std::function<std::size_t()>                           nonzeros;
+    std::vector<double>                                    factor_times, solve_times;
+    double                                                 error = 0; // |A x - b| / |b|
   };
 
   template <class Solver>
@@ -72,10 +78,10 @@ namespace
     return variant;
   }
 
-  Variant own_variant(const std::string                                    &name,
-                      const Matrix                                         &A,
-                      const std::vector<unsigned int>                      &last,
-                      const std::shared_ptr<tfeti::CholmodSession>         &session)
+  Variant own_variant(const std::string                            &name,
+                      const Matrix                                 &A,
+                      const std::vector<unsigned int>              &last,
+                      const std::shared_ptr<tfeti::CholmodSession> &session)
   {
     auto    factor = std::make_shared<std::unique_ptr<tfeti::Cholesky>>();
     Variant variant;
@@ -132,32 +138,38 @@ namespace
                 static_cast<long>(A.rows()),
                 static_cast<long>(A.nonZeros()),
                 repetitions);
-    std::printf("| factorisation | analysis + factor ms | relative | solve ms | relative | nonzeros of L | residual |\n"
-                "|---|---|---|---|---|---|---|\n");
+    std::printf(
+      "| factorisation | analysis + factor ms: median | relative | least | solve ms: median | relative | least | "
+      "nonzeros of L | residual |\n|---|---|---|---|---|---|---|---|---|\n");
     const double factor = milliseconds(variants[0].factor_times), solve = milliseconds(variants[0].solve_times);
     for (const auto &variant : variants)
       {
         const std::size_t n = variant.nonzeros();
-        std::printf("| %s | %.2f | %.2f | %.3f | %.2f | %s | %.0e |\n",
+        std::printf("| %s | %.2f | %.2f | %.2f | %.3f | %.2f | %.3f | %s | %.0e |\n",
                     variant.name.c_str(),
                     milliseconds(variant.factor_times),
                     milliseconds(variant.factor_times) / factor,
+                    least_milliseconds(variant.factor_times),
                     milliseconds(variant.solve_times),
                     milliseconds(variant.solve_times) / solve,
+                    least_milliseconds(variant.solve_times),
                     n > 0 ? std::to_string(n).c_str() : "same factor",
                     variant.error);
       }
   }
 
   /// Explicit against implicit F of the whole scene: set-up (factor, and blocks) and one product.
-  void compare_operators(const scene::Scene<2> &scene, const fem::Mesh<2> &mesh, const fem::Spaces<2> &spaces, const unsigned int repetitions)
+  void compare_operators(const scene::Scene<2> &scene,
+                         const fem::Mesh<2>    &mesh,
+                         const fem::Spaces<2>  &spaces,
+                         const unsigned int     repetitions)
   {
     const auto constraints = fem::contact_constraints(scene, mesh, spaces, 1.);
     const auto matrices    = fem::assemble(scene, mesh, spaces, 1.);
 
-    std::vector<double>                             factor_times[2], block_times[2], product_times[2];
-    double                                          megabytes[2] = {0, 0};
-    std::vector<tfeti::DistributedVector>           results(2, tfeti::DistributedVector(constraints.rows));
+    std::vector<double>                   factor_times[2], block_times[2], product_times[2];
+    double                                megabytes[2] = {0, 0};
+    std::vector<tfeti::DistributedVector> results(2, tfeti::DistributedVector(constraints.rows));
     for (unsigned int repetition = 0; repetition < repetitions; ++repetition)
       for (const unsigned int is_explicit : {0u, 1u})
         {
@@ -177,9 +189,8 @@ namespace
               }
           }));
           std::unique_ptr<tfeti::DualOperator> F;
-          block_times[is_explicit].push_back(seconds([&] {
-            F = std::make_unique<tfeti::DualOperator>(systems, gluing, constraints.rows, is_explicit);
-          }));
+          block_times[is_explicit].push_back(seconds(
+            [&] { F = std::make_unique<tfeti::DualOperator>(systems, gluing, constraints.rows, is_explicit); }));
           tfeti::DistributedVector x(constraints.rows), &y = results[is_explicit];
           for (unsigned int r = 0; r < x.locally_owned_size(); ++r)
             x.local_element(r) = std::sin(1. + r);
@@ -206,14 +217,22 @@ namespace
                   milliseconds(product_times[k]) / n,
                   megabytes[k] / n);
     results[0] -= results[1];
-    const double extra = median(factor_times[1]) + median(block_times[1]) - median(factor_times[0]);
-    const double gain  = median(product_times[0]) - median(product_times[1]);
-    std::printf("\nThe products differ by %.0e relative. Explicit pays from %.0f multiplications on (%.1f ms more set-up, "
-                "%.3f ms less a product, per subdomain).\n",
-                results[0].l2_norm() / results[1].l2_norm(),
-                gain > 0 ? std::ceil(extra / gain) : HUGE_VAL,
-                1e3 * extra / n,
-                1e3 * gain / n);
+    std::printf("\nThe products differ by %.0e relative.\n", results[0].l2_norm() / results[1].l2_norm());
+    const std::pair<const char *, double (*)(const std::vector<double> &)> statistics[] = {{"medians", milliseconds},
+                                                                                           {"least times",
+                                                                                            least_milliseconds}};
+    for (const auto &[name, of] : statistics)
+      {
+        const double extra = of(factor_times[1]) + of(block_times[1]) - of(factor_times[0]);
+        const double gain  = of(product_times[0]) - of(product_times[1]);
+        std::printf(
+          "By the %s explicit pays from %.0f multiplications on (%.2f ms more set-up, %.4f ms less a product, per "
+          "subdomain).\n",
+          name,
+          gain > 0 ? std::ceil(extra / gain) : HUGE_VAL,
+          extra / n,
+          gain / n);
+      }
   }
 } // namespace
 
@@ -222,9 +241,9 @@ int main(int argc, char **argv)
   if (openblas_set_num_threads)
     openblas_set_num_threads(1);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  std::string              file;
-  unsigned int             repetitions = 21;
-  std::vector<std::string> overrides;
+  std::string                              file;
+  unsigned int                             repetitions = 21;
+  std::vector<std::string>                 overrides;
   for (int i = 1; i < argc; ++i)
     if (std::string(argv[i]) == "--set" && i + 1 < argc)
       overrides.push_back(argv[++i]);
@@ -241,12 +260,12 @@ int main(int argc, char **argv)
       const fem::Spaces<2> spaces(mesh, scene.discretization.degree);
 
       // The matrix of the first subdomain, held at unknowns chosen as SubdomainSystem does.
-      const auto constraints = fem::contact_constraints(scene, mesh, spaces, 1.);
-      auto       matrices    = fem::assemble(scene, mesh, spaces, 1.);
-      auto       last        = tfeti::LocalGluing::make(constraints.blocks[0]).second;
-      const auto fixing      = tfeti::fixing_unknowns(matrices[0].kernel, last).first;
-      Matrix     A           = matrices[0].stiffness;
-      const double rho       = A.diagonal().mean();
+      const auto   constraints = fem::contact_constraints(scene, mesh, spaces, 1.);
+      auto         matrices    = fem::assemble(scene, mesh, spaces, 1.);
+      auto         last        = tfeti::LocalGluing::make(constraints.blocks[0]).second;
+      const auto   fixing      = tfeti::fixing_unknowns(matrices[0].kernel, last).first;
+      Matrix       A           = matrices[0].stiffness;
+      const double rho         = A.diagonal().mean();
       for (const unsigned int i : fixing)
         A.coeffRef(i, i) += rho;
       compare_factorisations(A, last, repetitions);

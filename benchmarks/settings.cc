@@ -1,6 +1,7 @@
-// benchmark_settings CASE.prm [LARGEST_N] [--set Section/Name=value]...: F-multiplications over outer steps in the ten
-// cells of the paper's tables, with one setting of the solver changed at a time. The dual problem of every N is set up
-// once; times are of the solver alone, over all cells. Prints Markdown on rank 0.
+// benchmark_settings CASE.prm [--largest N] [--smallest N] [--only TABLE]... [--set Section/Name=value]...:
+// F-multiplications over outer steps in the cells of the paper's tables (all ten by default), with one setting of the
+// solver changed at a time. The dual problem of every N is set up once; times are of the solver alone, over all cells.
+// --only takes the beginning of a table's name. Prints Markdown on rank 0.
 #include <slipstick/contact/friction.h>
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/contact_constraints.h>
@@ -9,6 +10,7 @@
 
 #include <Tpetra_Core.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <iostream>
@@ -18,6 +20,9 @@ extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 namespace
 {
   using namespace slipstick;
+
+  constexpr const char *usage = "usage: benchmark_settings CASE.prm [--largest N] [--smallest N] [--only TABLE]... "
+                                "[--set Section/Name=value]...";
 
   /// One row of a table: what it is called and what it does to the defaults.
   struct Setting
@@ -79,6 +84,19 @@ namespace
     return rows;
   }
 
+  /// The rows whose table begins with one of the names, all when there are none.
+  std::vector<Setting> selected(const std::vector<std::string> &names)
+  {
+    std::vector<Setting> rows;
+    for (const auto &row : settings())
+      if (names.empty() ||
+          std::any_of(names.begin(), names.end(), [&](const auto &name) { return row.table.rfind(name, 0) == 0; }))
+        rows.push_back(row);
+    if (rows.empty())
+      throw std::runtime_error("--only: no table begins so");
+    return rows;
+  }
+
   struct Cell
   {
     double                    slip_bound;
@@ -117,15 +135,15 @@ namespace
       all.push_back("Contact circle/Slip bound=" + std::to_string(bound));
       return scene::read_scene(file, all);
     };
-    const auto                scene = read(500);
-    const auto                mesh  = fem::make_mesh(scene, comm);
-    const fem::Spaces<2>      spaces(mesh, scene.discretization.degree);
-    const tfeti::DualProblem  dual(fem::assemble(scene, mesh, spaces, 1.),
+    const auto               scene = read(500);
+    const auto               mesh  = fem::make_mesh(scene, comm);
+    const fem::Spaces<2>     spaces(mesh, scene.discretization.degree);
+    const tfeti::DualProblem dual(fem::assemble(scene, mesh, spaces, 1.),
                                   fem::contact_constraints(scene, mesh, spaces, 1.),
                                   scene.solver.dual,
                                   {"box"},
                                   comm);
-    std::vector<Cell>         cells;
+    std::vector<Cell>        cells;
     for (const double bound : {500., 150.})
       {
         const auto bounds = contact::slip_bounds(read(bound), dual, 1.);
@@ -151,7 +169,9 @@ namespace
 
   void print(const std::vector<Setting> &rows, std::vector<Cell> &cells)
   {
-    std::stable_sort(cells.begin(), cells.end(), [](const Cell &a, const Cell &b) { return a.slip_bound > b.slip_bound; });
+    std::stable_sort(cells.begin(), cells.end(), [](const Cell &a, const Cell &b) {
+      return a.slip_bound > b.slip_bound;
+    });
     std::string table;
     for (unsigned int i = 0; i < rows.size(); ++i)
       {
@@ -186,27 +206,38 @@ int main(int argc, char **argv)
   if (openblas_set_num_threads)
     openblas_set_num_threads(1);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  int                n_arguments = 1;
-  char              *arguments[] = {argv[0], nullptr};
-  char             **program     = arguments;
-  Tpetra::ScopeGuard tpetra(&n_arguments, &program);
-  std::string              file;
-  unsigned int             largest = 16;
-  std::vector<std::string> overrides;
-  for (int i = 1; i < argc; ++i)
-    if (std::string(argv[i]) == "--set" && i + 1 < argc)
-      overrides.push_back(argv[++i]);
-    else if (file.empty())
-      file = argv[i];
-    else
-      largest = std::stoul(argv[i]);
+  int                                      n_arguments = 1;
+  char                                    *arguments[] = {argv[0], nullptr};
+  char                                   **program     = arguments;
+  Tpetra::ScopeGuard                       tpetra(&n_arguments, &program);
+  std::string                              file;
+  unsigned int                             smallest = 1, largest = 16;
+  std::vector<std::string>                 overrides, only;
   try
     {
-      if (file.empty())
-        throw std::runtime_error("usage: benchmark_settings CASE.prm [LARGEST_N] [--set Section/Name=value]...");
-      const auto        rows = settings();
+      for (int i = 1; i < argc; ++i)
+        {
+          const std::string word = argv[i];
+          if (word.rfind("--", 0) != 0 && file.empty())
+            file = word;
+          else if (i + 1 == argc)
+            throw std::runtime_error(usage);
+          else if (word == "--set")
+            overrides.push_back(argv[++i]);
+          else if (word == "--only")
+            only.push_back(argv[++i]);
+          else if (word == "--largest")
+            largest = std::stoul(argv[++i]);
+          else if (word == "--smallest")
+            smallest = std::stoul(argv[++i]);
+          else
+            throw std::runtime_error(usage);
+        }
+      if (file.empty() || smallest == 0)
+        throw std::runtime_error(usage);
+      const auto        rows = selected(only);
       std::vector<Cell> cells;
-      for (unsigned int n = 1; n <= largest; n *= 2)
+      for (unsigned int n = smallest; n <= largest; n *= 2)
         {
           auto more = solve_cells(file, overrides, rows, n, MPI_COMM_WORLD);
           cells.insert(cells.end(), more.begin(), more.end());
