@@ -37,6 +37,38 @@ namespace slipstick::app
     }
   } // namespace
 
+  std::string name_of(const scene::Algorithm algorithm)
+  {
+    switch (algorithm)
+      {
+        case scene::Algorithm::automatic:
+          return "auto";
+        case scene::Algorithm::smalbe:
+          return "smalbe";
+        case scene::Algorithm::semismooth_newton:
+          return "semismooth newton";
+        case scene::Algorithm::pcg:
+          return "pcg";
+      }
+    return "";
+  }
+
+  std::string name_of(const tfeti::Preconditioner preconditioner)
+  {
+    switch (preconditioner)
+      {
+        case tfeti::Preconditioner::automatic:
+          return "auto";
+        case tfeti::Preconditioner::none:
+          return "none";
+        case tfeti::Preconditioner::lumped:
+          return "lumped";
+        case tfeti::Preconditioner::dirichlet:
+          return "Dirichlet";
+      }
+    return "";
+  }
+
   void print_header(const Log &log, const scene::Scene<2> &scene, const MPI_Comm comm)
   {
     log.line(format("slipstick %s (deal.II %s, Trilinos %s) on %u rank(s)",
@@ -189,7 +221,7 @@ namespace slipstick::app
     s.problem.contact_candidates = n.candidates;
 
     s.solver.algorithm                   = solution.algorithm;
-    s.solver.preconditioner              = "none";
+    s.solver.preconditioner              = name_of(contact::resolved_options(scene).dual.preconditioner);
     s.solver.dual_operator               = dual.dual_operator().is_explicit() ? "explicit" : "implicit";
     s.solver.tolerance                   = scene.solver.tolerance;
     s.solver.hessian_multiplications     = solution.counts.hessian_multiplications;

@@ -29,13 +29,13 @@ namespace slipstick::app
 
     /// Observer of the solver: a line on the console and a row of convergence.csv.
     qp::Observer convergence_observer(const Log                           &log,
-                                      const std::string                   &algorithm,
+                                      const scene::Algorithm               algorithm,
                                       std::vector<output::ConvergenceRow> &rows)
     {
       log.line("             outer  F-multiplications  |gP|/|Pd|  |Gx|/|Pd|  at a bound");
       return [&log, algorithm, &rows](const qp::OuterStep &step) {
         output::ConvergenceRow row;
-        row.algorithm               = algorithm;
+        row.algorithm               = name_of(algorithm);
         row.outer_step              = step.outer;
         row.hessian_multiplications = step.hessian_multiplications;
         row.projected_gradient      = step.projected_gradient;
@@ -99,12 +99,47 @@ namespace slipstick::app
       return {dealii::Utilities::MPI::max(peak_memory_mb(), comm), dealii::Utilities::MPI::sum(peak_memory_mb(), comm)};
     }
 
+    void write_fields(const scene::Scene<dim>            &scene,
+                      const fem::Mesh<dim>               &mesh,
+                      const fem::Spaces<dim>             &spaces,
+                      const std::vector<Eigen::VectorXd> &u,
+                      const fem::StressResult            &stress,
+                      const output::OutputDirectory      &directory)
+    {
+      if (!scene.output.vtu)
+        return;
+      output::write_fields(directory, scene, mesh, spaces, u, stress, 0);
+      output::write_pvd(directory, {load_factor});
+    }
+
+    /// The contact line, and its sums (on rank 0).
+    std::vector<contact::PairResult> write_contact(const scene::Scene<dim>       &scene,
+                                                   const fem::Mesh<dim>          &mesh,
+                                                   const fem::Spaces<dim>        &spaces,
+                                                   const contact::CheckedContact &contact,
+                                                   const output::OutputDirectory &directory)
+    {
+      if (!scene.has_contact())
+        return {};
+      output::ContactNames names;
+      for (const auto &pair : scene.contacts)
+        {
+          names.pairs.push_back(pair.name);
+          names.slave_bodies.push_back(scene.bodies[pair.slave.body].name);
+        }
+      const auto step = gather_contact(scene, mesh, spaces, contact);
+      output::write_contact_csv(directory, names, {step});
+      output::write_contact_vtp(directory, step);
+      return contact::pair_results(step.nodes, names.pairs);
+    }
+
     ExitStatus solve_and_write(const scene::Scene<dim>       &scene,
                                const output::OutputDirectory &directory,
                                const Log                     &log,
                                const MPI_Comm                 comm)
     {
       StageClock clock;
+      const auto options = contact::resolved_options(scene);
       print_header(log, scene, comm);
 
       clock.enter("mesh");
@@ -120,7 +155,7 @@ namespace slipstick::app
       clock.enter("dual setup");
       const tfeti::DualProblem dual(std::move(matrices),
                                     std::move(constraints),
-                                    scene.solver.dual,
+                                    options.dual,
                                     names_of(scene.bodies),
                                     comm);
       const auto               slip_bound = contact::slip_bounds(scene, dual, load_factor);
@@ -128,39 +163,22 @@ namespace slipstick::app
 
       clock.enter("solve");
       std::vector<output::ConvergenceRow> convergence;
-      const auto                          algorithm = scene.has_contact() ? "smalbe" : "pcg";
       const auto                          solution =
-        contact::solve(dual, slip_bound, scene.solver, convergence_observer(log, algorithm, convergence));
+        contact::solve(dual, slip_bound, options, convergence_observer(log, options.algorithm, convergence));
 
       clock.enter("recovery");
-      const auto u = dual.recover(solution.multipliers, solution.free);
+      const auto recovery = dual.recover(solution.multipliers, solution.free);
       const auto contact =
-        contact::check(dual, solution.multipliers, u, slip_bound, solution.free, scene.bodies.size());
-      const auto stress = fem::recover_stress(scene, mesh, spaces, dual.constraints(), u);
+        contact::check(dual, recovery.multipliers, recovery.u, slip_bound, solution.free, scene.bodies.size());
+      const auto stress = fem::recover_stress(scene, mesh, spaces, dual.constraints(), recovery.u);
       print_checks(log, contact.checks, scene.solver.tolerance);
 
       clock.enter("output");
       auto summary = make_summary(scene, mesh, spaces, dual, solution, contact.checks, stress);
-      if (scene.output.vtu)
-        {
-          output::write_fields(directory, scene, mesh, spaces, u, stress, 0);
-          output::write_pvd(directory, {load_factor});
-        }
+      write_fields(scene, mesh, spaces, recovery.u, stress, directory);
       output::write_convergence(directory, convergence);
       directory.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
-      if (scene.has_contact())
-        {
-          output::ContactNames names;
-          for (const auto &pair : scene.contacts)
-            {
-              names.pairs.push_back(pair.name);
-              names.slave_bodies.push_back(scene.bodies[pair.slave.body].name);
-            }
-          const auto step         = gather_contact(scene, mesh, spaces, contact);
-          summary.results.contact = contact::pair_results(step.nodes, names.pairs);
-          output::write_contact_csv(directory, names, {step});
-          output::write_contact_vtp(directory, step);
-        }
+      summary.results.contact = write_contact(scene, mesh, spaces, contact, directory);
       clock.leave();
       summary.time_s    = times(clock, dual.factorization_seconds());
       summary.memory_mb = memory(comm);
@@ -180,7 +198,7 @@ namespace slipstick::app
     print_constraints(log, constraints);
     const tfeti::DualProblem dual(fem::assemble(scene, mesh, spaces, load_factor),
                                   std::move(constraints),
-                                  scene.solver.dual,
+                                  contact::resolved_options(scene).dual,
                                   names_of(scene.bodies),
                                   comm);
     print_dual(log, dual);
@@ -198,6 +216,11 @@ namespace slipstick::app
     try
       {
         return solve_and_write(scene, directory, log, comm);
+      }
+    catch (const InputError &) // some of it shows in meshes and formulas only
+      {
+        directory.remove_if_new();
+        throw;
       }
     catch (const NoEquilibrium &) // on all ranks alike
       {

@@ -4,6 +4,7 @@
 #include <slipstick/contact/friction.h>
 #include <slipstick/qp/feasible_point.h>
 #include <slipstick/qp/pcpg.h>
+#include <slipstick/qp/semismooth_newton.h>
 #include <slipstick/qp/smalbe.h>
 #include <slipstick/tfeti/rigid_motions.h>
 
@@ -42,20 +43,22 @@ namespace slipstick::contact
                               const scene::SolverOptions &options,
                               const qp::Observer         &observer)
     {
-      Vector start  = dual.particular();
-      auto   result = qp::pcpg(dual,
-                             homogenised_load(dual, start),
-                             qp::PcpgStart<Vector>{dual.zero()},
-                             qp::Goal(options.tolerance),
-                             options.pcpg);
-      start += result.x;
+      Vector       start = dual.particular();
       DualSolution solution;
+      solution.free                    = std::vector<bool>(start.locally_owned_size(), true);
+      solution.algorithm               = "pcg";
+      const auto                  face = dual.face(solution.free);
+      const auto                  b    = homogenised_load(dual, start);
+      const qp::PcpgStart<Vector> from_zero{dual.zero()};
+      const auto                  precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
+      const auto                  result       = dual.is_preconditioned()
+                                                   ? qp::pcpg(dual, b, from_zero, qp::Goal(options.tolerance), options.pcpg, precondition)
+                                                   : qp::pcpg(dual, b, from_zero, qp::Goal(options.tolerance), options.pcpg);
+      start += result.x;
       solution.status             = result.status;
       solution.multipliers        = start;
-      solution.free               = std::vector<bool>(start.locally_owned_size(), true);
       solution.counts             = result.counts;
       solution.projected_gradient = result.relative_residual;
-      solution.algorithm          = "pcg";
       ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
       solution.counts.outer_iterations = 1;
       if (observer)
@@ -75,6 +78,97 @@ namespace slipstick::contact
           n += !solution.free[r];
         }
       solution.active_constraints = dealii::Utilities::MPI::sum(n, comm);
+    }
+
+    /// SMALBE-M from the point @p from within the bounds. @param reference of the residuals; 0: |P(d - F from)|.
+    DualSolution solve_smalbe(const tfeti::DualProblem   &dual,
+                              const Box                  &box,
+                              const Vector               &from,
+                              const double                tolerance,
+                              const double                reference,
+                              const scene::SolverOptions &options,
+                              const qp::Observer         &observer)
+    {
+      const auto with_start = [&observer](qp::OuterStep step) {
+        ++step.hessian_multiplications; // F x~ in the homogenised load
+        if (observer)
+          observer(step);
+      };
+      Box shifted = box;
+      shifted.lower -= from;
+      shifted.upper -= from;
+      const auto   result = qp::smalbe(dual,
+                                     1.,
+                                     homogenised_load(dual, from),
+                                     shifted,
+                                     qp::SmalbeStart<Vector>{dual.zero()},
+                                     qp::Goal(tolerance, reference),
+                                     options.smalbe,
+                                     with_start);
+      DualSolution solution;
+      solution.status             = result.status;
+      solution.counts             = result.counts;
+      solution.projected_gradient = result.projected_gradient;
+      solution.equality           = result.equality_residual;
+      solution.reference          = result.reference;
+      solution.algorithm          = "smalbe";
+      solution.multipliers        = from;
+      solution.multipliers += result.x;
+      // entries that reached a shifted bound are put on the bound itself, to the last bit
+      for (unsigned int r = 0; r < solution.multipliers.locally_owned_size(); ++r)
+        if (result.x.local_element(r) <= shifted.lower.local_element(r))
+          solution.multipliers.local_element(r) = box.lower.local_element(r);
+        else if (result.x.local_element(r) >= shifted.upper.local_element(r))
+          solution.multipliers.local_element(r) = box.upper.local_element(r);
+      ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
+      find_active(box, dual.communicator(), solution);
+      return solution;
+    }
+
+    /// A few steps of SMALBE-M for the first active set, semismooth Newton from there, SMALBE-M again if it stalls.
+    DualSolution solve_newton(const tfeti::DualProblem   &dual,
+                              const Box                  &box,
+                              Vector                      from,
+                              const scene::SolverOptions &options,
+                              const qp::Observer         &observer)
+    {
+      DualSolution solution  = solve_smalbe(dual, box, from, options.newton.start_tolerance, 0., options, {});
+      const double reference = solution.reference;
+      Vector       d         = dual.d();
+      d /= dual.norm();
+      const auto before  = solution.counts;
+      const auto counted = [&](qp::OuterStep step) {
+        step.hessian_multiplications += before.hessian_multiplications;
+        if (observer)
+          observer(step);
+      };
+      auto result = qp::semismooth_newton(dual,
+                                          1.,
+                                          d,
+                                          box,
+                                          solution.multipliers,
+                                          qp::Goal(options.tolerance, reference),
+                                          options.newton,
+                                          options.pcpg,
+                                          counted);
+      solution.counts += result.counts;
+      solution.counts.outer_iterations = result.counts.outer_iterations;
+      solution.status                  = result.status;
+      solution.algorithm               = "semismooth newton";
+      solution.projected_gradient      = result.projected_gradient;
+      solution.equality                = 0;
+      solution.multipliers             = std::move(result.x);
+      if (result.status == qp::Status::converged)
+        {
+          find_active(box, dual.communicator(), solution);
+          return solution;
+        }
+      const auto so_far = solution.counts;
+      solution          = solve_smalbe(dual, box, from, options.tolerance, reference, options, observer);
+      solution.counts += so_far;
+      solution.algorithm = "semismooth newton";
+      solution.fallbacks = 1;
+      return solution;
     }
   } // namespace
 
@@ -99,6 +193,21 @@ namespace slipstick::contact
           }
     });
     return bounds;
+  }
+
+  template <int dim>
+  scene::SolverOptions resolved_options(const scene::Scene<dim> &scene)
+  {
+    scene::SolverOptions options = scene.solver;
+    if (options.algorithm == scene::Algorithm::automatic)
+      options.algorithm = scene.has_contact() ? scene::Algorithm::smalbe : scene::Algorithm::pcg;
+    auto &preconditioner = options.dual.preconditioner;
+    if (options.algorithm == scene::Algorithm::smalbe)
+      preconditioner = tfeti::Preconditioner::none; // it would change the bounds
+    else if (preconditioner == tfeti::Preconditioner::automatic)
+      preconditioner = options.algorithm == scene::Algorithm::semismooth_newton ? tfeti::Preconditioner::dirichlet
+                                                                                : tfeti::Preconditioner::none;
+    return options;
   }
 
   Box multiplier_box(const tfeti::DualProblem &dual, const std::vector<double> &slip_bound)
@@ -136,40 +245,15 @@ namespace slipstick::contact
     if (counts.normal + counts.tangential == 0)
       return solve_linear(dual, options, observer);
 
-    const Box  box   = multiplier_box(dual, slip_bound);
-    const auto start = qp::feasible_point(dual, dual.particular(), box);
+    const Box box   = multiplier_box(dual, slip_bound);
+    auto      start = qp::feasible_point(dual, dual.particular(), box);
     if (start.status == qp::Status::infeasible)
       no_equilibrium(dual, start.certificate);
-
-    Box shifted = box;
-    shifted.lower -= start.x;
-    shifted.upper -= start.x;
-    auto         result = qp::smalbe(dual,
-                             1.,
-                             homogenised_load(dual, start.x),
-                             shifted,
-                             qp::SmalbeStart<Vector>{dual.zero()},
-                             qp::Goal(options.tolerance),
-                             options.smalbe,
-                             observer);
-    DualSolution solution;
-    solution.status             = result.status;
-    solution.counts             = result.counts;
-    solution.projected_gradient = result.projected_gradient;
-    solution.equality           = result.equality_residual;
-    solution.algorithm          = "smalbe";
-    solution.multipliers        = start.x;
-    solution.multipliers += result.x;
-    // entries that reached a shifted bound are put on the bound itself, to the last bit
-    for (unsigned int r = 0; r < solution.multipliers.locally_owned_size(); ++r)
-      if (result.x.local_element(r) <= shifted.lower.local_element(r))
-        solution.multipliers.local_element(r) = box.lower.local_element(r);
-      else if (result.x.local_element(r) >= shifted.upper.local_element(r))
-        solution.multipliers.local_element(r) = box.upper.local_element(r);
-    ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
-    find_active(box, dual.communicator(), solution);
-    return solution;
+    return options.algorithm == scene::Algorithm::semismooth_newton
+             ? solve_newton(dual, box, std::move(start.x), options, observer)
+             : solve_smalbe(dual, box, start.x, options.tolerance, 0., options, observer);
   }
 
-  template std::vector<double> slip_bounds(const scene::Scene<2> &, const tfeti::DualProblem &, const double);
+  template scene::SolverOptions resolved_options(const scene::Scene<2> &);
+  template std::vector<double>  slip_bounds(const scene::Scene<2> &, const tfeti::DualProblem &, const double);
 } // namespace slipstick::contact

@@ -37,17 +37,22 @@ namespace slipstick::output
         reject(directory.string(), std::string("no file can be written there: ") + std::strerror(error));
     }
 
-    void prepare(const std::string &path)
+    /// Creates @p path; returns what was missing, outermost first.
+    std::vector<std::string> prepare(const std::string &path)
     {
       if (path.empty())
         throw InputError("The name of the output directory is empty", "name one: --output DIR");
       std::error_code error;
       if (std::filesystem::exists(path, error) && !std::filesystem::is_directory(path, error))
         reject(path, "there is a file of that name");
+      std::vector<std::string> missing;
+      for (std::filesystem::path p = path; !p.empty() && !std::filesystem::exists(p, error); p = p.parent_path())
+        missing.insert(missing.begin(), p.string());
       std::filesystem::create_directories(path, error);
       if (error)
         reject(path, "cannot be created: " + error.message());
       try_a_file(path);
+      return missing;
     }
   } // namespace
 
@@ -57,8 +62,15 @@ namespace slipstick::output
   {
     collectively(comm, [&] {
       if (dealii::Utilities::MPI::this_mpi_process(comm) == 0)
-        prepare(path);
+        created = prepare(path);
     });
+  }
+
+  void OutputDirectory::remove_if_new() const
+  {
+    std::error_code ignored;
+    for (auto path = created.rbegin(); path != created.rend(); ++path)
+      std::filesystem::remove(*path, ignored); // fails on one that is not empty
   }
 
   std::string OutputDirectory::path(const std::string &name) const

@@ -71,7 +71,7 @@ namespace slipstick::output
                          {"max_pressure", pair.max_pressure},
                          {"contact_length", pair.contact_length},
                          {"contact_nodes", pair.contact_nodes},
-{"open_nodes", pair.open_nodes},
+                         {"open_nodes", pair.open_nodes},
                          {"stick_nodes", pair.stick_nodes},
                          {"slip_nodes", pair.slip_nodes}});
       return {{"max_displacement", results.max_displacement},

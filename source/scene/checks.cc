@@ -52,7 +52,8 @@ namespace slipstick::scene
         for (unsigned int d = 0; d < dim; ++d)
           if (support.components[d])
             {
-              const auto [first, is_new] = supports.emplace(std::make_pair(boundary_of(support.where), d), support.name);
+              const auto [first, is_new] =
+                supports.emplace(std::make_pair(boundary_of(support.where), d), support.name);
               if (!is_new)
                 throw parameters.error("Support " + support.name + "/Boundary",
                                        std::string("Support ") + first->second + " prescribes the displacement along " +
@@ -72,8 +73,8 @@ namespace slipstick::scene
           for (const unsigned int n : *body.cells)
             if (n % blocks != 0)
               throw parameters.error("Body " + body.name + "/Cells",
-                                     std::to_string(n) + " cells cannot be divided by Decomposition/Blocks = " +
-                                       std::to_string(blocks),
+                                     std::to_string(n) +
+                                       " cells cannot be divided by Decomposition/Blocks = " + std::to_string(blocks),
                                      "give a multiple of " + std::to_string(blocks) + ", or set Cells = auto");
     }
 
@@ -82,8 +83,10 @@ namespace slipstick::scene
     {
       const Algorithm algorithm = scene.solver.algorithm;
       if (algorithm == Algorithm::pcg && scene.has_contact())
-        throw parameters.error("Solver/Algorithm", "solves linear scenes only, and this one has contact", "set it to auto");
-      if (algorithm == Algorithm::smalbe && !scene.has_contact())
+        throw parameters.error("Solver/Algorithm",
+                               "solves linear scenes only, and this one has contact",
+                               "set it to auto");
+      if ((algorithm == Algorithm::smalbe || algorithm == Algorithm::semismooth_newton) && !scene.has_contact())
         throw parameters.error("Solver/Algorithm", "needs contact, and this scene has none", "set it to auto");
     }
   } // namespace

@@ -174,8 +174,10 @@ namespace slipstick::scene
     return pair;
   }
 
-  template BoundaryName
-  read_boundary(const std::string &, const std::string &, const Parameters &, const std::vector<Body<2>> &);
+  template BoundaryName read_boundary(const std::string &,
+                                      const std::string &,
+                                      const Parameters &,
+                                      const std::vector<Body<2>> &);
   template struct SupportSection<2>;
   template struct TractionSection<2>;
   template struct ContactSection<2>;

@@ -116,10 +116,7 @@ namespace slipstick::scene
                  const std::function<bool(const std::string &)> &allows,
                  const std::function<void(const std::string &)> &store)
   {
-    prm.declare_entry(name,
-                      default_text,
-                      Allowed(allowed, allows),
-                      (unit.empty() ? "" : "[" + unit + "] ") + meaning);
+    prm.declare_entry(name, default_text, Allowed(allowed, allows), (unit.empty() ? "" : "[" + unit + "] ") + meaning);
     prm.add_action(name, store);
   }
 
@@ -290,8 +287,8 @@ namespace slipstick::scene
                           const Interval &,
                           const std::string &);
   template void add_counts_or_auto<2>(dealii::ParameterHandler &,
-                                   const std::string &,
-                                   std::optional<std::array<unsigned int, 2>> &,
-                                   const unsigned int,
-                                   const std::string &);
+                                      const std::string &,
+                                      std::optional<std::array<unsigned int, 2>> &,
+                                      const unsigned int,
+                                      const std::string &);
 } // namespace slipstick::scene

@@ -67,7 +67,7 @@ namespace slipstick::scene
 
     std::string             where;
     mu::Parser              parser;
-    std::array<double, dim> position = {};
+    std::array<double, dim> position    = {};
     double                  load_factor = 0;
   };
 
@@ -114,7 +114,7 @@ namespace slipstick::scene
         for (unsigned int d = 0; d < dim; ++d)
           at += coordinate_names[d] + " = " + number_text(x[d]) + ", ";
         throw formula_error(where,
-                            parser.GetExpr(),
+                            trim(parser.GetExpr()), // muParser appends a blank
                             number_text(result) + " at " + at + "t = " + number_text(t));
       }
     return result;

@@ -23,9 +23,9 @@ namespace slipstick::scene
               collect(node, prefix + name + "/", parameters);
               continue;
             }
-          const auto  documentation = node.get<std::string>("documentation");
-          const auto  unit_end      = documentation[0] == '[' ? documentation.find("] ") : std::string::npos;
-          const bool  has_unit      = unit_end != std::string::npos;
+          const auto documentation = node.get<std::string>("documentation");
+          const auto unit_end      = documentation[0] == '[' ? documentation.find("] ") : std::string::npos;
+          const bool has_unit      = unit_end != std::string::npos;
           parameters.push_back({prefix + name,
                                 node.get<std::string>("value"),
                                 node.get<std::string>("default_value"),
@@ -39,8 +39,8 @@ namespace slipstick::scene
     {
       for (const DeclaredParameter &parameter : parameters)
         out << parameter.path << " = " << parameter.value << (parameter.unit.empty() ? "" : " [" + parameter.unit + "]")
-            << "\n    " << parameter.meaning << "\n    allowed: " << parameter.allowed << "\n    default: "
-            << (parameter.default_value.empty() ? "empty" : parameter.default_value) << "\n\n";
+            << "\n    " << parameter.meaning << "\n    allowed: " << parameter.allowed
+            << "\n    default: " << (parameter.default_value.empty() ? "empty" : parameter.default_value) << "\n\n";
     }
 
     void write_json(std::ostream &out, const std::vector<DeclaredParameter> &parameters)

@@ -89,8 +89,12 @@ namespace slipstick::scene
                 1,
                 max_iterations,
                 "steps of the power method for the norm of P F P");
-      add_number(
-        prm, "Tolerance", dual.norm_tolerance, "-", Interval::inside(0, 1), "relative change at which it stops");
+      add_number(prm,
+                 "Tolerance",
+                 dual.norm_tolerance,
+                 "-",
+                 Interval::inside(0, 1),
+                 "relative change at which it stops");
       prm.leave_subsection();
     }
   } // namespace
@@ -112,8 +116,11 @@ namespace slipstick::scene
               1,
               10000,
               "cells along each edge of a block; with Blocks it gives the mesh where Cells = auto");
-    add_count_or_auto(
-      prm, "Subdomains", decomposition.subdomains, 1000000, "METIS: number of subdomains over all bodies");
+    add_count_or_auto(prm,
+                      "Subdomains",
+                      decomposition.subdomains,
+                      1000000,
+                      "METIS: number of subdomains over all bodies");
     prm.leave_subsection();
   }
 
@@ -131,8 +138,11 @@ namespace slipstick::scene
     add_choice(prm,
                "Algorithm",
                solver.algorithm,
-               Choices<Algorithm>{{"auto", Algorithm::automatic}, {"smalbe", Algorithm::smalbe}, {"pcg", Algorithm::pcg}},
-               "smalbe: scenes with contact; pcg: linear scenes; auto: whichever fits");
+               Choices<Algorithm>{{"auto", Algorithm::automatic},
+                                  {"smalbe", Algorithm::smalbe},
+                                  {"semismooth newton", Algorithm::semismooth_newton},
+                                  {"pcg", Algorithm::pcg}},
+               "smalbe, semismooth newton: scenes with contact; pcg: linear scenes; auto: smalbe or pcg, as fits");
     add_number(prm,
                "Tolerance",
                solver.tolerance,

@@ -16,8 +16,8 @@ namespace slipstick::scene
     std::pair<std::string, std::string> split_path(const std::string &path)
     {
       const auto slash = path.rfind('/');
-      return slash == std::string::npos ? std::make_pair(std::string(), path) :
-                                          std::make_pair(path.substr(0, slash), path.substr(slash + 1));
+      return slash == std::string::npos ? std::make_pair(std::string(), path)
+                                        : std::make_pair(path.substr(0, slash), path.substr(slash + 1));
     }
 
     /// What is declared, for look-up and suggestions.
@@ -53,8 +53,8 @@ namespace slipstick::scene
           for (auto slash = parameter.path.find('/'); slash != std::string::npos;
                slash      = parameter.path.find('/', slash + 1))
             {
-              const std::string section = parameter.path.substr(0, slash);
-              if (std::find(sections.begin(), sections.end(), section) == sections.end())
+                   const std::string section = parameter.path.substr(0, slash);
+                   if (std::find(sections.begin(), sections.end(), section) == sections.end())
                 sections.push_back(section);
             }
         }
@@ -87,8 +87,8 @@ namespace slipstick::scene
             for (const std::string &section : children_of(parent, true))
               if (section.compare(0, kind.kind.size() + 1, kind.kind + " ") == 0)
                 declared.push_back(section.substr(kind.kind.size() + 1));
-            remedy = "declare it: set " + kind.list + " = " + join_names(declared) + (declared.empty() ? "" : ", ") +
-                     own_name;
+            remedy =
+              "declare it: set " + kind.list + " = " + join_names(declared) + (declared.empty() ? "" : ", ") + own_name;
             if (const auto near = nearest_name(own_name, declared))
               remedy += "; or did you mean '" + kind.kind + " " + *near + "'?";
           }
@@ -182,7 +182,9 @@ namespace slipstick::scene
       {
         name = collapse_blanks(name);
         if (name.empty() || name.find_first_of("/=") != std::string::npos)
-          throw error(kind.list, "'" + name + "' is no valid name", "separate names by commas; use no / and no = in them");
+          throw error(kind.list,
+                      "'" + name + "' is no valid name",
+                      "separate names by commas; use no / and no = in them");
         if (!seen.insert(name).second)
           throw error(kind.list, "'" + name + "' is declared twice", "give every " + kind.kind + " its own name");
       }

@@ -16,8 +16,8 @@ namespace slipstick::scene
     std::pair<std::string, std::string> split_first_word(const std::string &line)
     {
       const auto end = line.find_first_of(" \t");
-      return end == std::string::npos ? std::make_pair(line, std::string()) :
-                                        std::make_pair(line.substr(0, end), trim(line.substr(end)));
+      return end == std::string::npos ? std::make_pair(line, std::string())
+                                      : std::make_pair(line.substr(0, end), trim(line.substr(end)));
     }
 
     std::ifstream open(const std::string &file, const std::string &included_from)
@@ -44,7 +44,9 @@ namespace slipstick::scene
     class Reader
     {
     public:
-      Reader(const std::string &file, const std::string &included_from, const unsigned int depth,
+      Reader(const std::string    &file,
+             const std::string    &included_from,
+             const unsigned int    depth,
              std::vector<Setting> &settings);
 
     private:

@@ -139,12 +139,12 @@ namespace slipstick::scene
 
   void list_parameters(std::ostream &out, const ListFormat format)
   {
-    SceneParameters<2> example({{material_kind.list, {"elastic"}},
-                                {body_kind.list, {"box"}},
-                                {obstacle_kind.list, {"disc"}},
-                                {support_kind.list, {"held"}},
-                                {traction_kind.list, {"pressed"}},
-                                {contact_kind.list, {"circle"}}});
+    SceneParameters<2>                                     example({{material_kind.list, {"elastic"}},
+                                                                    {body_kind.list, {"box"}},
+                                                                    {obstacle_kind.list, {"disc"}},
+                                                                    {support_kind.list, {"held"}},
+                                                                    {traction_kind.list, {"pressed"}},
+                                                                    {contact_kind.list, {"circle"}}});
     const std::vector<std::pair<std::string, std::string>> must_be_set = {{"Body box/Size", "10, 10"},
                                                                           {"Body box/Material", "elastic"},
                                                                           {"Obstacle disc/Center", "5, -20"},

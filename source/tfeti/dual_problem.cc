@@ -39,21 +39,29 @@ namespace slipstick::tfeti
     , owned_rows(std::make_shared<dealii::Utilities::MPI::Partitioner>(rows.rows->locally_owned_range(), comm))
     , names_of_bodies(body_names)
   {
-    const bool explicit_blocks = options.dual_operator != DualOperatorKind::implicit;
-    const auto session         = std::make_shared<CholmodSession>();
+    const bool explicit_blocks     = options.dual_operator != DualOperatorKind::implicit;
+    const bool with_trailing_block = explicit_blocks || options.preconditioner == Preconditioner::dirichlet;
+    const auto session             = std::make_shared<CholmodSession>();
     collectively(comm, [&] {
       const double start = MPI_Wtime();
       for (unsigned int p = 0; p < matrices.size(); ++p)
         {
           auto [local, touched] = LocalGluing::make(rows.blocks[p]);
           gluing.push_back(std::move(local));
-          systems.push_back(
-            std::make_unique<SubdomainSystem>(session, std::move(matrices[p]), std::move(touched), explicit_blocks));
+          systems.push_back(std::make_unique<SubdomainSystem>(session,
+                                                              std::move(matrices[p]),
+                                                              std::move(touched),
+                                                              with_trailing_block));
         }
       factorization_time = MPI_Wtime() - start;
       F                  = std::make_unique<DualOperator>(systems, gluing, rows.rows, explicit_blocks);
     });
     require_support(free_motions(systems, gluing, rows, {}, body_names.size(), comm), body_names);
+    if (options.preconditioner == Preconditioner::lumped || options.preconditioner == Preconditioner::dirichlet)
+      {
+        weights        = std::make_unique<RowWeights>(systems, gluing, rows.rows, comm);
+        preconditioner = std::make_unique<PreconditionerBlocks>(systems, options.preconditioner);
+      }
     projector = std::make_unique<Projector>(systems, gluing, *F, rows.rows, std::vector<bool>(), comm);
 
     // d = B K+ f - c
@@ -115,7 +123,7 @@ namespace slipstick::tfeti
     return DistributedVector(owned_rows);
   }
 
-  DistributedVector DualProblem::particular() const
+  Eigen::VectorXd DualProblem::resultants() const
   {
     Eigen::VectorXd e(0);
     for (const auto &system : systems)
@@ -124,8 +132,13 @@ namespace slipstick::tfeti
         e.conservativeResize(e.size() + part.size());
         e.tail(part.size()) = part;
       }
+    return e;
+  }
+
+  DistributedVector DualProblem::particular() const
+  {
     DistributedVector x = zero();
-    projector->particular(e, x);
+    projector->particular(resultants(), x);
     return x;
   }
 
@@ -145,13 +158,18 @@ namespace slipstick::tfeti
     return y;
   }
 
-  std::vector<Eigen::VectorXd> DualProblem::recover(const DistributedVector &x, const std::vector<bool> &free) const
+  DualProblem::Recovery DualProblem::recover(const DistributedVector &x, const std::vector<bool> &free) const
   {
     require_support(free_motions(systems, gluing, rows, free, names_of_bodies.size(), comm), names_of_bodies);
 
+    const Projector on_free(systems, gluing, *F, rows.rows, free, comm);
+    Recovery        result{{}, zero()};
+    on_free.particular(resultants() - projector->multiply(x), result.multipliers);
+    result.multipliers += x;
+
     DistributedVector ghosted = F->ghosted();
-    F->import(x, ghosted);
-    std::vector<Eigen::VectorXd> u;
+    F->import(result.multipliers, ghosted);
+    auto &u = result.u;
     for (unsigned int p = 0; p < systems.size(); ++p)
       {
         const Eigen::VectorXd force   = F->scatter(p, ghosted);
@@ -166,7 +184,6 @@ namespace slipstick::tfeti
     DistributedVector missing = jumps(u);
     for (unsigned int r = 0; r < rows.c.size(); ++r)
       missing.local_element(r) = free[r] ? rows.c[r] - missing.local_element(r) : 0.;
-    const Projector       on_free(systems, gluing, *F, rows.rows, free, comm);
     const Eigen::VectorXd a    = on_free.amplitudes(missing);
     unsigned int          next = 0;
     for (unsigned int p = 0; p < systems.size(); ++p)
@@ -175,7 +192,7 @@ namespace slipstick::tfeti
         u[p] += systems[p]->kernel() * a.segment(next, k);
         next += k;
       }
-    return u;
+    return result;
   }
 
   RigidMotion DualProblem::motion_behind(const DistributedVector &r) const

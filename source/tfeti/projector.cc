@@ -75,7 +75,7 @@ namespace slipstick::tfeti
     , target(rows)
   {
     // is a row active? owners know, ghosts ask
-    DistributedVector indicator(rows);
+    indicator.reinit(rows);
     for (unsigned int r = 0; r < rows->locally_owned_size(); ++r)
       indicator.local_element(r) = active.empty() || active[r];
     indicator.update_ghost_values();
@@ -84,12 +84,9 @@ namespace slipstick::tfeti
       n_motions += subdomain->kernel().cols();
     const long long first = first_and_total(n_motions, comm).first;
 
-    const auto                                      ghost_owners = rows->ghost_targets();
     std::vector<ColumnPart>                         own;
     std::map<unsigned int, std::vector<ColumnPart>> to_send;
-    std::vector<unsigned int>                       owner_of_ghost;
-    for (const auto &[rank, n] : ghost_owners)
-      owner_of_ghost.insert(owner_of_ghost.end(), n, rank);
+    const auto                                      owner_of_ghost = owners_of_ghosts(rows);
 
     unsigned int next = 0;
     for (unsigned int p = 0; p < subdomains.size(); ++p)
@@ -108,7 +105,7 @@ namespace slipstick::tfeti
               own.push_back(std::move(part));
             else
               to_send[owner_of_ghost[row - rows->locally_owned_size()]].push_back(std::move(part));
-            block.values.col(block.rows.size()) = column * indicator.local_element(row);
+            block.values.col(block.rows.size()) = column;
             block.rows.push_back(row);
           }
         next += subdomains[p]->kernel().cols();
@@ -127,7 +124,8 @@ namespace slipstick::tfeti
     Eigen::VectorXd a = Eigen::VectorXd::Zero(n_motions);
     for (const Block &block : blocks)
       for (unsigned int k = 0; k < block.rows.size(); ++k)
-        a.segment(block.first, block.values.rows()) += block.values.col(k) * source.local_element(block.rows[k]);
+        a.segment(block.first, block.values.rows()) +=
+          block.values.col(k) * (indicator.local_element(block.rows[k]) * source.local_element(block.rows[k]));
     return a;
   }
 
@@ -140,6 +138,12 @@ namespace slipstick::tfeti
         target.local_element(block.rows[k]) += block.values.col(k).dot(a.segment(block.first, block.values.rows()));
     target.compress(dealii::VectorOperation::add);
     y.copy_locally_owned_data_from(target);
+  }
+
+  void Projector::mask(DistributedVector &y) const
+  {
+    for (unsigned int r = 0; r < y.locally_owned_size(); ++r)
+      y.local_element(r) *= indicator.local_element(r);
   }
 
   Eigen::VectorXd Projector::solve(const Eigen::VectorXd &a) const
@@ -155,11 +159,18 @@ namespace slipstick::tfeti
   void Projector::project_range(const DistributedVector &x, DistributedVector &y) const
   {
     multiply_transpose(amplitudes(x), y);
+    mask(y);
+  }
+
+  void Projector::extend_range(const DistributedVector &x, DistributedVector &y) const
+  {
+    multiply_transpose(amplitudes(x), y);
   }
 
   void Projector::particular(const Eigen::VectorXd &e, DistributedVector &y) const
   {
     multiply_transpose(coarse->solve(e), y);
+    mask(y);
   }
 
   unsigned long long Projector::dimension() const

@@ -39,10 +39,8 @@ namespace slipstick::tfeti
                                              const Constraints                                   &constraints,
                                              const MPI_Comm                                       comm)
     {
-      std::vector<unsigned int> owner_of_ghost;
-      for (const auto &[rank, n] : constraints.rows->ghost_targets())
-        owner_of_ghost.insert(owner_of_ghost.end(), n, rank);
-      const unsigned int                           n_owned = constraints.rows->locally_owned_size();
+      const auto                                   owner_of_ghost = owners_of_ghosts(constraints.rows);
+      const unsigned int                           n_owned        = constraints.rows->locally_owned_size();
       std::map<unsigned int, std::vector<RowPart>> to_send;
       std::vector<RowPart>                         own;
       for (unsigned int p = 0; p < subdomains.size(); ++p)

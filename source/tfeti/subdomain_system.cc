@@ -101,6 +101,45 @@ namespace slipstick::tfeti
     Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(L.rows(), L.cols());
     inverse.selfadjointView<Eigen::Lower>().rankUpdate(inverse_factor.transpose());
 
+    return at_touched(inverse);
+  }
+
+  Eigen::MatrixXd SubdomainSystem::schur_complement() const
+  {
+    const Eigen::MatrixXd L     = cholesky.trailing_block();
+    Eigen::MatrixXd       schur = Eigen::MatrixXd::Zero(L.rows(), L.cols());
+    schur.selfadjointView<Eigen::Lower>().rankUpdate(L);
+    const auto &order = cholesky.last_order();
+    for (unsigned int k = 0; k < order.size(); ++k)
+      if (std::find(fixing_unknowns.begin(), fixing_unknowns.end(), order[k]) != fixing_unknowns.end())
+        schur(k, k) -= regularization;
+    return at_touched(schur);
+  }
+
+  Eigen::MatrixXd SubdomainSystem::touched_stiffness() const
+  {
+    std::vector<int> position(n_unknowns(), -1);
+    for (unsigned int k = 0; k < touched_unknowns.size(); ++k)
+      position[touched_unknowns[k]] = static_cast<int>(k);
+    Eigen::MatrixXd block = Eigen::MatrixXd::Zero(touched_unknowns.size(), touched_unknowns.size());
+    for (const unsigned int column : touched_unknowns)
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(matrices.stiffness, column); entry; ++entry)
+        if (position[entry.row()] >= 0)
+          block(position[entry.row()], position[column]) = block(position[column], position[entry.row()]) =
+            entry.value();
+    return block;
+  }
+
+  Eigen::VectorXd SubdomainSystem::touched_diagonal() const
+  {
+    Eigen::VectorXd diagonal(touched_unknowns.size());
+    for (unsigned int k = 0; k < touched_unknowns.size(); ++k)
+      diagonal[k] = matrices.stiffness.coeff(touched_unknowns[k], touched_unknowns[k]);
+    return diagonal;
+  }
+
+  Eigen::MatrixXd SubdomainSystem::at_touched(const Eigen::MatrixXd &in_last_order) const
+  {
     std::vector<int> position(n_unknowns(), -1);
     for (unsigned int k = 0; k < cholesky.last_order().size(); ++k)
       position[cholesky.last_order()[k]] = static_cast<int>(k);
@@ -109,7 +148,7 @@ namespace slipstick::tfeti
       for (unsigned int b = 0; b <= a; ++b)
         {
           const int i = position[touched_unknowns[a]], j = position[touched_unknowns[b]];
-          block(a, b) = block(b, a) = inverse(std::max(i, j), std::min(i, j));
+          block(a, b) = block(b, a) = in_last_order(std::max(i, j), std::min(i, j));
         }
     return block;
   }

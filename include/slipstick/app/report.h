@@ -12,6 +12,10 @@ namespace slipstick::app
   /// Greeting: program, libraries, ranks, case.
   void print_header(const Log &log, const scene::Scene<2> &scene, const MPI_Comm comm);
 
+  /// As in the .prm.
+  std::string name_of(const scene::Algorithm algorithm);
+  std::string name_of(const tfeti::Preconditioner preconditioner);
+
   /// Sizes of the problem, one line a stage.
   void print_mesh(const Log &log, const scene::Scene<2> &scene, const fem::Mesh<2> &mesh, const fem::Spaces<2> &spaces);
   void print_constraints(const Log &log, const tfeti::Constraints &constraints);

@@ -25,11 +25,17 @@ namespace slipstick::contact
     std::vector<bool>        free;        // owned rows: the multiplier is strictly inside its bounds
     qp::Counts               counts;
     double                   projected_gradient = 0; // |gP| / |P d|
+    double                   reference          = 0; // that the residuals are relative to
     double                   equality           = 0; // |G x - e| / |P d|, scaled
     unsigned long long       active_constraints = 0; // inequality rows at a bound, over all ranks
     std::string              algorithm;              // "smalbe", "pcg"
     unsigned int             fallbacks = 0;
   };
+
+  /// The options with `auto` resolved: pcg for linear scenes, smalbe for contact; Dirichlet preconditioner for
+  /// semismooth Newton, none where there is no use for one.
+  template <int dim>
+  scene::SolverOptions resolved_options(const scene::Scene<dim> &scene);
 
   /// Solves min 1/2 x'F x - x'd, G x = e, within the bounds; linear problems by projected conjugate gradients.
   /// Non-convergence is in the status. Collective.

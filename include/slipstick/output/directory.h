@@ -6,6 +6,7 @@
 #include <functional>
 #include <iosfwd>
 #include <string>
+#include <vector>
 
 namespace slipstick::output
 {
@@ -30,8 +31,13 @@ namespace slipstick::output
     /// Collective.
     void write_from_root(const std::string &name, const std::function<void(std::ostream &)> &content) const;
 
+    /// Removes what the constructor created, as far as it is empty: a scene that is refused leaves nothing behind.
+    /// Rank 0 does the work; no communication.
+    void remove_if_new() const;
+
   private:
-    std::string directory;
-    MPI_Comm    communicator;
+    std::string              directory;
+    MPI_Comm                 communicator;
+    std::vector<std::string> created; // by the constructor, outermost first; rank 0
   };
 } // namespace slipstick::output

@@ -64,6 +64,19 @@ namespace slipstick::qp
     double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
   };
 
+  /// Options of the semismooth Newton method (own choice; method.md section 7).
+  struct NewtonOptions
+  {
+    double       start_tolerance      = 0.3;  // of the SMALBE steps that give the first active set
+    double       first_forcing        = 1e-2; // residual of the first solves over the reference
+    double       forcing_reduction    = 0.1;  // of it, whenever the set hardly changed
+    double       last_forcing         = 0.3;  // times the tolerance: never below
+    double       settled_part         = 0.05; // of the inequalities may change for the set to have hardly changed
+    double       progress             = 0.99; // residual + changes must fall below this times their best ...
+    unsigned int patience             = 15;   // ... within so many outer steps
+    unsigned int max_outer_iterations = 100;
+  };
+
   /// Options of the point nearest to zero within the bounds and the equalities (own choice).
   struct FeasiblePointOptions
   {

@@ -38,14 +38,14 @@ namespace slipstick::scene
 
   /// Declares a parameter that allows the texts for which @p allows holds; @p store receives the text, at once
   /// the default and later every value set. @p unit is empty or a text such as "MPa".
-  void add_entry(dealii::ParameterHandler                             &prm,
-                 const std::string                                    &name,
-                 const std::string                                    &default_text,
-                 const std::string                                    &unit,
-                 const std::string                                    &meaning,
-                 const std::string                                    &allowed,
-                 const std::function<bool(const std::string &)>       &allows,
-                 const std::function<void(const std::string &)>       &store);
+  void add_entry(dealii::ParameterHandler                       &prm,
+                 const std::string                              &name,
+                 const std::string                              &default_text,
+                 const std::string                              &unit,
+                 const std::string                              &meaning,
+                 const std::string                              &allowed,
+                 const std::function<bool(const std::string &)> &allows,
+                 const std::function<void(const std::string &)> &store);
 
   void add_number(dealii::ParameterHandler &prm,
                   const std::string        &name,

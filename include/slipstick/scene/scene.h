@@ -39,13 +39,13 @@ namespace slipstick::scene
   template <int dim>
   struct Body
   {
-    std::string                                   name;
-    Shape                                         shape = Shape::rectangle;
-    dealii::Point<dim>                            origin; // lower left corner [mm]
-    dealii::Point<dim>                            size;   // edge lengths [mm], > 0
-    std::optional<std::array<unsigned int, dim>>  cells;  // empty: blocks x cells per block of `Decomposition`
-    unsigned int                                  material  = 0; // index into Scene::materials
-    double                                        thickness = 1; // [mm], > 0
+    std::string                                  name;
+    Shape                                        shape = Shape::rectangle;
+    dealii::Point<dim>                           origin;        // lower left corner [mm]
+    dealii::Point<dim>                           size;          // edge lengths [mm], > 0
+    std::optional<std::array<unsigned int, dim>> cells;         // empty: blocks x cells per block of `Decomposition`
+    unsigned int                                 material  = 0; // index into Scene::materials
+    double                                       thickness = 1; // [mm], > 0
   };
 
   /// A boundary of a body, written BODY/BOUNDARY in the .prm.
@@ -59,18 +59,18 @@ namespace slipstick::scene
   template <int dim>
   struct PrescribedDisplacement
   {
-    std::string                                 name;
-    BoundaryName                                where;
-    std::array<std::optional<Field<dim>>, dim>  components; // [mm]
+    std::string                                name;
+    BoundaryName                               where;
+    std::array<std::optional<Field<dim>>, dim> components; // [mm]
   };
 
   /// Traction in the axes of the scene, force per undeformed area.
   template <int dim>
   struct Traction
   {
-    std::string                  name;
-    BoundaryName                 where;
-    std::array<Field<dim>, dim>  components; // [MPa]
+    std::string                 name;
+    BoundaryName                where;
+    std::array<Field<dim>, dim> components; // [MPa]
   };
 
   enum class ObstacleShape
@@ -131,16 +131,18 @@ namespace slipstick::scene
   {
     automatic,
     smalbe,
+    semismooth_newton,
     pcg
   };
 
   struct SolverOptions
   {
-    Algorithm           algorithm = Algorithm::automatic;
-    double              tolerance = 1e-4; // relative, of |gP| and |G x| to |P d|; the paper's eps
-    qp::SmalbeOptions   smalbe;
-    qp::PcpgOptions     pcpg;
-    tfeti::DualOptions  dual;
+    Algorithm          algorithm = Algorithm::automatic;
+    double             tolerance = 1e-4; // relative, of |gP| and |G x| to |P d|; the paper's eps
+    qp::SmalbeOptions  smalbe;
+    qp::NewtonOptions  newton;
+    qp::PcpgOptions    pcpg;
+    tfeti::DualOptions dual;
   };
 
   struct OutputOptions

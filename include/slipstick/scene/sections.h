@@ -19,10 +19,10 @@ namespace slipstick::scene
   /// The body and boundary that the parameter @p path, "BODY/BOUNDARY", names.
   /// @throws InputError for an unknown body or boundary.
   template <int dim>
-  BoundaryName read_boundary(const std::string             &text,
-                             const std::string             &path,
-                             const Parameters              &parameters,
-                             const std::vector<Body<dim>>  &bodies);
+  BoundaryName read_boundary(const std::string            &text,
+                             const std::string            &path,
+                             const Parameters             &parameters,
+                             const std::vector<Body<dim>> &bodies);
 
   /// Every read() returns the checked value and throws InputError for what is wrong in its own section; names are
   /// looked up in the part of the scene that is already read.

@@ -22,6 +22,9 @@ namespace slipstick::tfeti
     static std::pair<LocalGluing, std::vector<unsigned int>> make(const std::vector<Constraints::Entry> &block);
   };
 
+  /// Owner of every ghost of a partitioner, in their order.
+  std::vector<unsigned int> owners_of_ghosts(const Partitioner &rows);
+
   /// y = F x, F = B K+ B' (symmetric positive semidefinite). Either by sparse solves with every K_p (implicit), or
   /// with the dense block of K_p+ at the touched unknowns (explicit).
   class DualOperator

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <slipstick/tfeti/dual_operator.h>
+#include <slipstick/tfeti/preconditioner.h>
 #include <slipstick/tfeti/projector.h>
 #include <slipstick/tfeti/reduction.h>
 #include <slipstick/tfeti/rigid_motions.h>
@@ -13,6 +14,15 @@ namespace slipstick::tfeti
   class DualProblem
   {
   public:
+    class Face;
+
+    /// The primal solution and the multipliers that belong to it.
+    struct Recovery
+    {
+      std::vector<Eigen::VectorXd> u;           // of this rank's subdomains [mm]
+      DistributedVector            multipliers; // [N]
+    };
+
     /// Factorises the subdomains and the coarse problem and estimates |P F P|. Collective.
     /// @throws NoEquilibrium naming body and motion when the rows of B leave a rigid motion of a body free.
     /// @throws NumericalError when a subdomain cannot be factorised.
@@ -26,6 +36,9 @@ namespace slipstick::tfeti
     void                multiply(const DistributedVector &x, DistributedVector &y) const;      // y = F x / |P F P|
     void                project_range(const DistributedVector &x, DistributedVector &y) const; // y = Q x
     const MpiReduction &reduction() const;
+
+    /// The problem on the free rows (owned ones), the others held. Collective.
+    Face face(const std::vector<bool> &free) const;
 
     /// |P F P| [mm/N].
     double norm() const
@@ -45,10 +58,11 @@ namespace slipstick::tfeti
     /// A zero vector of multipliers, owned entries only.
     DistributedVector zero() const;
 
-    /// Displacements [mm] of this rank's subdomains, u = K+(f - B'x) + R a. The amplitudes a of the rigid motions make
-    /// the rows with `free` (those that hold with equality) fit. Collective.
+    /// Displacements u = K+(f - B'x) + R a. First x is moved, on the rows with `free` alone, to where G x = e holds to
+    /// rounding, so that u is in equilibrium with it; then the amplitudes a of the rigid motions make those rows (which
+    /// hold with equality) fit in the sense of least squares. Collective.
     /// @throws NoEquilibrium naming the body that slides or lifts off when the free rows do not fix a.
-    std::vector<Eigen::VectorXd> recover(const DistributedVector &x, const std::vector<bool> &free) const;
+    Recovery recover(const DistributedVector &x, const std::vector<bool> &free) const;
 
     /// B u of displacements of this rank's subdomains, owned rows [mm]. Collective.
     DistributedVector jumps(const std::vector<Eigen::VectorXd> &u) const;
@@ -76,6 +90,10 @@ namespace slipstick::tfeti
     {
       return projector->dimension();
     }
+    bool is_preconditioned() const
+    {
+      return preconditioner != nullptr;
+    }
     unsigned long long n_setup_multiplications() const
     {
       return setup_multiplications;
@@ -91,7 +109,8 @@ namespace slipstick::tfeti
     }
 
   private:
-    double power_method(const DualOptions &options) const;
+    double          power_method(const DualOptions &options) const;
+    Eigen::VectorXd resultants() const; // e
 
     MPI_Comm                                      comm;
     MpiReduction                                  reduce;
@@ -102,9 +121,47 @@ namespace slipstick::tfeti
     std::vector<std::unique_ptr<SubdomainSystem>> systems;
     std::unique_ptr<DualOperator>                 F;
     std::unique_ptr<Projector>                    projector;
+    std::unique_ptr<RowWeights>                   weights; // with a preconditioner
+    std::unique_ptr<PreconditionerBlocks>         preconditioner;
     DistributedVector                             dual_load;
     double                                        norm_PFP              = 1;
     unsigned long long                            setup_multiplications = 0;
     double                                        factorization_time    = 0;
+  };
+
+  /// The dual problem on its free rows, as qp's semismooth Newton and PCPG ask for it.
+  class DualProblem::Face
+  {
+  public:
+    Face(const DualProblem &problem, const std::vector<bool> &free);
+
+    void                multiply(const DistributedVector &x, DistributedVector &y) const; // y = F x / |P F P|
+    const MpiReduction &reduction() const;
+
+    /// y = Q_f x on the free rows, y = x on the others.
+    void project_range(const DistributedVector &x, DistributedVector &y) const;
+
+    /// Moves the free rows of x by the least that makes G x = e.
+    void balance(DistributedVector &x) const;
+
+    /// y = G'a on all rows, with the a that makes v - G'a least on the free ones.
+    void multiplier_shift(const DistributedVector &v, DistributedVector &y) const;
+
+    /// z = M r on the free rows, 0 on the others; a copy without a preconditioner.
+    void precondition(const DistributedVector &r, DistributedVector &z) const;
+
+    /// Do the free rows hold all bodies?
+    bool is_regular() const
+    {
+      return projector != nullptr;
+    }
+
+  private:
+    const DualProblem                   &problem;
+    std::vector<bool>                    free;
+    std::unique_ptr<Projector>           projector; // none if the free rows do not hold the bodies
+    std::unique_ptr<RowWeights::Inverse> weights;
+    std::vector<Eigen::VectorXd>         inverse_diagonals; // of K at the touched unknowns
+    mutable DistributedVector            source, target;
   };
 } // namespace slipstick::tfeti

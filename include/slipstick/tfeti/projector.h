@@ -25,6 +25,12 @@ namespace slipstick::tfeti
     /// y = Q x, owned entries. Collective.
     void project_range(const DistributedVector &x, DistributedVector &y) const;
 
+    /// As project_range(), but on all rows: y = G'a with the a that makes x - G'a least on the active ones. Collective.
+    void extend_range(const DistributedVector &x, DistributedVector &y) const;
+
+    /// G x, the rigid motions of this rank's subdomains in turn; inactive rows count as zero. Collective.
+    Eigen::VectorXd multiply(const DistributedVector &x) const;
+
     /// y = G'(G G')^-1 e: the smallest y with G y = e. e: the rigid motions of this rank's subdomains in turn. Collective.
     void particular(const Eigen::VectorXd &e, DistributedVector &y) const;
 
@@ -46,13 +52,14 @@ namespace slipstick::tfeti
       Eigen::MatrixXd           values; // motions x rows
     };
 
-    Eigen::VectorXd multiply(const DistributedVector &x) const;
-    void            multiply_transpose(const Eigen::VectorXd &a, DistributedVector &y) const;
+    void multiply_transpose(const Eigen::VectorXd &a, DistributedVector &y) const;
+    void mask(DistributedVector &y) const;
 
     const DualOperator           &scatter_gather;
     std::vector<Block>            blocks;
     unsigned int                  n_motions = 0; // of this rank
     std::unique_ptr<CoarseSolver> coarse;
+    DistributedVector             indicator; // 1 on active rows, ghosts included
     mutable DistributedVector     source, target;
   };
 } // namespace slipstick::tfeti

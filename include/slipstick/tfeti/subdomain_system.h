@@ -39,6 +39,16 @@ namespace slipstick::tfeti
     /// Rows and columns of K+ at the touched unknowns, in their order; symmetric, full. Needs the trailing block.
     Eigen::MatrixXd pseudo_inverse_block() const;
 
+    /// Schur complement of K on the touched unknowns (the fixing ones among them or held together with them), in their
+    /// order; symmetric, full. Needs the trailing block.
+    Eigen::MatrixXd schur_complement() const;
+
+    /// Rows and columns of K at the touched unknowns, in their order; symmetric, full.
+    Eigen::MatrixXd touched_stiffness() const;
+
+    /// Diagonal of K at the touched unknowns.
+    Eigen::VectorXd touched_diagonal() const;
+
     const Eigen::VectorXd &load() const
     {
       return matrices.load;
@@ -73,6 +83,8 @@ namespace slipstick::tfeti
     }
 
   private:
+    Eigen::MatrixXd at_touched(const Eigen::MatrixXd &in_last_order) const;
+
     SubdomainMatrices         matrices;
     std::vector<unsigned int> touched_unknowns;
     std::vector<unsigned int> fixing_unknowns;

@@ -1,0 +1,246 @@
+// Semismooth Newton (primal-dual active set) for bounds and equalities, with inexact projected conjugate gradients on
+// the free entries. Hintermueller, Ito, Kunisch 2003; on the multipliers of FETI: method.md section 7.
+//
+// Besides the Problem of types.h it needs
+//   `auto face(const std::vector<bool> &free) const`   the problem on the free entries (owned ones), which has
+//       multiply, reduction as the Problem, and
+//       `project_range(x, y)`   y = Q_f x on the free entries, y = x on the others, so that P_f = I - Q_f keeps G x
+//       `balance(x)`            moves the free entries by the least that makes G x = e
+//       `multiplier_shift(v, y)` y = G'a on ALL entries, with a such that v - G'a is least on the free ones
+//       `precondition(r, z)`    z = M r on the free entries, 0 on the others; symmetric positive semidefinite
+//       `is_regular()`          false when the free entries alone do not determine a
+#pragma once
+
+#include <slipstick/qp/box.h>
+#include <slipstick/qp/pcpg.h>
+
+#include <cmath>
+#include <vector>
+
+namespace slipstick::qp
+{
+  template <typename Vector>
+  struct NewtonResult
+  {
+    Status            status;
+    Vector            x;                  // free entries within their bounds when converged, the others at them
+    std::vector<bool> free;               // owned entries
+    double            projected_gradient; // |gP| over the reference of the goal
+    Counts            counts;
+  };
+
+  namespace detail
+  {
+    template <typename Vector, typename Problem>
+    class SemismoothNewton
+    {
+    public:
+      SemismoothNewton(const Problem       &problem_,
+                       const double         norm_,
+                       const Vector        &d_,
+                       const Box<Vector>   &box_,
+                       Vector               x_,
+                       const Goal          &goal,
+                       const NewtonOptions &options_,
+                       const PcpgOptions   &pcpg_options_,
+                       const Observer      &observer_)
+        : problem(problem_)
+        , norm(norm_)
+        , d(d_)
+        , box(box_)
+        , options(options_)
+        , pcpg_options(pcpg_options_)
+        , observer(observer_)
+        , x(std::move(x_))
+        , Fx(zero_like(d))
+        , g(d)
+        , w(d)
+        , reference(goal.reference)
+        , eps(goal.tolerance)
+        , forcing(options.first_forcing)
+      {
+        set_zero(g);
+        active = next_set(); // entries at their bounds
+      }
+
+      NewtonResult<Vector> run()
+      {
+        const Status      status = iterate();
+        std::vector<bool> free(active.size());
+        for (std::size_t i = 0; i < free.size(); ++i)
+          free[i] = active[i] == 0;
+        return {status, std::move(x), std::move(free), residual, counts};
+      }
+
+    private:
+      Status iterate()
+      {
+        double       best  = HUGE_VAL;
+        unsigned int stuck = 0;
+        for (;;)
+          {
+            if (!solve_on_face())
+              return Status::infeasible;
+            auto         next    = next_set();
+            const double changed = count_changes(next);
+            report();
+            if (changed == 0 && residual <= eps)
+              return Status::converged;
+            if (!(residual < HUGE_VAL))
+              return Status::stagnated;
+            // progress: the residual or the number of changes falls below the best so far
+            const double merit = residual + changed;
+            stuck              = merit < options.progress * best ? 0 : stuck + 1;
+            best               = std::min(best, merit);
+            if (stuck >= options.patience)
+              return Status::stagnated;
+            if (counts.outer_iterations >= options.max_outer_iterations)
+              return Status::iteration_limit;
+            if (changed <= options.settled_part * n_inequalities)
+              forcing = std::max(options.last_forcing * eps, options.forcing_reduction * forcing);
+            set_changed = changed > 0;
+            active      = std::move(next);
+          }
+      }
+
+      // PCPG on the free entries of the present set; the others at their bounds.
+      bool solve_on_face()
+      {
+        std::vector<bool> free(active.size());
+        for (std::size_t i = 0; i < free.size(); ++i)
+          free[i] = active[i] == 0;
+        const auto face = problem.face(free);
+        if (!face.is_regular())
+          return false;
+        if (set_changed)
+          {
+            put_on_bounds();
+            face.balance(x);
+            problem.multiply(x, Fx);
+            ++counts.hessian_multiplications;
+          }
+        const auto precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
+        auto       result       = pcpg(face,
+                           d,
+                           PcpgStart<Vector>{std::move(x), std::move(Fx)},
+                           Goal(forcing, reference),
+                           pcpg_options,
+                           precondition);
+        x                       = std::move(result.x);
+        Fx                      = std::move(result.product);
+        counts += result.counts;
+        ++counts.outer_iterations;
+        combine(1.0, Fx, 0.0, g);
+        add(-1.0, d, g);
+        face.multiplier_shift(g, w);
+        add(-1.0, w, g);
+        measure();
+        return true;
+      }
+
+      void put_on_bounds()
+      {
+        const auto l = box.lower.begin(), u = box.upper.begin();
+        const auto xi = x.begin();
+        for (std::size_t i = 0; i < active.size(); ++i)
+          if (active[i] < 0)
+            xi[i] = l[i];
+          else if (active[i] > 0)
+            xi[i] = u[i];
+      }
+
+      void measure()
+      {
+        const auto gi  = g.begin();
+        double     sum = 0;
+        for (std::size_t i = 0; i < active.size(); ++i)
+          {
+            const double gp = active[i] == 0 ? gi[i] : active[i] < 0 ? std::min(gi[i], 0.0) : std::max(gi[i], 0.0);
+            sum += gp * gp;
+          }
+        residual = std::sqrt(problem.reduction().sum(std::array<double, 1>{{sum}})[0]) / reference;
+      }
+
+      // -1 at the lower bound, 1 at the upper, 0 free: of x - g / |PFP|. Entries with l = u are never free.
+      std::vector<signed char> next_set() const
+      {
+        const auto               l = box.lower.begin(), u = box.upper.begin();
+        const auto               xi = x.begin(), gi = g.begin();
+        std::vector<signed char> set(local_size(x));
+        for (std::size_t i = 0; i < set.size(); ++i)
+          {
+            const double t = xi[i] - gi[i] / norm;
+            set[i]         = t <= l[i] ? -1 : t >= u[i] ? 1 : 0;
+          }
+        return set;
+      }
+
+      double count_changes(const std::vector<signed char> &next)
+      {
+        const auto            l = box.lower.begin(), u = box.upper.begin();
+        std::array<double, 4> s{{0, 0, 0, 0}};
+        for (std::size_t i = 0; i < next.size(); ++i)
+          {
+            s[0] += next[i] != active[i] && l[i] < u[i];
+            s[1] += l[i] > -HUGE_VAL || u[i] < HUGE_VAL;
+            s[2] += active[i] < 0;
+            s[3] += active[i] > 0;
+          }
+        s              = problem.reduction().sum(s);
+        n_inequalities = s[1];
+        n_lower        = s[2];
+        n_upper        = s[3];
+        return s[0];
+      }
+
+      void report() const
+      {
+        if (observer)
+          observer({counts.outer_iterations,
+                    counts.hessian_multiplications,
+                    residual,
+                    0.0,
+                    static_cast<std::size_t>(n_lower),
+                    static_cast<std::size_t>(n_upper)});
+      }
+
+      const Problem       &problem;
+      const double         norm;
+      const Vector        &d;
+      const Box<Vector>   &box;
+      const NewtonOptions &options;
+      const PcpgOptions   &pcpg_options;
+      const Observer      &observer;
+
+      Vector                   x, Fx, g, w;
+      const double             reference, eps;
+      double                   forcing;
+      double                   residual       = HUGE_VAL;
+      double                   n_inequalities = 0, n_lower = 0, n_upper = 0;
+      bool                     set_changed = true;
+      std::vector<signed char> active;
+      Counts                   counts;
+    };
+  } // namespace detail
+
+  /// Minimise 1/2 x'Fx - x'd over the box and G x = e. The start x tells the first active set: entries at their bounds.
+  /// `norm` is |PFP|; goal.reference must be given (|P(d - F x~)|). Converged: the active set stands and |gP| is at most
+  /// goal.tolerance times goal.reference.
+  /// status: infeasible if the free entries of some set leave the equalities singular, stagnated if neither residual nor
+  /// changes of the set fall any more; MPGP with SMALBE goes on from there.
+  template <typename Vector, typename Problem>
+  NewtonResult<Vector> semismooth_newton(const Problem       &problem,
+                                         const double         norm,
+                                         const Vector        &d,
+                                         const Box<Vector>   &box,
+                                         Vector               x,
+                                         const Goal          &goal,
+                                         const NewtonOptions &options      = {},
+                                         const PcpgOptions   &pcpg_options = {},
+                                         const Observer      &observer     = {})
+  {
+    return detail::SemismoothNewton<Vector,
+                                    Problem>(problem, norm, d, box, std::move(x), goal, options, pcpg_options, observer)
+      .run();
+  }
+} // namespace slipstick::qp

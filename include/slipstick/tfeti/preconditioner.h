@@ -1,0 +1,58 @@
+// Preconditioners of the dual problem on the free rows.
+#pragma once
+
+#include <slipstick/tfeti/dual_operator.h>
+
+namespace slipstick::tfeti
+{
+  /// W = B D^-1 B', D = diag K: couples only rows of one node, so it consists of small dense blocks, each on one rank.
+  class RowWeights
+  {
+  public:
+    /// Collective. @throws NumericalError when rows of one node are owned by different ranks.
+    RowWeights(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+               const std::vector<LocalGluing>                      &gluing,
+               const Partitioner                                   &rows,
+               const MPI_Comm                                       comm);
+
+    /// Inverse of W restricted to the active rows.
+    class Inverse
+    {
+    public:
+      Inverse(const RowWeights &weights, const std::vector<bool> &active);
+
+      /// y = W^-1 x on the active rows, 0 on the others; owned entries.
+      void apply(const DistributedVector &x, DistributedVector &y) const;
+
+    private:
+      struct Block
+      {
+        std::vector<unsigned int> rows;
+        Eigen::MatrixXd           inverse;
+      };
+      std::vector<Block> blocks;
+    };
+
+  private:
+    struct Block
+    {
+      std::vector<unsigned int> rows; // owned
+      Eigen::MatrixXd           matrix;
+    };
+    std::vector<Block> blocks;
+  };
+
+  /// W^-1 B D^-1 S D^-1 B' W^-1 on the active rows. S: Schur complement of K on the touched unknowns (Dirichlet; Farhat,
+  /// Mandel, Roux 1994) or K itself there (lumped). D weighs stiff against soft neighbours (Rixen, Farhat 1999).
+  class PreconditionerBlocks
+  {
+  public:
+    PreconditionerBlocks(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains, const Preconditioner kind);
+
+    /// y = S x at the touched unknowns of subdomain p.
+    void apply(const unsigned int p, const Eigen::VectorXd &x, Eigen::VectorXd &y) const;
+
+  private:
+    std::vector<std::vector<double>> blocks; // packed lower triangles
+  };
+} // namespace slipstick::tfeti

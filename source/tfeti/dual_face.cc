@@ -1,0 +1,82 @@
+#include <slipstick/tfeti/dual_problem.h>
+
+namespace slipstick::tfeti
+{
+  DualProblem::Face DualProblem::face(const std::vector<bool> &free) const
+  {
+    return Face(*this, free);
+  }
+
+  DualProblem::Face::Face(const DualProblem &problem_, const std::vector<bool> &free_)
+    : problem(problem_)
+    , free(free_)
+    , source(problem.rows.rows)
+    , target(problem.rows.rows)
+  {
+    if (!free_motions(problem.systems, problem.gluing, problem.rows, free, problem.names_of_bodies.size(), problem.comm)
+           .empty())
+      return;
+    projector =
+      std::make_unique<Projector>(problem.systems, problem.gluing, *problem.F, problem.rows.rows, free, problem.comm);
+    if (problem.weights)
+      {
+        weights = std::make_unique<RowWeights::Inverse>(*problem.weights, free);
+        for (const auto &system : problem.systems)
+          inverse_diagonals.push_back(system->touched_diagonal().cwiseInverse());
+      }
+  }
+
+  void DualProblem::Face::multiply(const DistributedVector &x, DistributedVector &y) const
+  {
+    problem.multiply(x, y);
+  }
+
+  const MpiReduction &DualProblem::Face::reduction() const
+  {
+    return problem.reduce;
+  }
+
+  void DualProblem::Face::project_range(const DistributedVector &x, DistributedVector &y) const
+  {
+    projector->project_range(x, y);
+    for (unsigned int r = 0; r < free.size(); ++r)
+      if (!free[r])
+        y.local_element(r) = x.local_element(r);
+  }
+
+  void DualProblem::Face::balance(DistributedVector &x) const
+  {
+    DistributedVector step = problem.zero();
+    projector->particular(problem.resultants() - problem.projector->multiply(x), step);
+    x += step;
+  }
+
+  void DualProblem::Face::multiplier_shift(const DistributedVector &v, DistributedVector &y) const
+  {
+    projector->extend_range(v, y);
+  }
+
+  void DualProblem::Face::precondition(const DistributedVector &r, DistributedVector &z) const
+  {
+    if (!weights)
+      {
+        z.copy_locally_owned_data_from(r);
+        return;
+      }
+    DistributedVector weighted = problem.zero();
+    weights->apply(r, weighted);
+    problem.F->import(weighted, source);
+    target.zero_out_ghost_values();
+    target = 0;
+    Eigen::VectorXd force;
+    for (unsigned int p = 0; p < problem.systems.size(); ++p)
+      {
+        const Eigen::VectorXd jump = inverse_diagonals[p].cwiseProduct(problem.F->scatter(p, source));
+        problem.preconditioner->apply(p, jump, force);
+        problem.F->gather(p, inverse_diagonals[p].cwiseProduct(force), target);
+      }
+    target.compress(dealii::VectorOperation::add);
+    weighted.copy_locally_owned_data_from(target);
+    weights->apply(weighted, z);
+  }
+} // namespace slipstick::tfeti

@@ -1,0 +1,149 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/tfeti/packed.h>
+#include <slipstick/tfeti/preconditioner.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/vector.hpp>
+
+#include <numeric>
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    /// One summand of an entry of W.
+    struct Weight
+    {
+      std::uint64_t row = 0, column = 0; // global
+      double        value = 0;
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &row &column &value;
+      }
+    };
+
+    /// Summands of W that one subdomain gives: pairs of rows that touch the same unknown.
+    std::vector<Weight> weights_of(const SubdomainSystem &subdomain, const LocalGluing &gluing, const Partitioner &rows)
+    {
+      std::vector<std::vector<std::pair<std::uint64_t, double>>> by_unknown(subdomain.touched().size());
+      for (const auto &entry : gluing.entries)
+        by_unknown[entry.touched].emplace_back(rows->local_to_global(entry.row), entry.value);
+      std::vector<Weight>   weights;
+      const Eigen::VectorXd diagonal = subdomain.touched_diagonal();
+      for (unsigned int k = 0; k < by_unknown.size(); ++k)
+        for (const auto &[row, a] : by_unknown[k])
+          for (const auto &[column, b] : by_unknown[k])
+            weights.push_back({row, column, a * b / diagonal[k]});
+      return weights;
+    }
+  } // namespace
+
+  RowWeights::RowWeights(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+                         const std::vector<LocalGluing>                      &gluing,
+                         const Partitioner                                   &rows,
+                         const MPI_Comm                                       comm)
+  {
+    std::map<unsigned int, std::vector<Weight>> to_send;
+    const auto                                  owners = owners_of_ghosts(rows);
+    const unsigned int                          rank   = dealii::Utilities::MPI::this_mpi_process(comm);
+    const unsigned int                          n      = rows->locally_owned_size();
+    for (unsigned int p = 0; p < subdomains.size(); ++p)
+      for (const auto &weight : weights_of(*subdomains[p], gluing[p], rows))
+        {
+          const unsigned int local = rows->global_to_local(weight.row);
+          to_send[local < n ? rank : owners[local - n]].push_back(weight);
+        }
+
+    // sums, and the groups of rows that hang together
+    std::map<std::pair<unsigned int, unsigned int>, double> sums;
+    std::vector<unsigned int>                               root(n);
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&root](unsigned int r) {
+      while (root[r] != r)
+        r = root[r] = root[root[r]];
+      return r;
+    };
+    bool is_local = true;
+    for (const auto &[from, weights] : dealii::Utilities::MPI::some_to_some(comm, to_send))
+      for (const auto &weight : weights)
+        {
+          is_local = is_local && rows->in_local_range(weight.column);
+          if (!rows->in_local_range(weight.column))
+            continue;
+          const unsigned int r = rows->global_to_local(weight.row), c = rows->global_to_local(weight.column);
+          sums[{r, c}] += weight.value;
+          const unsigned int a = find(r), b = find(c);
+          root[std::max(a, b)] = std::min(a, b);
+        }
+    if (dealii::Utilities::MPI::min(static_cast<int>(is_local), comm) == 0)
+      throw NumericalError("rows that share a node are owned by different ranks",
+                           "this is a bug of slipstick, please report it");
+
+    std::map<unsigned int, unsigned int>               block_of_root;
+    std::vector<std::pair<unsigned int, unsigned int>> place(n); // block, position in it
+    for (unsigned int r = 0; r < n; ++r)
+      {
+        const auto [entry, is_new] = block_of_root.emplace(find(r), blocks.size());
+        if (is_new)
+          blocks.emplace_back();
+        place[r] = {entry->second, blocks[entry->second].rows.size()};
+        blocks[entry->second].rows.push_back(r);
+      }
+    for (auto &block : blocks)
+      block.matrix = Eigen::MatrixXd::Zero(block.rows.size(), block.rows.size());
+    for (const auto &[position, value] : sums)
+      blocks[place[position.first].first].matrix(place[position.first].second, place[position.second].second) = value;
+  }
+
+  RowWeights::Inverse::Inverse(const RowWeights &weights, const std::vector<bool> &active)
+  {
+    for (const auto &full : weights.blocks)
+      {
+        std::vector<unsigned int> kept;
+        Block                     block;
+        for (unsigned int k = 0; k < full.rows.size(); ++k)
+          if (active.empty() || active[full.rows[k]])
+            {
+              kept.push_back(k);
+              block.rows.push_back(full.rows[k]);
+            }
+        if (kept.empty())
+          continue;
+        Eigen::MatrixXd matrix(kept.size(), kept.size());
+        for (unsigned int a = 0; a < kept.size(); ++a)
+          for (unsigned int b = 0; b < kept.size(); ++b)
+            matrix(a, b) = full.matrix(kept[a], kept[b]);
+        block.inverse = matrix.llt().solve(Eigen::MatrixXd::Identity(kept.size(), kept.size()));
+        blocks.push_back(std::move(block));
+      }
+  }
+
+  void RowWeights::Inverse::apply(const DistributedVector &x, DistributedVector &y) const
+  {
+    y = 0;
+    for (const auto &block : blocks)
+      for (unsigned int a = 0; a < block.rows.size(); ++a)
+        {
+          double sum = 0;
+          for (unsigned int b = 0; b < block.rows.size(); ++b)
+            sum += block.inverse(a, b) * x.local_element(block.rows[b]);
+          y.local_element(block.rows[a]) = sum;
+        }
+  }
+
+  PreconditionerBlocks::PreconditionerBlocks(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+                                             const Preconditioner                                 kind)
+  {
+    for (const auto &subdomain : subdomains)
+      blocks.push_back(
+        packed_lower(kind == Preconditioner::lumped ? subdomain->touched_stiffness() : subdomain->schur_complement()));
+  }
+
+  void PreconditionerBlocks::apply(const unsigned int p, const Eigen::VectorXd &x, Eigen::VectorXd &y) const
+  {
+    multiply_packed(blocks[p], x, y);
+  }
+} // namespace slipstick::tfeti

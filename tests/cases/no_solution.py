@@ -1,0 +1,114 @@
+"""Scenes without equilibrium end with status 4, solves that stop early with status 3; both say so in summary.json."""
+
+import unittest
+
+import scenes
+from program import run, shipped, solve
+
+PULLED = {'Boundary': 'box/top', 'Traction y': '250'}
+PUSHED = {'Boundary': 'box/left', 'Traction x': '2'}  # 20 N
+WEIGHT = {'Boundary': 'box/top', 'Traction y': '-10'}
+ROLLER = {'Boundary': 'box/left', 'Displacement x': '0'}
+GIVING = {**scenes.CIRCLE, 'Slip bound': '1'}  # 10 N on the whole bottom
+METIS = {'Decomposition/Method': 'METIS', 'Decomposition/Subdomains': '5'}
+
+
+class NoEquilibrium(unittest.TestCase):
+
+    def refused(self, case, *words, overrides=None, ranks=(1, 2, 3)):
+        for n in ranks:
+            with self.subTest(ranks=n):
+                result = solve(case, overrides, ranks=n)
+                self.assertEqual(result.status, 4, result)
+                self.assertTrue(result.stderr.startswith('error: '), result)
+                self.assertEqual(len(result.stderr.splitlines()), 2, result)
+                self.assertIn('\n  remedy: ', result.stderr)
+                for word in ('box',) + words:
+                    self.assertIn(word, result.stderr, result)
+                summary = result.summary
+                self.assertEqual(summary['status'], 'no equilibrium')
+                self.assertIs(summary['converged'], False)
+                self.assertEqual(summary['ranks'], n)
+                self.assertEqual(result.files(), ['summary.json'], 'half-written')
+
+    def test_box_pulled_off_the_circle(self):
+        case = scenes.box(tractions={'pulled': PULLED}, contacts={'circle': scenes.CIRCLE})
+        self.refused(case, 'translation along (')
+
+    def test_box_pulled_off_the_circle_under_metis(self):
+        case = scenes.box(tractions={'pulled': PULLED}, contacts={'circle': scenes.CIRCLE})
+        self.refused(case, 'translation along (', overrides=METIS, ranks=(2,))
+
+    def test_frictionless_box_pulled_off_the_circle(self):
+        case = scenes.box(tractions={'pulled': PULLED},
+                          contacts={'circle': {key: scenes.CIRCLE[key] for key in ('Slave', 'Master')}})
+        self.refused(case, 'body box', ranks=(2,))
+
+    def test_box_pushed_beyond_the_slip_bound(self):
+        case = scenes.box(tractions={'pushed': PUSHED, 'weight': WEIGHT}, contacts={'circle': GIVING})
+        self.refused(case, 'body box')
+
+    def test_box_pushed_below_the_slip_bound_is_held(self):
+        case = scenes.box(tractions={'pushed': {**PUSHED, 'Traction x': '0.1'}, 'weight': WEIGHT},
+                          contacts={'circle': GIVING})
+        result = solve(case, {'Solver/Tolerance': 1e-8}, ranks=2)
+        self.assertEqual(result.status, 0, result)
+        pair = result.summary['results']['contact'][0]
+        self.assertAlmostEqual(pair['normal_force'] / 100, 1, delta=0.05)  # the circle carries the weight
+        self.assertGreater(pair['contact_nodes'], 0)
+
+    def test_body_on_rollers(self):
+        case = scenes.box(supports={'roller': ROLLER}, tractions={'weight': WEIGHT})
+        self.refused(case, 'nothing holds body box', 'translation along (')
+
+    def test_body_on_rollers_under_metis(self):
+        case = scenes.box(supports={'roller': ROLLER}, tractions={'weight': WEIGHT})
+        self.refused(case, 'nothing holds body box', 'translation along (', overrides=METIS, ranks=(2, 3))
+
+    def test_body_on_rollers_without_load_along_them(self):
+        case = scenes.box(supports={'roller': ROLLER})
+        self.refused(case, 'nothing holds body box', ranks=(2,))
+
+    def test_check_finds_the_free_body_and_writes_nothing(self):
+        case = scenes.box(supports={'roller': ROLLER})
+        result = run(case, '--check', ranks=2)
+        self.assertEqual(result.status, 4, result)
+        self.assertIn('nothing holds body box', result.stderr)
+
+
+class NotConverged(unittest.TestCase):
+
+    def check(self, case, overrides, ranks):
+        result = solve(case, {'Decomposition/Cells per block': 8, **overrides}, ranks=ranks)
+        self.assertEqual(result.status, 3, result)
+        summary = result.summary
+        self.assertEqual(summary['status'], 'not converged')
+        self.assertIs(summary['converged'], False)
+        for name in ('solution.pvd', 'solution_000.pvtu', 'convergence.csv', 'parameters.prm'):
+            self.assertIn(name, result.files())
+        self.assertIn('not converged', result.stdout + result.stderr)
+        return result
+
+    def test_outer_iterations_run_out(self):
+        for ranks in (1, 2):
+            result = self.check(shipped('box_on_circle'), {'Solver/SMALBE/Max outer iterations': 2}, ranks)
+            self.assertEqual(result.summary['solver']['outer_iterations'], 2)
+            self.assertIn('contact.csv', result.files())
+            self.assertGreater(max(result.summary['residuals'][name] for name in ('projected_gradient', 'equality')),
+                               1e-4)
+
+    def test_inner_iterations_run_out(self):
+        self.check(shipped('box_on_circle'), {'Solver/SMALBE/Max inner iterations': 1,
+                                              'Solver/SMALBE/Max outer iterations': 5}, 2)
+
+    def test_linear_iterations_run_out(self):
+        self.check(shipped('box_linear'), {'Solver/PCG/Max iterations': 3}, 2)
+
+    def test_standard_error_says_so_once_with_a_remedy(self):
+        result = self.check(shipped('box_on_circle'), {'Solver/SMALBE/Max outer iterations': 2}, 2)
+        self.assertEqual(result.stderr.count('remedy: '), 1, result)
+        self.assertIn('Max outer iterations', result.stderr, result)
+
+
+if __name__ == '__main__':
+    unittest.main()
