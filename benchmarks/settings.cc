@@ -140,7 +140,7 @@ namespace
     const fem::Spaces<2>     spaces(mesh, scene.discretization.degree);
     const tfeti::DualProblem dual(fem::assemble(scene, mesh, spaces, 1.),
                                   fem::contact_constraints(scene, mesh, spaces, 1.),
-                                  scene.solver.dual,
+                                  contact::resolved_options(scene).dual,
                                   {"box"},
                                   comm);
     std::vector<Cell>        cells;
@@ -150,7 +150,7 @@ namespace
         Cell       cell{bound, mesh.n_subdomains(), {}, {}, {}};
         for (const auto &row : rows)
           {
-            auto options = scene.solver;
+            auto options = contact::resolved_options(scene);
             row.change(options);
             const double start    = MPI_Wtime();
             const auto   solution = contact::solve(dual, bounds, options, {});
