@@ -2,6 +2,8 @@
 // sparse Cholesky factorisations, and its dual operator explicit against implicit. One thread, processor time. Medians over
 // the repetitions, all variants in turn in each of them; prints Markdown.
 #include <slipstick/fem/assembly.h>
+#include <slipstick/fem/decomposition.h>
+#include <slipstick/scene/read.h>
 #include <slipstick/fem/contact_constraints.h>
 #include <slipstick/tfeti/dual_operator.h>
 

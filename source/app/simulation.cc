@@ -145,7 +145,6 @@ namespace slipstick::app
     {
       StageClock clock;
       const auto options = contact::resolved_options(scene);
-      directory.remove_results();
       print_header(log, scene, comm);
 
       clock.enter("mesh");
@@ -168,6 +167,7 @@ namespace slipstick::app
       print_dual(log, dual);
 
       clock.enter("solve");
+      directory.remove_results(); // the scene is accepted: what an earlier run left is no longer true
       std::vector<output::ConvergenceRow> convergence;
       const auto                          solution =
         contact::solve(dual,
@@ -233,6 +233,7 @@ namespace slipstick::app
       }
     catch (const NoEquilibrium &) // on all ranks alike
       {
+        directory.remove_results();
         output::write_summary(directory, summary_without_equilibrium(scene, comm));
         throw;
       }

@@ -89,7 +89,9 @@ TEST(Summary, residuals_and_errors_have_the_keys_of_the_contract)
                   "complementarity",
                   "friction_bound",
                   "force_balance",
-                  "moment_balance"}));
+                  "moment_balance",
+                  "tension",
+                  "nodal_equilibrium"}));
   EXPECT_EQ(keys(parsed(Summary())["error"]), Keys({"estimate_energy_relative", "algebraic_relative"}));
 }
 
@@ -105,6 +107,7 @@ TEST(Summary, results_have_the_keys_of_the_contract)
                   "tangential_force",
                   "max_pressure",
                   "contact_length",
+                  "contact_nodes",
                   "open_nodes",
                   "stick_nodes",
                   "slip_nodes"}));

@@ -44,7 +44,7 @@ TEST(bad_input, misspelt_list)
 
 TEST(bad_input, misspelt_value)
 {
-  refused({"Solver/Algorithm=smable"}, {"--set", "Solver/Algorithm = 'smable'", "auto, smalbe, pcg", "'smalbe'"});
+  refused({"Solver/Algorithm=smable"}, {"--set", "Solver/Algorithm = 'smable'", "auto, smalbe, semismooth newton, pcg", "'smalbe'"});
   expect_box_refused("= blocks", "= block", {"box.prm:", "Decomposition/Method = 'block'", "METIS", "'blocks'"});
 }
 
@@ -67,12 +67,16 @@ TEST(bad_input, name_without_a_section)
 
 TEST(bad_input, what_later_versions_add_is_refused_with_what_is_available)
 {
-  refused({"Solver/Algorithm=semismooth newton"}, {"'semismooth newton'", "available: auto, smalbe, pcg"});
   refused({"Contact circle/Law=Coulomb"}, {"'Coulomb'", "available: frictionless, Tresca"});
   refused({"Contact circle/Law=bonded"}, {"'bonded'", "available: frictionless, Tresca"});
   refused({"Solver/Tolerance=auto"}, {"'auto'", "a number in (0, 1)"});
   refused({"Body box/Shape=disc"}, {"'disc'", "available: rectangle"});
   refused({"Obstacle disc/Shape=halfplane"}, {"'halfplane'", "available: circle"});
+}
+
+TEST(bad_input, preconditioner_of_an_algorithm_that_has_none)
+{
+  refused({"Solver/Algorithm=smalbe", "Solver/Preconditioner=Dirichlet"}, {"Solver/Preconditioner", "semismooth newton"});
 }
 
 // values out of range
