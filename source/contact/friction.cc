@@ -202,10 +202,16 @@ namespace slipstick::contact
   template <int dim>
   scene::SolverOptions resolved_options(const scene::Scene<dim> &scene)
   {
-    scene::SolverOptions options = scene.solver;
+    scene::SolverOptions options        = scene.solver;
+    auto                &preconditioner = options.dual.preconditioner;
     if (options.algorithm == scene::Algorithm::automatic)
-      options.algorithm = scene.has_contact() ? scene::Algorithm::smalbe : scene::Algorithm::pcg;
-    auto &preconditioner = options.dual.preconditioner;
+      {
+        const bool preconditioned =
+          preconditioner == tfeti::Preconditioner::lumped || preconditioner == tfeti::Preconditioner::dirichlet;
+        options.algorithm = !scene.has_contact() ? scene::Algorithm::pcg
+                            : preconditioned     ? scene::Algorithm::semismooth_newton
+                                                 : scene::Algorithm::smalbe;
+      }
     if (options.algorithm == scene::Algorithm::smalbe)
       preconditioner = tfeti::Preconditioner::none; // it would change the bounds
     else if (preconditioner == tfeti::Preconditioner::automatic)

@@ -89,8 +89,7 @@ namespace slipstick::scene
       if ((algorithm == Algorithm::smalbe || algorithm == Algorithm::semismooth_newton) && !scene.has_contact())
         throw parameters.error("Solver/Algorithm", "needs contact, and this scene has none", "set it to auto");
       const auto preconditioner = scene.solver.dual.preconditioner;
-      const bool uses_one       = algorithm == Algorithm::semismooth_newton || !scene.has_contact();
-      if (!uses_one && preconditioner != tfeti::Preconditioner::automatic &&
+      if (algorithm == Algorithm::smalbe && preconditioner != tfeti::Preconditioner::automatic &&
           preconditioner != tfeti::Preconditioner::none)
         throw parameters.error("Solver/Preconditioner",
                                "would change the bounds that SMALBE works with",

@@ -32,7 +32,8 @@ namespace slipstick::contact
     unsigned int             fallbacks = 0;
   };
 
-  /// The options with `auto` resolved: pcg for linear scenes, smalbe for contact; Dirichlet preconditioner for
+  /// The options with `auto` resolved: pcg for linear scenes, smalbe for contact (semismooth Newton if a
+  /// preconditioner is asked for); Dirichlet preconditioner for
   /// semismooth Newton, none where there is no use for one.
   template <int dim>
   scene::SolverOptions resolved_options(const scene::Scene<dim> &scene);
