@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Tpetra_Core.hpp>
+
 #include <iostream>
 
 namespace
@@ -21,6 +23,7 @@ int main(int argc, char **argv)
 {
   testing::InitGoogleTest(&argc, argv);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Tpetra::ScopeGuard                       tpetra(&argc, &argv);
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
     {
       testing::TestEventListeners &listeners = testing::UnitTest::GetInstance()->listeners();

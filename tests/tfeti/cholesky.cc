@@ -1,0 +1,109 @@
+#include "torn.h"
+
+#include <slipstick/base/exceptions.h>
+
+using namespace slipstick;
+using namespace slipstick::test;
+using tfeti::Cholesky;
+using tfeti::CholmodSession;
+
+namespace
+{
+  /// Stiffness of the box with 1 added to its diagonal: positive definite, with fill.
+  Eigen::SparseMatrix<double> shifted_stiffness(const unsigned int n)
+  {
+    Eigen::SparseMatrix<double> lower = Torn(box(n), MPI_COMM_SELF).matrices[0].stiffness / 1e5;
+    for (int i = 0; i < lower.rows(); ++i)
+      lower.coeffRef(i, i) += 1;
+    return lower;
+  }
+
+  std::vector<unsigned int> every(const unsigned int step, const unsigned int n)
+  {
+    std::vector<unsigned int> list;
+    for (unsigned int i = 0; i < n; i += step)
+      list.push_back(i);
+    return list;
+  }
+
+  const auto session = [] { return std::make_shared<CholmodSession>(); };
+} // namespace
+
+TEST(Cholesky, solves)
+{
+  const auto      A = shifted_stiffness(6);
+  for (const auto &last : {std::vector<unsigned int>(), every(5, A.rows()), every(1, A.rows())})
+    {
+      const Cholesky        factor(session(), A, last, "box");
+      const Eigen::VectorXd x = random_vector(A.rows(), 1);
+      Eigen::VectorXd       y = A.selfadjointView<Eigen::Lower>() * x;
+      factor.solve(y);
+      EXPECT_LT(relative_difference(y, x), 1e-13);
+    }
+}
+
+TEST(Cholesky, trailing_block_is_the_factor_of_the_schur_complement)
+{
+  const auto A = shifted_stiffness(7);
+  for (const unsigned int step : {1, 2, 3, 7, 50, 1000})
+    {
+      const auto            last = every(step, A.rows());
+      const Cholesky        factor(session(), A, last, "box");
+      const auto           &order = factor.last_order();
+      Eigen::MatrixXd       inverse = full(A).inverse(), of_last(order.size(), order.size());
+      for (unsigned int i = 0; i < order.size(); ++i)
+        for (unsigned int j = 0; j < order.size(); ++j)
+          of_last(i, j) = inverse(order[i], order[j]);
+      const Eigen::MatrixXd L = factor.trailing_block();
+      EXPECT_LT(relative_difference(L * L.transpose(), of_last.inverse()), 1e-13) << step;
+    }
+}
+
+TEST(Cholesky, trailing_block_is_lower_triangular)
+{
+  const auto            A = shifted_stiffness(4);
+  const Eigen::MatrixXd L = Cholesky(session(), A, every(3, A.rows()), "box").trailing_block();
+  EXPECT_EQ(Eigen::MatrixXd(L.triangularView<Eigen::StrictlyUpper>()).norm(), 0);
+}
+
+TEST(Cholesky, last_order_is_a_permutation_of_the_last_unknowns)
+{
+  const auto A     = shifted_stiffness(4);
+  const auto last  = every(3, A.rows());
+  auto       order = Cholesky(session(), A, last, "box").last_order();
+  std::sort(order.begin(), order.end());
+  EXPECT_EQ(order, last);
+}
+
+TEST(Cholesky, session_may_change_between_orderings)
+{
+  const auto            A      = shifted_stiffness(5);
+  const auto            common = session();
+  const Cholesky        first(common, A, every(4, A.rows()), "a"), second(common, A, {}, "b"), third(common, A, every(2, A.rows()), "c");
+  const Eigen::VectorXd x = random_vector(A.rows(), 2);
+  for (const Cholesky *factor : {&first, &second, &third})
+    {
+      Eigen::VectorXd y = A.selfadjointView<Eigen::Lower>() * x;
+      factor->solve(y);
+      EXPECT_LT(relative_difference(y, x), 1e-13);
+    }
+}
+
+TEST(Cholesky, indefinite_and_singular_matrices_are_named)
+{
+  auto indefinite = shifted_stiffness(3), singular = indefinite;
+  indefinite.coeffRef(7, 7) = -1;
+  for (int i = 0; i < singular.rows(); ++i)
+    singular.coeffRef(i, i) -= 1;
+  for (const auto &A : {indefinite, singular})
+    for (const auto &last : {std::vector<unsigned int>(), every(3, A.rows())})
+      try
+        {
+          Cholesky(session(), A, last, "subdomain 7");
+          ADD_FAILURE() << "not thrown";
+        }
+      catch (const NumericalError &error)
+        {
+          EXPECT_NE(std::string(error.what()).find("subdomain 7"), std::string::npos);
+        }
+}

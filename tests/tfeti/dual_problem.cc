@@ -1,0 +1,257 @@
+#include "solved.h"
+
+#include <slipstick/base/exceptions.h>
+
+using namespace slipstick;
+using namespace slipstick::test;
+
+namespace
+{
+  const std::vector<Cut> cuts = {whole(), blocks(2), blocks(4), metis(3), metis(8)};
+
+  Scene accurate(Scene scene, const double tolerance)
+  {
+    scene.solver.tolerance = tolerance;
+    return scene;
+  }
+
+  Eigen::VectorXd solution(const Solved &solved)
+  {
+    return gathered(solved.solution.multipliers, MPI_COMM_WORLD);
+  }
+
+  /// Every length, and the thickness, times @p unit; Young's modulus, tractions and slip bounds times @p stiffness.
+  Scene in_units(const Cut &how, const double unit, const double stiffness)
+  {
+    const auto text = [](const double value) {
+      char buffer[64];
+      std::snprintf(buffer, sizeof buffer, "%.17g", value);
+      return std::string(buffer);
+    };
+    Scene scene;
+    add_body(scene, "box", {0, 0}, {10 * unit, 10 * unit}, {{8, 8}});
+    scene.materials[0].young_modulus *= stiffness;
+    scene.bodies[0].thickness = 3 * unit;
+    support(scene, 0, "left", "0", "0");
+    load(scene, 0, "top", text(30 * stiffness), text(-250 * stiffness));
+    touch(scene, 0, "bottom", {5 * unit, -20 * unit}, 20 * unit, text(100 * stiffness));
+    return cut(scene, how);
+  }
+} // namespace
+
+// norm
+
+TEST(DualProblem, norm_is_the_largest_eigenvalue_of_PFP_in_the_limit)
+{
+  for (const Cut &how : {blocks(2), metis(5)})
+    {
+      const Torn         torn(cut(box_on_circle(6, "100"), how));
+      tfeti::DualOptions options;
+      options.norm_tolerance      = 1e-14;
+      options.max_norm_iterations = 3000;
+      const double largest        = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Dense(torn).PFP()).eigenvalues().tail(1)[0];
+      EXPECT_NEAR(torn.dual(options)->norm() / largest, 1, 1e-8);
+    }
+}
+
+TEST(DualProblem, norm_is_a_lower_bound_near_the_largest_eigenvalue)
+{
+  for (const Cut &how : cuts)
+    {
+      const Torn   torn(cut(box_on_circle(8, "100"), how));
+      const double largest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Dense(torn).PFP()).eigenvalues().tail(1)[0];
+      const double norm    = torn.dual()->norm();
+      EXPECT_LT(norm, (1 + 1e-12) * largest);
+      EXPECT_GT(norm, 0.95 * largest);
+    }
+}
+
+TEST(DualProblem, multiplications_are_scaled_by_the_norm)
+{
+  const Torn            torn(cut(box_on_circle(6, "100"), blocks(2)));
+  const auto            dual = torn.dual();
+  const Eigen::VectorXd x    = random_vector(torn.constraints.rows->size(), 1);
+  auto                  y = dual->zero(), z = dual->zero();
+  dual->multiply(distributed(x, *dual), y);
+  dual->dual_operator().apply(distributed(x, *dual), z);
+  z /= dual->norm();
+  EXPECT_LT(relative_difference(gathered(y, MPI_COMM_WORLD), gathered(z, MPI_COMM_WORLD)), 1e-14);
+}
+
+// right-hand sides
+
+TEST(DualProblem, particular_multipliers_balance_the_loads_of_every_subdomain)
+{
+  for (const Cut &how : cuts)
+    {
+      const Torn  torn(cut(bent_box(8), how));
+      const Dense dense(torn);
+      EXPECT_LT(relative_difference(dense.G * gathered(torn.dual()->particular(), MPI_COMM_WORLD), dense.e), 1e-12);
+    }
+}
+
+TEST(DualProblem, projected_load_is_that_of_the_assembled_system)
+{
+  for (const Cut &how : {whole(), blocks(3), metis(4)})
+    {
+      const Torn            torn(cut(bent_box(6), how));
+      const Dense           dense(torn);
+      const auto            dual  = torn.dual();
+      const auto            start = dual->particular();
+      auto                  Fx    = dual->zero();
+      dual->dual_operator().apply(start, Fx);
+      // of the same x~ on both sides, since d and F alone depend on the choice of K+
+      const Eigen::VectorXd x = gathered(start, MPI_COMM_WORLD);
+      const Eigen::VectorXd expect =
+        dense.P() * (dense.B * (dense.pseudo_inverse() * (dense.f - dense.B.transpose() * x)) - dense.c);
+      EXPECT_LT(relative_difference(dense.P() * (gathered(dual->d(), MPI_COMM_WORLD) - gathered(Fx, MPI_COMM_WORLD)), expect), 1e-10);
+    }
+}
+
+// displacements
+
+TEST(DualProblem, recovered_displacements_are_in_equilibrium_with_any_balanced_multipliers)
+{
+  for (const Cut &how : cuts)
+    {
+      const Torn            torn(cut(bent_box(8), how));
+      const Dense           dense(torn);
+      const auto            dual = torn.dual();
+      const Eigen::VectorXd x    = gathered(dual->particular(), MPI_COMM_WORLD) + 100 * dense.P() * random_vector(dense.B.rows(), 1);
+      const auto            u    = dual->recover(distributed(x, *dual), std::vector<bool>(torn.constraints.kind.size(), true)).u;
+      std::vector<double>   own;
+      for (const auto &part : u)
+        own.insert(own.end(), part.data(), part.data() + part.size());
+      const auto            all = gathered(own, MPI_COMM_WORLD);
+      const Eigen::VectorXd Ku = dense.K * Eigen::Map<const Eigen::VectorXd>(all.data(), all.size()), forces = dense.f - dense.B.transpose() * x;
+      EXPECT_LT(relative_difference(Ku, forces), 1e-10);
+    }
+}
+
+TEST(DualProblem, jumps_are_B_times_the_displacements)
+{
+  for (const Cut &how : cuts)
+    {
+      const Torn            torn(cut(box_on_circle(8, "100"), how));
+      const Dense           dense(torn);
+      const Eigen::VectorXd all = random_vector(dense.K.rows(), 1);
+      std::vector<Eigen::VectorXd> u;
+      for (const auto &system : torn.matrices)
+        u.push_back(all.segment(dense.first[system.subdomain], system.load.size()));
+      EXPECT_LT(relative_difference(gathered(torn.dual()->jumps(u), MPI_COMM_WORLD), dense.B * all), 1e-13);
+    }
+}
+
+TEST(DualProblem, recovered_displacements_fit_the_rows_that_hold)
+{
+  for (const Cut &how : cuts)
+    {
+      const Solved solved(accurate(cut(bent_box(8), how), 1e-13));
+      const auto   jumps = gathered(solved.dual->jumps(solved.u), MPI_COMM_WORLD);
+      EXPECT_LT((jumps - Dense(solved.torn).c).cwiseAbs().maxCoeff(), 1e-10 * 2e-2);
+    }
+}
+
+TEST(DualProblem, recovery_names_the_body_that_the_held_rows_leave_free)
+{
+  for (const Cut &how : cuts)
+    {
+      Scene scene = box(8);
+      touch(scene, 0, "bottom", {5, -20}, 20, "100");
+      load(scene, 0, "top", "0", "-1");
+      const Torn        torn(cut(scene, how));
+      const auto        dual = torn.dual();
+      std::vector<bool> free;
+      for (const auto kind : torn.constraints.kind)
+        free.push_back(kind != tfeti::RowKind::tangential);
+      const std::string text = message_on_all_ranks<NoEquilibrium>([&] { dual->recover(dual->particular(), free); });
+      EXPECT_NE(text.find("body box: translation along ("), std::string::npos) << text;
+    }
+}
+
+// against the untorn bodies
+
+TEST(DualProblem, linear_scene_agrees_with_the_untorn_bodies)
+{
+  for (const unsigned int degree : {1, 2})
+    {
+      const Scene scene     = accurate(bent_box(8, degree), 1e-13);
+      const auto  reference = Untorn(scene).solution();
+      for (const Cut &how : cuts)
+        {
+          const Solved solved(cut(scene, how));
+          EXPECT_EQ(solved.solution.status, qp::Status::converged);
+          EXPECT_LT(largest_difference(nodal_field(solved.torn, solved.u), reference), 1e-9) << how.n << ", degree " << degree;
+        }
+    }
+}
+
+TEST(DualProblem, linear_scene_of_two_bodies_agrees_with_the_untorn_ones)
+{
+  const Scene scene     = accurate(two_bodies(4), 1e-13);
+  const auto  reference = Untorn(scene).solution();
+  for (const Cut &how : {whole(), blocks(2), metis(7)})
+    {
+      const Solved solved(cut(scene, how));
+      EXPECT_LT(largest_difference(nodal_field(solved.torn, solved.u), reference), 1e-9) << how.n;
+    }
+}
+
+TEST(DualProblem, stiffness_ratio_of_a_million_agrees_with_the_untorn_bodies)
+{
+  Scene scene                      = accurate(two_bodies(4), 1e-13);
+  scene.materials[1].young_modulus = 7e10;
+  const auto reference             = Untorn(scene).solution();
+  for (const Cut &how : {blocks(2), metis(7)})
+    {
+      const Solved solved(cut(scene, how));
+      EXPECT_LT(largest_difference(nodal_field(solved.torn, solved.u), reference), 1e-7) << how.n;
+    }
+}
+
+// invariances
+
+TEST(DualProblem, displacements_do_not_depend_on_the_number_of_ranks)
+{
+  for (const Scene &scene : {bent_box(8), box_on_circle(8, "60")})
+    for (const Cut &how : cuts)
+      {
+        const Scene  torn = accurate(cut(scene, how), 1e-10);
+        const Solved here(torn), alone(torn, MPI_COMM_SELF);
+        EXPECT_LT(largest_difference(nodal_field(here.torn, here.u), nodal_field(alone.torn, alone.u)), 1e-7) << how.n;
+      }
+}
+
+TEST(DualProblem, displacements_do_not_depend_on_the_cut)
+{
+  for (const Scene &scene : {bent_box(8), box_on_circle(8, "60")})
+    {
+      const Solved reference(accurate(cut(scene, whole()), 1e-10));
+      const auto   field = nodal_field(reference.torn, reference.u);
+      for (const Cut &how : cuts)
+        {
+          const Solved solved(accurate(cut(scene, how), 1e-10));
+          EXPECT_LT(largest_difference(nodal_field(solved.torn, solved.u), field), 1e-7) << how.n;
+        }
+    }
+}
+
+TEST(DualProblem, unit_of_stress_does_not_change_the_iterates)
+{
+  for (const Cut &how : cuts)
+    {
+      const Solved reference(in_units(how, 1, 1)), solved(in_units(how, 1, 1e6));
+      EXPECT_LT(relative_difference(solution(solved) / 1e6, solution(reference)), 1e-9) << how.n;
+      for (unsigned int p = 0; p < solved.u.size(); ++p) // subdomain by subdomain: copies differ by the tolerance
+        EXPECT_LT(relative_difference(solved.u[p], reference.u[p]), 1e-9) << how.n;
+    }
+}
+
+TEST(DualProblem, unit_of_length_does_not_change_the_iterates)
+{
+  for (const Cut &how : cuts)
+    {
+      const Solved reference(in_units(how, 1, 1)), solved(in_units(how, 1e-3, 1));
+      EXPECT_LT(relative_difference(solution(solved) / 1e-6, solution(reference)), 1e-9) << how.n;
+    }
+}
