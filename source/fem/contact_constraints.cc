@@ -171,6 +171,8 @@ namespace slipstick::fem
     {
       dealii::IndexSet owned(n_total), ghosts(n_total);
       owned.add_range(first, first + n_owned);
+      if (n_total == 0) // deal.II 9.4 divides by it when there are several ranks
+        return std::make_shared<dealii::Utilities::MPI::Partitioner>(owned, comm);
       std::sort(touched.begin(), touched.end());
       touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
       ghosts.add_indices(touched.begin(), touched.end());
