@@ -26,86 +26,209 @@ namespace slipstick::scene
     std::string name;
     double      young_modulus = 2.1e5; // [MPa], > 0
     double      poisson_ratio = 0.3;   // [-], -1 < nu < 0.5
+    double      density       = 0;     // [t/mm^3], >= 0
+    double      expansion     = 0;     // coefficient of thermal expansion [1/K]
   };
 
   enum class Shape
   {
-    rectangle
+    rectangle,    // left, right, bottom, top
+    disc,         // arc
+    half_disc,    // arc, flat; the half below its centre, flat side up
+    ring,         // inner, outer
+    quarter_ring, // inner, outer, start (on the x axis), end (on the y axis)
+    mesh          // from a file; boundaries by the physical names there
   };
 
-  /// One elastic body of a built-in shape. Its boundaries are named left, right, bottom, top.
+  /// Where a body goes: first mirrored at an axis of its own coordinates, then turned about their origin, then moved.
+  template <int dim>
+  struct Placement
+  {
+    bool               mirror_x = false; // x -> -x
+    bool               mirror_y = false; // y -> -y
+    double             rotation = 0;     // [degrees], counterclockwise
+    dealii::Point<dim> translation;      // [mm]
+  };
+
+  /// One elastic body, of a built-in shape or from a mesh file.
   template <int dim>
   struct Body
   {
     std::string                                  name;
     Shape                                        shape = Shape::rectangle;
-    dealii::Point<dim>                           origin;        // lower left corner [mm]
-    dealii::Point<dim>                           size;          // edge lengths [mm], > 0
-    std::optional<std::array<unsigned int, dim>> cells;         // empty: blocks x cells per block of `Decomposition`
-    unsigned int                                 material  = 0; // index into Scene::materials
-    double                                       thickness = 1; // [mm], > 0
+    dealii::Point<dim>                           origin;            // rectangle: lower left corner [mm]
+    dealii::Point<dim>                           size;              // rectangle: edge lengths [mm], > 0
+    dealii::Point<dim>                           center;            // discs and rings [mm]
+    double                                       radius       = 1;  // discs and rings: outer radius [mm], > 0
+    double                                       inner_radius = .5; // rings [mm], 0 < inner < outer
+    std::optional<std::array<unsigned int, dim>> cells;             // rectangle: empty: blocks x cells per block of
+                                                                    // `Decomposition`; rings: around, across
+    unsigned int             cells_along_arc = 32;                  // discs: edges on the arc
+    std::string              file;                                  // mesh: path as found
+    std::string              part;                                  // mesh: physical name of the body; empty: all cells
+    double                   scale = 1;                             // mesh: factor on coordinates, > 0 (1000: m to mm)
+    Placement<dim>           placement;
+    unsigned int             refinements = 0;          // uniform, on top of Discretization/Refinements
+    std::vector<std::string> refined_boundaries;       // cells at these boundaries are refined further ...
+    unsigned int             boundary_refinements = 0; // ... so many times
+    unsigned int             material             = 0; // index into Scene::materials
+    double                   thickness            = 1; // [mm], > 0
   };
 
-  /// A boundary of a body, written BODY/BOUNDARY in the .prm.
+  /// A boundary of a body, written BODY/BOUNDARY in the .prm. Of a body from a mesh file the name is checked when the
+  /// mesh is read. `*` is the whole outline of the body.
   struct BoundaryName
   {
     unsigned int body = 0; // index into Scene::bodies
     std::string  boundary;
   };
 
-  /// Prescribed displacement, by component; a component that is not set is free.
+  /// A point of a body: the mesh node nearest to coordinates, or a named point of the mesh file.
+  template <int dim>
+  struct PointName
+  {
+    unsigned int                      body = 0;    // index into Scene::bodies
+    std::string                       point;       // physical name in the mesh file; empty: by coordinates
+    std::optional<dealii::Point<dim>> coordinates; // [mm]; a node must lie within half a cell of it
+  };
+
+  /// Prescribed displacement of a boundary or a point, by component or along the outward normal; what is not set is
+  /// free.
   template <int dim>
   struct PrescribedDisplacement
   {
     std::string                                name;
     BoundaryName                               where;
+    std::optional<PointName<dim>>              point;      // in place of the boundary
     std::array<std::optional<Field<dim>>, dim> components; // [mm]
+    std::optional<Field<dim>>                  normal;     // outwards [mm]; boundaries only, then no components; 0 is a
+                                                           // roller or a plane of symmetry
   };
 
-  /// Traction in the axes of the scene, force per undeformed area.
+  /// Elastic foundation: springs between a boundary and the ground, force per area and displacement.
+  template <int dim>
+  struct Foundation
+  {
+    std::string  name;
+    BoundaryName where;
+    double       normal_stiffness     = 0; // [MPa/mm], >= 0
+    double       tangential_stiffness = 0; // [MPa/mm], >= 0
+  };
+
+  /// Traction in the axes of the scene plus pressure, force per undeformed area.
   template <int dim>
   struct Traction
   {
     std::string                 name;
     BoundaryName                where;
     std::array<Field<dim>, dim> components; // [MPa]
+    Field<dim>                  pressure;   // [MPa], positive presses on the body
+  };
+
+  /// Force per volume on bodies: given directly, density times acceleration, and centrifugal force.
+  template <int dim>
+  struct BodyForce
+  {
+    std::string                 name;
+    std::vector<unsigned int>   bodies;           // indices into Scene::bodies
+    std::array<Field<dim>, dim> force;            // [N/mm^3]
+    std::array<Field<dim>, dim> acceleration;     // [mm/s^2]; gravity is 0, -9810
+    Field<dim>                  angular_velocity; // [1/s], about `axis`
+    dealii::Point<dim>          axis;             // [mm]
+  };
+
+  template <int dim>
+  struct PointLoad
+  {
+    std::string                 name;
+    PointName<dim>              where;
+    std::array<Field<dim>, dim> force; // [N]
+  };
+
+  /// Change of temperature against the state without stress.
+  template <int dim>
+  struct Temperature
+  {
+    std::string               name;
+    std::vector<unsigned int> bodies; // indices into Scene::bodies
+    Field<dim>                change; // [K]
   };
 
   enum class ObstacleShape
   {
-    circle
+    circle,     // bodies are outside
+    hole,       // circle with the bodies inside
+    half_plane, // through `center`; bodies are where `normal` points
+    polyline,   // bodies are to the left of the direction of travel
+    function    // bodies are above y = height(x)
   };
 
   /// A rigid obstacle that needs no mesh.
   template <int dim>
   struct Obstacle
   {
-    std::string        name;
-    ObstacleShape      shape = ObstacleShape::circle;
-    dealii::Point<dim> center;     // [mm]
-    double             radius = 1; // [mm], > 0; bodies are outside
+    std::string                     name;
+    ObstacleShape                   shape = ObstacleShape::circle;
+    dealii::Point<dim>              center;     // circle, hole; a point of the half plane [mm]
+    double                          radius = 1; // circle, hole [mm], > 0
+    dealii::Tensor<1, dim>          normal;     // half plane, unit length, towards the bodies
+    std::vector<dealii::Point<dim>> points;     // polyline, at least two [mm]
+    Field<dim>                      height;     // function [mm], of x and t
   };
 
   enum class ContactLaw
   {
+    bonded, // no relative displacement, tension too
     frictionless,
-    tresca
+    tresca,
+    coulomb
   };
 
-  /// Contact of a slave boundary with a rigid obstacle. The slip bound acts on the whole declared boundary, open
-  /// nodes included (as in the paper).
+  enum class ContactDiscretization
+  {
+    automatic, // node to node where the meshes match, else mortar
+    node_to_node,
+    mortar
+  };
+
+  /// Contact of a slave boundary with a rigid obstacle or the boundary of another body.
   template <int dim>
   struct ContactPair
   {
-    std::string  name;
-    BoundaryName slave;
-    unsigned int obstacle = 0; // index into Scene::obstacles
-    ContactLaw   law      = ContactLaw::frictionless;
-    Field<dim>   slip_bound; // [MPa], >= 0; Tresca only
+    std::string                 name;
+    BoundaryName                slave;
+    std::optional<BoundaryName> master;       // empty: the obstacle
+    unsigned int                obstacle = 0; // index into Scene::obstacles
+    ContactLaw                  law      = ContactLaw::frictionless;
+    Field<dim>                  slip_bound;          // [MPa], >= 0; Tresca only
+    bool                        only_closed = false; // Tresca: the bound acts where the pair is closed; else on the
+                                                     // whole declared boundary, open nodes included (as in the paper)
+    Field<dim>                friction_coefficient;  // [-], >= 0; Coulomb only
+    Field<dim>                offset;                // added to the gap of the geometry [mm]; negative: press fit
+    std::optional<Field<dim>> gap;                   // [mm] in place of the gap of the geometry
+    std::optional<double>     reach; // [mm]: what is farther apart is no candidate; empty: from the meshes
+    ContactDiscretization     discretization = ContactDiscretization::automatic;
+  };
+
+  /// Contact pairs found among the declared bodies.
+  template <int dim>
+  struct ContactSearch
+  {
+    bool             automatic = false;
+    double           reach     = 0; // boundaries closer than this make a pair [mm], >= 0
+    ContactPair<dim> pair;          // law, bounds, offset and so on of the pairs that are found
+  };
+
+  /// Fixed point of the slip bounds (Coulomb; Tresca where closed).
+  struct FrictionOptions
+  {
+    double       tolerance      = 1e-6; // relative change of the slip bounds
+    unsigned int max_iterations = 100;
   };
 
   enum class DecompositionMethod
   {
+    automatic, // blocks if all bodies are rectangles that can be cut so, else METIS
     blocks,
     metis,
     none
@@ -119,9 +242,16 @@ namespace slipstick::scene
     unsigned int        subdomains      = 0;  // METIS: over all bodies; 0 = auto
   };
 
+  enum class ElementKind
+  {
+    standard,
+    nearly_incompressible // dilatation projected on polynomials of one degree less: does not lock
+  };
+
   struct Discretization
   {
     unsigned int degree      = 1; // of the elements, 1 or 2
+    ElementKind  element     = ElementKind::standard;
     unsigned int refinements = 0; // extra uniform refinements
   };
 
@@ -157,9 +287,16 @@ namespace slipstick::scene
     std::vector<Material>                    materials;
     std::vector<Body<dim>>                   bodies;
     std::vector<PrescribedDisplacement<dim>> supports;
+    std::vector<Foundation<dim>>             foundations;
     std::vector<Traction<dim>>               tractions;
+    std::vector<BodyForce<dim>>              body_forces;
+    std::vector<PointLoad<dim>>              point_loads;
+    std::vector<Temperature<dim>>            temperatures;
     std::vector<Obstacle<dim>>               obstacles;
     std::vector<ContactPair<dim>>            contacts;
+    ContactSearch<dim>                       contact_search;
+    FrictionOptions                          friction;
+    std::vector<double>                      load_factors{1}; // t of the load steps
     Decomposition                            decomposition;
     Discretization                           discretization;
     SolverOptions                            solver;
@@ -168,7 +305,7 @@ namespace slipstick::scene
 
     bool has_contact() const
     {
-      return !contacts.empty();
+      return !contacts.empty() || contact_search.automatic;
     }
   };
 } // namespace slipstick::scene

@@ -21,8 +21,8 @@ namespace slipstick::tfeti
   {
     tangential, // friction: multiplier between -slip bound and +slip bound
     normal,     // contact: multiplier >= 0, b u = closing of the gap, c = gap [mm]
-    gluing,     // equality of two copies of a node
-    prescribed  // prescribed displacement [mm]
+    gluing,     // equality of two copies of a node, bonded pairs
+    prescribed  // prescribed displacement [mm], elastic foundation (with compliance)
   };
 
   constexpr unsigned int invalid_row = static_cast<unsigned int>(-1);
@@ -32,11 +32,14 @@ namespace slipstick::tfeti
   {
     unsigned int                 pair = 0; // index into Scene::contacts
     std::array<double, 3>        position{{0, 0, 0}};
-    std::array<double, 3>        normal{{0, 0, 0}};            // outward normal of the slave body
-    double                       gap    = 0;                   // reference configuration [mm]
-    double                       area   = 0;                   // tributary length times thickness [mm^2]
-    double                       length = 0;                   // tributary length [mm]
-    std::array<std::uint64_t, 2> key{{0, 0}};                  // the mesh's name of the node
+    std::array<double, 3>        normal{{0, 0, 0}};  // outward normal of the slave body
+    bool                         has_master = false; // another body, no obstacle
+    unsigned int                 slave_body = 0, master_body = 0;
+    std::array<double, 3>        master_position{{0, 0, 0}}; // weighted mean of the master nodes, where the force acts
+    double                       gap    = 0;                 // reference configuration [mm]
+    double                       area   = 0;                 // tributary length times thickness [mm^2]
+    double                       length = 0;                 // tributary length [mm]
+    std::array<std::uint64_t, 2> key{{0, 0}};                // the mesh's name of the node
     unsigned int                 normal_row     = invalid_row; // owned rows; invalid where a support takes their place
     unsigned int                 tangential_row = invalid_row;
     unsigned int                 interface_dof  = 0; // owned number of the node's first interface unknown
@@ -67,10 +70,11 @@ namespace slipstick::tfeti
     };
 
     Partitioner                              rows;
-    std::vector<std::vector<Entry>>          blocks;         // B_p of the subdomains of this rank, sorted by row
-    std::vector<RowKind>                     kind;           // of the owned rows
-    std::vector<double>                      c;              // of the owned rows [mm]
-    std::vector<std::uint64_t>               label;          // of the owned rows, the same for every number of ranks
+    std::vector<std::vector<Entry>>          blocks;     // B_p of the subdomains of this rank, sorted by row
+    std::vector<RowKind>                     kind;       // of the owned rows
+    std::vector<double>                      c;          // of the owned rows [mm]
+    std::vector<double>                      compliance; // of the owned rows: b u - compliance x = c [mm/N]; empty: 0
+    std::vector<std::uint64_t>               label;      // of the owned rows, the same for every number of ranks
     std::vector<ContactPoint>                contact_points; // whose rows this rank owns
     Partitioner                              interface_dofs;
     std::vector<std::vector<InterfaceEntry>> interface_blocks; // of the subdomains of this rank
