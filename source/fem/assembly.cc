@@ -137,10 +137,9 @@ namespace slipstick::fem
         {
           if (traction.where.body != subdomain.body)
             continue;
-          const auto id = mesh.boundary_ids[subdomain.body].at(traction.where.boundary);
           for (const auto &cell : dof_handler.active_cell_iterators())
             for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() == id)
+              if (cell->face(f)->at_boundary() && mesh.on_boundary(traction.where, cell->face(f)->boundary_id()))
                 {
                   values.reinit(cell, f);
                   cell->get_dof_indices(dofs);

@@ -63,9 +63,8 @@ namespace slipstick::fem
       if (face->boundary_id() == cut_id)
         return;
 
-      const auto &names = mesh.boundary_ids[subdomain.body];
       const auto  here  = [&](const scene::BoundaryName &where) {
-        return where.body == subdomain.body && names.at(where.boundary) == face->boundary_id();
+        return where.body == subdomain.body && mesh.on_boundary(where, face->boundary_id());
       };
       for (const auto &support : scene.supports)
         if (here(support.where))
