@@ -70,7 +70,7 @@ TEST(bad_input, what_later_versions_add_is_refused_with_what_is_available)
   refused({"Contact circle/Law=Coulomb"}, {"'Coulomb'", "available: frictionless, Tresca"});
   refused({"Contact circle/Law=bonded"}, {"'bonded'", "available: frictionless, Tresca"});
   refused({"Solver/Tolerance=auto"}, {"'auto'", "a number in (0, 1)"});
-  refused({"Body box/Shape=disc"}, {"'disc'", "available: rectangle"});
+  refused({"Body box/Shape=dics"}, {"'dics'", "available: rectangle, disc, half disc, ring, quarter ring, mesh", "did you mean 'disc'"});
   refused({"Obstacle disc/Shape=halfplane"}, {"'halfplane'", "available: circle"});
 }
 

@@ -1,0 +1,458 @@
+#include "mesh_quality.h"
+#include "torn.h"
+
+#include <slipstick/base/exceptions.h>
+#include <slipstick/fem/body_mesh.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+using namespace slipstick;
+using namespace slipstick::test;
+
+namespace
+{
+  std::string path_of(const std::string &name)
+  {
+    return std::string(SLIPSTICK_MESHES) + "/" + name;
+  }
+
+  std::string content_of(const std::string &name)
+  {
+    std::ifstream      in(path_of(name), std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+
+  const std::vector<std::string> formats = {"two_parts_msh22.msh",
+                                            "two_parts_msh22.bin.msh",
+                                            "two_parts_msh41.msh",
+                                            "two_parts_msh41.bin.msh",
+                                            "two_parts_curved.msh"};
+
+  scene::Body<2> body_of(const std::string &file, const std::string &part)
+  {
+    scene::Body<2> body;
+    body.name  = part.empty() ? "all" : part;
+    body.shape = scene::Shape::mesh;
+    body.file  = path_of(file);
+    body.part  = part;
+    return body;
+  }
+
+  /// Block and roof of one file.
+  Scene two_parts(const std::string &file)
+  {
+    Scene scene;
+    scene.bodies = {body_of(file, "block"), body_of(file, "roof")};
+    return scene;
+  }
+
+  double length_of(const fem::BodyMesh<2> &mesh, const std::string &name)
+  {
+    const auto id     = mesh.boundary_ids.at(name);
+    double     length = test::length_of(mesh.piece, id);
+    for (const auto &[combined, names] : mesh.combined_ids)
+      if (names.count(id) > 0)
+        length += test::length_of(mesh.piece, combined);
+    return length;
+  }
+
+  /// A mesh in Gmsh's version 2: nodes, and elements without their numbers.
+  std::string gmsh_2(const std::vector<std::array<double, 3>> &nodes, const std::vector<std::string> &elements)
+  {
+    std::ostringstream text;
+    text << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << nodes.size() << "\n";
+    for (unsigned int k = 0; k < nodes.size(); ++k)
+      text << k + 1 << " " << nodes[k][0] << " " << nodes[k][1] << " " << nodes[k][2] << "\n";
+    text << "$EndNodes\n$Elements\n" << elements.size() << "\n";
+    for (unsigned int k = 0; k < elements.size(); ++k)
+      text << k + 1 << " " << elements[k] << "\n";
+    text << "$EndElements\n";
+    return text.str();
+  }
+
+  fem::BodyMesh<2> body_of_text(const std::string &text, const std::string &part = "")
+  {
+    auto body = body_of("typed.msh", part);
+    return fem::body_from_file(body, fem::parse_gmsh(body.file, text));
+  }
+
+  /// The message of the InputError that @p f throws.
+  std::string refusal(const std::function<void()> &f)
+  {
+    try
+      {
+        f();
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+    return "nothing was refused";
+  }
+
+#define EXPECT_SAYS(text, word) EXPECT_NE((text).find(word), std::string::npos) << (text)
+
+  const std::vector<std::array<double, 3>> square = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}}, {{2, 0, 0}}, {{2, 1, 0}}};
+} // namespace
+
+TEST(MeshFiles, all_formats_of_gmsh_give_the_same_bodies)
+{
+  for (const std::string &format : formats)
+    {
+      const auto file = fem::read_mesh_file(path_of(format));
+      const auto block = fem::body_from_file(body_of(format, "block"), file);
+      const auto roof  = fem::body_from_file(body_of(format, "roof"), file);
+      EXPECT_EQ(block.piece.cells.size(), 8u) << format;
+      EXPECT_EQ(block.piece.vertices.size(), 15u) << format;
+      EXPECT_EQ(quality_of(block.piece).n_triangles, 0u);
+      EXPECT_NEAR(quality_of(block.piece).area, 2, 1e-10) << format;
+      EXPECT_EQ(quality_of(roof.piece).n_triangles, roof.piece.cells.size());
+      EXPECT_NEAR(quality_of(roof.piece).area, 2, 1e-10);
+      EXPECT_TRUE(quality_of(block.piece).conforming);
+      EXPECT_TRUE(quality_of(roof.piece).conforming);
+      EXPECT_EQ(block.remarks.empty(), format != "two_parts_curved.msh");
+
+      EXPECT_EQ(block.boundary_ids.size(), 4u);
+      EXPECT_NEAR(length_of(block, "foot"), 2, 1e-10);
+      EXPECT_NEAR(length_of(block, "interface"), 2, 1e-10);
+      EXPECT_NEAR(length_of(block, "right side"), 1, 1e-10);
+      EXPECT_NEAR(length_of(block, "outline"), 4, 1e-10);
+      EXPECT_EQ(roof.boundary_ids.size(), 2u);
+      EXPECT_NEAR(length_of(roof, "interface"), 2, 1e-10);
+      EXPECT_NEAR(length_of(roof, "right side"), std::sqrt(5), 1e-10);
+
+      EXPECT_EQ(block.points.size(), 2u);
+      EXPECT_LT(block.piece.vertices[block.points.at("corner")].distance(Point(0, 0)), 1e-10);
+      EXPECT_LT(block.piece.vertices[block.points.at("shoulder")].distance(Point(2, 1)), 1e-10);
+      EXPECT_EQ(roof.points.size(), 2u);
+      EXPECT_LT(roof.piece.vertices[roof.points.at("top")].distance(Point(1, 3)), 1e-10);
+    }
+}
+
+TEST(MeshFiles, bodies_of_one_file_do_not_share_vertices)
+{
+  for (const Cut &how : {whole(), metis(5)})
+    {
+      const auto mesh = fem::make_mesh(cut(two_parts(formats[2]), how), MPI_COMM_WORLD);
+      EXPECT_EQ(mesh.n_subdomains(), how.n == 1 ? 2u : 5u);
+      std::vector<fem::GlobalVertex> own;
+      for (const auto &subdomain : mesh.subdomains)
+        for (const auto v : subdomain->global_vertices)
+          own.push_back(subdomain->body == 0 ? v : v + 1000);
+      std::set<fem::GlobalVertex> block, roof;
+      for (const auto v : gathered(own, MPI_COMM_WORLD))
+        (v < 1000 ? block : roof).insert(v % 1000);
+      EXPECT_EQ(block.size(), 15u);
+      EXPECT_LT(*block.rbegin(), *roof.begin());
+      // every rank knows names and points
+      EXPECT_EQ(mesh.boundary_ids[1].count("interface"), 1u);
+      EXPECT_LT(mesh.points[1].at("top").position.distance(Point(1, 3)), 1e-10);
+      EXPECT_EQ(roof.count(mesh.points[1].at("top").vertex), 1u);
+    }
+}
+
+TEST(MeshFiles, a_face_lies_on_all_its_boundaries)
+{
+  const auto mesh = fem::make_mesh(cut(two_parts(formats[0]), metis(6)), MPI_COMM_WORLD);
+  std::map<std::string, double> length;
+  for (const auto &subdomain : mesh.subdomains)
+    for (const auto &cell : subdomain->triangulation.active_cell_iterators())
+      for (const auto &face : cell->face_iterators())
+        if (subdomain->body == 0 && face->at_boundary())
+          for (const std::string name : {"foot", "outline", "right side", "*"})
+            if (mesh.on_boundary({0, name}, face->boundary_id()))
+              length[name] += face->measure();
+  const std::map<std::string, double> expect = {{"foot", 2}, {"outline", 4}, {"right side", 1}, {"*", 6}};
+  for (const auto &[name, l] : expect)
+    EXPECT_NEAR(dealii::Utilities::MPI::sum(length[name], MPI_COMM_WORLD), l, 1e-10) << name;
+}
+
+TEST(MeshFiles, scale_placement_and_refinement)
+{
+  Scene scene = two_parts(formats[1]);
+  for (auto &body : scene.bodies)
+    {
+      body.scale                 = 1000;
+      body.placement.mirror_x    = true;
+      body.placement.translation = Point(0, -500);
+      body.refinements           = 1;
+    }
+  scene.discretization.refinements = 1;
+  std::map<std::string, fem::MeshFile> files;
+  const auto                           block = fem::make_body(scene, 0, files);
+  EXPECT_EQ(files.size(), 1u);
+  EXPECT_EQ(block.piece.cells.size(), 8u * 16);
+  EXPECT_NEAR(quality_of(block.piece).area, 2e6, 1e-3);
+  EXPECT_NEAR(length_of(block, "outline"), 4000, 1e-6);
+  EXPECT_LT(block.piece.vertices[block.points.at("shoulder")].distance(Point(-2000, 500)), 1e-6);
+  EXPECT_TRUE(quality_of(block.piece).conforming);
+}
+
+TEST(MeshFiles, part_by_number_and_all_cells)
+{
+  const auto file = fem::read_mesh_file(path_of(formats[3]));
+  EXPECT_EQ(fem::body_from_file(body_of(formats[3], "1"), file).piece.cells.size(), 8u);
+  auto everything = fem::body_from_file(body_of(formats[3], ""), file);
+  EXPECT_NEAR(quality_of(everything.piece).area, 4, 1e-10);
+  EXPECT_EQ(everything.boundary_ids.count("interface"), 0u); // inside now
+}
+
+TEST(MeshFiles, subdomains_of_a_mixed_body_have_one_kind_of_cells)
+{
+  for (const unsigned int refinements : {0u, 1u, 3u})
+    for (const std::string file : {"mixed.msh", "two_parts_msh41.msh"})
+      for (const Cut &how : {whole(), metis(9)})
+        {
+          Scene scene;
+          scene.bodies                = {body_of(file, "")};
+          scene.bodies[0].refinements = refinements;
+          const auto   mesh           = fem::make_mesh(cut(scene, how), MPI_COMM_WORLD);
+          double       area = 0;
+          unsigned int kinds[2] = {0, 0};
+          for (const auto &subdomain : mesh.subdomains)
+            {
+              ASSERT_EQ(subdomain->triangulation.get_reference_cells().size(), 1u);
+              ++kinds[subdomain->triangulation.all_reference_cells_are_hyper_cube()];
+              for (const auto &cell : subdomain->triangulation.active_cell_iterators())
+                area += cell->measure();
+            }
+          EXPECT_NEAR(dealii::Utilities::MPI::sum(area, MPI_COMM_WORLD), file == "mixed.msh" ? 6 : 4, 1e-9);
+          const bool keeps_triangles = file != "mixed.msh" && refinements == 3; // two large parts there
+          EXPECT_EQ(dealii::Utilities::MPI::sum(kinds[0], MPI_COMM_WORLD) > 0, keeps_triangles) << file << refinements;
+          if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0 && !keeps_triangles)
+            {
+              ASSERT_FALSE(mesh.remarks.empty());
+              EXPECT_SAYS(mesh.remarks[0], "quadrilaterals");
+            }
+        }
+}
+
+TEST(MeshFiles, refinement_towards_named_lines)
+{
+  Scene                                scene = two_parts(formats[0]);
+  std::map<std::string, fem::MeshFile> files;
+  const fem::BodyMesh<2>               coarse[] = {fem::make_body(scene, 0, files), fem::make_body(scene, 1, files)};
+  for (auto &body : scene.bodies)
+    {
+      body.refined_boundaries   = {"interface"};
+      body.boundary_refinements = 2;
+    }
+  for (const unsigned int b : {0, 1})
+    {
+      const auto mesh = fem::make_body(scene, b, files);
+      EXPECT_TRUE(quality_of(mesh.piece).conforming);
+      EXPECT_NEAR(quality_of(mesh.piece).area, 2, 1e-10);
+      EXPECT_GT(quality_of(mesh.piece).least_angle, .45 * quality_of(coarse[b].piece).least_angle);
+      const auto id = mesh.boundary_ids.at("interface");
+      for (const auto &face : mesh.piece.boundary_faces) // four edges of length 0.5 there
+        if (face.id == id)
+          EXPECT_NEAR(mesh.piece.vertices[face.vertices[0]].distance(mesh.piece.vertices[face.vertices[1]]),
+                      b == 0 ? .5 / 9 : .5 / 4,
+                      1e-9);
+    }
+}
+
+TEST(MeshFiles, clockwise_cells_are_turned_when_all_are)
+{
+  const auto mesh = body_of_text(gmsh_2(square, {"3 2 1 1 1 4 3 2", "3 2 1 1 2 3 6 5"}));
+  EXPECT_NEAR(quality_of(mesh.piece).area, 2, 1e-14);
+  EXPECT_TRUE(quality_of(mesh.piece).conforming);
+}
+
+TEST(MeshFiles, cells_listed_once_for_every_name_count_once)
+{
+  const std::string cells = gmsh_2(square, {"3 2 1 1 1 2 3 4", "3 2 7 1 1 2 3 4", "3 2 7 1 2 5 6 3"});
+  EXPECT_EQ(body_of_text(cells).piece.cells.size(), 2u);
+  EXPECT_EQ(body_of_text(cells, "1").piece.cells.size(), 1u);
+  EXPECT_EQ(body_of_text(cells, "7").piece.cells.size(), 2u);
+}
+
+TEST(MeshFiles, unused_nodes_are_ignored)
+{
+  auto nodes = square;
+  nodes.push_back({{100, 100, 100}});
+  EXPECT_EQ(body_of_text(gmsh_2(nodes, {"3 2 1 1 1 2 3 4"})).piece.vertices.size(), 4u);
+}
+
+TEST(MeshFiles, hinge_at_a_node_is_no_gap)
+{
+  const std::vector<std::array<double, 3>> nodes = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{2, 1, 0}}, {{2, 2, 0}}};
+  EXPECT_EQ(body_of_text(gmsh_2(nodes, {"2 2 1 1 1 2 3", "2 2 1 1 3 4 5"})).piece.vertices.size(), 5u);
+}
+
+TEST(MeshFiles, bad_cells_are_refused_by_name_and_place)
+{
+  const std::string some_turned = refusal([] { body_of_text(gmsh_2(square, {"3 2 1 1 1 2 3 4", "3 2 1 1 2 3 6 5"})); });
+  EXPECT_SAYS(some_turned, "1 of 2 cells turned over");
+  EXPECT_SAYS(some_turned, "cell 2 at (1.5, 0.5)");
+  EXPECT_SAYS(some_turned, "remedy: ");
+  EXPECT_SAYS(refusal([] { body_of_text(gmsh_2(square, {"3 2 1 1 1 2 4 3"})); }), "cell 1 at (0.5, 0.5) crosses itself");
+  EXPECT_SAYS(refusal([] { body_of_text(gmsh_2(square, {"2 2 1 1 1 2 5"})); }), "cell 1 at (1, 0) has no area");
+  EXPECT_SAYS(refusal([] { body_of_text(gmsh_2(square, {"3 2 1 1 1 2 5 6"})); }), "180 degrees");
+  EXPECT_SAYS(refusal([] { body_of_text(gmsh_2(square, {"3 2 1 1 1 2 2 4"})); }), "cell 1");
+  auto dented = square;
+  dented[2]   = {{.3, .3, 0}};
+  EXPECT_SAYS(refusal([&] { body_of_text(gmsh_2(dented, {"3 2 1 1 1 2 3 4"})); }), "not convex");
+}
+
+TEST(MeshFiles, wrong_dimension_is_refused)
+{
+  EXPECT_SAYS(refusal([] { body_of_text(gmsh_2(square, {"1 2 1 1 1 2", "15 2 1 1 1"})); }), "no cells, only 1 lines and 1 points");
+  EXPECT_SAYS(refusal([] { body_of_text(gmsh_2(square, {"3 2 1 1 1 2 3 4", "4 2 1 1 1 2 3 5"})); }), "three-dimensional");
+  auto bent  = square;
+  bent[2][2] = .1;
+  EXPECT_SAYS(refusal([&] { body_of_text(gmsh_2(bent, {"3 2 1 1 1 2 3 4"})); }), "z goes from 0 to 0.1");
+  auto raised = square;
+  for (auto &node : raised)
+    node[2] = 7;
+  EXPECT_EQ(body_of_text(gmsh_2(raised, {"3 2 1 1 1 2 3 4"})).piece.cells.size(), 1u);
+}
+
+TEST(MeshFiles, body_in_pieces_is_refused)
+{
+  std::vector<std::array<double, 3>> nodes = square;
+  nodes.push_back({{5, 0, 0}});
+  nodes.push_back({{6, 0, 0}});
+  nodes.push_back({{6, 1, 0}});
+  const std::string text = refusal([&] { body_of_text(gmsh_2(nodes, {"3 2 1 1 1 2 3 4", "2 2 1 1 7 8 9"})); });
+  EXPECT_SAYS(text, "2 pieces that share no node");
+  EXPECT_SAYS(text, "(5.66667, 0.333333)");
+}
+
+TEST(MeshFiles, edge_of_three_cells_is_refused)
+{
+  const std::vector<std::array<double, 3>> nodes = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{.2, 2, 0}}, {{0, -1, 0}}};
+  EXPECT_SAYS(refusal([&] { body_of_text(gmsh_2(nodes, {"2 2 1 1 1 2 3", "2 2 1 1 1 2 4", "2 2 1 1 1 5 2"})); }), "edge of three cells");
+}
+
+TEST(MeshFiles, unknown_names_are_refused_with_the_nearest_on_all_ranks)
+{
+  const auto refused = [](const Scene &scene) {
+    return message_on_all_ranks<InputError>([&] { fem::make_mesh(scene, MPI_COMM_WORLD); });
+  };
+  Scene scene = cut(two_parts(formats[0]), metis(3));
+  support(scene, 0, "fot", "0", "0");
+  EXPECT_SAYS(refused(scene), "Support held fot: body 'block' has no boundary 'fot'");
+  EXPECT_SAYS(refused(scene), "did you mean 'foot'");
+
+  scene = cut(two_parts(formats[0]), metis(3));
+  support(scene, 1, "foot", "0", "0"); // of the other body
+  EXPECT_SAYS(refused(scene), "body 'roof' has no boundary 'foot'");
+
+  scene                              = cut(two_parts(formats[0]), metis(3));
+  scene.bodies[1].refined_boundaries = {"interfaces"};
+  EXPECT_SAYS(refused(scene), "Refine towards");
+
+  scene                = cut(two_parts(formats[0]), metis(3));
+  scene.bodies[0].part = "blok";
+  EXPECT_SAYS(refused(scene), "no part 'blok'");
+  EXPECT_SAYS(refused(scene), "did you mean 'block'");
+
+  scene = cut(two_parts(formats[0]), metis(3));
+  scene::PointLoad<2> load;
+  load.name        = "pull";
+  load.where.body  = 1;
+  load.where.point = "tip";
+  scene.point_loads.push_back(load);
+  EXPECT_SAYS(refused(scene), "Point load pull: body 'roof' has no point 'tip'");
+  EXPECT_SAYS(refused(scene), "top");
+}
+
+TEST(MeshFiles, broken_files_are_refused)
+{
+  for (const std::string &format : formats)
+    {
+      const std::string whole_text = content_of(format);
+      // cut off anywhere
+      for (std::size_t n = 0; n + 20 < whole_text.size(); n += 37)
+        {
+          const std::string text = refusal([&] { body_of_text(whole_text.substr(0, n)); });
+          EXPECT_SAYS(text, "typed.msh");
+          EXPECT_SAYS(text, "remedy: ");
+        }
+    }
+  // line ends changed by a copy in text mode
+  for (const std::string &format : {formats[1], formats[3]})
+    {
+      std::string text;
+      for (const char c : content_of(format))
+        text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+      EXPECT_SAYS(refusal([&] { body_of_text(text); }), "mixed up");
+    }
+  // a header that lies about the kind
+  std::string text = content_of(formats[3]);
+  text.replace(text.find("4.1 1 8"), 7, "4.1 0 8");
+  EXPECT_SAYS(refusal([&] { body_of_text(text); }), "mixed up");
+  EXPECT_SAYS(refusal([&] { body_of_text("$MeshFormat\n4 0 8\n$EndMeshFormat\n"); }), "version 4");
+  EXPECT_SAYS(refusal([&] { body_of_text("solid nonsense\n"); }), "no Gmsh file");
+  EXPECT_SAYS(refusal([&] { body_of_text("$NOD\n1\n"); }), "version 1");
+  EXPECT_SAYS(refusal([&] { body_of_text(gmsh_2(square, {"3 2 1 1 1 2 3 44"})); }), "node 44");
+}
+
+TEST(MeshFiles, lines_may_end_as_windows_has_it)
+{
+  for (const std::string &format : {formats[0], formats[2]})
+    {
+      std::string text;
+      for (const char c : content_of(format))
+        text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+      EXPECT_NEAR(quality_of(body_of_text(text, "roof").piece).area, 2, 1e-10);
+    }
+}
+
+TEST(MeshFiles, units_that_do_not_fit_are_remarked)
+{
+  Scene scene           = two_parts(formats[0]);
+  scene.bodies[1].scale = 1e-6;
+  auto mesh             = fem::make_mesh(cut(scene, metis(2)), MPI_COMM_SELF);
+  ASSERT_EQ(mesh.remarks.size(), 1u);
+  EXPECT_SAYS(mesh.remarks[0], "units");
+  scene.bodies[1].scale = 1e-4;
+  mesh                  = fem::make_mesh(cut(scene, metis(2)), MPI_COMM_SELF);
+  EXPECT_TRUE(mesh.remarks.empty());
+}
+
+TEST(MeshFiles, subdomains_are_shared_by_cost)
+{
+  for (const unsigned int n : {2, 3, 6, 11, 20})
+    {
+      Scene scene                 = two_parts(formats[0]);
+      scene.bodies[0].refinements = 3; // 512 quadrilaterals
+      scene.bodies[1].refinements = 2;
+      const auto            mesh  = fem::make_mesh(cut(scene, metis(n)), MPI_COMM_SELF);
+      std::map<unsigned int, unsigned int> count;
+      std::map<unsigned int, double>       cells;
+      for (const auto &subdomain : mesh.subdomains)
+        {
+          ++count[subdomain->body];
+          cells[subdomain->body] += subdomain->triangulation.n_active_cells() * (subdomain->body == 0 ? 1 : .5);
+        }
+      EXPECT_EQ(mesh.n_subdomains(), n);
+      // no other share would make the dearest subdomain cheaper
+      const double dearest = std::max(cells[0] / count[0], cells[1] / count[1]);
+      for (unsigned int k = 1; k < n; ++k)
+        EXPECT_GE(std::max(cells[0] / k, cells[1] / (n - k)), dearest - 1e-12);
+    }
+}
+
+TEST(MeshFiles, seeds_change_the_cut_and_nothing_else)
+{
+  Scene scene                 = cut(two_parts(formats[0]), metis(7));
+  scene.bodies[0].refinements = 3;
+  std::set<std::vector<unsigned int>> cuts;
+  for (scene.decomposition.seed = 0; scene.decomposition.seed < 6; ++scene.decomposition.seed)
+    {
+      const auto                mesh = fem::make_mesh(scene, MPI_COMM_SELF);
+      std::vector<unsigned int> sizes;
+      for (const auto &subdomain : mesh.subdomains)
+        sizes.push_back(subdomain->global_vertices.size());
+      cuts.insert(sizes);
+      EXPECT_EQ(mesh.n_subdomains(), 7u);
+    }
+  EXPECT_GT(cuts.size(), 1u);
+}
