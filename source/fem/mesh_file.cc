@@ -1,4 +1,5 @@
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/text.h>
 #include <slipstick/fem/mesh_file.h>
 
 #include <deal.II/grid/grid_in.h>
@@ -24,31 +25,15 @@ namespace slipstick::fem
       return text.str();
     }
 
-    /// deal.II's name of a format; .inp is Abaqus' or UCD's: UCD starts with numbers, Abaqus with words.
-    std::string format_of(const std::string &extension, const std::string &text)
+    /// What deal.II says, without the frame around its exceptions.
+    std::string words_of(const std::exception &error)
     {
-      if (extension == ".unv")
-        return "unv";
-      if (extension == ".vtk")
-        return "vtk";
-      if (extension == ".ucd")
-        return "ucd";
-      const auto first = text.find_first_not_of(" \t\r\n");
-      if (extension == ".inp")
-        return first != std::string::npos && (std::isdigit(text[first]) || text[first] == '#') ? "ucd" : "abaqus";
-      return "";
-    }
-
-    /// First line of what deal.II says, without the frame around its exceptions.
-    std::string first_words(const std::exception &error)
-    {
-      std::istringstream lines(error.what());
-      std::string        line, words;
-      while (std::getline(lines, line))
-        if (!line.empty() && line[0] != '-' && line.find("An error occurred") == std::string::npos &&
-            line.find("The violated condition") == std::string::npos)
-          words += (words.empty() ? "" : " ") + line.substr(line.find_first_not_of(" \t") % line.size());
-      return words.substr(0, 300);
+      std::string       text   = error.what();
+      const std::string before = "Additional information:", after = "Stacktrace:";
+      if (const auto start = text.find(before); start != std::string::npos)
+        text = text.substr(start + before.size());
+      text = collapse_blanks(text.substr(0, text.find(after)));
+      return text.substr(0, text.find("--------"));
     }
 
     MeshFile through_deal_ii(const std::string &file, const std::string &text, const std::string &format)
@@ -61,16 +46,15 @@ namespace slipstick::fem
           dealii::GridIn<2>  reader(triangulation);
           std::istringstream in(text);
           reader.read(in,
-                      format == "unv" ? dealii::GridIn<2>::unv :
-                      format == "vtk" ? dealii::GridIn<2>::vtk :
-                      format == "ucd" ? dealii::GridIn<2>::ucd :
-                                        dealii::GridIn<2>::abaqus);
+                      format == ".unv"   ? dealii::GridIn<2>::unv
+                      : format == ".vtk" ? dealii::GridIn<2>::vtk
+                                         : dealii::GridIn<2>::ucd);
         }
       catch (const std::exception &error)
         {
-          throw InputError("mesh file " + file + " could not be read as " + format + " in the plane: " +
-                             first_words(error),
-                           "check that it holds a plane mesh of triangles and quadrilaterals, or convert it to Gmsh's .msh");
+          throw InputError(
+            "mesh file " + file + " could not be read as " + format + " in the plane: " + words_of(error),
+            "check that it holds a plane mesh of triangles and quadrilaterals, or convert it to Gmsh's .msh");
         }
       for (const auto &x : triangulation.get_vertices())
         mesh.nodes.emplace_back(x[0], x[1], 0);
@@ -119,10 +103,13 @@ namespace slipstick::fem
     });
     if (extension == ".msh")
       return parse_gmsh(file, text);
-    const std::string format = format_of(extension, text);
-    if (format.empty())
+    // .inp is Abaqus' or UCD's: UCD starts with numbers, Abaqus with words
+    const auto first = text.find_first_not_of(" \t\r\n");
+    if (extension == ".inp" && first != std::string::npos && !std::isdigit(text[first]) && text[first] != '#')
+      return parse_abaqus(file, text);
+    if (extension != ".inp" && extension != ".ucd" && extension != ".unv" && extension != ".vtk")
       throw InputError("mesh file " + file + " has the unknown ending '" + extension + "'",
                        "give .msh (Gmsh), .inp (Abaqus), .ucd, .unv or .vtk");
-    return through_deal_ii(file, text, format);
+    return through_deal_ii(file, text, extension);
   }
 } // namespace slipstick::fem

@@ -93,21 +93,23 @@ namespace slipstick::scene
                "the y axis); mesh: the physical names in the file; * is the whole outline of any body");
     add_point(prm, "Origin", body.origin, "mm", Interval(), "rectangle: lower left corner");
     add_point(prm, "Size", body.size, "mm", Interval::above(0), "rectangle: edge lengths; must be set");
-    add_counts_or_auto<dim>(prm,
-                            "Cells",
-                            body.cells,
-                            max_cells,
-                            "rectangle: cells along the edges; auto: Blocks times Cells per block of the "
-                            "Decomposition; rings: cells around and across; auto: 64 for the whole circle, about square");
+    add_counts_or_auto<dim>(
+      prm,
+      "Cells",
+      body.cells,
+      max_cells,
+      "rectangle: cells along the edges; auto: Blocks times Cells per block of the "
+      "Decomposition; rings: cells around and across; auto: 64 for the whole circle, about square");
     add_point(prm, "Center", body.center, "mm", Interval(), "discs and rings: centre");
     add_number(prm, "Radius", body.radius, "mm", Interval::above(0), "discs and rings: outer radius; must be set");
     add_number(prm, "Inner radius", body.inner_radius, "mm", Interval::above(0), "rings: inner radius; must be set");
-    add_count(prm,
-              "Cells along arc",
-              body.cells_along_arc,
-              4,
-              max_cells,
-              "disc: edges on the whole circle, a multiple of 4 and at least 8; half disc: on its half, an even number");
+    add_count(
+      prm,
+      "Cells along arc",
+      body.cells_along_arc,
+      4,
+      max_cells,
+      "disc: edges on the whole circle, a multiple of 4 and at least 8; half disc: on its half, an even number");
     add_text(prm,
              "File",
              body.file,

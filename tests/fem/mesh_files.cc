@@ -8,6 +8,7 @@
 #include <fstream>
 #include <functional>
 #include <sstream>
+#include <unistd.h>
 
 using namespace slipstick;
 using namespace slipstick::test;
@@ -455,4 +456,60 @@ TEST(MeshFiles, seeds_change_the_cut_and_nothing_else)
       EXPECT_EQ(mesh.n_subdomains(), 7u);
     }
   EXPECT_GT(cuts.size(), 1u);
+}
+
+// other formats
+
+TEST(MeshFiles, abaqus_input_with_its_sets_and_surfaces)
+{
+  const std::string text = "*Heading\n two squares\n** a comment\n*NODE, NSET=all\n1, 0, 0\n2, 1., 0\n3, 1, 1\n4, 0, 1E0\n5, 2, 0\n6, 2, 1\n"
+                           "*Element, type=CPS4R, ELSET=Plate\n1, 1, 2, 3,\n4\n*ELEMENT, TYPE=CPE3, elset=rest\n2, 2, 5, 6\n3, 2, 6, 3\n"
+                           "*ELEMENT, type=T3D2, ELSET=Line1\n9, 1, 2\n"
+                           "*NSET, NSET=Foot, GENERATE\n1, 2, 1\n*Nset, nset=Foot\n5,\n*NSET, NSET=tip\n6\n"
+                           "*ELSET, ELSET=Body\nPlate, rest\n*SURFACE, TYPE=ELEMENT, NAME=Top\nPlate, S3\n3, s2\n"
+                           "*MATERIAL, NAME=steel\n*ELASTIC\n2.1e5, 0.3\n";
+  auto       body  = body_of("typed.inp", "Body");
+  const auto file  = fem::parse_abaqus(body.file, text);
+  const auto whole = fem::body_from_file(body, file);
+  EXPECT_EQ(whole.piece.cells.size(), 3u);
+  EXPECT_NEAR(quality_of(whole.piece).area, 2, 1e-14);
+  EXPECT_NEAR(length_of(whole, "Foot"), 2, 1e-14);
+  EXPECT_NEAR(length_of(whole, "Top"), 2, 1e-14);
+  EXPECT_NEAR(length_of(whole, "Line1"), 1, 1e-14);
+  EXPECT_EQ(whole.piece.vertices[whole.points.at("tip")], Point(2, 1));
+  body.part = "rest";
+  EXPECT_EQ(fem::body_from_file(body, file).piece.cells.size(), 2u);
+
+  EXPECT_SAYS(refusal([] { fem::parse_abaqus("a.inp", "*NODE\n1, 0, 0\n*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n"); }), "a.inp:4: element 1 has node 2");
+  EXPECT_SAYS(refusal([] { fem::parse_abaqus("a.inp", "*NODE\n1, 0, O\n"); }), "'O' is no coordinate");
+  EXPECT_SAYS(refusal([] { fem::parse_abaqus("a.inp", "*NSET, NSET=a\nb\n"); }), "no set 'b'");
+  EXPECT_SAYS(refusal([] { fem::parse_abaqus("a.inp", "*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n*ELEMENT, TYPE=CPS3\n1, 1, 2\n"); }), "lacks nodes");
+  EXPECT_SAYS(refusal([&] { fem::body_from_file(body, fem::parse_abaqus("a.inp", "*NODE\n1, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 1, 1, 1\n")); }),
+              "three-dimensional");
+}
+
+TEST(MeshFiles, formats_through_deal_ii)
+{
+  const auto name = std::filesystem::temp_directory_path() / ("slipstick_" + std::to_string(getpid()) + ".ucd");
+  {
+    std::ofstream out(name);
+    out << "6 3 0 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 2 0 0\n6 2 1 0\n"
+           "1 5 quad 1 2 3 4\n2 6 quad 2 5 6 3\n3 7 line 1 2\n";
+  }
+  auto body        = body_of("", "");
+  body.file        = name;
+  const auto file  = fem::read_mesh_file(body.file);
+  const auto whole = fem::body_from_file(body, file);
+  EXPECT_NEAR(quality_of(whole.piece).area, 2, 1e-14);
+  EXPECT_NEAR(length_of(whole, "7"), 1, 1e-14);
+  body.part = "6";
+  EXPECT_EQ(fem::body_from_file(body, file).piece.cells.size(), 1u);
+  {
+    std::ofstream out(name);
+    out << "6 3 0 0 0\n1 0 0 0\n";
+  }
+  EXPECT_SAYS(refusal([&] { fem::read_mesh_file(body.file); }), "could not be read as .ucd");
+  std::filesystem::remove(name);
+  EXPECT_SAYS(refusal([&] { fem::read_mesh_file(body.file); }), "cannot be read");
+  EXPECT_SAYS(refusal([] { fem::read_mesh_file(path_of("two_parts.geo")); }), "unknown ending '.geo'");
 }

@@ -1,4 +1,4 @@
-// Mesh files: Gmsh's .msh read here, other formats through deal.II.
+// Mesh files: Gmsh's .msh and Abaqus' .inp read here, other formats through deal.II.
 #pragma once
 
 #include <deal.II/base/point.h>
@@ -15,8 +15,8 @@ namespace slipstick::fem
   {
     struct Element
     {
-      unsigned int                dim    = 0; // 0 point, 1 line, 2 triangle or quadrilateral
-      unsigned int                n      = 0; // number of corners
+      unsigned int                dim = 0;    // 0 point, 1 line, 2 triangle or quadrilateral
+      unsigned int                n   = 0;    // number of corners
       std::array<unsigned int, 4> corners;    // indices into nodes; counterclockwise or all clockwise
       unsigned int                group  = 0; // index into groups
       unsigned long long          number = 0; // in the file, for messages
@@ -33,11 +33,15 @@ namespace slipstick::fem
     std::string name_of(const unsigned int dim, const int physical) const;
   };
 
-  /// Reads .msh (Gmsh 2.0 to 2.2 and 4.1, ASCII and binary) and, through deal.II, .inp (Abaqus or UCD), .ucd, .unv,
-  /// .vtk, whose boundaries and parts have numbers in place of names.
+  /// Reads .msh (Gmsh 2.0 to 2.2 and 4.1, ASCII and binary), .inp (Abaqus) and, through deal.II, .ucd (and UCD's .inp),
+  /// .unv, .vtk, whose boundaries and parts have numbers in place of names.
   /// @throws InputError that names the file, what is wrong with it and a remedy.
   MeshFile read_mesh_file(const std::string &file);
 
   /// Gmsh's format from @p text, the whole content of @p file.
   MeshFile parse_gmsh(const std::string &file, const std::string &text);
+
+  /// Abaqus' format. Sets of elements are parts (and lines boundaries), surfaces are boundaries; a set of nodes is the
+  /// boundary of all edges between two of its nodes, one node alone is a point.
+  MeshFile parse_abaqus(const std::string &file, const std::string &text);
 } // namespace slipstick::fem
