@@ -114,10 +114,7 @@ namespace slipstick::qp
                   return Status::converged;
                 if (bound_change > bounds.tolerance)
                   {
-                    forcing     = std::max(options.last_forcing * eps,
-                                       std::min(forcing,
-                                                std::max(options.last_forcing * forcing,
-                                                         options.bound_accuracy * bound_change)));
+                    tighten();
                     next        = next_set();
                     set_stands  = same_free(next);
                     set_changed = true;
@@ -136,11 +133,20 @@ namespace slipstick::qp
             if (counts.outer_iterations >= options.max_outer_iterations)
               return Status::iteration_limit;
             if (changed <= options.settled_part * n_inequalities)
-              forcing = std::max(options.last_forcing * eps, options.forcing_reduction * forcing);
+              tighten();
             set_changed = changed > 0;
             set_stands  = same_free(next);
             active      = std::move(next);
           }
+      }
+
+      // Smaller residuals for the solves to come; bounds that move are not worth more than a part of their last change.
+      void tighten()
+      {
+        const double next = bounds.update
+                              ? std::max(options.last_forcing * forcing, options.bound_accuracy * bound_change)
+                              : options.forcing_reduction * forcing;
+        forcing           = std::max(options.last_forcing * eps, std::min(forcing, next));
       }
 
       // PCPG on the free entries of the present set; the others at their bounds.
