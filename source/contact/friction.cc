@@ -16,12 +16,18 @@ namespace slipstick::contact
 
     // Slip bounds are followed at residuals below this times their last relative change (SMALBE).
     constexpr double bound_accuracy = 0.1;
-    // ... and at this one at first.
+    // ... at this one at first ...
     constexpr double first_accuracy = 1e-2;
-    // Damping is halved when the change of the bounds did not fall below this part of the least so far ...
-    constexpr double cycling_progress = 0.9;
+    // ... then at most this part of the one before, for the noise of a solution hides how the bounds change ...
+    constexpr double accuracy_reduction = 0.5;
+    // ... and never below this part of the tolerance.
+    constexpr double least_accuracy = 1e-3;
+    // Damping is halved when the change of the bounds did not fall by this part, times the damping, of the least ...
+    constexpr double cycling_progress = 0.1;
     // ... within so many updates.
     constexpr unsigned int cycling_window = 5;
+    // ... down to this.
+    constexpr double least_relaxation = 0.1;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
 
@@ -154,14 +160,14 @@ namespace slipstick::contact
       /// Damping of the bounds: halved whenever their change has not fallen for a while.
       double damping(const double change)
       {
-        if (change < cycling_progress * least_change)
+        if (change < (1 - cycling_progress * relaxation) * least_change)
           {
             least_change   = change;
             updates_in_row = 0;
           }
         else if (++updates_in_row >= cycling_window)
           {
-            relaxation     = relaxation / 2;
+            relaxation     = std::max(relaxation / 2, least_relaxation);
             updates_in_row = 0;
             least_change   = change;
           }
@@ -258,7 +264,9 @@ namespace slipstick::contact
                 solution.status = qp::Status::iteration_limit;
                 return;
               }
-            accuracy = std::max(options.tolerance, std::min(accuracy, bound_accuracy * solution.bound_change));
+            accuracy = std::max(std::min(accuracy > options.tolerance ? accuracy_reduction * accuracy : accuracy,
+                                         bound_accuracy * solution.bound_change),
+                                least_accuracy * options.tolerance);
             if (!move_bounds(next, damping(solution.bound_change), from))
               {
                 solution.status = qp::Status::stagnated;
