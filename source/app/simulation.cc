@@ -113,7 +113,7 @@ namespace slipstick::app
     {
       if (!scene.output.vtu)
         return;
-      output::write_fields(directory, scene, mesh, spaces, u, stress, 0);
+      output::write_fields(directory, mesh, spaces, u, stress, 0);
       output::write_pvd(directory, {load_factor});
     }
 
@@ -179,7 +179,7 @@ namespace slipstick::app
       const auto recovery = dual.recover(solution.multipliers, solution.free);
       const auto contact =
         contact::check(dual, recovery.multipliers, recovery.u, slip_bound, solution.free, scene.bodies.size());
-      const auto stress = fem::recover_stress(scene, mesh, spaces, dual.constraints(), recovery.u);
+      const auto stress = fem::recover_stress(scene, mesh, spaces, dual.constraints(), recovery.u, load_factor);
       print_checks(log, solution, contact.checks, scene.solver.tolerance);
 
       clock.enter("output");
