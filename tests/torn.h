@@ -93,7 +93,7 @@ namespace slipstick::test
 
   inline void load(Scene &scene, const unsigned int body, const std::string &boundary, const std::string &x, const std::string &y)
   {
-    scene.tractions.push_back({"load on " + boundary, {body, boundary}, {{field(x), field(y)}}});
+    scene.tractions.push_back({"load on " + boundary, {body, boundary}, {{field(x), field(y)}}, {}});
   }
 
   /// Contact with a circle; an empty slip bound means no friction.

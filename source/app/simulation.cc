@@ -4,6 +4,7 @@
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/decomposition.h>
+#include <slipstick/fem/loads.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/convergence.h>
 #include <slipstick/output/fields.h>
@@ -172,11 +173,9 @@ namespace slipstick::app
       void advance(const double t)
       {
         clock.enter("assembly");
-        std::vector<Eigen::VectorXd> loads;
-        for (auto &system : fem::assemble(scene, *mesh, *spaces, t))
-          loads.push_back(std::move(system.load));
-        std::vector<double> c     = fem::contact_constraints(scene, *mesh, *spaces, t).c;
-        const auto          jumps = dual->jumps(u);
+        std::vector<Eigen::VectorXd> loads = fem::assemble_loads(scene, *mesh, *spaces, t);
+        std::vector<double>          c     = fem::contact_constraints(scene, *mesh, *spaces, t).c;
+        const auto                   jumps = dual->jumps(u);
         for (unsigned int r = 0; r < c.size(); ++r)
           if (dual->constraints().kind[r] == tfeti::RowKind::tangential)
             c[r] = jumps.local_element(r);
@@ -214,14 +213,14 @@ namespace slipstick::app
                          law.depends_on_pressure() ? law.bounds(solution.multipliers) : solution.slip_bound,
                          solution.free,
                          scene.bodies.size());
-        const auto stress = fem::recover_stress(scene, *mesh, *spaces, dual->constraints(), u);
+        const auto stress = fem::recover_stress(scene, *mesh, *spaces, dual->constraints(), u, t);
         print_checks(log, solution, contact.checks, scene.solver.tolerance);
 
         clock.enter("output");
         auto summary = make_summary(scene, *mesh, *spaces, *dual, solution, contact.checks, stress);
         if (scene.output.vtu)
           {
-            output::write_fields(directory, scene, *mesh, *spaces, u, stress, step);
+            output::write_fields(directory, *mesh, *spaces, u, stress, step);
             output::write_pvd(directory, {scene.load_factors.begin(), scene.load_factors.begin() + step + 1});
           }
         if (scene.has_contact())
