@@ -110,10 +110,12 @@ namespace slipstick::scene
     add_choice(prm,
                "Method",
                decomposition.method,
-               Choices<DecompositionMethod>{{"blocks", DecompositionMethod::blocks},
+               Choices<DecompositionMethod>{{"auto", DecompositionMethod::automatic},
+                                            {"blocks", DecompositionMethod::blocks},
                                             {"METIS", DecompositionMethod::metis},
                                             {"none", DecompositionMethod::none}},
-               "blocks: N x N of every rectangle; METIS: graph partition; none: a subdomain per body");
+               "blocks: N x N of every rectangle; METIS: graph partition; none: a subdomain per body; auto: blocks if "
+               "all bodies are rectangles with Cells = auto, else METIS");
     add_count(prm, "Blocks", decomposition.blocks, 1, 1000, "N: N x N blocks of every rectangle");
     add_count(prm,
               "Cells per block",
@@ -125,7 +127,8 @@ namespace slipstick::scene
                       "Subdomains",
                       decomposition.subdomains,
                       1000000,
-                      "METIS: number of subdomains over all bodies");
+                      "METIS: number of subdomains over all bodies, at least one each; auto: by the number of cells");
+    add_count(prm, "Seed", decomposition.seed, 0, 1000000000, "METIS: seed of its random numbers");
     prm.leave_subsection();
   }
 
