@@ -363,7 +363,7 @@ namespace slipstick::test
   inline std::vector<Point> node_positions(const fem::Spaces<2> &spaces, const unsigned int p)
   {
     std::vector<Point> of_unknowns(spaces.dof_handlers[p]->n_dofs()), of_nodes;
-    dealii::DoFTools::map_dofs_to_support_points(spaces.mapping, *spaces.dof_handlers[p], of_unknowns);
+    dealii::DoFTools::map_dofs_to_support_points(*spaces.of(p).mapping, *spaces.dof_handlers[p], of_unknowns);
     for (unsigned int i = 0; i < of_unknowns.size(); i += 2)
       of_nodes.push_back(of_unknowns[i]);
     return of_nodes;

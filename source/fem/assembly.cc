@@ -3,7 +3,6 @@
 #include <slipstick/fem/cell_values.h>
 #include <slipstick/fem/rigid_modes.h>
 
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_values.h>
 
@@ -98,18 +97,18 @@ namespace slipstick::fem
     template <int dim>
     Eigen::SparseMatrix<double> assemble_stiffness(const scene::Scene<dim>       &scene,
                                                    const unsigned int             body,
-                                                   const Spaces<dim>             &spaces,
+                                                   const Element<dim>            &element,
                                                    const dealii::DoFHandler<dim> &dof_handler)
     {
       const auto      lame  = lame_coefficients(scene.materials[scene.bodies[body].material], scene.plane_state);
       auto            lower = lower_pattern(dof_handler);
-      CellValues<dim> values(spaces.mapping, spaces.scalar_element, dealii::QGauss<dim>(spaces.element.degree + 1));
-      dealii::FullMatrix<double>                   local(spaces.element.n_dofs_per_cell());
-      std::vector<dealii::types::global_dof_index> dofs(spaces.element.n_dofs_per_cell());
+      CellValues<dim> values(*element.mapping, *element.scalar, element.stiffness);
+      dealii::FullMatrix<double>                   local(element.vector->n_dofs_per_cell());
+      std::vector<dealii::types::global_dof_index> dofs(element.vector->n_dofs_per_cell());
       for (const auto &cell : dof_handler.active_cell_iterators())
         {
           if (values.reinit(cell))
-            cell_stiffness(*values, spaces.element, lame, scene.bodies[body].thickness, local);
+            cell_stiffness(*values, *element.vector, lame, scene.bodies[body].thickness, local);
           cell->get_dof_indices(dofs);
           add_lower<dim>(local, dofs, lower);
         }
@@ -121,33 +120,32 @@ namespace slipstick::fem
     Eigen::VectorXd assemble_load(const scene::Scene<dim>       &scene,
                                   const Mesh<dim>               &mesh,
                                   const SubdomainMesh<dim>      &subdomain,
-                                  const Spaces<dim>             &spaces,
+                                  const Element<dim>            &element,
                                   const dealii::DoFHandler<dim> &dof_handler,
                                   const double                   t)
     {
-      Eigen::VectorXd                              load = Eigen::VectorXd::Zero(dof_handler.n_dofs());
-      const dealii::QGauss<dim - 1>                quadrature(spaces.element.degree + 2); // loads may be formulas
-      dealii::FEFaceValues<dim>                    values(spaces.mapping,
-                                       spaces.element,
+      Eigen::VectorXd                              load       = Eigen::VectorXd::Zero(dof_handler.n_dofs());
+      const auto                                   quadrature = element.face_quadrature(element.degree + 2);
+      dealii::FEFaceValues<dim>                    values(*element.mapping,
+                                       *element.vector,
                                        quadrature,
                                        dealii::update_values | dealii::update_quadrature_points |
                                          dealii::update_JxW_values);
-      std::vector<dealii::types::global_dof_index> dofs(spaces.element.n_dofs_per_cell());
+      std::vector<dealii::types::global_dof_index> dofs(element.vector->n_dofs_per_cell());
       for (const auto &traction : scene.tractions)
         {
           if (traction.where.body != subdomain.body)
             continue;
-          const auto id = mesh.boundary_ids[subdomain.body].at(traction.where.boundary);
           for (const auto &cell : dof_handler.active_cell_iterators())
             for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() == id)
+              if (cell->face(f)->at_boundary() && mesh.on_boundary(traction.where, cell->face(f)->boundary_id()))
                 {
                   values.reinit(cell, f);
                   cell->get_dof_indices(dofs);
                   for (unsigned int q = 0; q < quadrature.size(); ++q)
                     for (unsigned int i = 0; i < dofs.size(); ++i)
                       {
-                        const unsigned int c = spaces.element.system_to_component_index(i).first;
+                        const unsigned int c = element.vector->system_to_component_index(i).first;
                         load[dofs[i]] += traction.components[c].value(values.quadrature_point(q), t) *
                                          values.shape_value(i, q) * values.JxW(q) *
                                          scene.bodies[subdomain.body].thickness;
@@ -198,10 +196,10 @@ namespace slipstick::fem
           tfeti::SubdomainMatrices system;
           system.subdomain     = subdomain.subdomain;
           system.body          = subdomain.body;
-          system.stiffness     = assemble_stiffness(scene, subdomain.body, spaces, dof_handler);
-          system.load          = assemble_load(scene, mesh, subdomain, spaces, dof_handler, t);
+          system.stiffness     = assemble_stiffness(scene, subdomain.body, spaces.of(p), dof_handler);
+          system.load          = assemble_load(scene, mesh, subdomain, spaces.of(p), dof_handler, t);
           system.boundary_dofs = boundary_dofs(dof_handler);
-          rigid_modes(spaces, dof_handler, frames[subdomain.body], system.kernel, system.body_modes);
+          rigid_modes(spaces.of(p), dof_handler, frames[subdomain.body], system.kernel, system.body_modes);
           systems.push_back(std::move(system));
         }
     });

@@ -4,7 +4,6 @@
 #include <slipstick/fem/interface_nodes.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
 #include <cmath>
@@ -41,14 +40,16 @@ namespace slipstick::fem
                   const Mesh<dim>                                              &mesh,
                   const SubdomainMesh<dim>                                     &subdomain,
                   const Spaces<dim>                                            &spaces,
+                  const Element<dim>                                           &element,
                   const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
                   const unsigned int                                            f,
                   const double                                                  t,
                   dealii::FEFaceValues<dim>                                    &values,
                   NodesOfSubdomain<dim>                                        &nodes)
     {
-      const auto                face = cell->face(f);
-      std::vector<unsigned int> on_face;
+      const auto                                   face = cell->face(f);
+      std::vector<unsigned int>                    on_face, on_cell;
+      std::vector<dealii::types::global_dof_index> dofs;
       spaces.for_each_face_node(subdomain,
                                 face,
                                 [&](const unsigned int node, const NodeKey &key, const dealii::Point<dim> &x) {
@@ -63,9 +64,8 @@ namespace slipstick::fem
       if (face->boundary_id() == cut_id)
         return;
 
-      const auto &names = mesh.boundary_ids[subdomain.body];
       const auto  here  = [&](const scene::BoundaryName &where) {
-        return where.body == subdomain.body && names.at(where.boundary) == face->boundary_id();
+        return where.body == subdomain.body && mesh.on_boundary(where, face->boundary_id());
       };
       for (const auto &support : scene.supports)
         if (here(support.where))
@@ -78,9 +78,10 @@ namespace slipstick::fem
         if (here(scene.contacts[k].slave))
           {
             values.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell), f);
+            element.nodes_of(cell, dofs, on_cell);
             for (unsigned int i = 0; i < on_face.size(); ++i)
               {
-                const unsigned int local = spaces.scalar_element.face_to_cell_index(i, f);
+                const unsigned int local = std::find(on_cell.begin(), on_cell.end(), on_face[i]) - on_cell.begin();
                 double             area  = 0;
                 for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
                   area += values.shape_value(local, q) * values.JxW(q);
@@ -101,14 +102,15 @@ namespace slipstick::fem
                                          const double             t)
     {
       NodesOfSubdomain<dim>     nodes;
-      dealii::FEFaceValues<dim> values(spaces.mapping,
-                                       spaces.scalar_element,
-                                       dealii::QGauss<dim - 1>(spaces.element.degree + 1),
+      const Element<dim>       &element = spaces.of(p);
+      dealii::FEFaceValues<dim> values(*element.mapping,
+                                       *element.scalar,
+                                       element.face_quadrature(spaces.degree + 1),
                                        dealii::update_values | dealii::update_JxW_values);
       for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
         for (const unsigned int f : cell->face_indices())
           if (cell->face(f)->at_boundary())
-            add_face(scene, mesh, *mesh.subdomains[p], spaces, cell, f, t, values, nodes);
+            add_face(scene, mesh, *mesh.subdomains[p], spaces, element, cell, f, t, values, nodes);
       return nodes;
     }
 

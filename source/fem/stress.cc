@@ -3,8 +3,6 @@
 #include <slipstick/fem/stress.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_dgq.h>
 
 namespace slipstick::fem
 {
@@ -55,19 +53,6 @@ namespace slipstick::fem
       return sum;
     }
 
-    /// Nodes of a cell in the order of the scalar element.
-    template <int dim>
-    std::vector<unsigned int> nodes_of(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-                                       const dealii::FESystem<dim>                                  &element,
-                                       std::vector<dealii::types::global_dof_index>                 &dofs)
-    {
-      cell->get_dof_indices(dofs);
-      std::vector<unsigned int> nodes(element.n_dofs_per_cell() / dim);
-      for (unsigned int i = 0; i < nodes.size(); ++i)
-        nodes[i] = dofs[element.component_to_system_index(0, i)] / dim;
-      return nodes;
-    }
-
     template <int dim>
     Eigen::MatrixXd displacement_at(const std::vector<unsigned int> &nodes, const Eigen::VectorXd &u)
     {
@@ -78,29 +63,44 @@ namespace slipstick::fem
       return local;
     }
 
+    /// From values at the points of Element::stress to values at the nodes of a cell, by the polynomial of one degree
+    /// less through those points.
+    template <int dim>
+    Eigen::MatrixXd extrapolation_to_nodes(const Element<dim> &element)
+    {
+      const auto     &points = element.stress;
+      Eigen::MatrixXd at_points(points.size(), points.size()), at_nodes(element.n_nodes(), points.size());
+      const auto      monomials = [&](const dealii::Point<dim> &x, auto &&row) {
+        const std::array<double, 4> values{{1, x[0], x[1], x[0] * x[1]}}; // constant; linear; bilinear
+        for (unsigned int k = 0; k < points.size(); ++k)
+          row[k] = values[k];
+      };
+      for (unsigned int q = 0; q < points.size(); ++q)
+        monomials(points.point(q), at_points.row(q));
+      for (unsigned int i = 0; i < element.n_nodes(); ++i)
+        monomials(element.scalar->unit_support_point(i), at_nodes.row(i));
+      return at_nodes * at_points.inverse();
+    }
+
     /// Sums over cells around every node: area times stress, area (last column).
     template <int dim>
     Eigen::MatrixXd weighted_stress(const Body<dim>               &body,
-                                    const Spaces<dim>             &spaces,
+                                    const Element<dim>            &element,
                                     const dealii::DoFHandler<dim> &dof_handler,
                                     const Eigen::VectorXd         &u)
     {
-      const unsigned int                           degree = spaces.element.degree;
-      const dealii::QGauss<dim>                    points(degree); // one per direction for degree 1, two for degree 2
-      const dealii::FE_DGQArbitraryNodes<dim>      lower(dealii::QGauss<1>{degree}); // polynomials through those points
-      CellValues<dim>                              values(spaces.mapping, spaces.scalar_element, points);
+      const auto                                  &points        = element.stress;
+      const Eigen::MatrixXd                        extrapolation = extrapolation_to_nodes(element);
+      CellValues<dim>                              values(*element.mapping, *element.scalar, points);
       Eigen::MatrixXd                              sums = Eigen::MatrixXd::Zero(u.size() / dim, n_components + 1);
-      std::vector<dealii::types::global_dof_index> dofs(spaces.element.n_dofs_per_cell());
-      Eigen::MatrixXd extrapolation(spaces.scalar_element.n_dofs_per_cell(), points.size());
-      for (unsigned int i = 0; i < extrapolation.rows(); ++i)
-        for (unsigned int q = 0; q < points.size(); ++q)
-          extrapolation(i, q) = lower.shape_value(q, spaces.scalar_element.unit_support_point(i));
+      std::vector<dealii::types::global_dof_index> dofs;
+      std::vector<unsigned int>                    nodes;
 
       Eigen::MatrixXd at_points(points.size(), n_components);
       for (const auto &cell : dof_handler.active_cell_iterators())
         {
           values.reinit(cell);
-          const auto nodes = nodes_of<dim>(cell, spaces.element, dofs);
+          element.nodes_of(cell, dofs, nodes);
           const auto local = displacement_at<dim>(nodes, u);
           double     area  = 0;
           for (unsigned int q = 0; q < points.size(); ++q)
@@ -140,20 +140,21 @@ namespace slipstick::fem
     /// Squared energy norms of the computed stress and of its difference to the recovered one.
     template <int dim>
     std::pair<double, double> estimate(const Body<dim>               &body,
-                                       const Spaces<dim>             &spaces,
+                                       const Element<dim>            &element,
                                        const dealii::DoFHandler<dim> &dof_handler,
                                        const Eigen::VectorXd         &u,
                                        SubdomainStress               &stress)
     {
-      const dealii::QGauss<dim>                    points(spaces.element.degree + 1);
-      CellValues<dim>                              values(spaces.mapping, spaces.scalar_element, points);
-      std::vector<dealii::types::global_dof_index> dofs(spaces.element.n_dofs_per_cell());
+      const dealii::Quadrature<dim>                points = element.cell_quadrature(element.degree + 1);
+      CellValues<dim>                              values(*element.mapping, *element.scalar, points);
+      std::vector<dealii::types::global_dof_index> dofs;
+      std::vector<unsigned int>                    nodes;
       std::pair<double, double>                    squares{0, 0};
       stress.error.resize(dof_handler.get_triangulation().n_active_cells());
       for (const auto &cell : dof_handler.active_cell_iterators())
         {
           values.reinit(cell);
-          const auto nodes = nodes_of<dim>(cell, spaces.element, dofs);
+          element.nodes_of(cell, dofs, nodes);
           const auto local = displacement_at<dim>(nodes, u);
           double     error = 0;
           for (unsigned int q = 0; q < points.size(); ++q)
@@ -161,8 +162,8 @@ namespace slipstick::fem
               const Stress computed  = body.stress(gradient(*values, q, local));
               Stress       recovered = Stress::Zero();
               for (unsigned int i = 0; i < nodes.size(); ++i)
-                recovered += spaces.scalar_element.shape_value(i, points.point(q)) *
-                             stress.nodal.row(nodes[i]).transpose().array();
+                recovered +=
+                  element.scalar->shape_value(i, points.point(q)) * stress.nodal.row(nodes[i]).transpose().array();
               const double weight = (*values).JxW(q) * body.thickness;
               squares.first += body.energy(computed) * weight;
               error += body.energy(recovered - computed) * weight;
@@ -193,7 +194,8 @@ namespace slipstick::fem
   {
     std::vector<Eigen::MatrixXd> sums;
     for (unsigned int p = 0; p < u.size(); ++p)
-      sums.push_back(weighted_stress(body_of(scene, mesh.subdomains[p]->body), spaces, *spaces.dof_handlers[p], u[p]));
+      sums.push_back(
+        weighted_stress(body_of(scene, mesh.subdomains[p]->body), spaces.of(p), *spaces.dof_handlers[p], u[p]));
     add_copies<dim>(constraints, sums);
 
     StressResult result;
@@ -209,7 +211,8 @@ namespace slipstick::fem
             const auto s         = stress.nodal.row(i);
             result.max_von_mises = std::max(result.max_von_mises, von_mises(s[0], s[1], s[2], zz * (s[0] + s[1])));
           }
-        const auto [energy, error] = estimate(body_of(scene, body), spaces, *spaces.dof_handlers[p], u[p], stress);
+        const auto [energy, error] =
+          estimate(body_of(scene, body), spaces.of(p), *spaces.dof_handlers[p], u[p], stress);
         result.energy_squared += energy;
         result.error_squared += error;
         result.subdomains.push_back(std::move(stress));

@@ -129,18 +129,18 @@ namespace slipstick::output
 
     /// One .vtu; the subdomain that comes first also writes the .pvtu, whose fields are the same.
     template <int dim>
-    void write_subdomain(const OutputDirectory       &directory,
-                         const scene::Scene<dim>     &scene,
-                         const fem::Mesh<dim>        &mesh,
-                         const fem::Spaces<dim>      &spaces,
-                         const unsigned int           p,
-                         const dealii::FESystem<dim> &element,
-                         const Eigen::VectorXd       &u,
-                         const fem::SubdomainStress  &stress,
-                         const unsigned int           step)
+    void write_subdomain(const OutputDirectory      &directory,
+                         const scene::Scene<dim>    &scene,
+                         const fem::Mesh<dim>       &mesh,
+                         const fem::Spaces<dim>     &spaces,
+                         const unsigned int          p,
+                         const Eigen::VectorXd      &u,
+                         const fem::SubdomainStress &stress,
+                         const unsigned int          step)
     {
-      const auto             &subdomain = *mesh.subdomains[p];
-      dealii::DoFHandler<dim> all(subdomain.triangulation);
+      const auto                 &subdomain = *mesh.subdomains[p];
+      const dealii::FESystem<dim> element(*spaces.of(p).scalar, n_nodal_values<dim>);
+      dealii::DoFHandler<dim>     all(subdomain.triangulation);
       all.distribute_dofs(element);
       const auto        values = nodal_values(all, *spaces.dof_handlers[p], u, stress.nodal);
       const Fields<dim> fields(
@@ -160,7 +160,7 @@ namespace slipstick::output
       data_out.add_data_vector(number, "subdomain", dealii::DataOut<dim>::type_cell_data);
       data_out.add_data_vector(owner, "rank", dealii::DataOut<dim>::type_cell_data);
       data_out.add_data_vector(error, "error_estimate", dealii::DataOut<dim>::type_cell_data);
-      data_out.build_patches(spaces.mapping, spaces.element.degree);
+      data_out.build_patches(*spaces.of(p).mapping, spaces.degree);
       directory.write(vtu_name(step, subdomain.subdomain), [&](std::ostream &out) { data_out.write_vtu(out); });
       if (subdomain.subdomain == 0)
         directory.write(pvtu_name(step), [&](std::ostream &out) {
@@ -181,10 +181,9 @@ namespace slipstick::output
                     const fem::StressResult            &stress,
                     const unsigned int                  step)
   {
-    const dealii::FESystem<dim> element(spaces.scalar_element, n_nodal_values<dim>);
     collectively(mesh.comm, [&] {
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
-        write_subdomain(directory, scene, mesh, spaces, p, element, u[p], stress.subdomains[p], step);
+        write_subdomain(directory, scene, mesh, spaces, p, u[p], stress.subdomains[p], step);
     });
   }
 
