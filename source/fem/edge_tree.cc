@@ -1,6 +1,7 @@
 #include <slipstick/fem/edge_tree.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace slipstick::fem
 {
@@ -28,6 +29,13 @@ namespace slipstick::fem
       found.push_back(at->second);
     std::sort(found.begin(), found.end());
     return found;
+  }
+
+  double EdgeTree::distance(const dealii::Point<2> &x, const Box &box)
+  {
+    const double dx = std::max({box.min_corner().get<0>() - x[0], x[0] - box.max_corner().get<0>(), 0.});
+    const double dy = std::max({box.min_corner().get<1>() - x[1], x[1] - box.max_corner().get<1>(), 0.});
+    return std::hypot(dx, dy);
   }
 
   EdgeTree::Box EdgeTree::box_around(const std::vector<dealii::Point<2>> &points)

@@ -21,9 +21,9 @@ namespace slipstick::fem
     // Weights that are no more than rounding.
     constexpr double smallest_weight = 1e-11;
     // Master nodes lie across slave nodes when they are off by no more than this part of the tributary length ...
-    constexpr double across_automatic = 1e-6; // ... to be taken for matching meshes
-    constexpr double across_asked_for = 0.1;  // ... when node to node is asked for
-    constexpr unsigned int n_gauss    = 5;    // per segment; exact between straight parallel edges of both degrees
+    constexpr double       across_automatic = 1e-6; // ... to be taken for matching meshes
+    constexpr double       across_asked_for = 0.1;  // ... when node to node is asked for
+    constexpr unsigned int n_gauss          = 5; // per segment; exact between straight parallel edges of both degrees
 
     double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
     {
@@ -107,8 +107,8 @@ namespace slipstick::fem
         unsigned int              side = 0;
         dealii::Point<2>          position;
         Tensor                    normal;
-        double                    size   = 0; // of the edges there
-        double                    length = 0; // D_i
+        double                    size   = 0;    // of the edges there
+        double                    length = 0;    // D_i
         std::map<NodeKey, double> slave, master; // D_ik, M_ij
       };
 
@@ -173,9 +173,9 @@ namespace slipstick::fem
         if (f0 * f1 > 0 || f0 == f1)
           return {};
         Hit result;
-        result.s = edge.n_nodes == 2 ?
-                     f0 / (f0 - f1) :
-                     zero_between([&](const double r) { return cross(n, edge.point(r) - x); }, 0., 1., f0, f1);
+        result.s   = edge.n_nodes == 2
+                       ? f0 / (f0 - f1)
+                       : zero_between([&](const double r) { return cross(n, edge.point(r) - x); }, 0., 1., f0, f1);
         result.gap = (edge.point(result.s) - x) * n / n.norm();
         return result;
       }
@@ -224,7 +224,7 @@ namespace slipstick::fem
       /// Parts of slave edge e over which one master edge faces it.
       std::vector<Segment> segments(const unsigned int e) const
       {
-        const auto          near = candidates(e);
+        const auto          near   = candidates(e);
         std::vector<double> breaks = {0., 1.};
         for (const unsigned int m : near)
           for (const unsigned int i : {0, 1})
@@ -260,22 +260,23 @@ namespace slipstick::fem
         const unsigned int n_test    = covered > 1 - whole_edge ? edge.n_nodes : 2;
         const bool         is_linear = n_test == 2;
 
-        Eigen::MatrixXd                    mass  = Eigen::MatrixXd::Zero(n_test, n_test);          // <T_a T_b>
+        Eigen::MatrixXd                    mass   = Eigen::MatrixXd::Zero(n_test, n_test);       // <T_a T_b>
         Eigen::MatrixXd                    slave_ = Eigen::MatrixXd::Zero(n_test, edge.n_nodes); // <T_a N_k>
-        Eigen::VectorXd                    sums  = Eigen::VectorXd::Zero(n_test);                  // <T_a>
-        std::map<NodeKey, Eigen::VectorXd> other;                                                  // <T_a N_j(y)>
+        Eigen::VectorXd                    sums   = Eigen::VectorXd::Zero(n_test);               // <T_a>
+        std::map<NodeKey, Eigen::VectorXd> other;                                                // <T_a N_j(y)>
         for (const auto &part : parts)
           for (unsigned int q = 0; q < gauss.size(); ++q)
             {
-              const double s   = part.from + (part.to - part.from) * gauss.point(q)[0];
-              const double dx  = gauss.weight(q) * (part.to - part.from) * edge.tangent(s).norm();
-              const auto   N   = edge.shape(s);
-              const auto   T   = is_linear ? std::array<double, 3>{{1 - s, s, 0}} : N;
-              const auto   y   = hit(e, s, part.master);
-              const Edge  &to  = master[part.master];
+              const double s  = part.from + (part.to - part.from) * gauss.point(q)[0];
+              const double dx = gauss.weight(q) * (part.to - part.from) * edge.tangent(s).norm();
+              const auto   N  = edge.shape(s);
+              const auto   T  = is_linear ? std::array<double, 3>{{1 - s, s, 0}} : N;
+              const auto   y  = hit(e, s, part.master);
+              const Edge  &to = master[part.master];
               // a Gauss point at the very end of a segment may miss by rounding
-              const double r   = y ? y->s : (std::abs(side(e, s, to.node(0))) < std::abs(side(e, s, to.node(1))) ? 0. : 1.);
-              const auto   N_m = to.shape(r);
+              const double r =
+                y ? y->s : (std::abs(side(e, s, to.node(0))) < std::abs(side(e, s, to.node(1))) ? 0. : 1.);
+              const auto            N_m  = to.shape(r);
               const Eigen::VectorXd test = Eigen::Map<const Eigen::VectorXd>(T.data(), n_test);
               mass += dx * test * test.transpose();
               slave_ += dx * test * Eigen::Map<const Eigen::RowVectorXd>(N.data(), edge.n_nodes);
@@ -287,9 +288,10 @@ namespace slipstick::fem
                 }
             }
         // phi = diag(sums) mass^-1 T, scaled: on a short part the entries are of very different size
-        const Eigen::VectorXd scale = mass.diagonal().cwiseSqrt().cwiseInverse();
+        const Eigen::VectorXd scale  = mass.diagonal().cwiseSqrt().cwiseInverse();
         const Eigen::MatrixXd scaled = scale.asDiagonal() * mass * scale.asDiagonal();
-        const Eigen::MatrixXd dual   = sums.asDiagonal() * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal()).eval();
+        const Eigen::MatrixXd dual =
+          sums.asDiagonal() * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal()).eval();
         const Eigen::MatrixXd D = dual * slave_;
         for (unsigned int i = 0; i < n_test; ++i)
           {
@@ -365,13 +367,13 @@ namespace slipstick::fem
       }
 
     private:
-      const std::vector<Edge>                         &slave, &master;
-      const double                                     reach;
-      const EdgeTree                                   tree;
-      const dealii::QGauss<1>                          gauss;
-      std::vector<Node>                                nodes;
-      std::vector<std::array<unsigned int, 3>>         node_of; // by slave edge
-      std::map<NodeKey, dealii::Point<2>>              slave_positions, master_positions;
+      const std::vector<Edge>                 &slave, &master;
+      const double                             reach;
+      const EdgeTree                           tree;
+      const dealii::QGauss<1>                  gauss;
+      std::vector<Node>                        nodes;
+      std::vector<std::array<unsigned int, 3>> node_of; // by slave edge
+      std::map<NodeKey, dealii::Point<2>>      slave_positions, master_positions;
     };
 
     /// Nearest point of the chord of an edge.
@@ -423,13 +425,14 @@ namespace slipstick::fem
           {
             if (!is_asked_for)
               return rows;
-            throw InputError(format("Contact %s: Discretization = node to node, but the meshes do not match: the master "
-                                    "node nearest to the slave node at (%g, %g) is %g mm aside",
-                                    name.c_str(),
-                                    row.position[0],
-                                    row.position[1],
-                                    off),
-                             "set Discretization = auto or mortar, or give both boundaries the same nodes");
+            throw InputError(
+              format("Contact %s: Discretization = node to node, but the meshes do not match: the master "
+                     "node nearest to the slave node at (%g, %g) is %g mm aside",
+                     name.c_str(),
+                     row.position[0],
+                     row.position[1],
+                     off),
+              "set Discretization = auto or mortar, or give both boundaries the same nodes");
           }
         row.slave_weights  = {{row.slave, 1.}};
         row.master_weights = {{key, 1.}};

@@ -61,9 +61,9 @@ namespace slipstick::fem
             const auto &foundation = scene.foundations[side.condition - scene.supports.size()];
             const Eigen::Map<const Eigen::Matrix<double, dim, 1>> n(side.normal.data());
             const Eigen::Matrix<double, dim, dim>                 nn = n * n.transpose();
-            stiffness += side.area * (foundation.normal_stiffness * nn +
-                                      foundation.tangential_stiffness *
-                                        (Eigen::Matrix<double, dim, dim>::Identity() - nn));
+            stiffness +=
+              side.area * (foundation.normal_stiffness * nn +
+                           foundation.tangential_stiffness * (Eigen::Matrix<double, dim, dim>::Identity() - nn));
           }
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>> principal(stiffness);
       for (unsigned int k = 0; k < dim; ++k)

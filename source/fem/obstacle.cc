@@ -39,8 +39,8 @@ namespace slipstick::fem
         return unit(-along[1], along[0]);
       };
       double       best = std::numeric_limits<double>::max();
-      unsigned int k = 0;
-      double       s = 0;
+      unsigned int k    = 0;
+      double       s    = 0;
       for (unsigned int i = 0; i < n; ++i)
         {
           const Tensor along = points[i + 1] - points[i];

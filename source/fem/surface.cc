@@ -89,12 +89,14 @@ namespace slipstick::fem
     edge.boundary  = face->boundary_id();
     edge.subdomain = subdomain.subdomain;
     edge.n_nodes   = 0;
-    spaces.for_each_face_node(subdomain, face, [&](const unsigned int, const NodeKey &key, const dealii::Point<dim> &x) {
-      edge.keys[edge.n_nodes] = key;
-      for (unsigned int d = 0; d < dim; ++d)
-        edge.at[edge.n_nodes][d] = x[d];
-      ++edge.n_nodes;
-    });
+    spaces.for_each_face_node(subdomain,
+                              face,
+                              [&](const unsigned int, const NodeKey &key, const dealii::Point<dim> &x) {
+                                edge.keys[edge.n_nodes] = key;
+                                for (unsigned int d = 0; d < dim; ++d)
+                                  edge.at[edge.n_nodes][d] = x[d];
+                                ++edge.n_nodes;
+                              });
     const auto along = edge.node(1) - edge.node(0), inward = cell->center() - edge.node(0);
     if (along[0] * inward[1] - along[1] * inward[0] < 0)
       {
@@ -102,14 +104,6 @@ namespace slipstick::fem
         std::swap(edge.at[0], edge.at[1]);
       }
     return edge;
-  }
-
-  template <int dim>
-  bool lies_on(const Mesh<dim> &mesh, const scene::BoundaryName &where, const dealii::types::boundary_id id)
-  {
-    if (id == cut_id)
-      return false;
-    return where.boundary == "*" || mesh.boundary_ids[where.body].at(where.boundary) == id;
   }
 
   template <int dim>
@@ -137,7 +131,7 @@ namespace slipstick::fem
   {
     std::vector<SurfaceEdge<dim>> edges;
     for (const auto &edge : outlines)
-      if (edge.body == where.body && lies_on(mesh, where, edge.boundary))
+      if (edge.body == where.body && mesh.on_boundary(where, edge.boundary))
         edges.push_back(edge);
     return edges;
   }
@@ -167,15 +161,14 @@ namespace slipstick::fem
   }
 
   template struct SurfaceEdge<2>;
-  template SurfaceEdge<2> surface_edge(const SubdomainMesh<2> &,
-                                       const Spaces<2> &,
-                                       const dealii::DoFHandler<2>::active_cell_iterator &,
-                                       const unsigned int);
-  template bool           lies_on(const Mesh<2> &, const scene::BoundaryName &, const dealii::types::boundary_id);
+  template SurfaceEdge<2>              surface_edge(const SubdomainMesh<2> &,
+                                                    const Spaces<2> &,
+                                                    const dealii::DoFHandler<2>::active_cell_iterator &,
+                                                    const unsigned int);
   template std::vector<SurfaceEdge<2>> outlines(const Mesh<2> &, const Spaces<2> &, const std::vector<bool> &);
   template std::vector<SurfaceEdge<2>> edges_on(const Mesh<2> &,
                                                 const std::vector<SurfaceEdge<2>> &,
                                                 const scene::BoundaryName &);
   template std::vector<unsigned int>   smooth_normals(const std::vector<dealii::Tensor<1, 2>> &,
-                                                    std::vector<dealii::Tensor<1, 2>> &);
+                                                      std::vector<dealii::Tensor<1, 2>> &);
 } // namespace slipstick::fem

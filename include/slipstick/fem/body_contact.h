@@ -21,6 +21,5 @@ namespace slipstick::fem
   /// whichever is more. Computed alike by every rank. Collective.
   /// @throws InputError on all ranks for a pair without any facing parts within its reach.
   template <int dim>
-  BodyContacts<dim>
-  pair_bodies(const scene::Scene<dim> &scene, const Mesh<dim> &mesh, const Spaces<dim> &spaces);
+  BodyContacts<dim> pair_bodies(const scene::Scene<dim> &scene, const Mesh<dim> &mesh, const Spaces<dim> &spaces);
 } // namespace slipstick::fem

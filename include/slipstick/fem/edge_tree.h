@@ -6,6 +6,7 @@
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
+#include <boost/geometry/strategies/strategies.hpp>
 
 namespace slipstick::fem
 {
@@ -28,7 +29,7 @@ namespace slipstick::fem
     {
       const Place place(x[0], x[1]);
       for (auto at = tree.qbegin(boost::geometry::index::nearest(place, tree.size())); at != tree.qend(); ++at)
-        if (boost::geometry::distance(place, at->first) > radius() || !f(at->second))
+        if (distance(x, at->first) > radius() || !f(at->second))
           return;
     }
 
@@ -39,6 +40,8 @@ namespace slipstick::fem
     static Box box_around(const SurfaceEdge<2> &edge);
 
   private:
+    static double distance(const dealii::Point<2> &x, const Box &box);
+
     boost::geometry::index::rtree<std::pair<Box, unsigned int>, boost::geometry::index::rstar<8>> tree;
   };
 } // namespace slipstick::fem

@@ -56,12 +56,12 @@ namespace slipstick::fem
     NodeKey                                            key{{0, 0}};
     std::array<double, dim>                            position{};
     unsigned int                                       body = 0;
-    std::vector<Held>                                  held;      // independent directions
-    std::vector<std::pair<unsigned int, unsigned int>> copies;    // subdomain, node there; sorted
-    std::vector<std::pair<unsigned int, double>>       areas;     // pair with an obstacle, tributary area [mm^2]; sorted
+    std::vector<Held>                                  held;   // independent directions
+    std::vector<std::pair<unsigned int, unsigned int>> copies; // subdomain, node there; sorted
+    std::vector<std::pair<unsigned int, double>>       areas;  // pair with an obstacle, tributary area [mm^2]; sorted
     bool                                               is_paired = false; // weights of a pair of bodies touch it
     std::vector<Side>                                  sides;
-    std::vector<Spring>                                springs;   // made from the sides, at most dim
+    std::vector<Spring>                                springs; // made from the sides, at most dim
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
@@ -98,9 +98,9 @@ namespace slipstick::fem
   /// all components. Foundations become springs along the principal directions of their joint stiffness. Collective.
   /// @throws InputError on all ranks when supports contradict each other at a node, or a point support has no node.
   template <int dim>
-  std::vector<InterfaceNode<dim>> interface_nodes(const scene::Scene<dim>  &scene,
-                                                  const Mesh<dim>          &mesh,
-                                                  const Spaces<dim>        &spaces,
-                                                  const BodyContacts<dim>  &contacts,
-                                                  const double              t);
+  std::vector<InterfaceNode<dim>> interface_nodes(const scene::Scene<dim> &scene,
+                                                  const Mesh<dim>         &mesh,
+                                                  const Spaces<dim>       &spaces,
+                                                  const BodyContacts<dim> &contacts,
+                                                  const double             t);
 } // namespace slipstick::fem

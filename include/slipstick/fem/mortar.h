@@ -18,11 +18,11 @@ namespace slipstick::fem
   struct MortarRow
   {
     NodeKey                slave{};
-    unsigned int           side = 0; // a node at a corner of the slave boundary has one row for each side
-    dealii::Point<dim>     position; // of the slave node [mm]
-    dealii::Tensor<1, dim> normal;   // outward, averaged over the edges of the slave boundary on this side
-    Weights                slave_weights; // d_ik
-    Weights                master_weights; // m_ij
+    unsigned int           side = 0;        // a node at a corner of the slave boundary has one row for each side
+    dealii::Point<dim>     position;        // of the slave node [mm]
+    dealii::Tensor<1, dim> normal;          // outward, averaged over the edges of the slave boundary on this side
+    Weights                slave_weights;   // d_ik
+    Weights                master_weights;  // m_ij
     dealii::Point<dim>     master_position; // sum_j m_ij y_j [mm]
     double                 gap    = 0;      // n_i . (sum_j m_ij y_j - sum_k d_ik x_k) [mm], negative when overlapping
     double                 length = 0;      // D_i [mm]
@@ -51,7 +51,7 @@ namespace slipstick::fem
   template <int dim>
   std::optional<double> facing_distance(const std::vector<SurfaceEdge<dim>> &a,
                                         const std::vector<SurfaceEdge<dim>> &b,
-                                        const double                         bound = std::numeric_limits<double>::max());
+                                        const double bound = std::numeric_limits<double>::max());
 
   // Curves face each other where the product of their normals is below this.
   constexpr double facing_cosine = -0.25; // 104 degrees

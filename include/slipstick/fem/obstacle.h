@@ -18,6 +18,5 @@ namespace slipstick::fem
   /// the search for that does not settle, to the tangent at the point above or below.
   /// @throws InputError for a node at the very centre of a circle or hole.
   template <int dim>
-  ObstacleContact<dim>
-  contact_with(const scene::Obstacle<dim> &obstacle, const dealii::Point<dim> &x, const double t);
+  ObstacleContact<dim> contact_with(const scene::Obstacle<dim> &obstacle, const dealii::Point<dim> &x, const double t);
 } // namespace slipstick::fem

@@ -12,12 +12,12 @@ namespace slipstick::fem
   template <int dim>
   struct SurfaceEdge
   {
-    unsigned int                                 body      = 0;
-    unsigned int                                 boundary  = 0; // boundary id
-    unsigned int                                 subdomain = 0;
-    unsigned int                                 n_nodes   = 2;
-    std::array<NodeKey, 3>                       keys{};
-    std::array<std::array<double, dim>, 3>       at{}; // [mm]
+    unsigned int                           body      = 0;
+    unsigned int                           boundary  = 0; // boundary id
+    unsigned int                           subdomain = 0;
+    unsigned int                           n_nodes   = 2;
+    std::array<NodeKey, 3>                 keys{};
+    std::array<std::array<double, dim>, 3> at{}; // [mm]
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
@@ -67,9 +67,6 @@ namespace slipstick::fem
                                 const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
                                 const unsigned int                                            face);
 
-  /// Does a face with boundary id @p id lie on that boundary of its body? `*` is the whole outline.
-  template <int dim>
-  bool lies_on(const Mesh<dim> &mesh, const scene::BoundaryName &where, const dealii::types::boundary_id id);
 
   /// The edges of the outlines of bodies (by index: wanted or not), known to every rank, sorted. Collective.
   template <int dim>
