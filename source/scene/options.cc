@@ -158,6 +158,10 @@ namespace slipstick::scene
                "-",
                Interval::inside(0, 1),
                "eps: projected gradient and G x relative to P d");
+    add_flag(prm,
+             "Prune contact",
+             solver.prune_contact,
+             "leave contact nodes that are far apart without multipliers, unless the solution makes them penetrate");
     declare_dual(prm, solver.dual);
     declare_smalbe(prm, solver.smalbe);
     prm.enter_subsection("PCG");

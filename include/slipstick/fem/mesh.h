@@ -53,10 +53,10 @@ namespace slipstick::fem
     std::vector<unsigned int>                                      first_subdomain; // of each rank, and their number
     std::vector<std::map<std::string, dealii::types::boundary_id>> boundary_ids;    // by body and name
     std::vector<std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>>>
-                                                        combined_ids; // by body: id of faces with several names, their ids
-    std::vector<std::map<std::string, NamedPoint<dim>>> points;       // by body and name
-    std::uint64_t                                                  n_cells = 0;     // over all ranks
-    std::vector<std::string>                                       remarks;         // for the log, on rank 0
+      combined_ids;                                             // by body: id of faces with several names, their ids
+    std::vector<std::map<std::string, NamedPoint<dim>>> points; // by body and name
+    std::uint64_t                                       n_cells = 0; // over all ranks
+    std::vector<std::string>                            remarks;     // for the log, on rank 0
 
     unsigned int n_subdomains() const
     {
