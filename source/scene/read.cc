@@ -73,6 +73,8 @@ namespace slipstick::scene
       declare_all(contacts);
       declare(prm, options.discretization);
       declare(prm, options.decomposition);
+      declare_load_steps(prm, options.load_factors);
+      declare(prm, options.friction);
       declare(prm, options.solver);
       declare(prm, options.output);
     }

@@ -107,5 +107,7 @@ namespace slipstick::scene
   void declare(dealii::ParameterHandler &prm, Decomposition &decomposition);
   void declare(dealii::ParameterHandler &prm, Discretization &discretization);
   void declare(dealii::ParameterHandler &prm, SolverOptions &solver);
+  void declare(dealii::ParameterHandler &prm, FrictionOptions &friction);
   void declare(dealii::ParameterHandler &prm, OutputOptions &output);
+  void declare_load_steps(dealii::ParameterHandler &prm, std::vector<double> &factors);
 } // namespace slipstick::scene
