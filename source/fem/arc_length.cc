@@ -39,7 +39,7 @@ namespace slipstick::fem
               continue;
             for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
               for (const auto &face : cell->face_iterators())
-                if (face->at_boundary() && on_boundary(mesh, slave.body, slave.boundary, face->boundary_id()))
+                if (face->at_boundary() && mesh.on_boundary(slave, face->boundary_id()))
                   {
                     Edge<dim> edge;
                     edge.pair   = k;

@@ -64,8 +64,8 @@ namespace slipstick::fem
       if (face->boundary_id() == cut_id)
         return;
 
-      const auto here = [&](const scene::BoundaryName &where) {
-        return where.body == subdomain.body && on_boundary(mesh, where.body, where.boundary, face->boundary_id());
+      const auto  here  = [&](const scene::BoundaryName &where) {
+        return where.body == subdomain.body && mesh.on_boundary(where, face->boundary_id());
       };
       for (const auto &support : scene.supports)
         if (here(support.where))

@@ -12,16 +12,19 @@ namespace slipstick::fem
   }
 
   template <int dim>
-  bool on_boundary(const Mesh<dim>                 &mesh,
-                   const unsigned int               body,
-                   const std::string               &name,
-                   const dealii::types::boundary_id id)
+  bool Mesh<dim>::on_boundary(const scene::BoundaryName &where, const dealii::types::boundary_id id) const
   {
-    if (id == cut_id)
+    AssertIndexRange(where.body, boundary_ids.size());
+    if (where.boundary == "*" || id == cut_id)
+      return id != cut_id;
+    const auto named = boundary_ids[where.body].at(where.boundary);
+    if (id == named)
+      return true;
+    if (combined_ids.empty())
       return false;
-    return name == "*" || mesh.boundary_ids[body].at(name) == id;
+    const auto combined = combined_ids[where.body].find(id);
+    return combined != combined_ids[where.body].end() && combined->second.count(named) > 0;
   }
 
   template struct Mesh<2>;
-  template bool on_boundary(const Mesh<2> &, const unsigned int, const std::string &, const dealii::types::boundary_id);
 } // namespace slipstick::fem

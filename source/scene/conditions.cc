@@ -26,6 +26,8 @@ namespace slipstick::scene
     if (slash == std::string::npos)
       throw parameters.error(path, "names no boundary of a body", "write " + boundary_format);
     const std::string name = trim(text.substr(0, slash)), boundary = trim(text.substr(slash + 1));
+    if (boundary.empty())
+      throw parameters.error(path, "names no boundary of a body", "write " + boundary_format);
 
     const auto body = std::find_if(bodies.begin(), bodies.end(), [&name](const Body<dim> &candidate) {
       return candidate.name == name;
@@ -38,7 +40,8 @@ namespace slipstick::scene
         throw parameters.error(path, "there is no body '" + name + "'", suggest_name(name, names));
       }
     const auto boundaries = boundary_names(body->shape);
-    if (std::find(boundaries.begin(), boundaries.end(), boundary) == boundaries.end())
+    if (boundary != "*" && body->shape != Shape::mesh &&
+        std::find(boundaries.begin(), boundaries.end(), boundary) == boundaries.end())
       throw parameters.error(path,
                              "body '" + name + "' has no boundary '" + boundary + "'",
                              suggest_name(boundary, boundaries));
@@ -88,40 +91,6 @@ namespace slipstick::scene
                              "set Displacement x or y to a number or formula, or take '" + name +
                                "' out of the list Supports and leave its subsection away");
     return support;
-  }
-
-  template <int dim>
-  TractionSection<dim>::TractionSection(const std::string &own_name)
-    : name(own_name)
-  {
-    components.fill("0");
-  }
-
-  template <int dim>
-  void TractionSection<dim>::declare(dealii::ParameterHandler &prm)
-  {
-    prm.enter_subsection("Traction " + name);
-    add_text(prm, "Boundary", boundary, "", boundary_format, "boundary that is loaded; must be set");
-    for (unsigned int d = 0; d < dim; ++d)
-      add_text(prm,
-               "Traction " + axes[d],
-               components[d],
-               "MPa",
-               field_format,
-               "force per undeformed area along " + axes[d]);
-    prm.leave_subsection();
-  }
-
-  template <int dim>
-  Traction<dim> TractionSection<dim>::read(const Parameters &parameters, const Scene<dim> &scene) const
-  {
-    const std::string section = "Traction " + name;
-    Traction<dim>     traction;
-    traction.name  = name;
-    traction.where = read_boundary(boundary, section + "/Boundary", parameters, scene.bodies);
-    for (unsigned int d = 0; d < dim; ++d)
-      traction.components[d] = Field<dim>(components[d], parameters.locate(section + "/Traction " + axes[d]));
-    return traction;
   }
 
   template <int dim>
@@ -179,6 +148,5 @@ namespace slipstick::scene
                                       const Parameters &,
                                       const std::vector<Body<2>> &);
   template struct SupportSection<2>;
-  template struct TractionSection<2>;
   template struct ContactSection<2>;
 } // namespace slipstick::scene

@@ -110,10 +110,12 @@ namespace slipstick::scene
     add_choice(prm,
                "Method",
                decomposition.method,
-               Choices<DecompositionMethod>{{"blocks", DecompositionMethod::blocks},
+               Choices<DecompositionMethod>{{"auto", DecompositionMethod::automatic},
+                                            {"blocks", DecompositionMethod::blocks},
                                             {"METIS", DecompositionMethod::metis},
                                             {"none", DecompositionMethod::none}},
-               "blocks: N x N of every rectangle; METIS: graph partition; none: a subdomain per body");
+               "blocks: N x N of every rectangle; METIS: graph partition; none: a subdomain per body; auto: blocks if "
+               "all bodies are rectangles with Cells = auto, else METIS");
     add_count(prm, "Blocks", decomposition.blocks, 1, 1000, "N: N x N blocks of every rectangle");
     add_count(prm,
               "Cells per block",
@@ -125,7 +127,8 @@ namespace slipstick::scene
                       "Subdomains",
                       decomposition.subdomains,
                       1000000,
-                      "METIS: number of subdomains over all bodies");
+                      "METIS: number of subdomains over all bodies, at least one each; auto: by the number of cells");
+    add_count(prm, "Seed", decomposition.seed, 0, 1000000000, "METIS: seed of its random numbers");
     prm.leave_subsection();
   }
 
@@ -133,6 +136,14 @@ namespace slipstick::scene
   {
     prm.enter_subsection("Discretization");
     add_count(prm, "Degree", discretization.degree, 1, 2, "polynomial degree of the elements");
+    add_choice(
+      prm,
+      "Element",
+      discretization.element,
+      Choices<ElementKind>{{"standard", ElementKind::standard},
+                           {"nearly incompressible", ElementKind::nearly_incompressible}},
+      "nearly incompressible: for plane strain with nu near 0.5, where standard elements lock; its dilatation is "
+      "projected on polynomials of one degree less");
     add_count(prm, "Refinements", discretization.refinements, 0, 10, "extra uniform refinements of the mesh");
     prm.leave_subsection();
   }
