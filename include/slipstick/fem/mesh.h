@@ -69,12 +69,4 @@ namespace slipstick::fem
     /// excepted). A face may lie on several. make_mesh() has checked that the boundaries of the scene exist.
     bool on_boundary(const scene::BoundaryName &where, const dealii::types::boundary_id id) const;
   };
-
-  /// Whether a boundary face with id @p id of a subdomain of @p body lies on the boundary @p name of that body; `*` is
-  /// the whole outline, which every face is part of that is no cut. The name must be in mesh.boundary_ids.
-  template <int dim>
-  bool on_boundary(const Mesh<dim>                 &mesh,
-                   const unsigned int               body,
-                   const std::string               &name,
-                   const dealii::types::boundary_id id);
 } // namespace slipstick::fem
