@@ -1,8 +1,8 @@
 // Stone arch of voussoirs with radial joints, which do not share nodes and whose meshes do not match [mm].
 //   gmsh -2 arch.geo -o arch.msh
-// meshes/arch.py writes the scene for it. Bodies: v01, v02, ... from the right springing to the left. Boundaries of every
-// stone: start and end (its joints, start on the side of v01), intrados, extrados. Point: load (middle of the extrados of
-// stone `loaded`).
+// meshes/arch.py writes the scene for it. Bodies: v01, v02, ... from the right springing to the left. Boundaries of
+// every stone: start and end (its joints, start on the side of v01), intrados, extrados. Point: load (middle of the
+// extrados of stone `loaded`).
 
 DefineConstant[
   stones = {24, Name "Arch/Number of stones"},

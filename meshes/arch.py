@@ -1,27 +1,29 @@
 #!/usr/bin/python3
 """Scene and limit analysis of the stone arch of arch.geo.
 
-meshes/arch.py > prm/arch.prm writes the scene. meshes/arch.py --limit prints what rigid stones say (Heyman's lower bound
-theorem with friction; needs scipy): the critical friction coefficient and the largest point load, as in the header of
-the scene. Other arches: change the numbers below and pass the same to gmsh by -setnumber.
+meshes/arch.py > prm/arch.prm writes the scene. meshes/arch.py --limit prints what rigid stones say (lower bound theorem
+of limit analysis with friction; needs scipy): the critical friction coefficient and the largest point load, as in the
+header of the scene. Other arches: change the numbers below and pass the same to gmsh by -setnumber.
 """
 
 import math
 import sys
 
-STONES, INNER, OUTER, EMBRACE, LOADED = 24, 2500., 3000., 160., 16  # as in arch.geo; lengths in mm, angle in degrees
-DEPTH, DENSITY, GRAVITY, FORCE = 1000., 2.4e-9, 9810., 20000.  # mm, t/mm^3, mm/s^2, N
+STONES, INNER, OUTER, EMBRACE, LOADED = 24, 2500., 3000., 160., 16  # as in arch.geo [mm, degrees]
+DEPTH, DENSITY, GRAVITY, FORCE = 1000., 2.4e-9, 9810., 20000.  # [mm, t/mm^3, mm/s^2, N]
 FRICTION = .6
 
-HEADER = '''# Stone arch of {stones} voussoirs under its own weight and a point load, dry joints with Coulomb friction, plane stress.
-# Written by meshes/arch.py; mesh by meshes/arch.geo.
+HEADER = '''# Stone arch of {stones} voussoirs under its own weight and a point load, dry joints with Coulomb friction, plane
+# stress. Written by meshes/arch.py; mesh by meshes/arch.geo.
 #
-# What it shows. {stones} floating bodies, {contacts} contact pairs, meshes that do not match, rigid abutments: contact and
-# friction alone hold the arch. Joints open where the thrust leaves the middle third of the stones.
+# What it shows. {stones} floating bodies, {contacts} contact pairs, meshes that do not match, rigid abutments: contact
+# and friction alone hold the arch. Joints open where the thrust leaves the middle third of the stones.
 #
 # What to expect
-#   weight {weight:.1f} kN, point load {force:g} kN on stone v{loaded:02d}; the vertical forces of both springings sum to {total:.1f} kN
-#   every joint carries a thrust whose centre of pressure lies inside the stones
+#   weight {weight:.1f} kN, point load {force:g} kN on stone v{loaded:02d}; the vertical forces of both springings sum to
+#   {total:.1f} kN, the horizontal force in every joint is 30.1 kN
+#   the centre of pressure of every joint lies inside the stones; the joints on both sides of the load open at the
+#   intrados, the springing j00 opens at the intrados
 #   rigid stones (limit analysis, meshes/arch.py --limit): equilibrium needs mu >= 0.342; at mu = 0.6 the arch bears
 #   up to 56.3 kN there. Below the critical coefficient the run ends with status 4 and names the stones that slide.
 #

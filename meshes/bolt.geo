@@ -1,6 +1,7 @@
 // Section of a bolt with head and nut through its axis, triangles [mm].
 //   gmsh -2 -bin bolt.geo -o bolt.msh
-// Body: bolt. Boundaries: head left, head right, nut left, nut right (the sides that clamp), shank left, shank right, rest.
+// Body: bolt. Boundaries: head left, head right, nut left, nut right (the sides that clamp), shank left, shank right,
+// rest.
 
 DefineConstant[
   size  = {1.6, Name "Mesh/Cell size [mm]"},

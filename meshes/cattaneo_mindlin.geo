@@ -35,7 +35,8 @@ For side In {0:1}
   d = newf; Field[d] = Distance; Field[d].NodesList = {origin};
   t = newf; Field[t] = Threshold; Field[t].IField = d;
   Field[t].LcMin = h; Field[t].LcMax = 0.25 * radius; Field[t].DistMin = fine; Field[t].DistMax = radius;
-  g = newf; Field[g] = Restrict; Field[g].IField = t; Field[g].FacesList = {b}; Field[g].EdgesList = {a1, a2, a3, f1, f2};
+  g = newf; Field[g] = Restrict; Field[g].IField = t;
+  Field[g].FacesList = {b}; Field[g].EdgesList = {a1, a2, a3, f1, f2};
   grading[] += g;
   flats[] += {f1, f2}; contacts[] += a2; arcs[] += {a1, a3};
   If (side == 0)

@@ -1,8 +1,9 @@
 // Yielding clamp connection of steel arched mine supports, right half of a section that is symmetric about x = 0 [mm]:
 // two nested V-shaped profiles (B in C) pulled together by an upper and a lower yoke (A, D).
 //   gmsh -2 -bin clamp.geo -o clamp.msh
-// Bodies: A, B, C, D. Boundaries: symmetry (of all four); A: under; B: top, flange, upper flank, lower flank; C: flange,
-// flank (inside), back (outside), web; D: web, flank; rest. Points: upper bolt (A), lower bolt (D), hold (C).
+// Bodies: A, B, C, D. Boundaries: symmetry (of all four); A: under; B: top, flange, upper flank, lower flank;
+// C: flange, flank (inside), back (outside), web; D: web, flank; rest.
+// Points: upper bolt (A), lower bolt (D), hold (C).
 // Contact zones are straight, so that uniform refinement of this mesh leaves the geometry as it is there.
 
 SetFactory("Built-in");
@@ -15,6 +16,7 @@ DefineConstant[
   width  = {90, Name "Profiles/Half width over the flanges [mm]"},
   foot   = {22, Name "Profiles/Half width of the inner foot of C [mm]"},
   lift   = {10, Name "Profiles/Clearance between the webs of B and C [mm]"},
+  clearance = {0.05, Name "Profiles/Clearance between the flanges of B and C [mm]"},
   groove = {2, Name "Profiles/Depth of the groove that parts the flank of B [mm]"},
   yoke   = {32, Name "Yokes/Depth of the yokes [mm]"},
   bolt   = {105, Name "Yokes/Distance of the bolt from the symmetry plane [mm]"}
@@ -84,11 +86,11 @@ Physical Point("hold") = from[7];
 
 // B: upper profile, its flank parted by a groove
 h = 2.4 * size;
-yb = plate + lift; top = height + plate; g1 = 50; g2 = 60;
+yb = plate + lift; yf = height + clearance; top = height + plate; g1 = 50; g2 = 60;
 nx = groove / Cos(angle * Pi / 180);
 xs[] = {0, flank0 + yb * t, flank0 + g1 * t, flank0 + (g1 + 2) * t - nx, flank0 + (g2 - 2) * t - nx, flank0 + g2 * t,
-        flank0 + height * t, width, width, flank0 + top * t - o, flank0 + (yb + plate) * t - o, 0};
-ys[] = {yb, yb, g1, g1 + 2, g2 - 2, g2, height, height, top, top, yb + plate, yb + plate};
+        flank0 + yf * t, width, width, flank0 + top * t - o, flank0 + (yb + plate) * t - o, 0};
+ys[] = {yb, yb, g1, g1 + 2, g2 - 2, g2, yf, yf, top, top, yb + plate, yb + plate};
 rs[] = {0, 4, 0, 0, 0, 0, 3, 4, 4, 4, 6, 0};
 Call Outline;
 Physical Surface("B") = surface;
@@ -97,7 +99,8 @@ Physical Curve("upper flank") = edge[5];
 Physical Curve("top") = edge[8];
 flange[] += edge[6];
 symmetry[] += edge[11];
-rest[] += {edge[0], edge[2], edge[3], edge[4], edge[7], edge[9], edge[10], arc[1], arc[6], arc[7], arc[8], arc[9], arc[10]};
+rest[] += {edge[0], edge[2], edge[3], edge[4], edge[7], edge[9], edge[10], arc[1],
+           arc[6], arc[7], arc[8], arc[9], arc[10]};
 
 // A: upper yoke across the profiles; the bolt presses on its top
 h = 3.2 * size;
