@@ -13,15 +13,15 @@ STONES, INNER, OUTER, EMBRACE, LOADED = 24, 2500., 3000., 160., 16  # as in arch
 DEPTH, DENSITY, GRAVITY, FORCE = 1000., 2.4e-9, 9810., 20000.  # [mm, t/mm^3, mm/s^2, N]
 FRICTION = .6
 
-HEADER = '''# Stone arch of {stones} voussoirs under its own weight and a point load, dry joints with Coulomb friction, plane
-# stress. Written by meshes/arch.py; mesh by meshes/arch.geo.
+HEADER = '''# Stone arch of {stones} voussoirs under its own weight and a point load, dry joints with Coulomb friction,
+# plane stress. Written by meshes/arch.py; mesh by meshes/arch.geo.
 #
 # What it shows. {stones} floating bodies, {contacts} contact pairs, meshes that do not match, rigid abutments: contact
 # and friction alone hold the arch. Joints open where the thrust leaves the middle third of the stones.
 #
 # What to expect
-#   weight {weight:.1f} kN, point load {force:g} kN on stone v{loaded:02d}; the vertical forces of both springings sum to
-#   {total:.1f} kN, the horizontal force in every joint is 30.1 kN
+#   weight {weight:.1f} kN, point load {force:g} kN on stone v{loaded:02d}; the vertical forces of both springings
+#   sum to {total:.1f} kN, the horizontal force in every joint is 30.1 kN
 #   the centre of pressure of every joint lies inside the stones; the joints on both sides of the load open at the
 #   intrados, the springing j00 opens at the intrados
 #   rigid stones (limit analysis, meshes/arch.py --limit): equilibrium needs mu >= 0.342; at mu = 0.6 the arch bears
