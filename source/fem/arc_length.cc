@@ -37,10 +37,9 @@ namespace slipstick::fem
             const auto &slave = scene.contacts[k].slave;
             if (slave.body != mesh.subdomains[p]->body)
               continue;
-            const auto id = mesh.boundary_ids[slave.body].at(slave.boundary);
             for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
               for (const auto &face : cell->face_iterators())
-                if (face->at_boundary() && face->boundary_id() == id)
+                if (face->at_boundary() && mesh.on_boundary(slave, face->boundary_id()))
                   {
                     Edge<dim> edge;
                     edge.pair   = k;

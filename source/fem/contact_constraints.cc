@@ -1,6 +1,5 @@
 #include <slipstick/fem/contact_constraints.h>
-#include <slipstick/fem/interface_nodes.h>
-#include <slipstick/fem/obstacle.h>
+#include <slipstick/fem/row_builder.h>
 
 #include <slipstick/base/collective.h>
 #include <slipstick/base/numbering.h>
@@ -12,157 +11,6 @@ namespace slipstick::fem
 {
   namespace
   {
-    // A direction whose free part is shorter than this is held by the support.
-    constexpr double held_direction_tolerance = 1e-8;
-
-    /// What a subdomain is told of rows and interface unknowns; numbers are global.
-    struct Message
-    {
-      std::uint64_t index; // row or interface unknown
-      unsigned int  subdomain;
-      unsigned int  dof;
-      double        value;
-      bool          is_row;
-
-      template <class Archive>
-      void serialize(Archive &archive, const unsigned int /*version*/)
-      {
-        archive &index &subdomain &dof &value &is_row;
-      }
-    };
-
-    /// Rows of the nodes that this rank owns; indices are owned ones until they are shifted.
-    template <int dim>
-    class RowBuilder
-    {
-    public:
-      RowBuilder(const scene::Scene<dim> &scene, tfeti::Constraints &constraints)
-        : scene(scene)
-        , constraints(constraints)
-      {}
-
-      void add(const InterfaceNode<dim> &node)
-      {
-        for (const auto &[pair, area] : node.areas)
-          add_contact(node, pair, area);
-        for (unsigned int c = 0; c < dim; ++c)
-          if (node.held >> c & 1u)
-            {
-              entry(new_row(tfeti::RowKind::prescribed, node.prescribed[c], node, c), node.copies[0], c, 1.);
-              ++constraints.counts.prescribed;
-            }
-        for (unsigned int k = 0; k + 1 < node.copies.size(); ++k)
-          for (unsigned int c = 0; c < dim; ++c)
-            {
-              const unsigned int row = new_row(tfeti::RowKind::gluing, 0., node, k * dim + c);
-              entry(row, node.copies[k], c, 1.);
-              entry(row, node.copies[k + 1], c, -1.);
-              ++constraints.counts.gluing;
-            }
-        for (unsigned int c = 0; c < dim; ++c)
-          {
-            for (const auto &copy : node.copies)
-              messages.push_back({n_interface, copy.first, copy.second * dim + c, 1., false});
-            constraints.interface_held.push_back(node.held != 0 || !node.areas.empty());
-            ++n_interface;
-          }
-      }
-
-      std::vector<Message> messages;
-      std::uint64_t        n_interface = 0;
-
-    private:
-      unsigned int new_row(const tfeti::RowKind      kind,
-                           const double              c,
-                           const InterfaceNode<dim> &node,
-                           const unsigned int        which)
-      {
-        constraints.kind.push_back(kind);
-        constraints.c.push_back(c);
-        std::uint64_t label = 1469598103934665603ull; // FNV-1a over what names the row
-        for (const std::uint64_t part : {node.key[0], node.key[1], std::uint64_t(kind), std::uint64_t(which)})
-          label = (label ^ part) * 1099511628211ull;
-        constraints.label.push_back(label);
-        return constraints.kind.size() - 1;
-      }
-
-      void entry(const unsigned int                           row,
-                 const std::pair<unsigned int, unsigned int> &copy,
-                 const unsigned int                           c,
-                 const double                                 value)
-      {
-        messages.push_back({row, copy.first, copy.second * dim + c, value, true});
-      }
-
-      unsigned int contact_row(const tfeti::RowKind          kind,
-                               const double                  c,
-                               const InterfaceNode<dim>     &node,
-                               const unsigned int            pair,
-                               const dealii::Tensor<1, dim> &direction)
-      {
-        const unsigned int row = new_row(kind, c, node, pair);
-        for (unsigned int d = 0; d < dim; ++d)
-          if (direction[d] != 0)
-            entry(row, node.copies[0], d, direction[d]);
-        return row;
-      }
-
-      void add_contact(const InterfaceNode<dim> &node, const unsigned int pair, const double area)
-      {
-        static_assert(dim == 2, "one tangent: two dimensions");
-        const auto             contact = contact_with(scene.obstacles[scene.contacts[pair].obstacle], node.point());
-        dealii::Tensor<1, dim> tangent;
-        tangent[0] = -contact.normal[1];
-        tangent[1] = contact.normal[0];
-
-        // a held component leaves one free direction: then the normal row, or the tangential one if that is all there is
-        const bool free_normal  = free_part(contact.normal, node.held) > held_direction_tolerance;
-        const bool free_tangent = free_part(tangent, node.held) > held_direction_tolerance;
-        const bool has_normal   = free_normal;
-        const bool has_tangent  = free_tangent && (node.held == 0 || !free_normal) &&
-                                 scene.contacts[pair].law != scene::ContactLaw::frictionless;
-        if (!has_normal && !has_tangent)
-          return;
-
-        tfeti::ContactPoint point;
-        point.pair = pair;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            point.position[d] = node.position[d];
-            point.normal[d]   = contact.normal[d];
-          }
-        point.key           = node.key;
-        point.gap           = contact.gap;
-        point.area          = area;
-        point.length        = area / scene.bodies[node.body].thickness;
-        point.interface_dof = n_interface;
-        if (has_tangent)
-          {
-            point.tangential_row = contact_row(tfeti::RowKind::tangential, 0., node, pair, tangent);
-            ++constraints.counts.tangential;
-          }
-        if (has_normal)
-          {
-            point.normal_row = contact_row(tfeti::RowKind::normal, contact.gap, node, pair, contact.normal);
-            ++constraints.counts.normal;
-          }
-        ++constraints.counts.candidates;
-        constraints.contact_points.push_back(point);
-      }
-
-      static double free_part(const dealii::Tensor<1, dim> &direction, const unsigned int held)
-      {
-        double squares = 0;
-        for (unsigned int c = 0; c < dim; ++c)
-          if (!(held >> c & 1u))
-            squares += direction[c] * direction[c];
-        return std::sqrt(squares);
-      }
-
-      const scene::Scene<dim> &scene;
-      tfeti::Constraints      &constraints;
-    };
-
     tfeti::Partitioner make_partitioner(const std::uint64_t                           first,
                                         const std::uint64_t                           n_owned,
                                         const std::uint64_t                           n_total,
@@ -182,15 +30,15 @@ namespace slipstick::fem
 
     /// Sends every entry to the rank of its subdomain and numbers rows and interface unknowns there.
     template <int dim>
-    void distribute(const Mesh<dim>            &mesh,
-                    const std::vector<Message> &messages,
-                    const std::uint64_t         n_interface,
-                    tfeti::Constraints         &constraints)
+    void distribute(const Mesh<dim>             &mesh,
+                    const std::vector<RowEntry> &messages,
+                    const std::uint64_t          n_interface,
+                    tfeti::Constraints          &constraints)
     {
       const auto [first_row, n_rows]         = first_and_total(constraints.kind.size(), mesh.comm);
       const auto [first_unknown, n_unknowns] = first_and_total(n_interface, mesh.comm);
-      std::map<unsigned int, std::vector<Message>> to_send;
-      for (Message message : messages)
+      std::map<unsigned int, std::vector<RowEntry>> to_send;
+      for (RowEntry message : messages)
         {
           message.index += message.is_row ? first_row : first_unknown;
           to_send[mesh.rank_of_subdomain(message.subdomain)].push_back(message);
@@ -240,14 +88,12 @@ namespace slipstick::fem
                                          const Spaces<dim>       &spaces,
                                          const double             t)
   {
-    const auto         nodes = interface_nodes(scene, mesh, spaces, t);
+    const auto         contacts = pair_bodies(scene, mesh, spaces);
+    const auto         nodes    = interface_nodes(scene, mesh, spaces, contacts, t);
     tfeti::Constraints constraints;
-    RowBuilder<dim>    builder(scene, constraints);
-    collectively(mesh.comm, [&] {
-      for (const auto &node : nodes)
-        builder.add(node);
-    });
-    distribute(mesh, builder.messages, builder.n_interface, constraints);
+    RowBuilder<dim>    builder(scene, nodes, contacts, t, constraints);
+    collectively(mesh.comm, [&] { builder.build(); });
+    distribute(mesh, builder.entries, builder.n_interface, constraints);
     constraints.counts = sum(constraints.counts, mesh.comm);
     return constraints;
   }

@@ -1,11 +1,18 @@
+#include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/text.h>
+#include <slipstick/fem/body_mesh.h>
 #include <slipstick/fem/decomposition.h>
-#include <slipstick/fem/mesh_piece.h>
+#include <slipstick/fem/shapes.h>
 
 #include <deal.II/base/mpi.h>
 
+#include <boost/serialization/set.hpp>
+#include <boost/serialization/string.hpp>
+
 #include <cmath>
 #include <numeric>
+#include <queue>
 
 namespace slipstick::fem
 {
@@ -14,17 +21,7 @@ namespace slipstick::fem
     // Cells of a METIS subdomain when their number is left to us: that of the paper's 50 x 50 blocks.
     constexpr double automatic_cells_per_subdomain = 2500;
 
-    template <int dim>
-    std::array<unsigned int, dim> lattice_cells(const scene::Scene<dim> &scene, const scene::Body<dim> &body)
-    {
-      std::array<unsigned int, dim> n;
-      n.fill(scene.decomposition.blocks * scene.decomposition.cells_per_block);
-      if (body.cells)
-        n = *body.cells;
-      for (unsigned int &k : n)
-        k <<= scene.discretization.refinements;
-      return n;
-    }
+    constexpr double doubtful_size_ratio = 1e5; // of the largest body to the smallest: units are mixed up
 
     template <int dim>
     std::uint64_t product(const std::array<unsigned int, dim> &n)
@@ -41,10 +38,44 @@ namespace slipstick::fem
       return first;
     }
 
+    /// Cost of a cell compared with a quadrilateral.
+    template <int dim>
+    double cost_of(const MeshPiece<dim> &piece)
+    {
+      return piece.cells.size() * (is_simplex<dim>(piece.cells[0]) ? .5 : 1.);
+    }
+
+    /// Whether every rank can make its own blocks.
+    template <int dim>
+    bool has_blocks(const scene::Scene<dim> &scene)
+    {
+      using scene::DecompositionMethod;
+      for (const auto &body : scene.bodies)
+        if (body.shape != scene::Shape::rectangle ||
+            (body.boundary_refinements > 0 && !body.refined_boundaries.empty()))
+          return false;
+      return scene.decomposition.method == DecompositionMethod::blocks ||
+             scene.decomposition.method == DecompositionMethod::none;
+    }
+
     /// Every rank makes its own blocks.
     template <int dim>
-    void make_blocks(const scene::Scene<dim> &scene, const std::vector<GlobalVertex> &first_vertex, Mesh<dim> &mesh)
+    void make_blocks(const scene::Scene<dim> &scene, Mesh<dim> &mesh)
     {
+      std::vector<GlobalVertex> first_vertex(1, 0);
+      for (const auto &body : scene.bodies)
+        {
+          const auto n          = rectangle_cells(scene, body);
+          auto       n_vertices = n;
+          for (unsigned int &k : n_vertices)
+            ++k;
+          mesh.n_cells += product<dim>(n);
+          first_vertex.push_back(first_vertex.back() + product<dim>(n_vertices));
+          mesh.boundary_ids.push_back(shape_boundary_ids(body.shape));
+        }
+      mesh.combined_ids.resize(scene.bodies.size());
+      mesh.points.resize(scene.bodies.size());
+
       const unsigned int N =
         scene.decomposition.method == scene::DecompositionMethod::none ? 1 : scene.decomposition.blocks;
       const unsigned int            rank = dealii::Utilities::MPI::this_mpi_process(mesh.comm);
@@ -56,84 +87,205 @@ namespace slipstick::fem
         {
           const unsigned int body = s / per_body, b = s % per_body;
           auto               piece = rectangle_piece<dim>(scene.bodies[body],
-                                            lattice_cells(scene, scene.bodies[body]),
+                                            rectangle_cells(scene, scene.bodies[body]),
                                             n_blocks,
                                             {{b % N, b / N}});
-          piece.subdomain          = s;
-          piece.body               = body;
+          place(piece, scene.bodies[body].placement);
+          piece.subdomain = s;
+          piece.body      = body;
           for (GlobalVertex &v : piece.global_vertices)
             v += first_vertex[body];
           mesh.subdomains.push_back(triangulate(piece));
         }
     }
 
-    /// Subdomains of every body, in proportion to its cells, at least one each.
-    std::vector<unsigned int> shares_of_bodies(const std::vector<std::uint64_t> &n_cells, const unsigned int wanted)
+    /// The meshes of all bodies, global vertices counted through; on rank 0.
+    template <int dim>
+    std::vector<BodyMesh<dim>> make_bodies(const scene::Scene<dim> &scene)
     {
-      const double total = std::accumulate(n_cells.begin(), n_cells.end(), 0.);
-      const double parts = wanted == 0 ? std::max(1., std::round(total / automatic_cells_per_subdomain)) : wanted;
-      std::vector<unsigned int> shares;
-      for (const std::uint64_t n : n_cells)
-        shares.push_back(std::max(1., std::round(parts * n / total)));
+      std::vector<BodyMesh<dim>>      bodies;
+      std::map<std::string, MeshFile> files;
+      GlobalVertex                    first = 0;
+      for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+        {
+          bodies.push_back(make_body(scene, b, files));
+          for (GlobalVertex &v : bodies.back().piece.global_vertices)
+            v += first;
+          first += bodies.back().piece.vertices.size();
+        }
+      return bodies;
+    }
+
+    template <int dim>
+    double size_of(const MeshPiece<dim> &piece)
+    {
+      dealii::Point<dim> low = piece.vertices[0], high = low;
+      for (const auto &x : piece.vertices)
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            low[d]  = std::min(low[d], x[d]);
+            high[d] = std::max(high[d], x[d]);
+          }
+      return low.distance(high);
+    }
+
+    template <int dim>
+    void remark_on_units(const scene::Scene<dim>          &scene,
+                         const std::vector<BodyMesh<dim>> &bodies,
+                         std::vector<std::string>         &remarks)
+    {
+      std::vector<double> size;
+      for (const auto &body : bodies)
+        size.push_back(size_of(body.piece));
+      const auto [least, most] = std::minmax_element(size.begin(), size.end());
+      if (*most <= doubtful_size_ratio * *least)
+        return;
+      remarks.push_back("warning: body " + scene.bodies[most - size.begin()].name + " is " + number_text(*most) +
+                        " mm across, body " + scene.bodies[least - size.begin()].name + " " + number_text(*least) +
+                        " mm: do their meshes have the same units? (Scale)");
+    }
+
+    /// Subdomains for pieces of the given costs and cells: the next one always goes to the piece with the most cost
+    /// per subdomain, after one for each.
+    std::vector<unsigned int> shares_of_pieces(const std::vector<double>      &cost,
+                                               const std::vector<std::size_t> &n_cells,
+                                               const unsigned int              wanted)
+    {
+      std::vector<unsigned int>                             shares(cost.size(), 1);
+      std::priority_queue<std::pair<double, unsigned int>> next; // first of equals: the last piece
+      for (unsigned int k = 0; k < cost.size(); ++k)
+        next.emplace(cost[k], k);
+      for (unsigned int n = cost.size(); n < wanted && !next.empty();)
+        {
+          const unsigned int k = next.top().second;
+          next.pop();
+          if (shares[k] >= n_cells[k])
+            continue;
+          ++n;
+          next.emplace(cost[k] / ++shares[k], k);
+        }
       return shares;
     }
 
-    /// Rank 0 meshes and cuts all bodies.
+    /// Cuts the bodies, pieces in order of the bodies.
     template <int dim>
-    std::vector<MeshPiece<dim>> cut_bodies(const scene::Scene<dim>          &scene,
-                                           const std::vector<std::uint64_t> &n_cells,
-                                           const std::vector<GlobalVertex>  &first_vertex,
-                                           std::vector<std::string>         &remarks)
+    std::vector<MeshPiece<dim>>
+    cut_bodies(const scene::Scene<dim> &scene, std::vector<BodyMesh<dim>> &bodies, std::vector<std::string> &remarks)
     {
-      const auto                    shares = shares_of_bodies(n_cells, scene.decomposition.subdomains);
-      std::array<unsigned int, dim> one, zero;
-      one.fill(1);
-      zero.fill(0);
-      std::vector<MeshPiece<dim>> pieces;
-      for (unsigned int body = 0; body < scene.bodies.size(); ++body)
+      // pieces of one kind of cells that hang together through faces: less is not possible
+      std::vector<MeshPiece<dim>> wholes;
+      for (auto &body : bodies)
         {
-          auto whole = rectangle_piece<dim>(scene.bodies[body], lattice_cells(scene, scene.bodies[body]), one, zero);
-          whole.body = body;
-          for (GlobalVertex &v : whole.global_vertices)
-            v += first_vertex[body];
-          auto parts = cut(whole, metis_parts(whole, shares[body]));
-          if (parts.size() != shares[body])
-            remarks.push_back("body " + scene.bodies[body].name + ": METIS made " + std::to_string(parts.size()) +
-                              " face-connected subdomains of the " + std::to_string(shares[body]) + " asked for");
+          std::vector<unsigned int> kind;
+          for (const auto &cell : body.piece.cells)
+            kind.push_back(is_simplex<dim>(cell));
+          auto pieces = cut(body.piece, kind);
+          body.piece  = MeshPiece<dim>();
+          std::move(pieces.begin(), pieces.end(), std::back_inserter(wholes));
+        }
+      std::vector<double>      cost;
+      std::vector<std::size_t> n_cells;
+      for (const auto &whole : wholes)
+        {
+          cost.push_back(cost_of(whole));
+          n_cells.push_back(whole.cells.size());
+        }
+      const bool         one_each = scene.decomposition.method == scene::DecompositionMethod::none;
+      const unsigned int asked    = one_each ? scene.bodies.size() : scene.decomposition.subdomains;
+      const double       total    = std::accumulate(cost.begin(), cost.end(), 0.);
+      const double       unknowns_per_node = scene.discretization.degree * scene.discretization.degree;
+      const unsigned int wanted =
+        asked > 0 ? asked : std::max(1., std::round(total * unknowns_per_node / automatic_cells_per_subdomain));
+      if (asked > 0 && asked < wholes.size())
+        remarks.push_back(std::to_string(wholes.size()) + " subdomains in place of " + std::to_string(asked) +
+                          ": as many as bodies and parts of them with one kind of cells");
+      const auto shares = shares_of_pieces(cost, n_cells, wanted);
+
+      std::vector<MeshPiece<dim>> pieces;
+      std::map<unsigned int, std::pair<unsigned int, unsigned int>> made; // by body: wanted, made
+      for (unsigned int k = 0; k < wholes.size(); ++k)
+        {
+          auto parts = cut(wholes[k], metis_parts(wholes[k], shares[k], scene.decomposition.seed));
+          made[wholes[k].body].first += shares[k];
+          made[wholes[k].body].second += parts.size();
+          wholes[k] = MeshPiece<dim>();
           std::move(parts.begin(), parts.end(), std::back_inserter(pieces));
         }
+      for (const auto &[body, n] : made)
+        if (n.first != n.second)
+          remarks.push_back("body " + scene.bodies[body].name + ": METIS made " + std::to_string(n.second) +
+                            " face-connected subdomains of the " + std::to_string(n.first) + " asked for");
       for (unsigned int s = 0; s < pieces.size(); ++s)
         pieces[s].subdomain = s;
       return pieces;
     }
 
+    /// What all ranks must know of a body, besides their subdomains.
     template <int dim>
-    void make_metis(const scene::Scene<dim>          &scene,
-                    const std::vector<std::uint64_t> &n_cells,
-                    const std::vector<GlobalVertex>  &first_vertex,
-                    Mesh<dim>                        &mesh)
+    struct Names
     {
-      const unsigned int                                  n_ranks = mesh.first_subdomain.size() - 1;
+      std::map<std::string, dealii::types::boundary_id>                          boundary_ids;
+      std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>> combined_ids;
+      std::map<std::string, NamedPoint<dim>>                                     points;
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &boundary_ids &combined_ids &points;
+      }
+    };
+
+    /// Rank 0 makes and cuts the bodies and sends every rank its subdomains.
+    template <int dim>
+    void make_on_one_rank(const scene::Scene<dim> &scene, Mesh<dim> &mesh)
+    {
+      const unsigned int          n_ranks = mesh.first_subdomain.size() - 1;
+      const bool                  is_root = dealii::Utilities::MPI::this_mpi_process(mesh.comm) == 0;
+      std::vector<MeshPiece<dim>> pieces;
+      std::vector<Names<dim>>     names;
+      collectively(mesh.comm, [&] {
+        if (!is_root)
+          return;
+        auto bodies = make_bodies(scene);
+        for (const auto &body : bodies)
+          {
+            mesh.n_cells += body.piece.cells.size();
+            mesh.remarks.insert(mesh.remarks.end(), body.remarks.begin(), body.remarks.end());
+            names.push_back({body.boundary_ids, body.combined_ids, {}});
+            for (const auto &[name, v] : body.points)
+              names.back().points[name] = {body.piece.vertices[v], body.piece.global_vertices[v]};
+          }
+        remark_on_units(scene, bodies, mesh.remarks);
+        if (scene.decomposition.subdomains > mesh.n_cells &&
+            scene.decomposition.method != scene::DecompositionMethod::none)
+          throw InputError("Decomposition/Subdomains = " + std::to_string(scene.decomposition.subdomains) +
+                             " is more than the " + std::to_string(mesh.n_cells) + " cells of the mesh",
+                           "ask for at most one subdomain a cell, or set it to auto");
+        pieces = cut_bodies(scene, bodies, mesh.remarks);
+      });
+
       std::map<unsigned int, std::vector<MeshPiece<dim>>> to_send;
-      unsigned int                                        n_pieces = 0;
-      if (dealii::Utilities::MPI::this_mpi_process(mesh.comm) == 0)
-        {
-          auto pieces      = cut_bodies(scene, n_cells, first_vertex, mesh.remarks);
-          n_pieces         = pieces.size();
-          const auto first = equal_shares(n_pieces, n_ranks);
-          for (unsigned int r = 0; r < n_ranks; ++r)
-            for (unsigned int s = first[r]; s < first[r + 1]; ++s)
-              to_send[r].push_back(std::move(pieces[s]));
-        }
-      mesh.first_subdomain = equal_shares(dealii::Utilities::MPI::broadcast(mesh.comm, n_pieces), n_ranks);
-      auto received        = dealii::Utilities::MPI::some_to_some(mesh.comm, to_send);
+      const unsigned int n_pieces = dealii::Utilities::MPI::broadcast(mesh.comm, static_cast<unsigned int>(pieces.size()));
+      mesh.first_subdomain        = equal_shares(n_pieces, n_ranks);
+      for (unsigned int r = 0; r < n_ranks && is_root; ++r)
+        for (unsigned int s = mesh.first_subdomain[r]; s < mesh.first_subdomain[r + 1]; ++s)
+          to_send[r].push_back(std::move(pieces[s]));
+      mesh.n_cells  = dealii::Utilities::MPI::broadcast(mesh.comm, mesh.n_cells);
+      names         = dealii::Utilities::MPI::broadcast(mesh.comm, names);
+      auto received = dealii::Utilities::MPI::some_to_some(mesh.comm, to_send);
       to_send.clear();
-      for (auto &[rank, pieces] : received)
-        for (auto &piece : pieces)
+      for (auto &[rank, of_rank] : received)
+        for (auto &piece : of_rank)
           {
             mesh.subdomains.push_back(triangulate(piece));
             piece = MeshPiece<dim>();
           }
+      for (auto &of_body : names)
+        {
+          mesh.boundary_ids.push_back(std::move(of_body.boundary_ids));
+          mesh.combined_ids.push_back(std::move(of_body.combined_ids));
+          mesh.points.push_back(std::move(of_body.points));
+        }
     }
   } // namespace
 
@@ -143,30 +295,10 @@ namespace slipstick::fem
     Mesh<dim> mesh;
     mesh.comm = comm;
     mesh.first_subdomain.resize(dealii::Utilities::MPI::n_mpi_processes(comm) + 1);
-
-    std::vector<std::uint64_t> n_cells;
-    std::vector<GlobalVertex>  first_vertex(1, 0);
-    for (const auto &body : scene.bodies)
-      {
-        const auto n          = lattice_cells(scene, body);
-        auto       n_vertices = n;
-        for (unsigned int &k : n_vertices)
-          ++k;
-        n_cells.push_back(product<dim>(n));
-        first_vertex.push_back(first_vertex.back() + product<dim>(n_vertices));
-        mesh.boundary_ids.push_back({{"left", 0}, {"right", 1}, {"bottom", 2}, {"top", 3}});
-      }
-    mesh.n_cells = std::accumulate(n_cells.begin(), n_cells.end(), std::uint64_t(0));
-    if (scene.decomposition.method == scene::DecompositionMethod::metis)
-      {
-        if (scene.decomposition.subdomains > mesh.n_cells)
-          throw InputError("Decomposition/Subdomains = " + std::to_string(scene.decomposition.subdomains) +
-                             " is more than the " + std::to_string(mesh.n_cells) + " cells of the mesh",
-                           "ask for at most one subdomain a cell, or set it to auto");
-        make_metis(scene, n_cells, first_vertex, mesh);
-      }
+    if (has_blocks(scene))
+      make_blocks(scene, mesh);
     else
-      make_blocks(scene, first_vertex, mesh);
+      make_on_one_rank(scene, mesh);
     return mesh;
   }
 

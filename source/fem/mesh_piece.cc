@@ -1,63 +1,40 @@
-#include <slipstick/base/exceptions.h>
 #include <slipstick/fem/mesh_piece.h>
 
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/lac/sparsity_tools.h>
+#include <deal.II/grid/manifold_lib.h>
 
+#include <metis.h>
+
+#include <cmath>
 #include <numeric>
-#include <set>
 
 namespace slipstick::fem
 {
   namespace
   {
-    template <int dim>
-    using Face = std::array<unsigned int, MeshPiece<dim>::vertices_per_face>;
-
-    template <int dim>
-    Face<dim> face_of_cell(const std::array<unsigned int, MeshPiece<dim>::vertices_per_cell> &cell,
-                           const unsigned int                                                 f)
-    {
-      Face<dim> face;
-      for (unsigned int v = 0; v < face.size(); ++v)
-        face[v] = cell[dealii::GeometryInfo<dim>::face_to_cell_vertices(f, v)];
-      std::sort(face.begin(), face.end());
-      return face;
-    }
-
-    /// Cells behind every face (one at the boundary, two inside).
-    template <int dim>
-    std::vector<std::pair<Face<dim>, unsigned int>> faces_with_cells(const MeshPiece<dim> &piece)
-    {
-      std::vector<std::pair<Face<dim>, unsigned int>> faces;
-      faces.reserve(piece.cells.size() * dealii::GeometryInfo<dim>::faces_per_cell);
-      for (unsigned int c = 0; c < piece.cells.size(); ++c)
-        for (unsigned int f = 0; f < dealii::GeometryInfo<dim>::faces_per_cell; ++f)
-          faces.emplace_back(face_of_cell<dim>(piece.cells[c], f), c);
-      std::sort(faces.begin(), faces.end());
-      return faces;
-    }
-
     /// Sub-piece of the given cells.
     template <int dim>
     MeshPiece<dim> extract(const MeshPiece<dim>                                  &whole,
                            const std::vector<unsigned int>                       &cells,
-                           const std::map<Face<dim>, dealii::types::boundary_id> &boundary)
+                           const std::map<typename MeshPiece<dim>::Face, dealii::types::boundary_id> &boundary)
     {
       MeshPiece<dim>                       piece;
       std::map<unsigned int, unsigned int> local;
-      piece.body = whole.body;
+      piece.body        = whole.body;
+      piece.ordered     = whole.ordered;
+      piece.arc_centers = whole.arc_centers;
       for (const unsigned int c : cells)
         {
           auto cell = whole.cells[c];
-          for (unsigned int f = 0; f < dealii::GeometryInfo<dim>::faces_per_cell; ++f)
+          for (unsigned int f = 0; f < n_corners<dim>(cell); ++f)
             {
               const auto found = boundary.find(face_of_cell<dim>(cell, f));
               if (found != boundary.end())
                 piece.boundary_faces.push_back({found->first, found->second});
             }
-          for (unsigned int &v : cell)
+          for (unsigned int k = 0; k < n_corners<dim>(cell); ++k)
             {
+              unsigned int &v          = cell[k];
               const auto [entry, is_new] = local.emplace(v, piece.vertices.size());
               if (is_new)
                 {
@@ -76,6 +53,31 @@ namespace slipstick::fem
   } // namespace
 
   template <int dim>
+  std::vector<std::pair<typename MeshPiece<dim>::Face, unsigned int>> faces_with_cells(const MeshPiece<dim> &piece)
+  {
+    std::vector<std::pair<typename MeshPiece<dim>::Face, unsigned int>> faces;
+    faces.reserve(piece.cells.size() * dealii::GeometryInfo<dim>::faces_per_cell);
+    for (unsigned int c = 0; c < piece.cells.size(); ++c)
+      for (unsigned int f = 0; f < n_corners<dim>(piece.cells[c]); ++f)
+        faces.emplace_back(face_of_cell<dim>(piece.cells[c], f), c);
+    std::sort(faces.begin(), faces.end());
+    return faces;
+  }
+
+  template <int dim>
+  std::map<typename MeshPiece<dim>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<dim> &piece)
+  {
+    std::map<typename MeshPiece<dim>::Face, dealii::types::boundary_id> ids;
+    for (const auto &face : piece.boundary_faces)
+      {
+        auto key = face.vertices;
+        std::sort(key.begin(), key.end());
+        ids[key] = face.id;
+      }
+    return ids;
+  }
+
+  template <int dim>
   MeshPiece<dim> rectangle_piece(const scene::Body<dim>              &body,
                                  const std::array<unsigned int, dim> &n_cells,
                                  const std::array<unsigned int, dim> &n_blocks,
@@ -89,6 +91,7 @@ namespace slipstick::fem
         first[d] = block[d] * n[d];
       }
     MeshPiece<dim> piece;
+    piece.ordered = true;
     const auto     vertex = [&](const unsigned int i, const unsigned int j) { return j * (n[0] + 1) + i; };
     for (unsigned int j = 0; j <= n[1]; ++j)
       for (unsigned int i = 0; i <= n[0]; ++i)
@@ -122,6 +125,33 @@ namespace slipstick::fem
   }
 
   template <int dim>
+  void place(MeshPiece<dim> &piece, const scene::Placement<dim> &placement)
+  {
+    static_assert(dim == 2, "turned in the plane");
+    // whole quarters are exact
+    const double quarters = placement.rotation / 90;
+    const bool   whole    = quarters == std::round(quarters);
+    const int    quarter  = whole ? static_cast<int>(std::remainder(quarters, 4)) & 3 : 0;
+    const double angle    = placement.rotation * dealii::numbers::PI / 180;
+    const double cosine   = whole ? std::array<int, 4>{{1, 0, -1, 0}}[quarter] : std::cos(angle);
+    const double sine     = whole ? std::array<int, 4>{{0, 1, 0, -1}}[quarter] : std::sin(angle);
+    const auto   move     = [&](dealii::Point<dim> &x) {
+      if (placement.mirror_x)
+        x[0] = -x[0];
+      if (placement.mirror_y)
+        x[1] = -x[1];
+      x = dealii::Point<dim>(cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]) + placement.translation;
+    };
+    for (auto &x : piece.vertices)
+      move(x);
+    for (auto &arc : piece.arc_centers)
+      move(arc.second);
+    if (placement.mirror_x != placement.mirror_y)
+      for (auto &cell : piece.cells)
+        std::swap(cell[1], cell[2]); // of a quadrilateral in lexicographic order, and of a triangle
+  }
+
+  template <int dim>
   std::vector<MeshPiece<dim>> cut(const MeshPiece<dim> &whole, const std::vector<unsigned int> &part)
   {
     const unsigned int n_cells = whole.cells.size();
@@ -143,14 +173,7 @@ namespace slipstick::fem
           root[std::max(a, b)] = std::min(a, b);
         }
 
-    std::map<Face<dim>, dealii::types::boundary_id> boundary;
-    for (const auto &face : whole.boundary_faces)
-      {
-        auto key = face.vertices;
-        std::sort(key.begin(), key.end());
-        boundary[key] = face.id;
-      }
-
+    const auto boundary = ids_of_faces(whole);
     std::map<std::pair<unsigned int, unsigned int>, std::vector<unsigned int>> cells_of_piece; // by part and root
     for (unsigned int c = 0; c < n_cells; ++c)
       cells_of_piece[{part[c], find(c)}].push_back(c);
@@ -161,25 +184,57 @@ namespace slipstick::fem
   }
 
   template <int dim>
-  std::vector<unsigned int> metis_parts(const MeshPiece<dim> &piece, const unsigned int n_parts)
+  std::vector<unsigned int>
+  metis_parts(const MeshPiece<dim> &piece, const unsigned int n_parts, const unsigned int seed)
   {
+    const unsigned int        n_cells = piece.cells.size();
+    std::vector<unsigned int> part(n_cells, 0);
     if (n_parts <= 1)
-      return std::vector<unsigned int>(piece.cells.size(), 0);
+      return part;
+    if (n_parts >= n_cells)
+      {
+        std::iota(part.begin(), part.end(), 0);
+        return part;
+      }
 
-    const auto                     faces = faces_with_cells(piece);
-    dealii::DynamicSparsityPattern connectivity(piece.cells.size(), piece.cells.size());
-    for (std::size_t k = 1; k < faces.size(); ++k)
-      if (faces[k].first == faces[k - 1].first)
-        {
-          connectivity.add(faces[k].second, faces[k - 1].second);
-          connectivity.add(faces[k - 1].second, faces[k].second);
-        }
-    for (unsigned int c = 0; c < piece.cells.size(); ++c)
-      connectivity.add(c, c);
-    dealii::SparsityPattern pattern;
-    pattern.copy_from(connectivity);
-    std::vector<unsigned int> part(piece.cells.size());
-    dealii::SparsityTools::partition(pattern, n_parts, part, dealii::SparsityTools::Partitioner::metis);
+    // cells that share a face, as METIS wants them: compressed rows
+    const auto         faces = faces_with_cells(piece);
+    std::vector<idx_t> first(n_cells + 1, 0);
+    const auto         for_neighbours = [&faces](const auto &f) {
+      for (std::size_t k = 1; k < faces.size(); ++k)
+        if (faces[k].first == faces[k - 1].first)
+          {
+            f(faces[k].second, faces[k - 1].second);
+            f(faces[k - 1].second, faces[k].second);
+          }
+    };
+    for_neighbours([&first](const unsigned int c, const unsigned int) { ++first[c + 1]; });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<idx_t> neighbours(first.back()), next(first.begin(), first.end() - 1);
+    for_neighbours([&](const unsigned int c, const unsigned int other) { neighbours[next[c]++] = other; });
+
+    idx_t options[METIS_NOPTIONS];
+    METIS_SetDefaultOptions(options);
+    options[METIS_OPTION_NUMBERING] = 0;
+    options[METIS_OPTION_SEED]      = seed;
+    options[METIS_OPTION_CONTIG]    = 1; // no part in two pieces
+    idx_t              n = n_cells, n_weights = 1, parts = n_parts, n_cut = 0;
+    std::vector<idx_t> result(n_cells);
+    const int          status = METIS_PartGraphKway(&n,
+                                           &n_weights,
+                                           first.data(),
+                                           neighbours.data(),
+                                           nullptr,
+                                           nullptr,
+                                           nullptr,
+                                           &parts,
+                                           nullptr,
+                                           nullptr,
+                                           options,
+                                           &n_cut,
+                                           result.data());
+    AssertThrow(status == METIS_OK, dealii::ExcMessage("METIS failed with status " + std::to_string(status)));
+    part.assign(result.begin(), result.end());
     return part;
   }
 
@@ -188,42 +243,50 @@ namespace slipstick::fem
   {
     std::vector<dealii::CellData<dim>> cells(piece.cells.size());
     for (std::size_t c = 0; c < cells.size(); ++c)
-      cells[c].vertices.assign(piece.cells[c].begin(), piece.cells[c].end());
+      {
+        Assert(n_corners<dim>(piece.cells[c]) == n_corners<dim>(piece.cells[0]),
+               dealii::ExcMessage("cells of one subdomain are of one kind"));
+        cells[c].vertices.assign(piece.cells[c].begin(), piece.cells[c].begin() + n_corners<dim>(piece.cells[c]));
+      }
+    if (!piece.ordered && !is_simplex<dim>(piece.cells[0]))
+      dealii::GridTools::consistently_order_cells(cells);
 
-    // every face starts as a cut, the named boundaries are marked from their vertices
     auto mesh             = std::make_unique<SubdomainMesh<dim>>();
     mesh->subdomain       = piece.subdomain;
     mesh->body            = piece.body;
     mesh->global_vertices = piece.global_vertices;
     mesh->triangulation.create_triangulation(piece.vertices, cells, dealii::SubCellData());
 
-    std::map<Face<dim>, dealii::types::boundary_id> boundary;
-    for (const auto &face : piece.boundary_faces)
-      {
-        auto key = face.vertices;
-        std::sort(key.begin(), key.end());
-        boundary[key] = face.id;
-      }
+    // every face starts as a cut, the boundaries are marked from their vertices
+    const auto boundary = ids_of_faces(piece);
     for (const auto &cell : mesh->triangulation.active_cell_iterators())
       for (const auto &face : cell->face_iterators())
         if (face->at_boundary())
           {
-            Face<dim> key;
+            typename MeshPiece<dim>::Face key;
             for (unsigned int v = 0; v < key.size(); ++v)
               key[v] = face->vertex_index(v);
             std::sort(key.begin(), key.end());
             const auto found = boundary.find(key);
-            face->set_boundary_id(found == boundary.end() ? cut_id : found->second);
+            const auto id    = found == boundary.end() ? cut_id : found->second;
+            face->set_boundary_id(id);
+            if (piece.arc_centers.count(id) > 0)
+              face->set_manifold_id(id);
           }
+    for (const auto &[id, center] : piece.arc_centers)
+      mesh->triangulation.set_manifold(id, dealii::SphericalManifold<dim>(center));
     return mesh;
   }
 
   template struct MeshPiece<2>;
+  template std::vector<std::pair<MeshPiece<2>::Face, unsigned int>> faces_with_cells(const MeshPiece<2> &);
+  template std::map<MeshPiece<2>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<2> &);
   template MeshPiece<2>                      rectangle_piece<2>(const scene::Body<2> &,
                                            const std::array<unsigned int, 2> &,
                                            const std::array<unsigned int, 2> &,
                                            const std::array<unsigned int, 2> &);
+  template void                              place(MeshPiece<2> &, const scene::Placement<2> &);
   template std::vector<MeshPiece<2>>         cut(const MeshPiece<2> &, const std::vector<unsigned int> &);
-  template std::vector<unsigned int>         metis_parts(const MeshPiece<2> &, const unsigned int);
+  template std::vector<unsigned int>         metis_parts(const MeshPiece<2> &, const unsigned int, const unsigned int);
   template std::unique_ptr<SubdomainMesh<2>> triangulate(const MeshPiece<2> &);
 } // namespace slipstick::fem

@@ -69,6 +69,17 @@ namespace slipstick::scene
         return;
       const unsigned int blocks = scene.decomposition.blocks;
       for (const Body<dim> &body : scene.bodies)
+        {
+          if (body.shape != Shape::rectangle)
+            throw parameters.error("Decomposition/Method",
+                                   "cuts rectangles only, and body '" + body.name + "' is none",
+                                   "set it to METIS or auto");
+          if (body.boundary_refinements > 0 && !body.refined_boundaries.empty())
+            throw parameters.error("Decomposition/Method",
+                                   "cuts equal cells only, and Body " + body.name + " is refined towards a boundary",
+                                   "set it to METIS or auto");
+        }
+      for (const Body<dim> &body : scene.bodies)
         if (body.cells)
           for (const unsigned int n : *body.cells)
             if (n % blocks != 0)

@@ -26,6 +26,8 @@ namespace slipstick::scene
     if (slash == std::string::npos)
       throw parameters.error(path, "names no boundary of a body", "write " + boundary_format);
     const std::string name = trim(text.substr(0, slash)), boundary = trim(text.substr(slash + 1));
+    if (boundary.empty())
+      throw parameters.error(path, "names no boundary of a body", "write " + boundary_format);
 
     const auto body = std::find_if(bodies.begin(), bodies.end(), [&name](const Body<dim> &candidate) {
       return candidate.name == name;
@@ -38,7 +40,8 @@ namespace slipstick::scene
         throw parameters.error(path, "there is no body '" + name + "'", suggest_name(name, names));
       }
     const auto boundaries = boundary_names(body->shape);
-    if (std::find(boundaries.begin(), boundaries.end(), boundary) == boundaries.end())
+    if (boundary != "*" && body->shape != Shape::mesh &&
+        std::find(boundaries.begin(), boundaries.end(), boundary) == boundaries.end())
       throw parameters.error(path,
                              "body '" + name + "' has no boundary '" + boundary + "'",
                              suggest_name(boundary, boundaries));

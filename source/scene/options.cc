@@ -1,5 +1,10 @@
+#include <slipstick/base/text.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/sections.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
 
 namespace slipstick::scene
 {
@@ -105,10 +110,12 @@ namespace slipstick::scene
     add_choice(prm,
                "Method",
                decomposition.method,
-               Choices<DecompositionMethod>{{"blocks", DecompositionMethod::blocks},
+               Choices<DecompositionMethod>{{"auto", DecompositionMethod::automatic},
+                                            {"blocks", DecompositionMethod::blocks},
                                             {"METIS", DecompositionMethod::metis},
                                             {"none", DecompositionMethod::none}},
-               "blocks: N x N of every rectangle; METIS: graph partition; none: a subdomain per body");
+               "blocks: N x N of every rectangle; METIS: graph partition; none: a subdomain per body; auto: blocks if "
+               "all bodies are rectangles with Cells = auto, else METIS");
     add_count(prm, "Blocks", decomposition.blocks, 1, 1000, "N: N x N blocks of every rectangle");
     add_count(prm,
               "Cells per block",
@@ -120,7 +127,8 @@ namespace slipstick::scene
                       "Subdomains",
                       decomposition.subdomains,
                       1000000,
-                      "METIS: number of subdomains over all bodies");
+                      "METIS: number of subdomains over all bodies, at least one each; auto: by the number of cells");
+    add_count(prm, "Seed", decomposition.seed, 0, 1000000000, "METIS: seed of its random numbers");
     prm.leave_subsection();
   }
 
@@ -135,14 +143,15 @@ namespace slipstick::scene
   void declare(dealii::ParameterHandler &prm, SolverOptions &solver)
   {
     prm.enter_subsection("Solver");
-    add_choice(prm,
-               "Algorithm",
-               solver.algorithm,
-               Choices<Algorithm>{{"auto", Algorithm::automatic},
-                                  {"smalbe", Algorithm::smalbe},
-                                  {"semismooth newton", Algorithm::semismooth_newton},
-                                  {"pcg", Algorithm::pcg}},
-               "smalbe, semismooth newton: scenes with contact; pcg: linear scenes; auto: smalbe or pcg, as fits");
+    add_choice(
+      prm,
+      "Algorithm",
+      solver.algorithm,
+      Choices<Algorithm>{{"auto", Algorithm::automatic},
+                         {"smalbe", Algorithm::smalbe},
+                         {"semismooth newton", Algorithm::semismooth_newton},
+                         {"pcg", Algorithm::pcg}},
+      "smalbe, semismooth newton: scenes with contact; pcg: linear scenes; auto: semismooth newton or pcg, as fits");
     add_number(prm,
                "Tolerance",
                solver.tolerance,
@@ -154,6 +163,52 @@ namespace slipstick::scene
     prm.enter_subsection("PCG");
     add_count(prm, "Max iterations", solver.pcpg.max_iterations, 1, max_iterations, "iterations before giving up");
     prm.leave_subsection();
+    prm.leave_subsection();
+  }
+
+  void declare(dealii::ParameterHandler &prm, FrictionOptions &friction)
+  {
+    prm.enter_subsection("Friction");
+    add_number(prm,
+               "Tolerance",
+               friction.tolerance,
+               "-",
+               Interval::inside(0, 1),
+               "relative change of the slip bounds at which they count as found (Coulomb; Tresca where closed)");
+    add_count(prm, "Max iterations", friction.max_iterations, 1, max_iterations, "updates of the slip bounds");
+    prm.leave_subsection();
+  }
+
+  void declare_load_steps(dealii::ParameterHandler &prm, std::vector<double> &factors)
+  {
+    const auto parse = [](const std::string &text) {
+      std::vector<double> numbers;
+      for (const std::string &part : split_list(text))
+        {
+          const auto number = parse_number(part);
+          if (!number || !std::isfinite(*number))
+            return std::vector<double>();
+          numbers.push_back(*number);
+        }
+      return numbers;
+    };
+    std::string text;
+    for (const double factor : factors)
+      text += (text.empty() ? "" : ", ") + number_text(factor);
+    prm.enter_subsection("Load steps");
+    add_entry(
+      prm,
+      "Factors",
+      text,
+      "",
+      "load factors t of the steps, one after the other; slip is measured from the end of the step before",
+      "numbers separated by commas, rising",
+      [parse](const std::string &list) {
+        const auto numbers = parse(list);
+        return !numbers.empty() &&
+               std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<double>()) == numbers.end();
+      },
+      [parse, &factors](const std::string &list) { factors = parse(list); });
     prm.leave_subsection();
   }
 

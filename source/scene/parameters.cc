@@ -5,6 +5,7 @@
 #include <slipstick/scene/parameters.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <set>
 
@@ -153,6 +154,24 @@ namespace slipstick::scene
   {
     const Setting *setting = find(path);
     return setting != nullptr && !setting->is_section;
+  }
+
+  std::optional<std::string> Parameters::value(const std::string &path) const
+  {
+    if (!is_set(path))
+      return {};
+    return find(path)->value;
+  }
+
+  std::optional<std::string> Parameters::find_file(const std::string &name) const
+  {
+    for (const auto &path : {std::filesystem::path(file).parent_path() / name, std::filesystem::path(name)})
+      {
+        std::error_code error; // a path that cannot be looked at is no file
+        if (std::filesystem::is_regular_file(path, error))
+          return std::filesystem::absolute(path).lexically_normal().string();
+      }
+    return {};
   }
 
   void Parameters::require(const std::string &path, const std::string &remedy) const

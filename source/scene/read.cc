@@ -35,7 +35,7 @@ namespace slipstick::scene
 
       SceneParameters(const SceneParameters &) = delete;
 
-      Scene<dim> read(const Parameters &parameters) const;
+      Scene<dim> read(const Parameters &parameters);
 
       dealii::ParameterHandler prm; // bound to the members below
 
@@ -60,6 +60,7 @@ namespace slipstick::scene
       , tractions(names.at(traction_kind.list).begin(), names.at(traction_kind.list).end())
       , contacts(names.at(contact_kind.list).begin(), names.at(contact_kind.list).end())
     {
+      options.decomposition.method = DecompositionMethod::automatic;
       declare_top_level(names);
       const auto declare_all = [this](auto &sections) {
         for (auto &section : sections)
@@ -73,6 +74,8 @@ namespace slipstick::scene
       declare_all(contacts);
       declare(prm, options.discretization);
       declare(prm, options.decomposition);
+      declare_load_steps(prm, options.load_factors);
+      declare(prm, options.friction);
       declare(prm, options.solver);
       declare(prm, options.output);
     }
@@ -101,8 +104,19 @@ namespace slipstick::scene
         prm.set(kind.list, join_names(names.at(kind.list))); // the lists of an example have no file to be read from
     }
 
+    /// What the method `auto` of the decomposition means.
     template <int dim>
-    Scene<dim> SceneParameters<dim>::read(const Parameters &parameters) const
+    DecompositionMethod automatic_method(const Scene<dim> &scene)
+    {
+      for (const Body<dim> &body : scene.bodies)
+        if (body.shape != Shape::rectangle || body.cells ||
+            (body.boundary_refinements > 0 && !body.refined_boundaries.empty()))
+          return DecompositionMethod::metis;
+      return DecompositionMethod::blocks;
+    }
+
+    template <int dim>
+    Scene<dim> SceneParameters<dim>::read(const Parameters &parameters)
     {
       Scene<dim> scene = options;
       for (const auto &section : materials)
@@ -117,6 +131,11 @@ namespace slipstick::scene
         scene.tractions.push_back(section.read(parameters, scene));
       for (const auto &section : contacts)
         scene.contacts.push_back(section.read(parameters, scene));
+      if (scene.decomposition.method == DecompositionMethod::automatic)
+        scene.decomposition.method = automatic_method(scene);
+      for (const Body<dim> &body : scene.bodies)
+        if (body.shape == Shape::mesh) // the path as found, so that what is printed runs from any directory
+          set_value(prm, "Body " + body.name + "/File", body.file);
       scene.parameters = print_values(prm);
       return scene;
     }

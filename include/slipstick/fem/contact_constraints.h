@@ -6,11 +6,12 @@
 
 namespace slipstick::fem
 {
-  /// Gluing, prescribed displacements (at load factor @p t) and contact of the scene, distributed over the ranks.
-  /// Copies of a node meet on a rank found from its key; nothing global is held anywhere. Gluing rows are
-  /// non-redundant chains over the copies. A contact node on a support keeps only the rows that the support leaves
-  /// independent. Collective.
-  /// @throws InputError when two supports prescribe different values for one component of a node.
+  /// Gluing, bonds, prescribed displacements (at load factor @p t), foundations and contact of the scene, distributed
+  /// over the ranks. Copies of a node meet on a rank found from its key; of global data there are the outlines of bodies
+  /// in contact with each other alone, on every rank. Gluing rows are non-redundant chains over the copies; rows that
+  /// share a node are owned by one rank. Which rows a node has: RowBuilder; what they say: mortar_rows(), contact_with().
+  /// Collective.
+  /// @throws InputError on all ranks when supports contradict each other, or the sides of a contact pair do not meet.
   template <int dim>
   tfeti::Constraints contact_constraints(const scene::Scene<dim> &scene,
                                          const Mesh<dim>         &mesh,

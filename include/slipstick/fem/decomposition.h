@@ -5,10 +5,12 @@
 
 namespace slipstick::fem
 {
-  /// Builds the mesh of every body and cuts it as Scene::decomposition says. With blocks every rank makes its own
-  /// subdomains and nothing else; with METIS rank 0 meshes and partitions, the others receive their subdomains.
-  /// Subdomains that METIS leaves disconnected or hinged at a vertex are split into parts connected through faces.
-  /// Collective. @throws InputError when there are fewer cells than subdomains.
+  /// Builds the mesh of every body and cuts it as Scene::decomposition says. Rectangles cut into blocks or not at all
+  /// are made by every rank for its own subdomains; everything else is read, made and cut (METIS) by rank 0, and the
+  /// others receive their subdomains. Every subdomain hangs together through faces and has cells of one kind. METIS'
+  /// subdomains are shared among the bodies by cost, at least one each. `automatic` means METIS here.
+  /// Collective. @throws InputError when there are fewer cells than subdomains, for a bad mesh file (see body_mesh.h) and
+  /// when the scene names a boundary or point that its body does not have.
   template <int dim>
   Mesh<dim> make_mesh(const scene::Scene<dim> &scene, const MPI_Comm comm);
 } // namespace slipstick::fem

@@ -6,6 +6,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,13 @@ namespace slipstick::scene
     void apply(dealii::ParameterHandler &prm) const;
 
     bool is_set(const std::string &path) const;
+
+    /// The text that the file or an override sets the parameter to; nothing when it is not set.
+    std::optional<std::string> value(const std::string &path) const;
+
+    /// The existing file that a scene means by @p name: relative to the directory of the .prm, else to the working
+    /// directory; an absolute path. Nothing when there is no such regular file.
+    std::optional<std::string> find_file(const std::string &name) const;
 
     /// @throws InputError when nothing sets the parameter. @p remedy says what to set.
     void require(const std::string &path, const std::string &remedy) const;

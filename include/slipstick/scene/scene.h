@@ -228,7 +228,7 @@ namespace slipstick::scene
 
   enum class DecompositionMethod
   {
-    automatic, // blocks if all bodies are rectangles that can be cut so, else METIS
+    automatic, // blocks if all bodies are rectangles with Cells = auto, else METIS
     blocks,
     metis,
     none
@@ -240,6 +240,7 @@ namespace slipstick::scene
     unsigned int        blocks          = 4;  // N: N x N blocks of every rectangle, >= 1
     unsigned int        cells_per_block = 50; // per direction, >= 1
     unsigned int        subdomains      = 0;  // METIS: over all bodies; 0 = auto
+    unsigned int        seed            = 0;  // METIS: of its random numbers
   };
 
   enum class ElementKind

@@ -8,15 +8,17 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
 namespace slipstick::scene
 {
-  /// Names of the sides of @p shape.
+  /// Names of the sides of @p shape; none for a mesh, whose file names them.
   std::vector<std::string> boundary_names(const Shape shape);
 
-  /// The body and boundary that the parameter @p path, "BODY/BOUNDARY", names.
+  /// The body and boundary that the parameter @p path, "BODY/BOUNDARY", names. `*` is the whole outline; of a body
+  /// from a mesh file every name is accepted here and checked when the mesh is made.
   /// @throws InputError for an unknown body or boundary.
   template <int dim>
   BoundaryName read_boundary(const std::string            &text,
@@ -42,12 +44,28 @@ namespace slipstick::scene
   {
     explicit BodySection(const std::string &name);
 
+    enum class Mirror
+    {
+      none,
+      x,
+      y
+    };
+
     std::string name;
     std::string material;
+    std::string refined_boundaries; // separated by commas
+    Mirror      mirror = Mirror::none;
     Body<dim>   body;
 
-    void      declare(dealii::ParameterHandler &prm);
+    void declare(dealii::ParameterHandler &prm);
+
+    /// Also finds the mesh file, relative to the directory of the .prm or the working directory.
     Body<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+
+  private:
+    void check_parameters_fit(const Parameters &parameters) const;
+
+    std::map<std::string, std::string> defaults; // text of every parameter that nobody set
   };
 
   template <int dim>
@@ -107,5 +125,7 @@ namespace slipstick::scene
   void declare(dealii::ParameterHandler &prm, Decomposition &decomposition);
   void declare(dealii::ParameterHandler &prm, Discretization &discretization);
   void declare(dealii::ParameterHandler &prm, SolverOptions &solver);
+  void declare(dealii::ParameterHandler &prm, FrictionOptions &friction);
   void declare(dealii::ParameterHandler &prm, OutputOptions &output);
+  void declare_load_steps(dealii::ParameterHandler &prm, std::vector<double> &factors);
 } // namespace slipstick::scene

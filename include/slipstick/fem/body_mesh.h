@@ -1,0 +1,39 @@
+// The mesh of one whole body, before it is cut into subdomains.
+#pragma once
+
+#include <slipstick/fem/mesh_file.h>
+#include <slipstick/fem/mesh_piece.h>
+
+#include <set>
+
+namespace slipstick::fem
+{
+  /// Cells of a body with the names of its boundaries and points. Global vertices count from 0.
+  template <int dim>
+  struct BodyMesh
+  {
+    MeshPiece<dim>                                                               piece;
+    std::map<std::string, dealii::types::boundary_id>                            boundary_ids; // by name
+    std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>>   combined_ids; // as in Mesh
+    std::map<std::string, unsigned int>                                          points;       // by name: local vertex
+    std::vector<std::string>                                                     remarks;
+  };
+
+  /// The cells of @p file that make the body, scaled, not yet placed or refined: those of Body::part, or all. Lines
+  /// with physical names that bound the body are its boundaries, lines inside it are left out.
+  /// @throws InputError for a part that is not there; for a file that is not of plane cells; for cells that are
+  /// turned over (unless all are), degenerate or cross themselves; for edges of three cells; for a body in pieces.
+  template <int dim>
+  BodyMesh<dim> body_from_file(const scene::Body<dim> &body, const MeshFile &file);
+
+  /// The mesh of a body of built-in shape (see shapes.h), refined @p refinements times, not yet placed.
+  template <int dim>
+  BodyMesh<dim> body_from_shape(const scene::Scene<dim> &scene, const scene::Body<dim> &body);
+
+  /// The complete mesh of body number @p b: read or made, refined, placed. @p files keeps what was read, by path.
+  /// A body of triangles and quadrilaterals is turned into quadrilaterals when it is refined towards a boundary or
+  /// when its parts of one kind are many and small.
+  /// @throws InputError as body_from_file() does, and when a boundary or point that the scene uses is not there.
+  template <int dim>
+  BodyMesh<dim> make_body(const scene::Scene<dim> &scene, const unsigned int b, std::map<std::string, MeshFile> &files);
+} // namespace slipstick::fem

@@ -1,0 +1,43 @@
+// Mesh files: Gmsh's .msh read here, other formats through deal.II.
+#pragma once
+
+#include <deal.II/base/point.h>
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace slipstick::fem
+{
+  /// What a mesh file holds, as it stands there: in its own units, nodes that nothing uses included.
+  struct MeshFile
+  {
+    struct Element
+    {
+      unsigned int                dim    = 0; // 0 point, 1 line, 2 triangle or quadrilateral
+      unsigned int                n      = 0; // number of corners
+      std::array<unsigned int, 4> corners;    // indices into nodes; counterclockwise or all clockwise
+      unsigned int                group  = 0; // index into groups
+      unsigned long long          number = 0; // in the file, for messages
+    };
+
+    std::string                                file;
+    std::vector<dealii::Point<3>>              nodes;
+    std::vector<Element>                       elements;
+    std::vector<std::vector<int>>              groups;            // sets of physical numbers that elements carry
+    std::map<std::pair<int, int>, std::string> names;             // by dimension and physical number
+    bool                                       is_curved = false; // had nodes besides the corners, left out here
+
+    /// Physical name of a number, or the number itself where it has none.
+    std::string name_of(const unsigned int dim, const int physical) const;
+  };
+
+  /// Reads .msh (Gmsh 2.0 to 2.2 and 4.1, ASCII and binary) and, through deal.II, .inp (Abaqus or UCD), .ucd, .unv,
+  /// .vtk, whose boundaries and parts have numbers in place of names.
+  /// @throws InputError that names the file, what is wrong with it and a remedy.
+  MeshFile read_mesh_file(const std::string &file);
+
+  /// Gmsh's format from @p text, the whole content of @p file.
+  MeshFile parse_gmsh(const std::string &file, const std::string &text);
+} // namespace slipstick::fem

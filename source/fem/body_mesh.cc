@@ -1,0 +1,154 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/base/nearest_name.h>
+#include <slipstick/base/text.h>
+#include <slipstick/fem/body_mesh.h>
+#include <slipstick/fem/refinement.h>
+
+#include <numeric>
+
+namespace slipstick::fem
+{
+  namespace
+  {
+    // Subdomains have cells of one kind. Where triangles and quadrilaterals mix in parts smaller than this, the body is
+    // turned into quadrilaterals.
+    constexpr unsigned int least_cells_of_one_kind = 200;
+
+    /// Number of pieces of one kind of cells, connected through faces, and the cells of the smallest.
+    template <int dim>
+    std::pair<unsigned int, std::size_t> pieces_of_one_kind(const MeshPiece<dim> &piece)
+    {
+      std::vector<unsigned int> kind;
+      for (const auto &cell : piece.cells)
+        kind.push_back(is_simplex<dim>(cell));
+      const auto  pieces = cut(piece, kind);
+      std::size_t least  = piece.cells.size();
+      for (const auto &one : pieces)
+        least = std::min(least, one.cells.size());
+      return {pieces.size(), least};
+    }
+
+    template <int dim>
+    bool is_mixed(const MeshPiece<dim> &piece)
+    {
+      for (const auto &cell : piece.cells)
+        if (is_simplex<dim>(cell) != is_simplex<dim>(piece.cells[0]))
+          return true;
+      return false;
+    }
+
+    /// Uniform refinements and the choice of kinds of cells, for a mesh as it stands in a file.
+    template <int dim>
+    void refine_uniformly(const scene::Body<dim> &body, unsigned int refinements, BodyMesh<dim> &mesh)
+    {
+      if (is_mixed(mesh.piece))
+        {
+          const bool towards           = body.boundary_refinements > 0 && !body.refined_boundaries.empty();
+          const auto [n_pieces, least] = pieces_of_one_kind(mesh.piece);
+          if (towards || least << std::min(2 * refinements, 20u) < least_cells_of_one_kind)
+            {
+              mesh.piece = in_quadrilaterals(mesh.piece);
+              mesh.remarks.push_back(
+                "body " + body.name + ": its triangles and quadrilaterals " +
+                (towards ? std::string("are refined towards a boundary") :
+                           "mix in " + std::to_string(n_pieces) + " pieces, some of " + std::to_string(least) + " cells") +
+                ", so all are divided into quadrilaterals (" +
+                (refinements > 0 ? "in place of one refinement" : "half their size") + ")");
+              refinements -= refinements > 0;
+            }
+        }
+      for (unsigned int k = 0; k < refinements; ++k)
+        mesh.piece = refined(mesh.piece);
+    }
+
+    template <int dim>
+    void refine_towards_boundaries(const scene::Body<dim> &body, BodyMesh<dim> &mesh)
+    {
+      if (body.boundary_refinements == 0 || body.refined_boundaries.empty())
+        return;
+      std::set<dealii::types::boundary_id> ids;
+      for (const auto &face : mesh.piece.boundary_faces)
+        for (const std::string &name : body.refined_boundaries)
+          {
+            const auto named    = mesh.boundary_ids.find(name);
+            const auto combined = mesh.combined_ids.find(face.id);
+            if (name == "*" || (named != mesh.boundary_ids.end() &&
+                                (named->second == face.id ||
+                                 (combined != mesh.combined_ids.end() && combined->second.count(named->second) > 0))))
+              ids.insert(face.id);
+          }
+      for (unsigned int k = 0; k < body.boundary_refinements; ++k)
+        mesh.piece = refined_towards(mesh.piece, ids);
+    }
+
+    /// Every boundary and point of body @p b that the scene uses must be there.
+    template <int dim>
+    void check_names(const scene::Scene<dim> &scene, const unsigned int b, const BodyMesh<dim> &mesh)
+    {
+      const scene::Body<dim>  &body = scene.bodies[b];
+      const std::string        from = body.shape == scene::Shape::mesh ? " in mesh file " + body.file : "";
+      std::vector<std::string> boundaries, points;
+      for (const auto &entry : mesh.boundary_ids)
+        boundaries.push_back(entry.first);
+      for (const auto &entry : mesh.points)
+        points.push_back(entry.first);
+      const auto boundary = [&](const std::string &user, const scene::BoundaryName &where) {
+        if (where.body == b && where.boundary != "*" && mesh.boundary_ids.count(where.boundary) == 0)
+          throw InputError(user + ": body '" + body.name + "' has no boundary '" + where.boundary + "'" + from,
+                           suggest_name(where.boundary, boundaries) +
+                             (boundaries.empty() ? "; name lines of its outline in the mesh (Physical Curve)" : ""));
+      };
+      const auto point = [&](const std::string &user, const scene::PointName<dim> &where) {
+        if (where.body == b && !where.point.empty() && mesh.points.count(where.point) == 0)
+          throw InputError(user + ": body '" + body.name + "' has no point '" + where.point + "'" + from,
+                           suggest_name(where.point, points) +
+                             (points.empty() ? "; name one in the mesh (Physical Point), or give coordinates" : ""));
+      };
+      for (const std::string &name : body.refined_boundaries)
+        boundary("Body " + body.name + "/Refine towards", {b, name});
+      for (const auto &support : scene.supports)
+        if (support.point)
+          point("Support " + support.name, *support.point);
+        else
+          boundary("Support " + support.name, support.where);
+      for (const auto &foundation : scene.foundations)
+        boundary("Foundation " + foundation.name, foundation.where);
+      for (const auto &traction : scene.tractions)
+        boundary("Traction " + traction.name, traction.where);
+      for (const auto &load : scene.point_loads)
+        point("Point load " + load.name, load.where);
+      for (const auto &contact : scene.contacts)
+        {
+          boundary("Contact " + contact.name + "/Slave", contact.slave);
+          if (contact.master)
+            boundary("Contact " + contact.name + "/Master", *contact.master);
+        }
+    }
+  } // namespace
+
+  template <int dim>
+  BodyMesh<dim> make_body(const scene::Scene<dim> &scene, const unsigned int b, std::map<std::string, MeshFile> &files)
+  {
+    const scene::Body<dim> &body = scene.bodies[b];
+    BodyMesh<dim>           mesh;
+    if (body.shape == scene::Shape::mesh)
+      {
+        if (files.count(body.file) == 0)
+          files[body.file] = read_mesh_file(body.file);
+        mesh = body_from_file(body, files[body.file]);
+        check_names(scene, b, mesh);
+        refine_uniformly(body, body.refinements + scene.discretization.refinements, mesh);
+      }
+    else
+      {
+        mesh = body_from_shape(scene, body);
+        check_names(scene, b, mesh);
+      }
+    refine_towards_boundaries(body, mesh);
+    mesh.piece.body = b;
+    place(mesh.piece, body.placement);
+    return mesh;
+  }
+
+  template BodyMesh<2> make_body(const scene::Scene<2> &, const unsigned int, std::map<std::string, MeshFile> &);
+} // namespace slipstick::fem

@@ -1,0 +1,252 @@
+#include <slipstick/base/nearest_name.h>
+#include <slipstick/base/text.h>
+#include <slipstick/scene/declare.h>
+#include <slipstick/scene/sections.h>
+
+#include <algorithm>
+
+namespace slipstick::scene
+{
+  namespace
+  {
+    const unsigned int max_cells       = 1000000; // per direction: products stay far from overflow
+    const unsigned int max_refinements = 10;
+
+    const Choices<Shape> shapes = {{"rectangle", Shape::rectangle},
+                                   {"disc", Shape::disc},
+                                   {"half disc", Shape::half_disc},
+                                   {"ring", Shape::ring},
+                                   {"quarter ring", Shape::quarter_ring},
+                                   {"mesh", Shape::mesh}};
+
+    /// The parameters that belong to some shapes only.
+    struct Fit
+    {
+      std::string        parameter;
+      std::vector<Shape> shapes;
+    };
+    const std::vector<Fit> fits = {
+      {"Origin", {Shape::rectangle}},
+      {"Size", {Shape::rectangle}},
+      {"Cells", {Shape::rectangle, Shape::ring, Shape::quarter_ring}},
+      {"Center", {Shape::disc, Shape::half_disc, Shape::ring, Shape::quarter_ring}},
+      {"Radius", {Shape::disc, Shape::half_disc, Shape::ring, Shape::quarter_ring}},
+      {"Inner radius", {Shape::ring, Shape::quarter_ring}},
+      {"Cells along arc", {Shape::disc, Shape::half_disc}},
+      {"File", {Shape::mesh}},
+      {"Part", {Shape::mesh}},
+      {"Scale", {Shape::mesh}},
+    };
+
+    std::string name_of(const Shape shape)
+    {
+      for (const auto &[name, value] : shapes)
+        if (value == shape)
+          return name;
+      return "";
+    }
+
+    bool contains(const std::vector<Shape> &list, const Shape shape)
+    {
+      return std::find(list.begin(), list.end(), shape) != list.end();
+    }
+  } // namespace
+
+  std::vector<std::string> boundary_names(const Shape shape)
+  {
+    switch (shape)
+      {
+        case Shape::rectangle:
+          return {"left", "right", "bottom", "top"};
+        case Shape::disc:
+          return {"arc"};
+        case Shape::half_disc:
+          return {"arc", "flat"};
+        case Shape::ring:
+          return {"inner", "outer"};
+        case Shape::quarter_ring:
+          return {"inner", "outer", "start", "end"};
+        case Shape::mesh:
+          return {};
+      }
+    return {};
+  }
+
+  template <int dim>
+  BodySection<dim>::BodySection(const std::string &own_name)
+    : name(own_name)
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      body.size[d] = 1; // shown in the listing; a scene must set it
+  }
+
+  template <int dim>
+  void BodySection<dim>::declare(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Body " + name);
+    add_choice(prm,
+               "Shape",
+               body.shape,
+               shapes,
+               "geometry and names of the boundaries: rectangle: left, right, bottom, top; disc: arc; half disc (below "
+               "its centre): arc, flat; ring: inner, outer; quarter ring: inner, outer, start (on the x axis), end (on "
+               "the y axis); mesh: the physical names in the file; * is the whole outline of any body");
+    add_point(prm, "Origin", body.origin, "mm", Interval(), "rectangle: lower left corner");
+    add_point(prm, "Size", body.size, "mm", Interval::above(0), "rectangle: edge lengths; must be set");
+    add_counts_or_auto<dim>(prm,
+                            "Cells",
+                            body.cells,
+                            max_cells,
+                            "rectangle: cells along the edges; auto: Blocks times Cells per block of the "
+                            "Decomposition; rings: cells around and across; auto: 64 for the whole circle, about square");
+    add_point(prm, "Center", body.center, "mm", Interval(), "discs and rings: centre");
+    add_number(prm, "Radius", body.radius, "mm", Interval::above(0), "discs and rings: outer radius; must be set");
+    add_number(prm, "Inner radius", body.inner_radius, "mm", Interval::above(0), "rings: inner radius; must be set");
+    add_count(prm,
+              "Cells along arc",
+              body.cells_along_arc,
+              4,
+              max_cells,
+              "disc: edges on the whole circle, a multiple of 4 and at least 8; half disc: on its half, an even number");
+    add_text(prm,
+             "File",
+             body.file,
+             "",
+             "a file: .msh (Gmsh 2.2, 4.1), .inp (Abaqus), .ucd, .unv, .vtk",
+             "mesh: sought from the directory of the .prm, then from the working directory; must be set");
+    add_text(prm,
+             "Part",
+             body.part,
+             "",
+             "a physical name of surfaces in the file, or its number",
+             "mesh: which cells make the body; empty: all");
+    add_number(prm, "Scale", body.scale, "-", Interval::above(0), "mesh: factor on its coordinates, 1000 for metres");
+    add_choice(prm,
+               "Mirror",
+               mirror,
+               Choices<Mirror>{{"none", Mirror::none}, {"x", Mirror::x}, {"y", Mirror::y}},
+               "first step of the placement: x turns x into -x, y turns y into -y");
+    add_number(prm,
+               "Rotation",
+               body.placement.rotation,
+               "degrees",
+               Interval(),
+               "second step of the placement: counterclockwise about the origin");
+    add_point(prm, "Translation", body.placement.translation, "mm", Interval(), "third step of the placement");
+    add_count(prm,
+              "Refinements",
+              body.refinements,
+              0,
+              max_refinements,
+              "uniform refinements of this body, on top of Discretization/Refinements");
+    add_text(prm,
+             "Refine towards",
+             refined_boundaries,
+             "",
+             "names of boundaries of this body, separated by commas",
+             "cells that touch these boundaries are refined further");
+    add_count(prm,
+              "Refine levels",
+              body.boundary_refinements,
+              0,
+              max_refinements,
+              "how many times: each divides edges of quadrilaterals by 3, of triangles by 2");
+    add_text(prm, "Material", material, "", "a name from Materials", "material of the body; must be set");
+    add_number(prm, "Thickness", body.thickness, "mm", Interval::above(0), "thickness out of the plane");
+    for (const Fit &fit : fits)
+      defaults[fit.parameter] = prm.get(fit.parameter);
+    prm.leave_subsection();
+  }
+
+  template <int dim>
+  void BodySection<dim>::check_parameters_fit(const Parameters &parameters) const
+  {
+    const std::string section = "Body " + name;
+    for (const auto &[parameter, of_shapes] : fits)
+      {
+        // the default is harmless, and a .prm that the program printed sets everything
+        const auto value = parameters.value(section + "/" + parameter);
+        if (contains(of_shapes, body.shape) || !value || trim(*value) == defaults.at(parameter))
+          continue;
+        std::vector<std::string> names;
+        for (const Shape shape : of_shapes)
+          names.push_back(name_of(shape));
+        throw parameters.error(section + "/" + parameter,
+                               "means nothing for Shape = " + name_of(body.shape) + ", it belongs to " +
+                                 join_names(names),
+                               "leave it away, or set Shape");
+      }
+
+    switch (body.shape)
+      {
+        case Shape::rectangle:
+          return parameters.require(section + "/Size", "set its edge lengths in mm, for example: set Size = 10, 10");
+        case Shape::mesh:
+          return parameters.require(section + "/File", "set the mesh file, for example: set File = meshes/part.msh");
+        case Shape::ring:
+        case Shape::quarter_ring:
+          parameters.require(section + "/Inner radius", "set it in mm, for example: set Inner radius = 5");
+          [[fallthrough]];
+        case Shape::disc:
+        case Shape::half_disc:
+          parameters.require(section + "/Radius", "set it in mm, for example: set Radius = 10");
+      }
+    if ((body.shape == Shape::ring || body.shape == Shape::quarter_ring) && body.inner_radius >= body.radius)
+      throw parameters.error(section + "/Inner radius",
+                             "is not less than Radius = " + number_text(body.radius),
+                             "give 0 < Inner radius < Radius");
+    if (body.shape == Shape::ring && body.cells && (*body.cells)[0] < 3)
+      throw parameters.error(section + "/Cells", "a ring needs at least 3 cells around", "give 3 or more, then across");
+    if (body.shape == Shape::disc && (body.cells_along_arc % 4 != 0 || body.cells_along_arc < 8))
+      throw parameters.error(section + "/Cells along arc",
+                             "a disc is meshed in four quarters of at least 2 edges",
+                             "give a multiple of 4 from 8 on");
+    if (body.shape == Shape::half_disc && body.cells_along_arc % 2 != 0)
+      throw parameters.error(section + "/Cells along arc", "a half disc needs an even number", "give an even number");
+  }
+
+  template <int dim>
+  Body<dim> BodySection<dim>::read(const Parameters &parameters, const Scene<dim> &scene) const
+  {
+    const std::string section = "Body " + name;
+    check_parameters_fit(parameters);
+
+    Body<dim> result          = body;
+    result.name               = name;
+    result.placement.mirror_x = mirror == Mirror::x;
+    result.placement.mirror_y = mirror == Mirror::y;
+    result.refined_boundaries = split_list(refined_boundaries);
+    const auto boundaries     = boundary_names(body.shape);
+    for (const std::string &boundary : result.refined_boundaries)
+      if (body.shape != Shape::mesh && boundary != "*" &&
+          std::find(boundaries.begin(), boundaries.end(), boundary) == boundaries.end())
+        throw parameters.error(section + "/Refine towards",
+                               "body '" + name + "' has no boundary '" + boundary + "'",
+                               suggest_name(boundary, boundaries));
+    if (result.refined_boundaries.empty() && body.boundary_refinements > 0)
+      throw parameters.error(section + "/Refine levels",
+                             "no boundary is named in Refine towards",
+                             "name one, for example: set Refine towards = " +
+                               (boundaries.empty() ? std::string("contact") : boundaries.front()));
+    if (body.shape == Shape::mesh)
+      {
+        const auto found = parameters.find_file(body.file);
+        if (!found)
+          throw parameters.error(section + "/File",
+                                 "there is no such file",
+                                 "give a path from the directory of the .prm or from the working directory");
+        result.file = *found;
+      }
+
+    std::vector<std::string> materials;
+    for (const Material &candidate : scene.materials)
+      materials.push_back(candidate.name);
+    parameters.require(section + "/Material", "set a name from Materials (" + join_names(materials) + ")");
+    result.material = std::find(materials.begin(), materials.end(), material) - materials.begin();
+    if (result.material == materials.size())
+      throw parameters.error(section + "/Material", "there is no such material", suggest_name(material, materials));
+    return result;
+  }
+
+  template struct BodySection<2>;
+} // namespace slipstick::scene
