@@ -93,7 +93,7 @@ namespace slipstick::test
 
   inline void load(Scene &scene, const unsigned int body, const std::string &boundary, const std::string &x, const std::string &y)
   {
-    scene.tractions.push_back({"load on " + boundary, {body, boundary}, {{field(x), field(y)}}});
+    scene.tractions.push_back({"load on " + boundary, {body, boundary}, {{field(x), field(y)}}, {}});
   }
 
   /// Contact with a circle; an empty slip bound means no friction.
@@ -363,7 +363,7 @@ namespace slipstick::test
   inline std::vector<Point> node_positions(const fem::Spaces<2> &spaces, const unsigned int p)
   {
     std::vector<Point> of_unknowns(spaces.dof_handlers[p]->n_dofs()), of_nodes;
-    dealii::DoFTools::map_dofs_to_support_points(spaces.mapping, *spaces.dof_handlers[p], of_unknowns);
+    dealii::DoFTools::map_dofs_to_support_points(*spaces.of(p).mapping, *spaces.dof_handlers[p], of_unknowns);
     for (unsigned int i = 0; i < of_unknowns.size(); i += 2)
       of_nodes.push_back(of_unknowns[i]);
     return of_nodes;

@@ -1,4 +1,5 @@
 #include <slipstick/app/report.h>
+#include <slipstick/scene/checks.h>
 
 #include <deal.II/base/config.h>
 #include <deal.II/base/mpi.h>
@@ -26,6 +27,8 @@ namespace slipstick::app
     {
       switch (method)
         {
+          case scene::DecompositionMethod::automatic:
+            return "auto";
           case scene::DecompositionMethod::blocks:
             return "blocks";
           case scene::DecompositionMethod::metis:
@@ -91,6 +94,8 @@ namespace slipstick::app
                          spaces.n_dofs)));
     for (const auto &remark : mesh.remarks)
       log.line(line("", remark));
+    for (const auto &warning : scene::warnings(scene))
+      log.line(line("", warning));
     for (unsigned int b = 0; b < scene.bodies.size(); ++b)
       {
         std::string names;
@@ -149,7 +154,20 @@ namespace slipstick::app
                          checks.moment_balance)));
     if (solution.status != qp::Status::converged)
       {
-        const bool limit = solution.status == qp::Status::iteration_limit;
+        const bool limit    = solution.status == qp::Status::iteration_limit;
+        const bool friction = solution.friction_iterations > 0 && solution.projected_gradient <= tolerance &&
+                              solution.equality <= tolerance;
+        if (friction)
+          {
+            log.warning(format(
+              "not converged: the slip bounds still change by %.1e of their norm after %u updates; what was reached is "
+              "written and is no solution\n"
+              "  remedy: raise Friction/Max iterations or Friction/Tolerance; a large friction coefficient may have no "
+              "or many solutions: split the load into more steps",
+              solution.bound_change,
+              solution.friction_iterations));
+            return;
+          }
         log.warning(
           format(
             "not converged: the solver %s at residuals of %.1e and %.1e, asked for is %g; the results are no solution\n"
@@ -174,10 +192,7 @@ namespace slipstick::app
                tolerance));
   }
 
-  void print_result(const Log             &log,
-                    const output::Summary &summary,
-                    const contact::Checks &checks,
-                    const std::string     &pvd)
+  void print_result(const Log &log, const output::Summary &summary, const std::string &pvd)
   {
     log.line("");
     for (const auto &pair : summary.results.contact)
@@ -202,7 +217,9 @@ namespace slipstick::app
                     output::to_string(summary.status).c_str(),
                     static_cast<unsigned long long>(summary.solver.hessian_multiplications),
                     summary.solver.outer_iterations,
-                    std::max({checks.nodal_equilibrium, checks.force_balance, checks.moment_balance}),
+                    std::max({summary.residuals.nodal_equilibrium,
+                              summary.residuals.force_balance,
+                              summary.residuals.moment_balance}),
                     summary.time_s.total,
                     summary.memory_mb.peak_total));
     log.line("open " + pvd);
@@ -216,6 +233,40 @@ namespace slipstick::app
     s.ranks          = dealii::Utilities::MPI::n_mpi_processes(comm);
     s.problem.bodies = scene.bodies.size();
     return s;
+  }
+
+  void add_step(const output::Summary &so_far, const double load_factor, output::Summary &summary)
+  {
+    output::StepSummary step;
+    step.load_factor             = load_factor;
+    step.hessian_multiplications = summary.solver.hessian_multiplications;
+    step.outer_iterations        = summary.solver.outer_iterations;
+    step.coulomb_iterations      = summary.solver.coulomb_iterations;
+    step.max_displacement        = summary.results.max_displacement;
+    step.strain_energy           = summary.results.strain_energy;
+    step.contact                 = summary.results.contact;
+    summary.steps                = so_far.steps;
+    summary.steps.push_back(std::move(step));
+
+    summary.solver.hessian_multiplications += so_far.solver.hessian_multiplications;
+    summary.solver.preconditioner_applications += so_far.solver.preconditioner_applications;
+    summary.solver.outer_iterations += so_far.solver.outer_iterations;
+    summary.solver.cg_steps += so_far.solver.cg_steps;
+    summary.solver.expansion_steps += so_far.solver.expansion_steps;
+    summary.solver.proportioning_steps += so_far.solver.proportioning_steps;
+    summary.solver.coulomb_iterations += so_far.solver.coulomb_iterations;
+    summary.solver.fallbacks += so_far.solver.fallbacks;
+    for (double output::ResidualSummary::*residual : {&output::ResidualSummary::projected_gradient,
+                                                      &output::ResidualSummary::equality,
+                                                      &output::ResidualSummary::interface_jump,
+                                                      &output::ResidualSummary::penetration,
+                                                      &output::ResidualSummary::complementarity,
+                                                      &output::ResidualSummary::friction_bound,
+                                                      &output::ResidualSummary::force_balance,
+                                                      &output::ResidualSummary::moment_balance,
+                                                      &output::ResidualSummary::tension,
+                                                      &output::ResidualSummary::nodal_equilibrium})
+      summary.residuals.*residual = std::max(summary.residuals.*residual, so_far.residuals.*residual);
   }
 
   output::Summary make_summary(const scene::Scene<2>       &scene,
@@ -252,6 +303,7 @@ namespace slipstick::app
     s.solver.cg_steps                    = solution.counts.cg_steps;
     s.solver.expansion_steps             = solution.counts.expansion_steps;
     s.solver.proportioning_steps         = solution.counts.proportioning_steps;
+    s.solver.coulomb_iterations          = solution.friction_iterations;
     s.solver.fallbacks                   = solution.fallbacks;
     s.solver.active_constraints          = solution.active_constraints;
     s.solver.dual_norm                   = dual.norm();

@@ -4,6 +4,7 @@
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/decomposition.h>
+#include <slipstick/fem/loads.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/convergence.h>
 #include <slipstick/output/fields.h>
@@ -13,12 +14,22 @@
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <limits>
+
 namespace slipstick::app
 {
   namespace
   {
-    constexpr int    dim         = 2;
-    constexpr double load_factor = 1; // t of the one load step
+    constexpr int    dim      = 2;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+
+    // Contact nodes get multipliers at first when their gap exceeds the smallest of the pair by less than this part of the
+    // slave boundary's length ...
+    constexpr double first_kept_part = 0.1;
+    // ... more of them, by this factor, when others would penetrate ...
+    constexpr double growth_of_kept_part = 4;
+    // ... and all beyond this part.
+    constexpr double largest_kept_part = 1;
 
     std::vector<std::string> names_of(const std::vector<scene::Body<dim>> &bodies)
     {
@@ -29,31 +40,36 @@ namespace slipstick::app
     }
 
     /// Observer of the solver: a line on the console and a row of convergence.csv.
-    qp::Observer convergence_observer(const Log                           &log,
-                                      const scene::Algorithm               algorithm,
-                                      const double                         tolerance,
-                                      std::vector<output::ConvergenceRow> &rows)
+    contact::ProgressObserver convergence_observer(const Log                           &log,
+                                                   const scene::SolverOptions          &options,
+                                                   const unsigned int                   step_number,
+                                                   const std::uint64_t                  multiplications_before,
+                                                   std::vector<output::ConvergenceRow> &rows)
     {
       log.line(format("solve        %s until projected gradient gP and violation of G x = e are below %g |Pd|",
-                      name_of(algorithm).c_str(),
-                      tolerance));
-      log.line("              step  F-multiplications  |gP|/|Pd|  |Gx|/|Pd|  at a bound");
-      return [&log, algorithm, &rows](const qp::OuterStep &step) {
+                      name_of(options.algorithm).c_str(),
+                      options.tolerance));
+      log.line("              step  F-multiplications  |gP|/|Pd|  |Gx|/|Pd|  at a bound  slip bounds");
+      return [&log, &options, step_number, multiplications_before, &rows](const contact::Progress &progress) {
+        const auto            &step = progress.step;
         output::ConvergenceRow row;
-        row.algorithm               = name_of(algorithm);
+        row.step                    = step_number;
+        row.algorithm               = name_of(options.algorithm);
+        row.friction_step           = progress.friction_iteration;
         row.outer_step              = step.outer;
-        row.hessian_multiplications = step.hessian_multiplications;
+        row.hessian_multiplications = multiplications_before + step.hessian_multiplications;
         row.projected_gradient      = step.projected_gradient;
         row.equality                = step.equality_residual;
         row.at_lower_bound          = step.active_lower;
         row.at_upper_bound          = step.active_upper;
         rows.push_back(row);
-        log.line(format("             %5u  %17u  %9.2e  %9.2e  %10zu",
+        log.line(format("             %5u  %17u  %9.2e  %9.2e  %10zu  %11u",
                         step.outer,
                         step.hessian_multiplications,
                         step.projected_gradient,
                         step.equality_residual,
-                        step.active_lower + step.active_upper));
+                        step.active_lower + step.active_upper,
+                        progress.friction_iteration));
       };
     }
 
@@ -104,97 +120,245 @@ namespace slipstick::app
       return {dealii::Utilities::MPI::max(peak_memory_mb(), comm), dealii::Utilities::MPI::sum(peak_memory_mb(), comm)};
     }
 
-    void write_fields(const scene::Scene<dim>            &scene,
-                      const fem::Mesh<dim>               &mesh,
-                      const fem::Spaces<dim>             &spaces,
-                      const std::vector<Eigen::VectorXd> &u,
-                      const fem::StressResult            &stress,
-                      const output::OutputDirectory      &directory)
+    /// Everything that the load steps share, and what they leave behind.
+    class Run
     {
-      if (!scene.output.vtu)
-        return;
-      output::write_fields(directory, scene, mesh, spaces, u, stress, 0);
-      output::write_pvd(directory, {load_factor});
-    }
+    public:
+      Run(const scene::Scene<dim>       &scene_,
+          const output::OutputDirectory &directory_,
+          const Log                     &log_,
+          const MPI_Comm                 comm_)
+        : scene(scene_)
+        , directory(directory_)
+        , log(log_)
+        , comm(comm_)
+        , options(contact::resolved_options(scene_))
+      {}
 
-    /// The contact line, and its sums (on rank 0).
-    std::vector<contact::PairResult> write_contact(const scene::Scene<dim>       &scene,
-                                                   const fem::Mesh<dim>          &mesh,
-                                                   const fem::Spaces<dim>        &spaces,
-                                                   const contact::CheckedContact &contact,
-                                                   const output::OutputDirectory &directory)
-    {
-      if (!scene.has_contact())
-        return {};
-      output::ContactNames names;
-      for (const auto &pair : scene.contacts)
-        {
-          names.pairs.push_back(pair.name);
-          names.slave_bodies.push_back(scene.bodies[pair.slave.body].name);
-        }
-      const auto step = gather_contact(scene, mesh, spaces, contact);
-      output::write_contact_csv(directory, names, {step});
-      output::write_contact_vtp(directory, step);
-      return contact::pair_results(step.nodes, names.pairs);
-    }
+      ExitStatus solve_and_write()
+      {
+        build_mesh();
+        build_dual(scene.load_factors.front());
+        directory.remove_results(); // the scene is accepted: what an earlier run left is no longer true
+        output::Summary summary;
+        for (unsigned int step = 0; step < scene.load_factors.size(); ++step)
+          {
+            summary = load_step(step, summary);
+            if (summary.status != output::RunStatus::converged)
+              break;
+          }
+        clock.enter("output");
+        write_tables();
+        clock.leave();
+        summary.time_s    = times(clock, factorization);
+        summary.memory_mb = memory(comm);
+        output::write_summary(directory, summary);
+        print_result(log, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
+        return summary.status == output::RunStatus::converged ? ExitStatus::converged : ExitStatus::not_converged;
+      }
 
-    ExitStatus solve_and_write(const scene::Scene<dim>       &scene,
-                               const output::OutputDirectory &directory,
-                               const Log                     &log,
-                               const MPI_Comm                 comm)
-    {
-      StageClock clock;
-      const auto options = contact::resolved_options(scene);
-      print_header(log, scene, comm);
+    private:
+      void build_mesh()
+      {
+        print_header(log, scene, comm);
+        clock.enter("mesh");
+        mesh   = std::make_unique<fem::Mesh<dim>>(fem::make_mesh(scene, comm));
+        spaces = std::make_unique<fem::Spaces<dim>>(*mesh, scene.discretization.degree);
+        print_mesh(log, scene, *mesh, *spaces);
+      }
 
-      clock.enter("mesh");
-      const auto             mesh = fem::make_mesh(scene, comm);
-      const fem::Spaces<dim> spaces(mesh, scene.discretization.degree);
-      print_mesh(log, scene, mesh, spaces);
+      /// K_p, B, F at load factor t, without the rows of pruned contact nodes unless a body is held by them.
+      void build_dual(const double t)
+      {
+        if (options.prune_contact && kept_part < infinity)
+          try
+            {
+              make_dual(t);
+              return;
+            }
+          catch (const NoEquilibrium &) // on all ranks alike
+            {
+              if (pruned.rows->size() == 0)
+                throw;
+              kept_part = infinity;
+            }
+        kept_part = infinity;
+        make_dual(t);
+      }
 
-      clock.enter("assembly");
-      auto matrices    = fem::assemble(scene, mesh, spaces, load_factor);
-      auto constraints = fem::contact_constraints(scene, mesh, spaces, load_factor);
-      print_constraints(log, constraints);
+      void make_dual(const double t)
+      {
+        clock.enter("assembly");
+        auto matrices = fem::assemble(scene, *mesh, *spaces, t);
+        auto rows     = fem::contact_rows(scene, *mesh, *spaces, t, kept_part);
+        pruned        = std::move(rows.pruned);
+        print_constraints(log, rows.active);
 
-      clock.enter("dual setup");
-      const tfeti::DualProblem dual(std::move(matrices),
-                                    std::move(constraints),
-                                    options.dual,
-                                    names_of(scene.bodies),
-                                    comm);
-      const auto               slip_bound = contact::slip_bounds(scene, dual, load_factor);
-      print_dual(log, dual);
+        clock.enter("dual setup");
+        dual.reset();
+        dual = std::make_unique<tfeti::DualProblem>(std::move(matrices),
+                                                    std::move(rows.active),
+                                                    options.dual,
+                                                    names_of(scene.bodies),
+                                                    comm);
+        factorization += dual->factorization_seconds();
+        print_dual(log, *dual);
+      }
 
-      clock.enter("solve");
-      directory.remove_results(); // the scene is accepted: what an earlier run left is no longer true
+      /// Loads and right-hand sides of a later step; slip starts from where the step before ended.
+      /// @return whether the multipliers of the step before fit the rows.
+      bool advance(const double t)
+      {
+        clock.enter("assembly");
+        std::vector<Eigen::VectorXd> loads = fem::assemble_loads(scene, *mesh, *spaces, t);
+        auto                         rows  = fem::contact_rows(scene, *mesh, *spaces, t, kept_part);
+        const bool                   is_same =
+          dealii::Utilities::MPI::min(rows.active.label == dual->constraints().label ? 1 : 0, comm) > 0;
+        if (is_same) // gaps that follow the load factor may prune other nodes
+          {
+            pruned = std::move(rows.pruned);
+            clock.enter("dual setup");
+            dual->set_step(std::move(loads), std::move(rows.active.c));
+          }
+        else
+          make_dual(t);
+        start_slip_from_here();
+        return is_same;
+      }
+
+      /// Slip counts from the displacement at the end of the step before.
+      void start_slip_from_here()
+      {
+        auto       c     = dual->constraints().c;
+        const auto jumps = dual->jumps(u);
+        for (unsigned int r = 0; r < c.size(); ++r)
+          if (dual->constraints().kind[r] == tfeti::RowKind::tangential)
+            c[r] = jumps.local_element(r);
+        dual->set_right_hand_side(std::move(c));
+      }
+
+      /// Solves the present step; with rows for more contact nodes as long as pruned ones penetrate.
+      tfeti::DualProblem::Recovery solve_step(const unsigned int step, const std::uint64_t multiplications_before)
+      {
+        const double t         = scene.load_factors[step];
+        bool         is_warm   = step > 0 && advance(t);
+        qp::Counts   discarded = {};
+        for (;; is_warm = false)
+          {
+            std::string reason;
+            try
+              {
+                clock.enter("solve");
+                solution =
+                  contact::solve(*dual,
+                                 contact::SlipLaw(scene, *dual, t),
+                                 options,
+                                 scene.friction,
+                                 convergence_observer(log,
+                                                      options,
+                                                      step,
+                                                      multiplications_before + discarded.hessian_multiplications,
+                                                      convergence),
+                                 is_warm ? &solution : nullptr);
+                discarded += solution.counts;
+                solution.counts = discarded;
+                clock.enter("recovery");
+                auto         recovery    = dual->recover(solution.multipliers, solution.free);
+                const double penetration = fem::largest_penetration(pruned, recovery.u, comm);
+                if (!(penetration > 0))
+                  return recovery;
+                reason = format("contact nodes without multipliers would penetrate by %.3g mm", penetration);
+              }
+            catch (const NoEquilibrium &) // on all ranks alike
+              {
+                if (pruned.rows->size() == 0)
+                  throw;
+                reason = "no equilibrium without the contact nodes that are far apart";
+              }
+            kept_part = kept_part < largest_kept_part ? growth_of_kept_part * kept_part : infinity;
+            log.line("pruning      " + reason + ": solved again with more of them");
+            make_dual(t);
+            if (step > 0)
+              start_slip_from_here();
+          }
+      }
+
+      /// @param so_far of the steps before.
+      output::Summary load_step(const unsigned int step, const output::Summary &so_far)
+      {
+        const double t = scene.load_factors[step];
+        if (scene.load_factors.size() > 1)
+          log.line(format("load step    %u of %zu, t = %g", step + 1, scene.load_factors.size(), t));
+        auto recovery        = solve_step(step, so_far.solver.hessian_multiplications);
+        u                    = std::move(recovery.u);
+        solution.multipliers = std::move(recovery.multipliers);
+        const contact::SlipLaw law(scene, *dual, t);
+        const auto             contact =
+          contact::check(*dual,
+                         solution.multipliers,
+                         u,
+                         law.depends_on_pressure() ? law.bounds(solution.multipliers) : solution.slip_bound,
+                         solution.free,
+                         scene.bodies.size());
+        const auto stress = fem::recover_stress(scene, *mesh, *spaces, dual->constraints(), u, t);
+        print_checks(log, solution, contact.checks, scene.solver.tolerance);
+
+        clock.enter("output");
+        auto summary = make_summary(scene, *mesh, *spaces, *dual, solution, contact.checks, stress);
+        if (scene.output.vtu)
+          {
+            output::write_fields(directory, *mesh, *spaces, u, stress, step);
+            output::write_pvd(directory, {scene.load_factors.begin(), scene.load_factors.begin() + step + 1});
+          }
+        if (scene.has_contact())
+          {
+            contact_steps.push_back(gather_contact(scene, *mesh, *spaces, contact));
+            contact_steps.back().step = step;
+            output::write_contact_vtp(directory, contact_steps.back());
+            summary.results.contact = contact::pair_results(contact_steps.back().nodes, contact_names().pairs);
+          }
+        clock.leave();
+        add_step(so_far, t, summary);
+        return summary;
+      }
+
+      output::ContactNames contact_names() const
+      {
+        output::ContactNames names;
+        for (const auto &pair : scene.contacts)
+          {
+            names.pairs.push_back(pair.name);
+            names.slave_bodies.push_back(scene.bodies[pair.slave.body].name);
+          }
+        return names;
+      }
+
+      void write_tables() const
+      {
+        output::write_convergence(directory, convergence);
+        directory.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
+        if (scene.has_contact())
+          output::write_contact_csv(directory, contact_names(), contact_steps);
+      }
+
+      const scene::Scene<dim>       &scene;
+      const output::OutputDirectory &directory;
+      const Log                     &log;
+      const MPI_Comm                 comm;
+      const scene::SolverOptions     options;
+      StageClock                     clock;
+
+      std::unique_ptr<fem::Mesh<dim>>     mesh;
+      std::unique_ptr<fem::Spaces<dim>>   spaces;
+      std::unique_ptr<tfeti::DualProblem> dual;
+      tfeti::Constraints                  pruned; // normal rows of the contact nodes without multipliers
+      double                              kept_part     = first_kept_part;
+      double                              factorization = 0; // [s]
+      contact::DualSolution               solution;          // of the last step
+      std::vector<Eigen::VectorXd>        u;                 // of the last step
       std::vector<output::ConvergenceRow> convergence;
-      const auto                          solution =
-        contact::solve(dual,
-                       slip_bound,
-                       options,
-                       convergence_observer(log, options.algorithm, options.tolerance, convergence));
-
-      clock.enter("recovery");
-      const auto recovery = dual.recover(solution.multipliers, solution.free);
-      const auto contact =
-        contact::check(dual, recovery.multipliers, recovery.u, slip_bound, solution.free, scene.bodies.size());
-      const auto stress = fem::recover_stress(scene, mesh, spaces, dual.constraints(), recovery.u);
-      print_checks(log, solution, contact.checks, scene.solver.tolerance);
-
-      clock.enter("output");
-      auto summary = make_summary(scene, mesh, spaces, dual, solution, contact.checks, stress);
-      write_fields(scene, mesh, spaces, recovery.u, stress, directory);
-      output::write_convergence(directory, convergence);
-      directory.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
-      summary.results.contact = write_contact(scene, mesh, spaces, contact, directory);
-      clock.leave();
-      summary.time_s    = times(clock, dual.factorization_seconds());
-      summary.memory_mb = memory(comm);
-      output::write_summary(directory, summary);
-      print_result(log, summary, contact.checks, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
-      return summary.status == output::RunStatus::converged ? ExitStatus::converged : ExitStatus::not_converged;
-    }
+      std::vector<output::ContactStep>    contact_steps;
+    };
   } // namespace
 
   void check_scene(const scene::Scene<dim> &scene, const Log &log, const MPI_Comm comm)
@@ -203,15 +367,16 @@ namespace slipstick::app
     const auto             mesh = fem::make_mesh(scene, comm);
     const fem::Spaces<dim> spaces(mesh, scene.discretization.degree);
     print_mesh(log, scene, mesh, spaces);
-    auto constraints = fem::contact_constraints(scene, mesh, spaces, load_factor);
+    const double t           = scene.load_factors.front();
+    auto         constraints = fem::contact_constraints(scene, mesh, spaces, t);
     print_constraints(log, constraints);
-    const tfeti::DualProblem dual(fem::assemble(scene, mesh, spaces, load_factor),
+    const tfeti::DualProblem dual(fem::assemble(scene, mesh, spaces, t),
                                   std::move(constraints),
                                   contact::resolved_options(scene).dual,
                                   names_of(scene.bodies),
                                   comm);
     print_dual(log, dual);
-    contact::slip_bounds(scene, dual, load_factor);
+    contact::SlipLaw(scene, dual, t);
     log.line(
       "the scene is complete: every subdomain has its rigid motions as kernel, every body is held by supports or contact");
   }
@@ -224,7 +389,7 @@ namespace slipstick::app
     const output::OutputDirectory directory(output_directory, comm);
     try
       {
-        return solve_and_write(scene, directory, log, comm);
+        return Run(scene, directory, log, comm).solve_and_write();
       }
     catch (const InputError &) // some of it shows in meshes and formulas only
       {

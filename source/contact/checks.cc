@@ -27,65 +27,46 @@ namespace slipstick::contact
       return forces;
     }
 
-    /// The same on interface nodes, summed over their copies; ghosts are up to date.
-    DistributedVector interface_forces(const tfeti::Constraints           &constraints,
-                                       const std::vector<Eigen::VectorXd> &forces)
+    bool is_equality(const tfeti::RowKind kind)
     {
-      DistributedVector sum(constraints.interface_dofs);
-      for (unsigned int p = 0; p < forces.size(); ++p)
-        for (const auto &entry : constraints.interface_blocks[p])
-          sum.local_element(entry.interface_dof) += forces[p][entry.dof];
-      sum.compress(dealii::VectorOperation::add);
-      sum.update_ghost_values();
-      return sum;
+      return kind == tfeti::RowKind::gluing || kind == tfeti::RowKind::bonded || kind == tfeti::RowKind::prescribed;
     }
 
-    /// Forces and moments left on the nodes that nothing holds, by body, and the force scales.
+    /// Forces and moments left on the bodies and nodes by K u - f + B'x, and the force scales.
     struct Balance
     {
       Eigen::MatrixXd left;             // motions x bodies
       Eigen::VectorXd scale;            // by body: sum of the magnitudes of all outside forces
       double          largest_left = 0; // nodal
-      double          largest      = 0; // nodal: largest load or held force
+      double          largest      = 0; // nodal: largest load, contact force or reaction
     };
 
     Balance balance(const tfeti::DualProblem           &dual,
-                    const std::vector<Eigen::VectorXd> &forces,
-                    const DistributedVector            &shared,
+                    const std::vector<Eigen::VectorXd> &nodal_forces,
+                    const DistributedVector            &multipliers,
                     const unsigned int                  n_bodies)
     {
-      const auto       &constraints = dual.constraints();
-      DistributedVector held(constraints.interface_dofs);
-      for (unsigned int i = 0; i < constraints.interface_held.size(); ++i)
-        held.local_element(i) = constraints.interface_held[i];
-      held.update_ghost_values();
+      DistributedVector outside = multipliers; // what does not act between the subdomains of a body
+      for (unsigned int r = 0; r < dual.constraints().kind.size(); ++r)
+        if (dual.constraints().kind[r] == tfeti::RowKind::gluing)
+          outside.local_element(r) = 0;
+      const auto all = dual.forces(multipliers), of_outside = dual.forces(outside);
 
       const unsigned int k =
-        dealii::Utilities::MPI::max(dual.subdomains().empty()
-                                      ? 0u
-                                      : static_cast<unsigned int>(dual.subdomains()[0]->kernel().cols()),
+        dealii::Utilities::MPI::max(dual.subdomains().empty() ?
+                                      0u :
+                                      static_cast<unsigned int>(dual.subdomains()[0]->kernel().cols()),
                                     dual.communicator());
       Balance result{Eigen::MatrixXd::Zero(k, n_bodies), Eigen::VectorXd::Zero(n_bodies)};
-      for (unsigned int p = 0; p < forces.size(); ++p)
+      for (unsigned int p = 0; p < nodal_forces.size(); ++p)
         {
-          const auto     &system = *dual.subdomains()[p];
-          Eigen::VectorXd left   = forces[p]; // by node, without what is held
-          Eigen::VectorXd nodal  = forces[p]; // the same with sums over copies, for the largest
-          result.scale[system.body()] += system.load().cwiseAbs().sum();
-          result.largest = std::max(result.largest, system.load().cwiseAbs().maxCoeff());
-          for (const auto &entry : constraints.interface_blocks[p])
-            {
-              const double force = shared.local_element(entry.interface_dof);
-              nodal[entry.dof]   = force;
-              if (held.local_element(entry.interface_dof) > 0)
-                {
-                  result.scale[system.body()] += std::abs(forces[p][entry.dof]);
-                  result.largest  = std::max(result.largest, std::abs(force));
-                  left[entry.dof] = nodal[entry.dof] = 0;
-                }
-            }
+          const auto           &system = *dual.subdomains()[p];
+          const Eigen::VectorXd left   = nodal_forces[p] + all[p];
+          result.scale[system.body()] += system.load().cwiseAbs().sum() + of_outside[p].cwiseAbs().sum();
+          result.largest =
+            std::max({result.largest, system.load().cwiseAbs().maxCoeff(), of_outside[p].cwiseAbs().maxCoeff()});
           result.left.col(system.body()) += system.body_modes().transpose() * (system.kernel().transpose() * left);
-          result.largest_left = std::max(result.largest_left, nodal.cwiseAbs().maxCoeff());
+          result.largest_left = std::max(result.largest_left, left.cwiseAbs().maxCoeff());
         }
       MPI_Allreduce(MPI_IN_PLACE, result.left.data(), result.left.size(), MPI_DOUBLE, MPI_SUM, dual.communicator());
       MPI_Allreduce(MPI_IN_PLACE, result.scale.data(), result.scale.size(), MPI_DOUBLE, MPI_SUM, dual.communicator());
@@ -97,7 +78,7 @@ namespace slipstick::contact
     /// One contact node from the force on it and the jump of displacement there.
     ContactNode contact_node(const tfeti::DualProblem  &dual,
                              const tfeti::ContactPoint &point,
-                             const DistributedVector   &shared,
+                             const DistributedVector   &multipliers,
                              const DistributedVector   &jumps,
                              const std::vector<double> &slip_bound,
                              const std::vector<bool>   &free)
@@ -108,29 +89,38 @@ namespace slipstick::contact
       node.normal   = point.normal;
       node.area     = point.area;
       node.length   = point.length;
-      // displacement and force in the plane: two components, tangent = normal turned by +90 degrees
-      const double fx = shared.local_element(point.interface_dof), fy = shared.local_element(point.interface_dof + 1);
-      const double nx = point.normal[0], ny = point.normal[1];
       if (point.normal_row != tfeti::invalid_row)
         {
-          node.pressure = -(fx * nx + fy * ny) / point.area;
+          node.pressure = multipliers.local_element(point.normal_row) / point.area;
           node.gap      = dual.constraints().c[point.normal_row] - jumps.local_element(point.normal_row);
         }
       node.is_closed = point.normal_row == tfeti::invalid_row || free[point.normal_row];
       node.status    = node.is_closed ? ContactStatus::stick : ContactStatus::open;
+      double tangential = 0;
       if (point.tangential_row == tfeti::invalid_row)
         {
           // without friction what touches is free to slide
           if (node.is_closed)
             node.status = ContactStatus::slip;
-          return node;
         }
-      node.tangential_traction = (-fx * ny + fy * nx) / point.area;
-      node.slip                = jumps.local_element(point.tangential_row);
-      node.slip_bound          = slip_bound[point.tangential_row] / point.area;
-      // a bound that acts on open nodes too (Tresca on the whole boundary) makes them slip as well
-      if (!free[point.tangential_row] && (node.slip_bound > 0 || node.is_closed))
-        node.status = ContactStatus::slip;
+      else
+        {
+          tangential               = multipliers.local_element(point.tangential_row);
+          node.tangential_traction = -tangential / point.area; // on the slave body
+          node.slip       = jumps.local_element(point.tangential_row) - dual.constraints().c[point.tangential_row];
+          node.slip_bound = slip_bound[point.tangential_row] / point.area;
+          // a bound that acts on open nodes too (Tresca on the whole boundary) makes them slip as well
+          if (!free[point.tangential_row] && (node.slip_bound > 0 || node.is_closed))
+            node.status = ContactStatus::slip;
+        }
+      if (point.has_master)
+        {
+          // force on the slave body at its node, the opposite one at the mean of the master nodes: two dimensions
+          const double N = node.pressure * node.area, T = tangential;
+          const double fx = -(N * point.normal[0] - T * point.normal[1]), fy = -(N * point.normal[1] + T * point.normal[0]);
+          node.moment_mismatch = (point.position[0] - point.master_position[0]) * fy -
+                                 (point.position[1] - point.master_position[1]) * fx;
+        }
       return node;
     }
   } // namespace
@@ -163,7 +153,6 @@ namespace slipstick::contact
     const auto    &constraints = dual.constraints();
     const auto     jumps       = dual.jumps(u);
     const auto     forces      = nodal_forces(dual, u);
-    const auto     shared      = interface_forces(constraints, forces);
     CheckedContact result;
     Checks        &checks = result.checks;
 
@@ -172,10 +161,13 @@ namespace slipstick::contact
         checks.max_displacement = std::max(checks.max_displacement, u[p].cwiseAbs().maxCoeff());
         checks.energy += u[p].dot(forces[p] + dual.subdomains()[p]->load());
       }
-    const auto violation = [&](const unsigned int r) { return jumps.local_element(r) - constraints.c[r]; };
+    const auto violation = [&](const unsigned int r) {
+      const double compliance = constraints.compliance.empty() ? 0. : constraints.compliance[r];
+      return jumps.local_element(r) - constraints.c[r] - compliance * multipliers.local_element(r);
+    };
     double     gap       = 0; // between primal and dual objective, as far as equalities make it
     for (unsigned int r = 0; r < constraints.kind.size(); ++r)
-      if (constraints.kind[r] == tfeti::RowKind::gluing || constraints.kind[r] == tfeti::RowKind::prescribed)
+      if (is_equality(constraints.kind[r]))
         checks.interface_jump = std::max(checks.interface_jump, std::abs(violation(r)));
     for (unsigned int r = 0; r < constraints.kind.size(); ++r)
       if (free[r])
@@ -184,7 +176,7 @@ namespace slipstick::contact
     double largest_contact = 0, largest_gap = 0, all_bounds = 0;
     for (const auto &point : constraints.contact_points)
       {
-        const auto   node = contact_node(dual, point, shared, jumps, slip_bound, free);
+        const auto   node = contact_node(dual, point, multipliers, jumps, slip_bound, free);
         const double N = node.pressure * node.area, T = node.tangential_traction * node.area;
         const double bound = node.slip_bound * node.area;
         largest_contact    = std::max({largest_contact, std::abs(N), std::abs(T)});
@@ -202,7 +194,7 @@ namespace slipstick::contact
         result.nodes.push_back(node);
         result.keys.push_back(point.key);
       }
-    const auto on_bodies = balance(dual, forces, shared, n_bodies);
+    const auto on_bodies = balance(dual, forces, multipliers, n_bodies);
 
     for (double *maximum : {&checks.max_displacement,
                             &checks.interface_jump,
@@ -251,6 +243,7 @@ namespace slipstick::contact
         PairResult &result = results[node.pair];
         result.normal_force += node.pressure * node.area;
         result.tangential_force += node.tangential_traction * node.area;
+        result.moment_mismatch += node.moment_mismatch;
         result.max_pressure = std::max(result.max_pressure, node.pressure);
         result.contact_length += node.is_closed ? node.length : 0.;
         result.contact_nodes += node.is_closed;

@@ -1,6 +1,4 @@
-#include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
-#include <slipstick/base/log.h>
 #include <slipstick/contact/friction.h>
 #include <slipstick/qp/feasible_point.h>
 #include <slipstick/qp/pcpg.h>
@@ -10,15 +8,28 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <limits>
-
 namespace slipstick::contact
 {
   namespace
   {
     using Vector = tfeti::DistributedVector;
 
-    constexpr double infinity = std::numeric_limits<double>::infinity();
+    // Slip bounds are followed at residuals below this times their last relative change (SMALBE).
+    constexpr double bound_accuracy = 0.1;
+    // ... at this one at first ...
+    constexpr double first_accuracy = 1e-2;
+    // ... then at most this part of the one before, for the noise of a solution hides how the bounds change ...
+    constexpr double accuracy_reduction = 0.5;
+    // ... and never below this part of the tolerance.
+    constexpr double least_accuracy = 1e-3;
+    // Damping is halved when the change of the bounds did not fall by this part, times the damping, of the least ...
+    constexpr double cycling_progress = 0.1;
+    // ... within so many updates.
+    constexpr unsigned int cycling_window = 5;
+    // ... down to this.
+    constexpr double least_relaxation = 0.1;
+    // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
+    constexpr unsigned int max_blends = 20;
 
     /// b - F x~ scaled as the solvers see it, projected on the kernel of G.
     Vector homogenised_load(const tfeti::DualProblem &dual, const Vector &start)
@@ -36,16 +47,18 @@ namespace slipstick::contact
       throw NoEquilibrium(
         "no contact forces within their bounds balance the loads, which move " +
           tfeti::describe(dual.motion_behind(certificate), dual.body_names()),
-        "support the body against this motion, raise the slip bound, or turn the loads towards the contact");
+        "support the body against this motion, raise friction coefficient or slip bound, or turn the loads towards the "
+        "contact");
     }
 
     DualSolution solve_linear(const tfeti::DualProblem   &dual,
                               const scene::SolverOptions &options,
-                              const qp::Observer         &observer)
+                              const ProgressObserver     &observer)
     {
       Vector       start = dual.particular();
       DualSolution solution;
       solution.free                    = std::vector<bool>(start.locally_owned_size(), true);
+      solution.slip_bound              = std::vector<double>(start.locally_owned_size(), 0.);
       solution.algorithm               = "pcg";
       const auto                  face = dual.face(solution.free);
       const auto                  b    = homogenised_load(dual, start);
@@ -54,7 +67,7 @@ namespace slipstick::contact
       const qp::Observer          counted      = [&observer](qp::OuterStep step) {
         ++step.hessian_multiplications; // F x~ in the homogenised load
         if (observer)
-          observer(step);
+          observer({step, 0});
       };
       const qp::Goal goal(options.tolerance);
       const auto     result = dual.is_preconditioned()
@@ -70,133 +83,291 @@ namespace slipstick::contact
       return solution;
     }
 
-    /// Inequality rows at a bound; fills `free` of the owned rows.
-    void find_active(const Box &box, const MPI_Comm comm, DualSolution &solution)
+    /// A contact problem on its way to the solution: the law with its present bounds, and all that is counted.
+    class ContactSolver
     {
-      unsigned long long n = 0;
-      solution.free.resize(solution.multipliers.locally_owned_size());
-      for (unsigned int r = 0; r < solution.free.size(); ++r)
-        {
-          const double x   = solution.multipliers.local_element(r);
-          solution.free[r] = x > box.lower.local_element(r) && x < box.upper.local_element(r);
-          n += !solution.free[r];
-        }
-      solution.active_constraints = dealii::Utilities::MPI::sum(n, comm);
-    }
+    public:
+      ContactSolver(const tfeti::DualProblem     &dual_,
+                    const SlipLaw                &law_,
+                    const scene::SolverOptions   &options_,
+                    const scene::FrictionOptions &friction_,
+                    const ProgressObserver       &observer_)
+        : dual(dual_)
+        , law(law_)
+        , options(options_)
+        , friction(friction_)
+        , observer(observer_)
+      {}
 
-    /// SMALBE-M from the point @p from within the bounds. @param reference of the residuals; 0: |P(d - F from)|.
-    DualSolution solve_smalbe(const tfeti::DualProblem   &dual,
-                              const Box                  &box,
-                              const Vector               &from,
-                              const double                tolerance,
-                              const double                reference,
-                              const scene::SolverOptions &options,
-                              const qp::Observer         &observer)
-    {
-      const auto with_start = [&observer](qp::OuterStep step) {
-        ++step.hessian_multiplications; // F x~ in the homogenised load
-        if (observer)
-          observer(step);
-      };
-      Box shifted = box;
-      shifted.lower -= from;
-      shifted.upper -= from;
-      const auto   result = qp::smalbe(dual,
-                                     1.,
-                                     homogenised_load(dual, from),
-                                     shifted,
-                                     qp::SmalbeStart<Vector>{dual.zero()},
-                                     qp::Goal(tolerance, reference),
-                                     options.smalbe,
-                                     with_start);
+      DualSolution run(const DualSolution *start)
+      {
+        const auto feasible = feasible_start(start);
+        solution.algorithm  = options.algorithm == scene::Algorithm::semismooth_newton ? "semismooth newton" : "smalbe";
+        set_bounds(law.bounds(feasible));
+        if (options.algorithm == scene::Algorithm::semismooth_newton && newton(feasible, start))
+          return finished();
+        const bool falls_back = options.algorithm == scene::Algorithm::semismooth_newton;
+        if (falls_back)
+          {
+            solution.fallbacks = 1;
+            set_bounds(law.bounds(feasible));
+          }
+        follow_bounds(feasible);
+        return finished();
+      }
+
+    private:
+      /// The admissible forces nearest to zero that balance the loads.
+      Vector feasible_start(const DualSolution *)
+      {
+        auto point = qp::feasible_point(dual, dual.particular(), law.admissible(dual));
+        if (point.status == qp::Status::infeasible)
+          no_equilibrium(dual, point.certificate);
+        return std::move(point.x);
+      }
+
+      void set_bounds(std::vector<double> bounds)
+      {
+        solution.slip_bound = std::move(bounds);
+        box                 = multiplier_box(dual, solution.slip_bound);
+      }
+
+      /// Counts of finished parts are added to what the observer is told of a part under way.
+      qp::Observer counted(const unsigned int before_step = 0) const
+      {
+        return [this, before_step](qp::OuterStep step) {
+          step.hessian_multiplications += solution.counts.hessian_multiplications + before_step;
+          step.outer += solution.counts.outer_iterations;
+          if (observer)
+            observer({step, solution.friction_iterations});
+        };
+      }
+
+      /// Relative change from the present bounds to those of x, over all ranks.
+      double change_of_bounds(const std::vector<double> &next) const
+      {
+        std::array<double, 2> s{{0, 0}};
+        for (unsigned int r = 0; r < next.size(); ++r)
+          {
+            const double change = next[r] - solution.slip_bound[r];
+            s[0] += change * change;
+            s[1] += next[r] * next[r];
+          }
+        s = dual.reduction().sum(s);
+        return s[0] == 0 ? 0. : s[1] > 0 ? std::sqrt(s[0] / s[1]) : 1.;
+      }
+
+      /// Damping of the bounds: halved whenever their change has not fallen for a while.
+      double damping(const double change)
+      {
+        if (change < (1 - cycling_progress * relaxation) * least_change)
+          {
+            least_change   = change;
+            updates_in_row = 0;
+          }
+        else if (++updates_in_row >= cycling_window)
+          {
+            relaxation     = std::max(relaxation / 2, least_relaxation);
+            updates_in_row = 0;
+            least_change   = change;
+          }
+        return relaxation;
+      }
+
+      std::vector<double> blend(const std::vector<double> &next, const double part) const
+      {
+        std::vector<double> result(next.size());
+        for (unsigned int r = 0; r < next.size(); ++r)
+          result[r] = (1 - part) * solution.slip_bound[r] + part * next[r];
+        return result;
+      }
+
+      /// Semismooth Newton from a few steps of SMALBE (or the load step before). @return whether it converged.
+      bool newton(const Vector &feasible, const DualSolution *start)
+      {
+        Vector from;
+        if (start)
+          {
+            from               = start->multipliers;
+            solution.reference = std::max(start->reference, homogenised_load(dual, feasible).l2_norm());
+            ++solution.counts.hessian_multiplications;
+            set_bounds(law.bounds(from));
+          }
+        else
+          {
+            from = smalbe(feasible, options.newton.start_tolerance, {});
+            if (law.depends_on_pressure())
+              set_bounds(law.bounds(from));
+          }
+        Vector d = dual.d();
+        d /= dual.norm();
+        qp::BoundUpdate<Vector> bounds;
+        bounds.tolerance = friction.tolerance;
+        if (law.depends_on_pressure())
+          bounds.update = [this](const Vector &x) { return update_bounds(x); };
+        solution.counts.outer_iterations = 0;
+        auto result                      = qp::semismooth_newton(dual,
+                                            1.,
+                                            d,
+                                            box,
+                                            std::move(from),
+                                            qp::Goal(options.tolerance, solution.reference),
+                                            options.newton,
+                                            options.pcpg,
+                                            counted(),
+                                            bounds);
+        solution.counts += result.counts;
+        solution.status             = result.status;
+        solution.projected_gradient = result.projected_gradient;
+        solution.equality           = 0;
+        solution.multipliers        = std::move(result.x);
+        return result.status == qp::Status::converged;
+      }
+
+      /// For semismooth Newton: new bounds unless they hardly change; nothing after too many.
+      std::optional<double> update_bounds(const Vector &x)
+      {
+        const auto   next     = law.bounds(x);
+        const double change   = change_of_bounds(next);
+        solution.bound_change = change;
+        if (change <= friction.tolerance)
+          return change;
+        if (solution.friction_iterations >= friction.max_iterations)
+          return {};
+        ++solution.friction_iterations;
+        set_bounds(blend(next, damping(change)));
+        return change;
+      }
+
+      /// Fixed point of the bounds by SMALBE-M.
+      void follow_bounds(Vector from)
+      {
+        if (!law.depends_on_pressure())
+          {
+            solution.multipliers = smalbe(from, options.tolerance, counted());
+            return;
+          }
+        double accuracy              = std::max(options.tolerance, first_accuracy);
+        solution.friction_iterations = 0;
+        relaxation                   = 1;
+        least_change                 = qp::infinity;
+        for (;; ++solution.friction_iterations)
+          {
+            solution.multipliers  = smalbe(from, accuracy, counted());
+            const auto next       = law.bounds(solution.multipliers);
+            solution.bound_change = change_of_bounds(next);
+            if (solution.status != qp::Status::converged ||
+                (solution.bound_change <= friction.tolerance && accuracy <= options.tolerance))
+              return;
+            if (solution.friction_iterations >= friction.max_iterations)
+              {
+                solution.status = qp::Status::iteration_limit;
+                return;
+              }
+            accuracy = std::max(std::min(accuracy > options.tolerance ? accuracy_reduction * accuracy : accuracy,
+                                         bound_accuracy * solution.bound_change),
+                                least_accuracy * options.tolerance);
+            if (!move_bounds(next, damping(solution.bound_change), from))
+              {
+                solution.status = qp::Status::stagnated;
+                return;
+              }
+          }
+      }
+
+      /// Takes the part of the way to the next bounds that admits an equilibrium; `from` is moved to the nearest one.
+      bool move_bounds(const std::vector<double> &next, double part, Vector &from)
+      {
+        const auto present = solution.slip_bound;
+        for (unsigned int k = 0; k < max_blends; ++k, part /= 2)
+          {
+            const auto bounds  = blend(next, part);
+            Box        shifted = multiplier_box(dual, bounds);
+            shifted.lower -= solution.multipliers;
+            shifted.upper -= solution.multipliers;
+            Vector missing = dual.particular();
+            missing -= solution.multipliers;
+            const auto point = qp::feasible_point(dual, missing, shifted);
+            if (point.status == qp::Status::infeasible)
+              continue;
+            from = solution.multipliers;
+            from += point.x;
+            set_bounds(bounds);
+            qp::project(box, from); // to the last bit
+            return true;
+          }
+        return false;
+      }
+
+      /// SMALBE-M from a point that balances the loads within the present bounds; fills status and residuals.
+      Vector smalbe(const Vector &from, const double tolerance, const qp::Observer &progress)
+      {
+        const auto with_start = [&progress](qp::OuterStep step) {
+          ++step.hessian_multiplications; // F x~ in the homogenised load
+          if (progress)
+            progress(step);
+        };
+        Box shifted = box;
+        shifted.lower -= from;
+        shifted.upper -= from;
+        const auto result = qp::smalbe(dual,
+                                       1.,
+                                       homogenised_load(dual, from),
+                                       shifted,
+                                       qp::SmalbeStart<Vector>{dual.zero()},
+                                       qp::Goal(tolerance, solution.reference),
+                                       options.smalbe,
+                                       with_start);
+        solution.status   = result.status;
+        solution.counts += result.counts;
+        ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
+        solution.projected_gradient = result.projected_gradient;
+        solution.equality           = result.equality_residual;
+        solution.reference          = result.reference;
+        Vector x                    = from;
+        x += result.x;
+        // entries that reached a shifted bound are put on the bound itself, to the last bit
+        for (unsigned int r = 0; r < x.locally_owned_size(); ++r)
+          if (result.x.local_element(r) <= shifted.lower.local_element(r))
+            x.local_element(r) = box.lower.local_element(r);
+          else if (result.x.local_element(r) >= shifted.upper.local_element(r))
+            x.local_element(r) = box.upper.local_element(r);
+        return x;
+      }
+
+      /// Fills which inequality rows are at a bound.
+      DualSolution finished()
+      {
+        unsigned long long n = 0;
+        solution.free.resize(solution.multipliers.locally_owned_size());
+        for (unsigned int r = 0; r < solution.free.size(); ++r)
+          {
+            const double x   = solution.multipliers.local_element(r);
+            solution.free[r] = x > box.lower.local_element(r) && x < box.upper.local_element(r);
+            n += !solution.free[r];
+          }
+        solution.active_constraints = dealii::Utilities::MPI::sum(n, dual.communicator());
+        return std::move(solution);
+      }
+
+      const tfeti::DualProblem     &dual;
+      const SlipLaw                &law;
+      const scene::SolverOptions   &options;
+      const scene::FrictionOptions &friction;
+      const ProgressObserver       &observer;
+
+      Box          box;
       DualSolution solution;
-      solution.status             = result.status;
-      solution.counts             = result.counts;
-      solution.projected_gradient = result.projected_gradient;
-      solution.equality           = result.equality_residual;
-      solution.reference          = result.reference;
-      solution.algorithm          = "smalbe";
-      solution.multipliers        = from;
-      solution.multipliers += result.x;
-      // entries that reached a shifted bound are put on the bound itself, to the last bit
-      for (unsigned int r = 0; r < solution.multipliers.locally_owned_size(); ++r)
-        if (result.x.local_element(r) <= shifted.lower.local_element(r))
-          solution.multipliers.local_element(r) = box.lower.local_element(r);
-        else if (result.x.local_element(r) >= shifted.upper.local_element(r))
-          solution.multipliers.local_element(r) = box.upper.local_element(r);
-      ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
-      find_active(box, dual.communicator(), solution);
-      return solution;
-    }
-
-    /// A few steps of SMALBE-M for the first active set, semismooth Newton from there, SMALBE-M again if it stalls.
-    DualSolution solve_newton(const tfeti::DualProblem   &dual,
-                              const Box                  &box,
-                              Vector                      from,
-                              const scene::SolverOptions &options,
-                              const qp::Observer         &observer)
-    {
-      DualSolution solution  = solve_smalbe(dual, box, from, options.newton.start_tolerance, 0., options, {});
-      const double reference = solution.reference;
-      Vector       d         = dual.d();
-      d /= dual.norm();
-      const auto before  = solution.counts;
-      const auto counted = [&](qp::OuterStep step) {
-        step.hessian_multiplications += before.hessian_multiplications;
-        if (observer)
-          observer(step);
-      };
-      auto result = qp::semismooth_newton(dual,
-                                          1.,
-                                          d,
-                                          box,
-                                          solution.multipliers,
-                                          qp::Goal(options.tolerance, reference),
-                                          options.newton,
-                                          options.pcpg,
-                                          counted);
-      solution.counts += result.counts;
-      solution.counts.outer_iterations = result.counts.outer_iterations;
-      solution.status                  = result.status;
-      solution.algorithm               = "semismooth newton";
-      solution.projected_gradient      = result.projected_gradient;
-      solution.equality                = 0;
-      solution.multipliers             = std::move(result.x);
-      if (result.status == qp::Status::converged)
-        {
-          find_active(box, dual.communicator(), solution);
-          return solution;
-        }
-      const auto so_far = solution.counts;
-      solution          = solve_smalbe(dual, box, from, options.tolerance, reference, options, observer);
-      solution.counts += so_far;
-      solution.algorithm = "semismooth newton";
-      solution.fallbacks = 1;
-      return solution;
-    }
+      double       relaxation     = 1; // damping of the bounds
+      double       least_change   = qp::infinity;
+      unsigned int updates_in_row = 0; // without progress
+    };
   } // namespace
 
   template <int dim>
   std::vector<double> slip_bounds(const scene::Scene<dim> &scene, const tfeti::DualProblem &dual, const double t)
   {
-    std::vector<double> bounds(dual.constraints().kind.size(), 0.);
-    collectively(dual.communicator(), [&] {
-      for (const auto &point : dual.constraints().contact_points)
-        if (point.tangential_row != tfeti::invalid_row)
-          {
-            dealii::Point<dim> x;
-            for (unsigned int d = 0; d < dim; ++d)
-              x[d] = point.position[d];
-            const auto  &contact = scene.contacts[point.pair];
-            const double bound   = contact.slip_bound.value(x, t);
-            if (!(bound >= 0 && std::isfinite(bound)))
-              throw InputError(
-                format("Contact %s/Slip bound is %g MPa at (%g, %g)", contact.name.c_str(), bound, x[0], x[1]),
-                "it must be zero or positive everywhere on the slave boundary");
-            bounds[point.tangential_row] = bound * point.area;
-          }
-    });
-    return bounds;
+    return SlipLaw(scene, dual, t).bounds(dual.zero());
   }
 
   template <int dim>
@@ -205,45 +376,25 @@ namespace slipstick::contact
     scene::SolverOptions options        = scene.solver;
     auto                &preconditioner = options.dual.preconditioner;
     if (options.algorithm == scene::Algorithm::automatic)
-      {
-        const bool preconditioned =
-          preconditioner == tfeti::Preconditioner::lumped || preconditioner == tfeti::Preconditioner::dirichlet;
-        options.algorithm = !scene.has_contact() ? scene::Algorithm::pcg
-                            : preconditioned     ? scene::Algorithm::semismooth_newton
-                                                 : scene::Algorithm::smalbe;
-      }
+      options.algorithm = scene.has_contact() ? scene::Algorithm::semismooth_newton : scene::Algorithm::pcg;
     if (options.algorithm == scene::Algorithm::smalbe)
       preconditioner = tfeti::Preconditioner::none; // it would change the bounds
     else if (preconditioner == tfeti::Preconditioner::automatic)
-      preconditioner = options.algorithm == scene::Algorithm::semismooth_newton ? tfeti::Preconditioner::dirichlet
-                                                                                : tfeti::Preconditioner::none;
+      preconditioner = tfeti::Preconditioner::dirichlet;
     return options;
   }
 
-  Box multiplier_box(const tfeti::DualProblem &dual, const std::vector<double> &slip_bound)
+  DualSolution solve(const tfeti::DualProblem     &dual,
+                     const SlipLaw                &law,
+                     const scene::SolverOptions   &options,
+                     const scene::FrictionOptions &friction,
+                     const ProgressObserver       &observer,
+                     const DualSolution           *start)
   {
-    Box box{dual.zero(), dual.zero()};
-    for (unsigned int r = 0; r < dual.constraints().kind.size(); ++r)
-      {
-        double &lower = box.lower.local_element(r), &upper = box.upper.local_element(r);
-        switch (dual.constraints().kind[r])
-          {
-            case tfeti::RowKind::tangential:
-              lower = -slip_bound[r];
-              upper = slip_bound[r];
-              break;
-            case tfeti::RowKind::normal:
-              lower = 0;
-              upper = infinity;
-              break;
-            case tfeti::RowKind::gluing:
-            case tfeti::RowKind::prescribed:
-              lower = -infinity;
-              upper = infinity;
-              break;
-          }
-      }
-    return box;
+    const auto &counts = dual.constraints().counts;
+    if (counts.normal + counts.tangential == 0)
+      return solve_linear(dual, options, observer);
+    return ContactSolver(dual, law, options, friction, observer).run(start);
   }
 
   DualSolution solve(const tfeti::DualProblem   &dual,
@@ -251,17 +402,10 @@ namespace slipstick::contact
                      const scene::SolverOptions &options,
                      const qp::Observer         &observer)
   {
-    const auto &counts = dual.constraints().counts;
-    if (counts.normal + counts.tangential == 0)
-      return solve_linear(dual, options, observer);
-
-    const Box box   = multiplier_box(dual, slip_bound);
-    auto      start = qp::feasible_point(dual, dual.particular(), box);
-    if (start.status == qp::Status::infeasible)
-      no_equilibrium(dual, start.certificate);
-    return options.algorithm == scene::Algorithm::semismooth_newton
-             ? solve_newton(dual, box, std::move(start.x), options, observer)
-             : solve_smalbe(dual, box, start.x, options.tolerance, 0., options, observer);
+    return solve(dual, SlipLaw(slip_bound), options, scene::FrictionOptions(), [&observer](const Progress &progress) {
+      if (observer)
+        observer(progress.step);
+    });
   }
 
   template scene::SolverOptions resolved_options(const scene::Scene<2> &);

@@ -1,9 +1,11 @@
 #include <slipstick/base/collective.h>
+#include <slipstick/base/exceptions.h>
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/cell_values.h>
+#include <slipstick/fem/dilatation.h>
+#include <slipstick/fem/loads.h>
 #include <slipstick/fem/rigid_modes.h>
 
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_values.h>
 
@@ -95,65 +97,72 @@ namespace slipstick::fem
           }
     }
 
+    /// Adds lambda times the product of the projected dilatations, times thickness.
+    template <int dim>
+    void add_projected_dilatation(const dealii::FEValues<dim>     &values,
+                                  const dealii::FESystem<dim>     &element,
+                                  const DilatationProjection<dim> &projection,
+                                  const double                     lambda,
+                                  const double                     thickness,
+                                  dealii::FullMatrix<double>      &local)
+    {
+      const unsigned int n_points = values.n_quadrature_points;
+      Eigen::MatrixXd    divergence(n_points, local.m());
+      for (unsigned int q = 0; q < n_points; ++q)
+        for (unsigned int i = 0; i < values.dofs_per_cell; ++i)
+          for (unsigned int c = 0; c < dim; ++c)
+            divergence(q, element.component_to_system_index(c, i)) = values.shape_grad(i, q)[c];
+      const Eigen::MatrixXd dilatation = projection.projected(divergence);
+      const auto weights = Eigen::Map<const Eigen::VectorXd>(values.get_JxW_values().data(), n_points).asDiagonal();
+      const Eigen::MatrixXd products = lambda * thickness * dilatation.transpose() * weights * dilatation;
+      for (unsigned int a = 0; a < local.m(); ++a)
+        for (unsigned int b = 0; b < local.n(); ++b)
+          local(a, b) += products(a, b);
+    }
+
     template <int dim>
     Eigen::SparseMatrix<double> assemble_stiffness(const scene::Scene<dim>       &scene,
                                                    const unsigned int             body,
-                                                   const Spaces<dim>             &spaces,
+                                                   const Element<dim>            &element,
                                                    const dealii::DoFHandler<dim> &dof_handler)
     {
-      const auto      lame  = lame_coefficients(scene.materials[scene.bodies[body].material], scene.plane_state);
-      auto            lower = lower_pattern(dof_handler);
-      CellValues<dim> values(spaces.mapping, spaces.scalar_element, dealii::QGauss<dim>(spaces.element.degree + 1));
-      dealii::FullMatrix<double>                   local(spaces.element.n_dofs_per_cell());
-      std::vector<dealii::types::global_dof_index> dofs(spaces.element.n_dofs_per_cell());
+      const auto             lame = lame_coefficients(scene.materials[scene.bodies[body].material], scene.plane_state);
+      const double           thickness = scene.bodies[body].thickness;
+      const bool             project   = scene.discretization.element == scene::ElementKind::nearly_incompressible;
+      const LameCoefficients as_displaced{project ? 0. : lame.lambda, lame.mu};
+      DilatationProjection<dim>                    projection(element);
+      auto                                         lower = lower_pattern(dof_handler);
+      CellValues<dim>                              values(*element.mapping,
+                             *element.scalar,
+                             element.stiffness,
+                             project ? dealii::update_quadrature_points : dealii::update_default);
+      dealii::FullMatrix<double>                   local(element.vector->n_dofs_per_cell());
+      std::vector<dealii::types::global_dof_index> dofs(element.vector->n_dofs_per_cell());
       for (const auto &cell : dof_handler.active_cell_iterators())
         {
           if (values.reinit(cell))
-            cell_stiffness(*values, spaces.element, lame, scene.bodies[body].thickness, local);
+            {
+              cell_stiffness(*values, *element.vector, as_displaced, thickness, local);
+              if (project)
+                {
+                  projection.reinit(*values);
+                  add_projected_dilatation(*values, *element.vector, projection, lame.lambda, thickness, local);
+                }
+            }
           cell->get_dof_indices(dofs);
           add_lower<dim>(local, dofs, lower);
         }
       return lower;
     }
 
-    /// Tractions of the scene on the boundary of one subdomain.
     template <int dim>
-    Eigen::VectorXd assemble_load(const scene::Scene<dim>       &scene,
-                                  const Mesh<dim>               &mesh,
-                                  const SubdomainMesh<dim>      &subdomain,
-                                  const Spaces<dim>             &spaces,
-                                  const dealii::DoFHandler<dim> &dof_handler,
-                                  const double                   t)
+    void check_element(const scene::Scene<dim> &scene, const unsigned int body, const Element<dim> &element)
     {
-      Eigen::VectorXd                              load = Eigen::VectorXd::Zero(dof_handler.n_dofs());
-      const dealii::QGauss<dim - 1>                quadrature(spaces.element.degree + 2); // loads may be formulas
-      dealii::FEFaceValues<dim>                    values(spaces.mapping,
-                                       spaces.element,
-                                       quadrature,
-                                       dealii::update_values | dealii::update_quadrature_points |
-                                         dealii::update_JxW_values);
-      std::vector<dealii::types::global_dof_index> dofs(spaces.element.n_dofs_per_cell());
-      for (const auto &traction : scene.tractions)
-        {
-          if (traction.where.body != subdomain.body)
-            continue;
-          for (const auto &cell : dof_handler.active_cell_iterators())
-            for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary() && mesh.on_boundary(traction.where, cell->face(f)->boundary_id()))
-                {
-                  values.reinit(cell, f);
-                  cell->get_dof_indices(dofs);
-                  for (unsigned int q = 0; q < quadrature.size(); ++q)
-                    for (unsigned int i = 0; i < dofs.size(); ++i)
-                      {
-                        const unsigned int c = spaces.element.system_to_component_index(i).first;
-                        load[dofs[i]] += traction.components[c].value(values.quadrature_point(q), t) *
-                                         values.shape_value(i, q) * values.JxW(q) *
-                                         scene.bodies[subdomain.body].thickness;
-                      }
-                }
-        }
-      return load;
+      if (scene.discretization.element == scene::ElementKind::nearly_incompressible && element.cell.is_simplex() &&
+          element.degree == 1)
+        throw InputError("Discretization/Element = nearly incompressible: body '" + scene.bodies[body].name +
+                           "' has triangles of degree 1, which lock whatever is done to their dilatation",
+                         "set Discretization/Degree = 2, or mesh the body with quadrilaterals");
     }
 
     template <int dim>
@@ -172,38 +181,32 @@ namespace slipstick::fem
     }
   } // namespace
 
-  LameCoefficients lame_coefficients(const scene::Material &material, const scene::PlaneState state)
-  {
-    const double E = material.young_modulus, nu = material.poisson_ratio;
-    const double mu = E / (2 * (1 + nu));
-    const double lambda =
-      state == scene::PlaneState::plane_strain ? E * nu / ((1 + nu) * (1 - 2 * nu)) : E * nu / (1 - nu * nu);
-    return {lambda, mu};
-  }
-
   template <int dim>
   std::vector<tfeti::SubdomainMatrices> assemble(const scene::Scene<dim> &scene,
                                                  const Mesh<dim>         &mesh,
                                                  const Spaces<dim>       &spaces,
                                                  const double             t)
   {
-    const auto                            frames = body_frames(scene, mesh);
-    std::vector<tfeti::SubdomainMatrices> systems;
-    collectively(mesh.comm, [&] { // a formula may give no number on one rank alone
+    collectively(mesh.comm, [&] {
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
-        {
-          const auto              &subdomain   = *mesh.subdomains[p];
-          const auto              &dof_handler = *spaces.dof_handlers[p];
-          tfeti::SubdomainMatrices system;
-          system.subdomain     = subdomain.subdomain;
-          system.body          = subdomain.body;
-          system.stiffness     = assemble_stiffness(scene, subdomain.body, spaces, dof_handler);
-          system.load          = assemble_load(scene, mesh, subdomain, spaces, dof_handler, t);
-          system.boundary_dofs = boundary_dofs(dof_handler);
-          rigid_modes(spaces, dof_handler, frames[subdomain.body], system.kernel, system.body_modes);
-          systems.push_back(std::move(system));
-        }
+        check_element(scene, mesh.subdomains[p]->body, spaces.of(p));
     });
+    const auto                            frames = body_frames(scene, mesh);
+    auto                                  loads  = assemble_loads(scene, mesh, spaces, t);
+    std::vector<tfeti::SubdomainMatrices> systems;
+    for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+      {
+        const auto              &subdomain   = *mesh.subdomains[p];
+        const auto              &dof_handler = *spaces.dof_handlers[p];
+        tfeti::SubdomainMatrices system;
+        system.subdomain     = subdomain.subdomain;
+        system.body          = subdomain.body;
+        system.stiffness     = assemble_stiffness(scene, subdomain.body, spaces.of(p), dof_handler);
+        system.load          = std::move(loads[p]);
+        system.boundary_dofs = boundary_dofs(dof_handler);
+        rigid_modes(spaces.of(p), dof_handler, frames[subdomain.body], system.kernel, system.body_modes);
+        systems.push_back(std::move(system));
+      }
     return systems;
   }
 

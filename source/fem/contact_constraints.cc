@@ -1,6 +1,5 @@
 #include <slipstick/fem/contact_constraints.h>
-#include <slipstick/fem/interface_nodes.h>
-#include <slipstick/fem/obstacle.h>
+#include <slipstick/fem/row_builder.h>
 
 #include <slipstick/base/collective.h>
 #include <slipstick/base/numbering.h>
@@ -12,156 +11,8 @@ namespace slipstick::fem
 {
   namespace
   {
-    // A direction whose free part is shorter than this is held by the support.
-    constexpr double held_direction_tolerance = 1e-8;
-
-    /// What a subdomain is told of rows and interface unknowns; numbers are global.
-    struct Message
-    {
-      std::uint64_t index; // row or interface unknown
-      unsigned int  subdomain;
-      unsigned int  dof;
-      double        value;
-      bool          is_row;
-
-      template <class Archive>
-      void serialize(Archive &archive, const unsigned int /*version*/)
-      {
-        archive &index &subdomain &dof &value &is_row;
-      }
-    };
-
-    /// Rows of the nodes that this rank owns; indices are owned ones until they are shifted.
-    template <int dim>
-    class RowBuilder
-    {
-    public:
-      RowBuilder(const scene::Scene<dim> &scene, tfeti::Constraints &constraints)
-        : scene(scene)
-        , constraints(constraints)
-      {}
-
-      void add(const InterfaceNode<dim> &node)
-      {
-        for (const auto &[pair, area] : node.areas)
-          add_contact(node, pair, area);
-        for (unsigned int c = 0; c < dim; ++c)
-          if (node.held >> c & 1u)
-            {
-              entry(new_row(tfeti::RowKind::prescribed, node.prescribed[c], node, c), node.copies[0], c, 1.);
-              ++constraints.counts.prescribed;
-            }
-        for (unsigned int k = 0; k + 1 < node.copies.size(); ++k)
-          for (unsigned int c = 0; c < dim; ++c)
-            {
-              const unsigned int row = new_row(tfeti::RowKind::gluing, 0., node, k * dim + c);
-              entry(row, node.copies[k], c, 1.);
-              entry(row, node.copies[k + 1], c, -1.);
-              ++constraints.counts.gluing;
-            }
-        for (unsigned int c = 0; c < dim; ++c)
-          {
-            for (const auto &copy : node.copies)
-              messages.push_back({n_interface, copy.first, copy.second * dim + c, 1., false});
-            constraints.interface_held.push_back(node.held != 0 || !node.areas.empty());
-            ++n_interface;
-          }
-      }
-
-      std::vector<Message> messages;
-      std::uint64_t        n_interface = 0;
-
-    private:
-      unsigned int new_row(const tfeti::RowKind      kind,
-                           const double              c,
-                           const InterfaceNode<dim> &node,
-                           const unsigned int        which)
-      {
-        constraints.kind.push_back(kind);
-        constraints.c.push_back(c);
-        std::uint64_t label = 1469598103934665603ull; // FNV-1a over what names the row
-        for (const std::uint64_t part : {node.key[0], node.key[1], std::uint64_t(kind), std::uint64_t(which)})
-          label = (label ^ part) * 1099511628211ull;
-        constraints.label.push_back(label);
-        return constraints.kind.size() - 1;
-      }
-
-      void entry(const unsigned int                           row,
-                 const std::pair<unsigned int, unsigned int> &copy,
-                 const unsigned int                           c,
-                 const double                                 value)
-      {
-        messages.push_back({row, copy.first, copy.second * dim + c, value, true});
-      }
-
-      unsigned int contact_row(const tfeti::RowKind          kind,
-                               const double                  c,
-                               const InterfaceNode<dim>     &node,
-                               const unsigned int            pair,
-                               const dealii::Tensor<1, dim> &direction)
-      {
-        const unsigned int row = new_row(kind, c, node, pair);
-        for (unsigned int d = 0; d < dim; ++d)
-          if (direction[d] != 0)
-            entry(row, node.copies[0], d, direction[d]);
-        return row;
-      }
-
-      void add_contact(const InterfaceNode<dim> &node, const unsigned int pair, const double area)
-      {
-        static_assert(dim == 2, "one tangent: two dimensions");
-        const auto             contact = contact_with(scene.obstacles[scene.contacts[pair].obstacle], node.point());
-        dealii::Tensor<1, dim> tangent;
-        tangent[0] = -contact.normal[1];
-        tangent[1] = contact.normal[0];
-
-        // a held component leaves one free direction: then the normal row, or the tangential one if that is all there is
-        const bool free_normal  = free_part(contact.normal, node.held) > held_direction_tolerance;
-        const bool free_tangent = free_part(tangent, node.held) > held_direction_tolerance;
-        const bool has_normal   = free_normal;
-        const bool has_tangent  = free_tangent && (node.held == 0 || !free_normal) &&
-                                 scene.contacts[pair].law != scene::ContactLaw::frictionless;
-        if (!has_normal && !has_tangent)
-          return;
-
-        tfeti::ContactPoint point;
-        point.pair = pair;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            point.position[d] = node.position[d];
-            point.normal[d]   = contact.normal[d];
-          }
-        point.key           = node.key;
-        point.gap           = contact.gap;
-        point.area          = area;
-        point.length        = area / scene.bodies[node.body].thickness;
-        point.interface_dof = n_interface;
-        if (has_tangent)
-          {
-            point.tangential_row = contact_row(tfeti::RowKind::tangential, 0., node, pair, tangent);
-            ++constraints.counts.tangential;
-          }
-        if (has_normal)
-          {
-            point.normal_row = contact_row(tfeti::RowKind::normal, contact.gap, node, pair, contact.normal);
-            ++constraints.counts.normal;
-          }
-        ++constraints.counts.candidates;
-        constraints.contact_points.push_back(point);
-      }
-
-      static double free_part(const dealii::Tensor<1, dim> &direction, const unsigned int held)
-      {
-        double squares = 0;
-        for (unsigned int c = 0; c < dim; ++c)
-          if (!(held >> c & 1u))
-            squares += direction[c] * direction[c];
-        return std::sqrt(squares);
-      }
-
-      const scene::Scene<dim> &scene;
-      tfeti::Constraints      &constraints;
-    };
+    // Contact nodes that are farther apart than the nearest ones by less than so many mesh sizes keep their rows.
+    constexpr double mesh_sizes = 2;
 
     tfeti::Partitioner make_partitioner(const std::uint64_t                           first,
                                         const std::uint64_t                           n_owned,
@@ -182,15 +33,15 @@ namespace slipstick::fem
 
     /// Sends every entry to the rank of its subdomain and numbers rows and interface unknowns there.
     template <int dim>
-    void distribute(const Mesh<dim>            &mesh,
-                    const std::vector<Message> &messages,
-                    const std::uint64_t         n_interface,
-                    tfeti::Constraints         &constraints)
+    void distribute(const Mesh<dim>             &mesh,
+                    const std::vector<RowEntry> &messages,
+                    const std::uint64_t          n_interface,
+                    tfeti::Constraints          &constraints)
     {
       const auto [first_row, n_rows]         = first_and_total(constraints.kind.size(), mesh.comm);
       const auto [first_unknown, n_unknowns] = first_and_total(n_interface, mesh.comm);
-      std::map<unsigned int, std::vector<Message>> to_send;
-      for (Message message : messages)
+      std::map<unsigned int, std::vector<RowEntry>> to_send;
+      for (RowEntry message : messages)
         {
           message.index += message.is_row ? first_row : first_unknown;
           to_send[mesh.rank_of_subdomain(message.subdomain)].push_back(message);
@@ -235,23 +86,66 @@ namespace slipstick::fem
   } // namespace
 
   template <int dim>
+  ContactRows contact_rows(const scene::Scene<dim> &scene,
+                           const Mesh<dim>         &mesh,
+                           const Spaces<dim>       &spaces,
+                           const double             t,
+                           const double             part)
+  {
+    const auto              contacts = pair_bodies(scene, mesh, spaces);
+    const auto              nodes    = interface_nodes(scene, mesh, spaces, contacts, t);
+    ContactRows             rows;
+    RowBuilder<dim>         builder(scene, nodes, contacts, t, rows.active);
+    std::vector<PairExtent> extents(scene.contacts.size());
+    collectively(mesh.comm, [&] { extents = builder.extents(); });
+    std::vector<double> limits;
+    for (const auto &own : extents)
+      {
+        const double gap     = dealii::Utilities::MPI::min(own.gap, mesh.comm);
+        const double length  = dealii::Utilities::MPI::sum(own.length, mesh.comm);
+        const double n_nodes = dealii::Utilities::MPI::sum(own.n_nodes, mesh.comm);
+        limits.push_back(n_nodes > 0 ? gap + std::max(part * length, mesh_sizes * length / n_nodes) : 0.);
+      }
+    builder.limit_gaps(limits);
+    collectively(mesh.comm, [&] { builder.build(); });
+    distribute(mesh, builder.entries, builder.n_interface, rows.active);
+    rows.active.counts = sum(rows.active.counts, mesh.comm);
+    rows.pruned        = std::move(builder.pruned);
+    distribute(mesh, builder.pruned_entries, 0, rows.pruned);
+    return rows;
+  }
+
+  template <int dim>
   tfeti::Constraints contact_constraints(const scene::Scene<dim> &scene,
                                          const Mesh<dim>         &mesh,
                                          const Spaces<dim>       &spaces,
                                          const double             t)
   {
-    const auto         nodes = interface_nodes(scene, mesh, spaces, t);
-    tfeti::Constraints constraints;
-    RowBuilder<dim>    builder(scene, constraints);
-    collectively(mesh.comm, [&] {
-      for (const auto &node : nodes)
-        builder.add(node);
-    });
-    distribute(mesh, builder.messages, builder.n_interface, constraints);
-    constraints.counts = sum(constraints.counts, mesh.comm);
-    return constraints;
+    return contact_rows(scene, mesh, spaces, t, std::numeric_limits<double>::infinity()).active;
   }
 
+  double largest_penetration(const tfeti::Constraints           &pruned,
+                             const std::vector<Eigen::VectorXd> &u,
+                             const MPI_Comm                      comm)
+  {
+    if (pruned.rows->size() == 0)
+      return 0;
+    tfeti::DistributedVector closing(pruned.rows);
+    for (unsigned int p = 0; p < u.size(); ++p)
+      for (const auto &entry : pruned.blocks[p])
+        closing.local_element(entry.row) += entry.value * u[p][entry.dof];
+    closing.compress(dealii::VectorOperation::add);
+    double largest = 0;
+    for (unsigned int r = 0; r < pruned.c.size(); ++r)
+      largest = std::max(largest, closing.local_element(r) - pruned.c[r]);
+    return dealii::Utilities::MPI::max(largest, comm);
+  }
+
+  template ContactRows        contact_rows(const scene::Scene<2> &,
+                                           const Mesh<2> &,
+                                           const Spaces<2> &,
+                                           const double,
+                                           const double);
   template tfeti::Constraints contact_constraints(const scene::Scene<2> &,
                                                   const Mesh<2> &,
                                                   const Spaces<2> &,

@@ -2,40 +2,30 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
 #include <slipstick/fem/interface_nodes.h>
+#include <slipstick/fem/nodal_conditions.h>
+#include <slipstick/fem/obstacle.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 
 #include <cmath>
+#include <limits>
 
 namespace slipstick::fem
 {
   namespace
   {
-    // Two supports agree on a component when their values differ by less than this part of the larger.
-    constexpr double same_value_tolerance = 1e-12;
-
     template <int dim>
     using NodesOfSubdomain = std::map<unsigned int, InterfaceNode<dim>>; // by node number
 
     template <int dim>
-    void merge_support(InterfaceNode<dim> &node, const unsigned int c, const double value)
+    dealii::Tensor<1, dim> axis(const unsigned int c)
     {
-      if (node.held >> c & 1u && std::abs(node.prescribed[c] - value) >
-                                   same_value_tolerance * std::max(std::abs(value), std::abs(node.prescribed[c])))
-        throw InputError(format("supports prescribe both %g and %g for displacement %c at (%g, %g)",
-                                node.prescribed[c],
-                                value,
-                                "xyz"[c],
-                                node.position[0],
-                                node.position[1]),
-                         "free that component in one of the supports, or make the values agree where boundaries meet");
-      node.held |= 1u << c;
-      node.prescribed[c] = value;
+      dealii::Tensor<1, dim> e;
+      e[c] = 1;
+      return e;
     }
 
-    /// What supports and contact pairs say about the nodes of one boundary face.
+    /// What supports, foundations and obstacles say about the nodes of one boundary face.
     template <int dim>
     void add_face(const scene::Scene<dim>                                      &scene,
                   const Mesh<dim>                                              &mesh,
@@ -44,11 +34,10 @@ namespace slipstick::fem
                   const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
                   const unsigned int                                            f,
                   const double                                                  t,
-                  dealii::FEFaceValues<dim>                                    &values,
                   NodesOfSubdomain<dim>                                        &nodes)
     {
-      const auto                face = cell->face(f);
-      std::vector<unsigned int> on_face;
+      const auto                        face = cell->face(f);
+      std::vector<InterfaceNode<dim> *> on_face;
       spaces.for_each_face_node(subdomain,
                                 face,
                                 [&](const unsigned int node, const NodeKey &key, const dealii::Point<dim> &x) {
@@ -58,56 +47,153 @@ namespace slipstick::fem
                                   entry.copies              = {{subdomain.subdomain, node}};
                                   for (unsigned int d = 0; d < dim; ++d)
                                     entry.position[d] = x[d];
-                                  on_face.push_back(node);
+                                  on_face.push_back(&entry);
                                 });
       if (face->boundary_id() == cut_id)
         return;
-
-      const auto  here  = [&](const scene::BoundaryName &where) {
+      const auto here = [&](const scene::BoundaryName &where) {
         return where.body == subdomain.body && mesh.on_boundary(where, face->boundary_id());
       };
-      for (const auto &support : scene.supports)
-        if (here(support.where))
-          for (const unsigned int node : on_face)
-            for (unsigned int c = 0; c < dim; ++c)
-              if (support.components[c])
-                merge_support(nodes[node], c, support.components[c]->value(nodes[node].point(), t));
+
+      // lengths and normals of the nodes, in the order of the face (the edge may run the other way)
+      const auto                                     edge    = surface_edge(subdomain, spaces, cell, f);
+      const auto                                     lengths = edge.tributary_lengths();
+      std::vector<double>                            areas(on_face.size());
+      std::vector<typename InterfaceNode<dim>::Side> sides(on_face.size());
+      for (unsigned int i = 0; i < on_face.size(); ++i)
+        {
+          unsigned int on_edge = 0;
+          while (edge.keys[on_edge] != on_face[i]->key)
+            ++on_edge;
+          areas[i]          = lengths[on_edge] * scene.bodies[subdomain.body].thickness;
+          const auto normal = edge.normal(edge.node_coordinate(on_edge));
+          sides[i].area     = areas[i];
+          for (unsigned int d = 0; d < dim; ++d)
+            sides[i].normal[d] = normal[d];
+        }
+      const auto add_sides = [&](const unsigned int condition) {
+        for (unsigned int i = 0; i < on_face.size(); ++i)
+          {
+            sides[i].condition = condition;
+            on_face[i]->sides.push_back(sides[i]);
+          }
+      };
+
+      for (unsigned int s = 0; s < scene.supports.size(); ++s)
+        if (const auto &support = scene.supports[s]; !support.point && here(support.where))
+          {
+            for (auto *node : on_face)
+              for (unsigned int c = 0; c < dim; ++c)
+                if (support.components[c])
+                  hold(*node, axis<dim>(c), support.components[c]->value(node->point(), t), c);
+            if (support.normal)
+              add_sides(s);
+          }
+      for (unsigned int s = 0; s < scene.foundations.size(); ++s)
+        if (here(scene.foundations[s].where))
+          add_sides(scene.supports.size() + s);
 
       for (unsigned int k = 0; k < scene.contacts.size(); ++k)
-        if (here(scene.contacts[k].slave))
-          {
-            values.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell), f);
-            for (unsigned int i = 0; i < on_face.size(); ++i)
+        if (const auto &pair = scene.contacts[k]; !pair.master && here(pair.slave))
+          for (unsigned int i = 0; i < on_face.size(); ++i)
+            {
+              auto &of_node = on_face[i]->areas;
+              if (of_node.empty() || of_node.back().first != k)
+                of_node.emplace_back(k, 0.);
+              of_node.back().second += areas[i];
+            }
+    }
+
+    /// The vertex that a point support holds, on every rank. Collective.
+    template <int dim>
+    GlobalVertex held_vertex(const scene::Scene<dim>                  &scene,
+                             const Mesh<dim>                          &mesh,
+                             const scene::PrescribedDisplacement<dim> &support)
+    {
+      const auto &where = *support.point;
+      if (!where.point.empty())
+        return mesh.points[where.body].at(where.point).vertex;
+      using Candidate = std::tuple<double, double, double, double, GlobalVertex>; // distance, -cell size, x, y, vertex
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      Candidate        best{infinity, 0., 0., 0., 0};
+      for (const auto &subdomain : mesh.subdomains)
+        if (subdomain->body == where.body)
+          for (const auto &cell : subdomain->triangulation.active_cell_iterators())
+            for (const unsigned int v : cell->vertex_indices())
               {
-                const unsigned int local = spaces.scalar_element.face_to_cell_index(i, f);
-                double             area  = 0;
-                for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
-                  area += values.shape_value(local, q) * values.JxW(q);
-                area *= scene.bodies[subdomain.body].thickness;
-                auto &areas = nodes[on_face[i]].areas;
-                if (areas.empty() || areas.back().first != k)
-                  areas.emplace_back(k, 0.);
-                areas.back().second += area;
+                const auto x = cell->vertex(v);
+                best         = std::min(best,
+                                Candidate{where.coordinates->distance(x),
+                                          -cell->diameter(),
+                                          x[0],
+                                          x[1],
+                                          subdomain->global_vertices[cell->vertex_index(v)]});
               }
+      std::array<double, 4> own{{std::get<0>(best), std::get<1>(best), std::get<2>(best), std::get<3>(best)}};
+      for (const auto &[other, vertex] :
+           dealii::Utilities::MPI::all_gather(mesh.comm, std::make_pair(own, std::get<4>(best))))
+        best = std::min(best, Candidate{other[0], other[1], other[2], other[3], vertex});
+      if (!(std::get<0>(best) <= -std::get<1>(best) / 2))
+        throw InputError(format("Support %s: no node of body %s lies within half a cell of (%g, %g); the nearest is at "
+                                "(%g, %g)",
+                                support.name.c_str(),
+                                scene.bodies[where.body].name.c_str(),
+                                (*where.coordinates)[0],
+                                (*where.coordinates)[1],
+                                std::get<2>(best),
+                                std::get<3>(best)),
+                         "give a point of the body");
+      return std::get<4>(best);
+    }
+
+    /// What point supports say; @p held: vertex of every support, those of boundaries unused.
+    template <int dim>
+    void add_points(const scene::Scene<dim>         &scene,
+                    const Mesh<dim>                 &mesh,
+                    const Spaces<dim>               &spaces,
+                    const std::vector<GlobalVertex> &held,
+                    const unsigned int               p,
+                    const double                     t,
+                    NodesOfSubdomain<dim>           &nodes)
+    {
+      const auto &subdomain = *mesh.subdomains[p];
+      for (unsigned int s = 0; s < scene.supports.size(); ++s)
+        if (const auto &support = scene.supports[s]; support.point && support.point->body == subdomain.body)
+          {
+            bool is_done = false;
+            for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
+              for (const unsigned int v : cell->vertex_indices())
+                if (!is_done && subdomain.global_vertices[cell->vertex_index(v)] == held[s])
+                  {
+                    const unsigned int  number = cell->vertex_dof_index(v, 0) / dim;
+                    InterfaceNode<dim> &node   = nodes[number];
+                    node.key                   = {{held[s], held[s]}};
+                    node.body                  = subdomain.body;
+                    node.copies                = {{subdomain.subdomain, number}};
+                    for (unsigned int d = 0; d < dim; ++d)
+                      node.position[d] = cell->vertex(v)[d];
+                    for (unsigned int c = 0; c < dim; ++c)
+                      if (support.components[c])
+                        hold(node, axis<dim>(c), support.components[c]->value(node.point(), t), c);
+                    is_done = true;
+                  }
           }
     }
 
     template <int dim>
-    NodesOfSubdomain<dim> boundary_nodes(const scene::Scene<dim> &scene,
-                                         const Mesh<dim>         &mesh,
-                                         const Spaces<dim>       &spaces,
-                                         const unsigned int       p,
-                                         const double             t)
+    NodesOfSubdomain<dim> boundary_nodes(const scene::Scene<dim>         &scene,
+                                         const Mesh<dim>                 &mesh,
+                                         const Spaces<dim>               &spaces,
+                                         const std::vector<GlobalVertex> &held,
+                                         const unsigned int               p,
+                                         const double                     t)
     {
-      NodesOfSubdomain<dim>     nodes;
-      dealii::FEFaceValues<dim> values(spaces.mapping,
-                                       spaces.scalar_element,
-                                       dealii::QGauss<dim - 1>(spaces.element.degree + 1),
-                                       dealii::update_values | dealii::update_JxW_values);
+      NodesOfSubdomain<dim> nodes;
       for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
         for (const unsigned int f : cell->face_indices())
           if (cell->face(f)->at_boundary())
-            add_face(scene, mesh, *mesh.subdomains[p], spaces, cell, f, t, values, nodes);
+            add_face(scene, mesh, *mesh.subdomains[p], spaces, cell, f, t, nodes);
+      add_points(scene, mesh, spaces, held, p, t, nodes);
       return nodes;
     }
 
@@ -115,9 +201,14 @@ namespace slipstick::fem
     void merge(InterfaceNode<dim> &node, const InterfaceNode<dim> &other)
     {
       node.copies.insert(node.copies.end(), other.copies.begin(), other.copies.end());
-      for (unsigned int c = 0; c < dim; ++c)
-        if (other.held >> c & 1u)
-          merge_support(node, c, other.prescribed[c]);
+      for (const auto &held : other.held)
+        {
+          dealii::Tensor<1, dim> direction;
+          for (unsigned int d = 0; d < dim; ++d)
+            direction[d] = held.direction[d];
+          hold(node, direction, held.value, held.which);
+        }
+      node.sides.insert(node.sides.end(), other.sides.begin(), other.sides.end());
       for (const auto &[pair, area] : other.areas)
         {
           auto found =
@@ -128,6 +219,18 @@ namespace slipstick::fem
             found->second += area;
         }
       std::sort(node.areas.begin(), node.areas.end());
+    }
+
+    /// Bonds to an obstacle hold all components where they are.
+    template <int dim>
+    void hold_bonds(InterfaceNode<dim> &node, const scene::Scene<dim> &scene, const double t)
+    {
+      for (const auto &[k, area] : node.areas)
+        if (const auto &pair = scene.contacts[k];
+            pair.law == scene::ContactLaw::bonded &&
+            !(pair.reach && contact_with(scene.obstacles[pair.obstacle], node.point(), t).gap > *pair.reach))
+          for (unsigned int c = 0; c < dim; ++c)
+            hold(node, axis<dim>(c), 0., c);
     }
 
     template <int dim>
@@ -164,13 +267,19 @@ namespace slipstick::fem
   std::vector<InterfaceNode<dim>> interface_nodes(const scene::Scene<dim> &scene,
                                                   const Mesh<dim>         &mesh,
                                                   const Spaces<dim>       &spaces,
+                                                  const BodyContacts<dim> &contacts,
                                                   const double             t)
   {
-    const unsigned int                                      n_ranks = mesh.first_subdomain.size() - 1;
+    const unsigned int        n_ranks = mesh.first_subdomain.size() - 1;
+    std::vector<GlobalVertex> held(scene.supports.size(), 0);
+    for (unsigned int s = 0; s < scene.supports.size(); ++s)
+      if (scene.supports[s].point)
+        held[s] = held_vertex(scene, mesh, scene.supports[s]);
+
     std::map<unsigned int, std::vector<InterfaceNode<dim>>> to_meet;
     collectively(mesh.comm, [&] {
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
-        for (auto &[number, node] : boundary_nodes(scene, mesh, spaces, p, t))
+        for (auto &[number, node] : boundary_nodes(scene, mesh, spaces, held, p, t))
           to_meet[(node.key[0] + node.key[1]) % n_ranks].push_back(std::move(node));
     });
     auto met = send_and_receive(mesh.comm, to_meet);
@@ -179,17 +288,27 @@ namespace slipstick::fem
     collectively(mesh.comm, [&] {
       merge_copies(met);
       for (auto &node : met)
-        if (node.copies.size() > 1 || node.held != 0 || !node.areas.empty())
-          to_owner[mesh.rank_of_subdomain(node.copies.front().first)].push_back(std::move(node));
+        {
+          const auto owner = contacts.owner.find(node.key);
+          node.is_paired   = owner != contacts.owner.end();
+          hold_bonds(node, scene, t);
+          if (node.copies.size() > 1 || node.is_acted_on())
+            to_owner[mesh.rank_of_subdomain(node.is_paired ? owner->second : node.copies.front().first)].push_back(
+              std::move(node));
+        }
     });
     auto owned = send_and_receive(mesh.comm, to_owner);
-    std::sort(owned.begin(), owned.end(), by_key_and_copy<dim>);
+    collectively(mesh.comm, [&] {
+      std::sort(owned.begin(), owned.end(), by_key_and_copy<dim>);
+      for (auto &node : owned)
+        resolve_sides(node, scene, t);
+    });
     return owned;
   }
 
-  template struct InterfaceNode<2>;
   template std::vector<InterfaceNode<2>> interface_nodes(const scene::Scene<2> &,
                                                          const Mesh<2> &,
                                                          const Spaces<2> &,
+                                                         const BodyContacts<2> &,
                                                          const double);
 } // namespace slipstick::fem

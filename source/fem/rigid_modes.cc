@@ -37,7 +37,7 @@ namespace slipstick::fem
   }
 
   template <int dim>
-  void rigid_modes(const Spaces<dim>             &spaces,
+  void rigid_modes(const Element<dim>            &element,
                    const dealii::DoFHandler<dim> &dof_handler,
                    const Frame<dim>              &body,
                    Eigen::MatrixXd               &kernel,
@@ -45,7 +45,7 @@ namespace slipstick::fem
   {
     static_assert(dim == 2, "one rotation: two dimensions");
     std::vector<dealii::Point<dim>> points(dof_handler.n_dofs());
-    dealii::DoFTools::map_dofs_to_support_points(spaces.mapping, dof_handler, points);
+    dealii::DoFTools::map_dofs_to_support_points(*element.mapping, dof_handler, points);
 
     Frame<dim> own;
     for (const auto &x : points)
@@ -71,7 +71,7 @@ namespace slipstick::fem
   }
 
   template std::vector<Frame<2>> body_frames(const scene::Scene<2> &, const Mesh<2> &);
-  template void                  rigid_modes(const Spaces<2> &,
+  template void                  rigid_modes(const Element<2> &,
                                              const dealii::DoFHandler<2> &,
                                              const Frame<2> &,
                                              Eigen::MatrixXd &,

@@ -1,10 +1,11 @@
-#include <slipstick/fem/assembly.h>
+#include <slipstick/base/collective.h>
 #include <slipstick/fem/cell_values.h>
+#include <slipstick/fem/dilatation.h>
+#include <slipstick/fem/elasticity.h>
 #include <slipstick/fem/stress.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_dgq.h>
+#include <deal.II/dofs/dof_tools.h>
 
 namespace slipstick::fem
 {
@@ -12,61 +13,112 @@ namespace slipstick::fem
   {
     constexpr unsigned int n_components = 3; // xx, yy, xy
 
-    using Stress = Eigen::Array3d;
-
     /// What one subdomain needs again and again.
     template <int dim>
-    struct Body
+    struct Subdomain
     {
-      LameCoefficients lame;
-      double           thickness;
+      Subdomain(const scene::Scene<dim> &scene,
+                const Mesh<dim>         &mesh,
+                const Spaces<dim>       &spaces,
+                const unsigned int       p,
+                const double             t)
+        : element(spaces.of(p))
+        , dof_handler(*spaces.dof_handlers[p])
+        , thickness(scene.bodies[mesh.subdomains[p]->body].thickness)
+        , law(scene.materials[scene.bodies[mesh.subdomains[p]->body].material], scene.plane_state)
+        , temperature(scene, mesh.subdomains[p]->body, t)
+        , project(scene.discretization.element == scene::ElementKind::nearly_incompressible)
+      {}
 
-      Stress stress(const dealii::Tensor<2, dim> &gradient) const
-      {
-        const double divergence = trace(gradient);
-        return {lame.lambda * divergence + 2 * lame.mu * gradient[0][0],
-                lame.lambda * divergence + 2 * lame.mu * gradient[1][1],
-                lame.mu * (gradient[0][1] + gradient[1][0])};
-      }
-
-      /// sigma : C^-1 : sigma
-      double energy(const Stress &s) const
-      {
-        const double mean = lame.lambda / (2 * (lame.lambda + lame.mu)) * (s[0] + s[1]);
-        return (s[0] * (s[0] - mean) + s[1] * (s[1] - mean) + 2 * s[2] * s[2]) / (2 * lame.mu);
-      }
+      const Element<dim>            &element;
+      const dealii::DoFHandler<dim> &dof_handler;
+      double                         thickness;
+      PlaneLaw                       law;
+      TemperatureOfBody<dim>         temperature;
+      bool                           project; // the dilatation
     };
 
+    /// Stresses of the displacement at the points of a rule, one cell after the other.
     template <int dim>
-    Body<dim> body_of(const scene::Scene<dim> &scene, const unsigned int body)
+    class CellStress
     {
-      return {lame_coefficients(scene.materials[scene.bodies[body].material], scene.plane_state),
-              scene.bodies[body].thickness};
-    }
+    public:
+      CellStress(const Subdomain<dim> &on_, const dealii::Quadrature<dim> &points)
+        : on(on_)
+        , values(*on.element.mapping, *on.element.scalar, points, flags())
+        , all_values(*on.element.mapping, *on.element.scalar, on.element.stiffness, flags())
+        , projection(on.element)
+        , stress(points.size(), n_components)
+        , dilatation(points.size())
+        , temperature(Eigen::VectorXd::Zero(points.size()))
+        , of_projection(on.element.stiffness.size())
+        , real_points(points.size())
+      {}
 
-    /// Displacement gradient at point q; u at the cell's nodes.
-    template <int dim>
-    dealii::Tensor<2, dim> gradient(const dealii::FEValues<dim> &values, const unsigned int q, const Eigen::MatrixXd &u)
-    {
-      dealii::Tensor<2, dim> sum;
-      for (unsigned int i = 0; i < values.dofs_per_cell; ++i)
-        for (unsigned int c = 0; c < dim; ++c)
-          sum[c] += u(c, i) * values.shape_grad(i, q);
-      return sum;
-    }
+      /// @p u: displacement at the nodes of the cell, dim x nodes. @return points x (xx, yy, xy).
+      const Eigen::MatrixXd &reinit(const typename CellValues<dim>::Cell &cell, const Eigen::MatrixXd &u)
+      {
+        values.reinit(cell);
+        if (!on.temperature.is_zero())
+          for (unsigned int q = 0; q < temperature.size(); ++q)
+            temperature[q] = on.temperature(values.point(q));
+        if (on.project)
+          project_dilatation(cell, u);
+        for (unsigned int q = 0; q < temperature.size(); ++q)
+          {
+            const auto gradient = gradient_at(*values, q, u);
+            if (!on.project)
+              dilatation[q] = trace(gradient) - on.law.volume_expansion * temperature[q];
+            stress.row(q) = on.law.stress(gradient, dilatation[q], temperature[q]).matrix().transpose();
+          }
+        return stress;
+      }
 
-    /// Nodes of a cell in the order of the scalar element.
-    template <int dim>
-    std::vector<unsigned int> nodes_of(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-                                       const dealii::FESystem<dim>                                  &element,
-                                       std::vector<dealii::types::global_dof_index>                 &dofs)
-    {
-      cell->get_dof_indices(dofs);
-      std::vector<unsigned int> nodes(element.n_dofs_per_cell() / dim);
-      for (unsigned int i = 0; i < nodes.size(); ++i)
-        nodes[i] = dofs[element.component_to_system_index(0, i)] / dim;
-      return nodes;
-    }
+      double JxW(const unsigned int q) const
+      {
+        return (*values).JxW(q);
+      }
+
+    private:
+      dealii::UpdateFlags flags() const
+      {
+        return on.project || !on.temperature.is_zero() ? dealii::update_quadrature_points : dealii::update_default;
+      }
+
+      static dealii::Tensor<2, dim> gradient_at(const dealii::FEValues<dim> &values,
+                                                const unsigned int           q,
+                                                const Eigen::MatrixXd       &u)
+      {
+        dealii::Tensor<2, dim> sum;
+        for (unsigned int i = 0; i < values.dofs_per_cell; ++i)
+          for (unsigned int c = 0; c < dim; ++c)
+            sum[c] += u(c, i) * values.shape_grad(i, q);
+        return sum;
+      }
+
+      /// As in the stiffness: projected from the points of its rule, then taken at our points.
+      void project_dilatation(const typename CellValues<dim>::Cell &cell, const Eigen::MatrixXd &u)
+      {
+        if (all_values.reinit(cell))
+          projection.reinit(*all_values);
+        for (unsigned int q = 0; q < of_projection.size(); ++q)
+          {
+            of_projection[q] = trace(gradient_at(*all_values, q, u));
+            if (!on.temperature.is_zero())
+              of_projection[q] -= on.law.volume_expansion * on.temperature(all_values.point(q));
+          }
+        for (unsigned int q = 0; q < real_points.size(); ++q)
+          real_points[q] = (*values).quadrature_point(q); // of the cell that both were computed for
+        dilatation = projection.projected_at(of_projection, real_points);
+      }
+
+      const Subdomain<dim>           &on;
+      CellValues<dim>                 values, all_values;
+      DilatationProjection<dim>       projection;
+      Eigen::MatrixXd                 stress;
+      Eigen::VectorXd                 dilatation, temperature, of_projection;
+      std::vector<dealii::Point<dim>> real_points;
+    };
 
     template <int dim>
     Eigen::MatrixXd displacement_at(const std::vector<unsigned int> &nodes, const Eigen::VectorXd &u)
@@ -78,36 +130,43 @@ namespace slipstick::fem
       return local;
     }
 
+    /// From values at the points of Element::stress to values at the nodes of a cell, by the polynomial of one degree
+    /// less through those points.
+    template <int dim>
+    Eigen::MatrixXd extrapolation_to_nodes(const Element<dim> &element)
+    {
+      const auto     &points = element.stress;
+      Eigen::MatrixXd at_points(points.size(), points.size()), at_nodes(element.n_nodes(), points.size());
+      const auto      monomials = [&](const dealii::Point<dim> &x, auto &&row) {
+        const std::array<double, 4> values{{1, x[0], x[1], x[0] * x[1]}}; // constant; linear; bilinear
+        for (unsigned int k = 0; k < points.size(); ++k)
+          row[k] = values[k];
+      };
+      for (unsigned int q = 0; q < points.size(); ++q)
+        monomials(points.point(q), at_points.row(q));
+      for (unsigned int i = 0; i < element.n_nodes(); ++i)
+        monomials(element.scalar->unit_support_point(i), at_nodes.row(i));
+      return at_nodes * at_points.inverse();
+    }
+
     /// Sums over cells around every node: area times stress, area (last column).
     template <int dim>
-    Eigen::MatrixXd weighted_stress(const Body<dim>               &body,
-                                    const Spaces<dim>             &spaces,
-                                    const dealii::DoFHandler<dim> &dof_handler,
-                                    const Eigen::VectorXd         &u)
+    Eigen::MatrixXd weighted_stress(const Subdomain<dim> &on, const Eigen::VectorXd &u)
     {
-      const unsigned int                           degree = spaces.element.degree;
-      const dealii::QGauss<dim>                    points(degree); // one per direction for degree 1, two for degree 2
-      const dealii::FE_DGQArbitraryNodes<dim>      lower(dealii::QGauss<1>{degree}); // polynomials through those points
-      CellValues<dim>                              values(spaces.mapping, spaces.scalar_element, points);
+      const auto                                  &element       = on.element;
+      const auto                                  &points        = element.stress;
+      const Eigen::MatrixXd                        extrapolation = extrapolation_to_nodes(element);
+      CellStress<dim>                              stress(on, points);
       Eigen::MatrixXd                              sums = Eigen::MatrixXd::Zero(u.size() / dim, n_components + 1);
-      std::vector<dealii::types::global_dof_index> dofs(spaces.element.n_dofs_per_cell());
-      Eigen::MatrixXd extrapolation(spaces.scalar_element.n_dofs_per_cell(), points.size());
-      for (unsigned int i = 0; i < extrapolation.rows(); ++i)
-        for (unsigned int q = 0; q < points.size(); ++q)
-          extrapolation(i, q) = lower.shape_value(q, spaces.scalar_element.unit_support_point(i));
-
-      Eigen::MatrixXd at_points(points.size(), n_components);
-      for (const auto &cell : dof_handler.active_cell_iterators())
+      std::vector<dealii::types::global_dof_index> dofs;
+      std::vector<unsigned int>                    nodes;
+      for (const auto &cell : on.dof_handler.active_cell_iterators())
         {
-          values.reinit(cell);
-          const auto nodes = nodes_of<dim>(cell, spaces.element, dofs);
-          const auto local = displacement_at<dim>(nodes, u);
-          double     area  = 0;
+          element.nodes_of(cell, dofs, nodes);
+          const auto &at_points = stress.reinit(cell, displacement_at<dim>(nodes, u));
+          double      area      = 0;
           for (unsigned int q = 0; q < points.size(); ++q)
-            {
-              at_points.row(q) = body.stress(gradient(*values, q, local)).matrix().transpose();
-              area += (*values).JxW(q);
-            }
+            area += stress.JxW(q);
           const Eigen::MatrixXd at_nodes = area * extrapolation * at_points;
           for (unsigned int i = 0; i < nodes.size(); ++i)
             {
@@ -139,81 +198,93 @@ namespace slipstick::fem
 
     /// Squared energy norms of the computed stress and of its difference to the recovered one.
     template <int dim>
-    std::pair<double, double> estimate(const Body<dim>               &body,
-                                       const Spaces<dim>             &spaces,
-                                       const dealii::DoFHandler<dim> &dof_handler,
-                                       const Eigen::VectorXd         &u,
-                                       SubdomainStress               &stress)
+    std::pair<double, double> estimate(const Subdomain<dim> &on, const Eigen::VectorXd &u, SubdomainStress &stress)
     {
-      const dealii::QGauss<dim>                    points(spaces.element.degree + 1);
-      CellValues<dim>                              values(spaces.mapping, spaces.scalar_element, points);
-      std::vector<dealii::types::global_dof_index> dofs(spaces.element.n_dofs_per_cell());
-      std::pair<double, double>                    squares{0, 0};
-      stress.error.resize(dof_handler.get_triangulation().n_active_cells());
-      for (const auto &cell : dof_handler.active_cell_iterators())
+      const auto                                  &element = on.element;
+      const dealii::Quadrature<dim>                points  = element.cell_quadrature(element.degree + 1);
+      CellStress<dim>                              computed(on, points);
+      std::vector<dealii::types::global_dof_index> dofs;
+      std::vector<unsigned int>                    nodes;
+      Eigen::MatrixXd                              shapes(points.size(), element.n_nodes());
+      for (unsigned int q = 0; q < points.size(); ++q)
+        for (unsigned int i = 0; i < shapes.cols(); ++i)
+          shapes(q, i) = element.scalar->shape_value(i, points.point(q));
+      std::pair<double, double> squares{0, 0};
+      stress.error.resize(on.dof_handler.get_triangulation().n_active_cells());
+      for (const auto &cell : on.dof_handler.active_cell_iterators())
         {
-          values.reinit(cell);
-          const auto nodes = nodes_of<dim>(cell, spaces.element, dofs);
-          const auto local = displacement_at<dim>(nodes, u);
-          double     error = 0;
+          element.nodes_of(cell, dofs, nodes);
+          const auto &at_points = computed.reinit(cell, displacement_at<dim>(nodes, u));
+          double      error     = 0;
           for (unsigned int q = 0; q < points.size(); ++q)
             {
-              const Stress computed  = body.stress(gradient(*values, q, local));
-              Stress       recovered = Stress::Zero();
+              Eigen::Array3d difference = -at_points.row(q).transpose().array();
               for (unsigned int i = 0; i < nodes.size(); ++i)
-                recovered += spaces.scalar_element.shape_value(i, points.point(q)) *
-                             stress.nodal.row(nodes[i]).transpose().array();
-              const double weight = (*values).JxW(q) * body.thickness;
-              squares.first += body.energy(computed) * weight;
-              error += body.energy(recovered - computed) * weight;
+                difference +=
+                  shapes(q, i) * stress.nodal.row(nodes[i]).template head<n_components>().transpose().array();
+              const double weight = computed.JxW(q) * on.thickness;
+              squares.first += on.law.energy(at_points.row(q).transpose().array()) * weight;
+              error += on.law.energy(difference) * weight;
             }
           stress.error[cell->active_cell_index()] = std::sqrt(error);
           squares.second += error;
         }
       return squares;
     }
+
+    /// Mean stress of the cells around every node, with zz; @p sums as weighted_stress() gives them.
+    template <int dim>
+    Eigen::MatrixXd nodal_stress(const Subdomain<dim> &on, const Eigen::MatrixXd &sums)
+    {
+      Eigen::MatrixXd nodal(sums.rows(), n_components + 1);
+      nodal.leftCols(n_components) = sums.leftCols(n_components).array().colwise() / sums.col(n_components).array();
+      std::vector<dealii::Point<dim>> positions;
+      if (!on.temperature.is_zero())
+        {
+          positions.resize(on.dof_handler.n_dofs());
+          dealii::DoFTools::map_dofs_to_support_points(*on.element.mapping, on.dof_handler, positions);
+        }
+      for (unsigned int i = 0; i < nodal.rows(); ++i)
+        nodal(i, n_components) =
+          on.law.zz(nodal(i, 0), nodal(i, 1), positions.empty() ? 0. : on.temperature(positions[dim * i]));
+      return nodal;
+    }
   } // namespace
-
-  double out_of_plane_factor(const scene::Material &material, const scene::PlaneState state)
-  {
-    return state == scene::PlaneState::plane_strain ? material.poisson_ratio : 0.;
-  }
-
-  double von_mises(const double xx, const double yy, const double xy, const double zz)
-  {
-    return std::sqrt(((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 2 + 3 * xy * xy);
-  }
 
   template <int dim>
   StressResult recover_stress(const scene::Scene<dim>            &scene,
                               const Mesh<dim>                    &mesh,
                               const Spaces<dim>                  &spaces,
                               const tfeti::Constraints           &constraints,
-                              const std::vector<Eigen::VectorXd> &u)
+                              const std::vector<Eigen::VectorXd> &u,
+                              const double                        t)
   {
     std::vector<Eigen::MatrixXd> sums;
-    for (unsigned int p = 0; p < u.size(); ++p)
-      sums.push_back(weighted_stress(body_of(scene, mesh.subdomains[p]->body), spaces, *spaces.dof_handlers[p], u[p]));
+    collectively(mesh.comm, [&] { // a formula of the temperature may give no number on one rank alone
+      for (unsigned int p = 0; p < u.size(); ++p)
+        sums.push_back(weighted_stress(Subdomain<dim>(scene, mesh, spaces, p, t), u[p]));
+    });
     add_copies<dim>(constraints, sums);
 
     StressResult result;
-    for (unsigned int p = 0; p < u.size(); ++p)
-      {
-        const unsigned int body = mesh.subdomains[p]->body;
-        SubdomainStress    stress;
-        stress.nodal = sums[p].leftCols(n_components).array().colwise() / sums[p].col(n_components).array();
-        sums[p].resize(0, 0);
-        const double zz = out_of_plane_factor(scene.materials[scene.bodies[body].material], scene.plane_state);
-        for (unsigned int i = 0; i < stress.nodal.rows(); ++i)
-          {
-            const auto s         = stress.nodal.row(i);
-            result.max_von_mises = std::max(result.max_von_mises, von_mises(s[0], s[1], s[2], zz * (s[0] + s[1])));
-          }
-        const auto [energy, error] = estimate(body_of(scene, body), spaces, *spaces.dof_handlers[p], u[p], stress);
-        result.energy_squared += energy;
-        result.error_squared += error;
-        result.subdomains.push_back(std::move(stress));
-      }
+    collectively(mesh.comm, [&] {
+      for (unsigned int p = 0; p < u.size(); ++p)
+        {
+          const Subdomain<dim> on(scene, mesh, spaces, p, t);
+          SubdomainStress      stress;
+          stress.nodal = nodal_stress(on, sums[p]);
+          sums[p].resize(0, 0);
+          for (unsigned int i = 0; i < stress.nodal.rows(); ++i)
+            {
+              const auto s         = stress.nodal.row(i);
+              result.max_von_mises = std::max(result.max_von_mises, von_mises(s[0], s[1], s[2], s[3]));
+            }
+          const auto [energy, error] = estimate(on, u[p], stress);
+          result.energy_squared += energy;
+          result.error_squared += error;
+          result.subdomains.push_back(std::move(stress));
+        }
+    });
     result.max_von_mises  = dealii::Utilities::MPI::max(result.max_von_mises, mesh.comm);
     result.energy_squared = dealii::Utilities::MPI::sum(result.energy_squared, mesh.comm);
     result.error_squared  = dealii::Utilities::MPI::sum(result.error_squared, mesh.comm);
@@ -224,5 +295,6 @@ namespace slipstick::fem
                                        const Mesh<2> &,
                                        const Spaces<2> &,
                                        const tfeti::Constraints &,
-                                       const std::vector<Eigen::VectorXd> &);
+                                       const std::vector<Eigen::VectorXd> &,
+                                       const double);
 } // namespace slipstick::fem

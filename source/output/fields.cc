@@ -1,5 +1,6 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/base/log.h>
+#include <slipstick/fem/elasticity.h>
 #include <slipstick/output/fields.h>
 
 #include <deal.II/base/mpi.h>
@@ -15,24 +16,20 @@ namespace slipstick::output
 {
   namespace
   {
-    /// Names of what one node carries: displacement, stress xx yy xy.
+    /// What one node carries: displacement, stress xx yy xy zz.
     template <int dim>
-    constexpr unsigned int n_nodal_values = dim + dim *(dim + 1) / 2;
+    constexpr unsigned int n_nodal_values = dim + 4;
 
     /// From displacement and stress components to the fields that users look at.
     template <int dim>
     class Fields : public dealii::DataPostprocessor<dim>
     {
     public:
-      explicit Fields(const double out_of_plane_)
-        : out_of_plane(out_of_plane_)
-      {}
-
       std::vector<std::string> get_names() const override
       {
         std::vector<std::string> names(dim, "displacement");
         names.insert(names.end(), dim * dim, "stress");
-        names.insert(names.end(), {"von_mises", "principal_stress_1", "principal_stress_2"});
+        names.insert(names.end(), {"stress_zz", "von_mises", "principal_stress_1", "principal_stress_2"});
         return names;
       }
 
@@ -42,7 +39,7 @@ namespace slipstick::output
         using namespace dealii::DataComponentInterpretation;
         std::vector<DataComponentInterpretation> kinds(dim, component_is_part_of_vector);
         kinds.insert(kinds.end(), dim * dim, component_is_part_of_tensor);
-        kinds.insert(kinds.end(), 3, component_is_scalar);
+        kinds.insert(kinds.end(), 4, component_is_scalar);
         return kinds;
       }
 
@@ -59,24 +56,14 @@ namespace slipstick::output
           {
             const auto  &in  = input.solution_values[q];
             auto        &out = computed[q];
-            const double xx = in[2], yy = in[3], xy = in[4];
+            const double xx = in[2], yy = in[3], xy = in[4], zz = in[5];
             const double mean = (xx + yy) / 2, radius = std::hypot((xx - yy) / 2, xy);
             unsigned int k = 0;
-            for (const double value : {in[0],
-                                       in[1],
-                                       xx,
-                                       xy,
-                                       xy,
-                                       yy,
-                                       fem::von_mises(xx, yy, xy, out_of_plane * (xx + yy)),
-                                       mean + radius,
-                                       mean - radius})
+            for (const double value :
+                 {in[0], in[1], xx, xy, xy, yy, zz, fem::von_mises(xx, yy, xy, zz), mean + radius, mean - radius})
               out[k++] = value;
           }
       }
-
-    private:
-      double out_of_plane;
     };
 
     std::string vtu_name(const unsigned int step, const unsigned int subdomain)
@@ -129,22 +116,20 @@ namespace slipstick::output
 
     /// One .vtu; the subdomain that comes first also writes the .pvtu, whose fields are the same.
     template <int dim>
-    void write_subdomain(const OutputDirectory       &directory,
-                         const scene::Scene<dim>     &scene,
-                         const fem::Mesh<dim>        &mesh,
-                         const fem::Spaces<dim>      &spaces,
-                         const unsigned int           p,
-                         const dealii::FESystem<dim> &element,
-                         const Eigen::VectorXd       &u,
-                         const fem::SubdomainStress  &stress,
-                         const unsigned int           step)
+    void write_subdomain(const OutputDirectory      &directory,
+                         const fem::Mesh<dim>       &mesh,
+                         const fem::Spaces<dim>     &spaces,
+                         const unsigned int          p,
+                         const Eigen::VectorXd      &u,
+                         const fem::SubdomainStress &stress,
+                         const unsigned int          step)
     {
-      const auto             &subdomain = *mesh.subdomains[p];
-      dealii::DoFHandler<dim> all(subdomain.triangulation);
+      const auto                 &subdomain = *mesh.subdomains[p];
+      const dealii::FESystem<dim> element(*spaces.of(p).scalar, n_nodal_values<dim>);
+      dealii::DoFHandler<dim>     all(subdomain.triangulation);
       all.distribute_dofs(element);
-      const auto        values = nodal_values(all, *spaces.dof_handlers[p], u, stress.nodal);
-      const Fields<dim> fields(
-        fem::out_of_plane_factor(scene.materials[scene.bodies[subdomain.body].material], scene.plane_state));
+      const auto                   values = nodal_values(all, *spaces.dof_handlers[p], u, stress.nodal);
+      const Fields<dim>            fields;
       const dealii::Vector<double> error(stress.error.data(), stress.error.data() + stress.error.size());
       const auto body = constant(subdomain, subdomain.body), number = constant(subdomain, subdomain.subdomain),
                  owner = constant(subdomain, mesh.rank_of_subdomain(subdomain.subdomain));
@@ -160,7 +145,7 @@ namespace slipstick::output
       data_out.add_data_vector(number, "subdomain", dealii::DataOut<dim>::type_cell_data);
       data_out.add_data_vector(owner, "rank", dealii::DataOut<dim>::type_cell_data);
       data_out.add_data_vector(error, "error_estimate", dealii::DataOut<dim>::type_cell_data);
-      data_out.build_patches(spaces.mapping, spaces.element.degree);
+      data_out.build_patches(*spaces.of(p).mapping, spaces.degree);
       directory.write(vtu_name(step, subdomain.subdomain), [&](std::ostream &out) { data_out.write_vtu(out); });
       if (subdomain.subdomain == 0)
         directory.write(pvtu_name(step), [&](std::ostream &out) {
@@ -174,17 +159,15 @@ namespace slipstick::output
 
   template <int dim>
   void write_fields(const OutputDirectory              &directory,
-                    const scene::Scene<dim>            &scene,
                     const fem::Mesh<dim>               &mesh,
                     const fem::Spaces<dim>             &spaces,
                     const std::vector<Eigen::VectorXd> &u,
                     const fem::StressResult            &stress,
                     const unsigned int                  step)
   {
-    const dealii::FESystem<dim> element(spaces.scalar_element, n_nodal_values<dim>);
     collectively(mesh.comm, [&] {
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
-        write_subdomain(directory, scene, mesh, spaces, p, element, u[p], stress.subdomains[p], step);
+        write_subdomain(directory, mesh, spaces, p, u[p], stress.subdomains[p], step);
     });
   }
 
@@ -199,7 +182,6 @@ namespace slipstick::output
   }
 
   template void write_fields(const OutputDirectory &,
-                             const scene::Scene<2> &,
                              const fem::Mesh<2> &,
                              const fem::Spaces<2> &,
                              const std::vector<Eigen::VectorXd> &,

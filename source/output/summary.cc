@@ -61,23 +61,43 @@ namespace slipstick::output
               {"nodal_equilibrium", residuals.nodal_equilibrium}};
     }
 
-    Json json(const ResultSummary &results)
+    Json json(const std::vector<contact::PairResult> &contact)
     {
       Json pairs = Json::array();
-      for (const contact::PairResult &pair : results.contact)
+      for (const contact::PairResult &pair : contact)
         pairs.push_back({{"pair", pair.pair},
                          {"normal_force", pair.normal_force},
                          {"tangential_force", pair.tangential_force},
+                         {"moment_mismatch", pair.moment_mismatch},
                          {"max_pressure", pair.max_pressure},
                          {"contact_length", pair.contact_length},
                          {"contact_nodes", pair.contact_nodes},
                          {"open_nodes", pair.open_nodes},
                          {"stick_nodes", pair.stick_nodes},
                          {"slip_nodes", pair.slip_nodes}});
+      return pairs;
+    }
+
+    Json json(const std::vector<StepSummary> &steps)
+    {
+      Json list = Json::array();
+      for (const StepSummary &step : steps)
+        list.push_back({{"load_factor", step.load_factor},
+                        {"hessian_multiplications", step.hessian_multiplications},
+                        {"outer_iterations", step.outer_iterations},
+                        {"coulomb_iterations", step.coulomb_iterations},
+                        {"max_displacement", step.max_displacement},
+                        {"strain_energy", step.strain_energy},
+                        {"contact", json(step.contact)}});
+      return list;
+    }
+
+    Json json(const ResultSummary &results)
+    {
       return {{"max_displacement", results.max_displacement},
               {"max_von_mises", results.max_von_mises},
               {"strain_energy", results.strain_energy},
-              {"contact", pairs}};
+              {"contact", json(results.contact)}};
     }
 
     Json json(const TimeSummary &time)
@@ -122,6 +142,7 @@ namespace slipstick::output
                         {{"estimate_energy_relative", summary.error.estimate_energy_relative},
                          {"algebraic_relative", summary.error.algebraic_relative}}},
                        {"results", json(summary.results)},
+                       {"steps", json(summary.steps)},
                        {"time_s", json(summary.time_s)},
                        {"memory_mb",
                         {{"peak_rank_max", summary.memory_mb.peak_rank_max},

@@ -16,7 +16,20 @@ namespace slipstick::scene
                material.poisson_ratio,
                "-",
                Interval::inside(-1, 0.5),
-               "Poisson's ratio nu; 0.5 (incompressible) is excluded");
+               "Poisson's ratio nu; 0.5 (incompressible) is excluded; plane strain above 0.495: set "
+               "Discretization/Element");
+    add_number(prm,
+               "Density",
+               material.density,
+               "t/mm^3",
+               Interval{0},
+               "mass per volume, for accelerations and rotation");
+    add_number(prm,
+               "Thermal expansion",
+               material.expansion,
+               "1/K",
+               Interval(),
+               "coefficient of linear expansion alpha");
     prm.leave_subsection();
   }
 

@@ -1,3 +1,4 @@
+#include <slipstick/base/text.h>
 #include <slipstick/scene/checks.h>
 
 #include <map>
@@ -106,6 +107,19 @@ namespace slipstick::scene
                                "would change the bounds that SMALBE works with",
                                "set it to auto, or Solver/Algorithm to semismooth newton");
     }
+
+    // Poisson's ratio above which standard elements of plane strain are too stiff by much (bulk over shear modulus 100).
+    constexpr double locking_poisson_ratio = 0.495;
+
+    template <int dim>
+    void check_element(const Scene<dim> &scene, const Parameters &parameters)
+    {
+      if (scene.discretization.element == ElementKind::nearly_incompressible &&
+          scene.plane_state == PlaneState::plane_stress)
+        throw parameters.error("Discretization/Element",
+                               "is for plane strain; nothing locks in plane stress",
+                               "set it to standard, or Plane state = plane strain");
+    }
   } // namespace
 
   template <int dim>
@@ -115,7 +129,22 @@ namespace slipstick::scene
     check_boundaries_used_once(scene, parameters);
     check_decomposition(scene, parameters);
     check_algorithm(scene, parameters);
+    check_element(scene, parameters);
   }
 
-  template void check_scene(const Scene<2> &, const Parameters &);
+  template <int dim>
+  std::vector<std::string> warnings(const Scene<dim> &scene)
+  {
+    std::vector<std::string> texts;
+    if (scene.plane_state == PlaneState::plane_strain && scene.discretization.element == ElementKind::standard)
+      for (const Material &material : scene.materials)
+        if (material.poisson_ratio > locking_poisson_ratio)
+          texts.push_back("warning: standard elements lock in plane strain with Poisson ratio " +
+                          number_text(material.poisson_ratio) + " (Material " + material.name +
+                          "): displacements come out too small; set Discretization/Element = nearly incompressible");
+    return texts;
+  }
+
+  template void                     check_scene(const Scene<2> &, const Parameters &);
+  template std::vector<std::string> warnings(const Scene<2> &);
 } // namespace slipstick::scene

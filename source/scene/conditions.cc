@@ -94,40 +94,6 @@ namespace slipstick::scene
   }
 
   template <int dim>
-  TractionSection<dim>::TractionSection(const std::string &own_name)
-    : name(own_name)
-  {
-    components.fill("0");
-  }
-
-  template <int dim>
-  void TractionSection<dim>::declare(dealii::ParameterHandler &prm)
-  {
-    prm.enter_subsection("Traction " + name);
-    add_text(prm, "Boundary", boundary, "", boundary_format, "boundary that is loaded; must be set");
-    for (unsigned int d = 0; d < dim; ++d)
-      add_text(prm,
-               "Traction " + axes[d],
-               components[d],
-               "MPa",
-               field_format,
-               "force per undeformed area along " + axes[d]);
-    prm.leave_subsection();
-  }
-
-  template <int dim>
-  Traction<dim> TractionSection<dim>::read(const Parameters &parameters, const Scene<dim> &scene) const
-  {
-    const std::string section = "Traction " + name;
-    Traction<dim>     traction;
-    traction.name  = name;
-    traction.where = read_boundary(boundary, section + "/Boundary", parameters, scene.bodies);
-    for (unsigned int d = 0; d < dim; ++d)
-      traction.components[d] = Field<dim>(components[d], parameters.locate(section + "/Traction " + axes[d]));
-    return traction;
-  }
-
-  template <int dim>
   ContactSection<dim>::ContactSection(const std::string &own_name)
     : name(own_name)
   {}
@@ -182,6 +148,5 @@ namespace slipstick::scene
                                       const Parameters &,
                                       const std::vector<Body<2>> &);
   template struct SupportSection<2>;
-  template struct TractionSection<2>;
   template struct ContactSection<2>;
 } // namespace slipstick::scene

@@ -1,5 +1,10 @@
+#include <slipstick/base/text.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/sections.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
 
 namespace slipstick::scene
 {
@@ -131,6 +136,14 @@ namespace slipstick::scene
   {
     prm.enter_subsection("Discretization");
     add_count(prm, "Degree", discretization.degree, 1, 2, "polynomial degree of the elements");
+    add_choice(
+      prm,
+      "Element",
+      discretization.element,
+      Choices<ElementKind>{{"standard", ElementKind::standard},
+                           {"nearly incompressible", ElementKind::nearly_incompressible}},
+      "nearly incompressible: for plane strain with nu near 0.5, where standard elements lock; its dilatation is "
+      "projected on polynomials of one degree less");
     add_count(prm, "Refinements", discretization.refinements, 0, 10, "extra uniform refinements of the mesh");
     prm.leave_subsection();
   }
@@ -138,25 +151,76 @@ namespace slipstick::scene
   void declare(dealii::ParameterHandler &prm, SolverOptions &solver)
   {
     prm.enter_subsection("Solver");
-    add_choice(prm,
-               "Algorithm",
-               solver.algorithm,
-               Choices<Algorithm>{{"auto", Algorithm::automatic},
-                                  {"smalbe", Algorithm::smalbe},
-                                  {"semismooth newton", Algorithm::semismooth_newton},
-                                  {"pcg", Algorithm::pcg}},
-               "smalbe, semismooth newton: scenes with contact; pcg: linear scenes; auto: smalbe or pcg, as fits");
+    add_choice(
+      prm,
+      "Algorithm",
+      solver.algorithm,
+      Choices<Algorithm>{{"auto", Algorithm::automatic},
+                         {"smalbe", Algorithm::smalbe},
+                         {"semismooth newton", Algorithm::semismooth_newton},
+                         {"pcg", Algorithm::pcg}},
+      "smalbe, semismooth newton: scenes with contact; pcg: linear scenes; auto: semismooth newton or pcg, as fits");
     add_number(prm,
                "Tolerance",
                solver.tolerance,
                "-",
                Interval::inside(0, 1),
                "eps: projected gradient and G x relative to P d");
+    add_flag(prm,
+             "Prune contact",
+             solver.prune_contact,
+             "leave contact nodes that are far apart without multipliers, unless the solution makes them penetrate");
     declare_dual(prm, solver.dual);
     declare_smalbe(prm, solver.smalbe);
     prm.enter_subsection("PCG");
     add_count(prm, "Max iterations", solver.pcpg.max_iterations, 1, max_iterations, "iterations before giving up");
     prm.leave_subsection();
+    prm.leave_subsection();
+  }
+
+  void declare(dealii::ParameterHandler &prm, FrictionOptions &friction)
+  {
+    prm.enter_subsection("Friction");
+    add_number(prm,
+               "Tolerance",
+               friction.tolerance,
+               "-",
+               Interval::inside(0, 1),
+               "relative change of the slip bounds at which they count as found (Coulomb; Tresca where closed)");
+    add_count(prm, "Max iterations", friction.max_iterations, 1, max_iterations, "updates of the slip bounds");
+    prm.leave_subsection();
+  }
+
+  void declare_load_steps(dealii::ParameterHandler &prm, std::vector<double> &factors)
+  {
+    const auto parse = [](const std::string &text) {
+      std::vector<double> numbers;
+      for (const std::string &part : split_list(text))
+        {
+          const auto number = parse_number(part);
+          if (!number || !std::isfinite(*number))
+            return std::vector<double>();
+          numbers.push_back(*number);
+        }
+      return numbers;
+    };
+    std::string text;
+    for (const double factor : factors)
+      text += (text.empty() ? "" : ", ") + number_text(factor);
+    prm.enter_subsection("Load steps");
+    add_entry(
+      prm,
+      "Factors",
+      text,
+      "",
+      "load factors t of the steps, one after the other; slip is measured from the end of the step before",
+      "numbers separated by commas, rising",
+      [parse](const std::string &list) {
+        const auto numbers = parse(list);
+        return !numbers.empty() &&
+               std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<double>()) == numbers.end();
+      },
+      [parse, &factors](const std::string &list) { factors = parse(list); });
     prm.leave_subsection();
   }
 

@@ -64,7 +64,28 @@ namespace slipstick::tfeti
       }
     projector = std::make_unique<Projector>(systems, gluing, *F, rows.rows, std::vector<bool>(), comm);
 
-    // d = B K+ f - c
+    update_dual_load();
+    norm_PFP              = power_method(options);
+    setup_multiplications = F->n_applications();
+  }
+
+  void DualProblem::set_step(std::vector<Eigen::VectorXd> loads, std::vector<double> c)
+  {
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      systems[p]->set_load(std::move(loads[p]));
+    rows.c = std::move(c);
+    update_dual_load();
+  }
+
+  void DualProblem::set_right_hand_side(std::vector<double> c)
+  {
+    rows.c = std::move(c);
+    update_dual_load();
+  }
+
+  // d = B K+ f - c
+  void DualProblem::update_dual_load()
+  {
     std::vector<Eigen::VectorXd> u;
     for (const auto &system : systems)
       {
@@ -74,8 +95,13 @@ namespace slipstick::tfeti
     dual_load = jumps(u);
     for (unsigned int r = 0; r < rows.c.size(); ++r)
       dual_load.local_element(r) -= rows.c[r];
-    norm_PFP              = power_method(options);
-    setup_multiplications = F->n_applications();
+  }
+
+  void DualProblem::apply_F(const DistributedVector &x, DistributedVector &y) const
+  {
+    F->apply(x, y);
+    for (unsigned int r = 0; r < rows.compliance.size(); ++r)
+      y.local_element(r) += rows.compliance[r] * x.local_element(r);
   }
 
   double DualProblem::power_method(const DualOptions &options) const
@@ -92,7 +118,7 @@ namespace slipstick::tfeti
         if (length == 0)
           break;
         x /= length;
-        F->apply(x, y);
+        apply_F(x, y);
         const double previous = norm;
         norm                  = x * y;
         if (std::abs(norm - previous) <= options.norm_tolerance * norm)
@@ -104,7 +130,7 @@ namespace slipstick::tfeti
 
   void DualProblem::multiply(const DistributedVector &x, DistributedVector &y) const
   {
-    F->apply(x, y);
+    apply_F(x, y);
     y /= norm_PFP;
   }
 
@@ -167,23 +193,20 @@ namespace slipstick::tfeti
     on_free.particular(resultants() - projector->multiply(x), result.multipliers);
     result.multipliers += x;
 
-    DistributedVector ghosted = F->ghosted();
-    F->import(result.multipliers, ghosted);
-    auto &u = result.u;
+    result.u = forces(result.multipliers);
+    auto &u  = result.u;
     for (unsigned int p = 0; p < systems.size(); ++p)
       {
-        const Eigen::VectorXd force   = F->scatter(p, ghosted);
-        const auto           &touched = systems[p]->touched();
-        u.push_back(systems[p]->load());
-        for (unsigned int k = 0; k < touched.size(); ++k)
-          u[p][touched[k]] -= force[k];
+        u[p] = systems[p]->load() - u[p];
         systems[p]->apply_pseudo_inverse(u[p]);
       }
 
-    // a: B u = c on the free rows, in the sense of least squares
+    // a: B u - compliance x = c on the free rows, in the sense of least squares
     DistributedVector missing = jumps(u);
     for (unsigned int r = 0; r < rows.c.size(); ++r)
       missing.local_element(r) = free[r] ? rows.c[r] - missing.local_element(r) : 0.;
+    for (unsigned int r = 0; r < rows.compliance.size(); ++r)
+      missing.local_element(r) += free[r] ? rows.compliance[r] * result.multipliers.local_element(r) : 0.;
     const Eigen::VectorXd a    = on_free.amplitudes(missing);
     unsigned int          next = 0;
     for (unsigned int p = 0; p < systems.size(); ++p)
@@ -191,6 +214,22 @@ namespace slipstick::tfeti
         const unsigned int k = systems[p]->kernel().cols();
         u[p] += systems[p]->kernel() * a.segment(next, k);
         next += k;
+      }
+    return result;
+  }
+
+  std::vector<Eigen::VectorXd> DualProblem::forces(const DistributedVector &x) const
+  {
+    DistributedVector ghosted = F->ghosted();
+    F->import(x, ghosted);
+    std::vector<Eigen::VectorXd> result;
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        const Eigen::VectorXd at_touched = F->scatter(p, ghosted);
+        const auto           &touched    = systems[p]->touched();
+        result.push_back(Eigen::VectorXd::Zero(systems[p]->n_unknowns()));
+        for (unsigned int k = 0; k < touched.size(); ++k)
+          result[p][touched[k]] = at_touched[k];
       }
     return result;
   }

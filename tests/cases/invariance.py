@@ -12,6 +12,8 @@ CELLS = {'Body box/Cells': '24, 24', 'Decomposition/Blocks': 4, 'Contact circle/
 
 DECOMPOSITIONS = {'blocks': {},
                   'METIS': {'Decomposition/Method': 'METIS', 'Decomposition/Subdomains': 7},
+                  'other seed': {'Decomposition/Method': 'METIS', 'Decomposition/Subdomains': 7,
+                                 'Decomposition/Seed': 3},
                   'none': {'Decomposition/Method': 'none'}}
 
 
@@ -72,7 +74,7 @@ class Invariance(unittest.TestCase):
             self.assertLess(fields.largest_difference(displacement(), displacement(ranks=ranks)), 1e-6)
 
     def test_decomposition_does_not_change_the_answer(self):
-        for method, ranks, subdomains in (('METIS', 2, 7), ('METIS', 4, 7), ('none', 1, 1)):
+        for method, ranks, subdomains in (('METIS', 2, 7), ('METIS', 4, 7), ('other seed', 2, 7), ('none', 1, 1)):
             what = '{} on {} ranks'.format(method, ranks)
             other = box(method, ranks)
             self.assert_same(box(), other, what)

@@ -218,3 +218,103 @@ TEST(FeasiblePoint, least_squares_takes_over_when_newton_may_not_step)
         EXPECT_LT(length(problem.range(minus(x_e, result.x))), 1e-10) << seed;
     }
 }
+
+namespace
+{
+  // n/2 cones (0,1), (2,3), ... with random coefficients, a few of them 0.
+  FrictionCones<Vector> random_cones(Random &random, const std::size_t n)
+  {
+    FrictionCones<Vector> set{{Vector(n, -infinity), Vector(n, infinity)}, {}};
+    for (std::size_t i = 0; i + 1 < n; i += 2)
+      set.cones.push_back({i, i + 1, std::max(0., random.uniform(-0.2, 1.0))});
+    return set;
+  }
+
+  Vector random_point(Random &random, const FrictionCones<Vector> &set, const std::size_t n)
+  {
+    Vector x = random.vector(n);
+    project(set, x);
+    return x;
+  }
+} // namespace
+
+TEST(FrictionCones, projection_leaves_a_remainder_in_the_polar_cone)
+{
+  Random random(1);
+  for (unsigned int k = 0; k < 200; ++k)
+    {
+      const auto   set = random_cones(random, 10);
+      const Vector y   = random.vector(10);
+      Vector       x(y);
+      project(set, x);
+      EXPECT_NEAR(inner(x, minus(y, x)), 0, 1e-14);
+      for (const auto &cone : set.cones)
+        {
+          EXPECT_LE(std::abs(x[cone.tangential]), cone.coefficient * x[cone.normal] + 1e-15);
+          const double t = y[cone.tangential] - x[cone.tangential], n = y[cone.normal] - x[cone.normal];
+          EXPECT_LE(n + cone.coefficient * std::abs(t), 1e-14);
+        }
+    }
+}
+
+TEST(FrictionCones, derivative_is_that_of_the_projection)
+{
+  Random random(2);
+  for (unsigned int k = 0; k < 100; ++k)
+    {
+      const auto   set = random_cones(random, 10);
+      const Vector y = random.vector(10), p = random.vector(10);
+      const double h = 1e-7;
+      Vector       forward(y), backward(y), derivative(p);
+      for (std::size_t i = 0; i < 10; ++i)
+        {
+          forward[i] += h * p[i];
+          backward[i] -= h * p[i];
+        }
+      project(set, forward);
+      project(set, backward);
+      multiply_derivative(set, y, derivative);
+      for (std::size_t i = 0; i < 10; ++i)
+        EXPECT_NEAR(derivative[i], (forward[i] - backward[i]) / (2 * h), 1e-6) << k;
+    }
+}
+
+TEST(FeasiblePoint, in_friction_cones_is_the_nearest)
+{
+  for (unsigned int seed = 0; seed < 60; ++seed)
+    {
+      Random             random(seed);
+      const DenseProblem problem(identity(40), random.orthonormal(6, 40));
+      const auto         set    = random_cones(random, 40);
+      const Vector       inside = random_point(random, set, 40);
+      const auto         result = feasible_point(problem, inside, set);
+      ASSERT_EQ(result.status, Status::converged) << seed;
+      EXPECT_LT(length(problem.range(minus(inside, result.x))), 1e-11 * length(inside)) << seed;
+      EXPECT_GE(inner(result.x, minus(inside, result.x)), -1e-9 * inner(inside, inside)) << seed; // obtuse angle
+    }
+}
+
+TEST(FeasiblePoint, outside_of_friction_cones_is_certified)
+{
+  unsigned int n_infeasible = 0;
+  for (unsigned int seed = 0; seed < 60; ++seed)
+    {
+      Random             random(seed);
+      const DenseProblem problem(identity(20), random.orthonormal(8, 20));
+      const auto         set    = random_cones(random, 20);
+      const Vector       x_e    = random.vector(20);
+      const auto         result = feasible_point(problem, x_e, set);
+      if (result.status == Status::converged)
+        continue;
+      ASSERT_EQ(result.status, Status::infeasible) << seed;
+      ++n_infeasible;
+      const double along = inner(result.certificate, x_e);
+      EXPECT_GT(along, 0) << seed;
+      for (unsigned int k = 0; k < 100; ++k)
+        {
+          const Vector x = random_point(random, set, 20);
+          EXPECT_LT(inner(result.certificate, x), 1e-3 * along * length(x) / length(x_e)) << seed;
+        }
+    }
+  EXPECT_GT(n_infeasible, 10u);
+}

@@ -31,11 +31,13 @@ namespace slipstick::app
   /// The figures that matter and the file to open.
   void print_result(const Log             &log,
                     const output::Summary &summary,
-                    const contact::Checks &checks,
                     const std::string     &pvd);
 
   /// Case, version, ranks.
   output::Summary empty_summary(const scene::Scene<2> &scene, const MPI_Comm comm);
+
+  /// Appends the step that @p summary describes to those before it: counts add up, the worst residuals stay.
+  void add_step(const output::Summary &so_far, const double load_factor, output::Summary &summary);
 
   /// Everything in summary.json but times and memory.
   output::Summary make_summary(const scene::Scene<2>       &scene,

@@ -7,8 +7,8 @@
 namespace slipstick::contact
 {
   /// All relative: lengths to the largest displacement (or a thousandth of the largest gap, in scenes that hardly move), contact forces to the largest nodal contact force, works to twice
-  /// the strain energy, forces and moments of a body to the sum of the force magnitudes on it. Nodal forces are K u - f,
-  /// summed over the copies of a node; multipliers enter the algebraic error only.
+  /// the strain energy, forces and moments of a body to the sum of the force magnitudes on it. Gaps and slips come
+  /// from u; contact forces are the multipliers, which K u - f + B'x = 0 at every node confirms.
   struct Checks
   {
     double interface_jump    = 0; // largest |u_a - u_b| of glued copies and |u - prescribed|
@@ -16,7 +16,7 @@ namespace slipstick::contact
     double complementarity   = 0; // sum of |pressure force * gap| and of |slip bound| |slip| - friction work
     double tension           = 0; // largest contact force that pulls
     double friction_bound    = 0; // largest excess of the tangential force over the slip bound
-    double nodal_equilibrium = 0; // largest force left on a node that nothing holds, over the largest nodal force
+    double nodal_equilibrium = 0; // largest K u - f + B'x, over the largest load, contact force or reaction of a node
     double force_balance     = 0; // worst body: loads + supports + contact
     double moment_balance    = 0;
     double algebraic_error   = 0; // energy norm: root of |multipliers times violated constraints| over u'K u
@@ -35,7 +35,7 @@ namespace slipstick::contact
   };
 
   /// @param u displacements of this rank's subdomains [mm].
-  /// @param multipliers [N], for the algebraic error alone.
+  /// @param multipliers [N], balanced with u as DualProblem::recover returns them.
   /// @param slip_bound of every owned row [N].
   /// @param free owned rows whose multiplier is strictly inside its bounds: tells open from closed, stick from slip.
   /// Collective.

@@ -38,13 +38,14 @@ namespace slipstick::contact
     ContactStatus         status              = ContactStatus::open; // see is_closed
     bool                  is_closed           = false;               // pressed on the other side
     double                slip_bound          = 0; // [MPa], of the law: Tresca bound or mu times pressure
+    double                moment_mismatch     = 0; // of the forces on the two sides [N mm], see PairResult
 
     /// For sending between ranks (Boost serialization, through deal.II's MPI utilities).
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
       archive &pair &position &normal &arc_length &area &length &gap &pressure &tangential_traction &slip &status
-        &is_closed &slip_bound;
+        &is_closed &slip_bound &moment_mismatch;
     }
   };
 
@@ -53,6 +54,8 @@ namespace slipstick::contact
     std::string  pair;
     double       normal_force     = 0; // sum of pressure times area [N]
     double       tangential_force = 0; // [N]
+    double       moment_mismatch  = 0; // sum of the moments on both sides [N mm]: the linearised gap leaves gap times
+                                       // force where a node and its mean on the other side are not on one normal
     double       max_pressure     = 0; // [MPa]
     double       contact_length   = 0; // of the nodes that are not open [mm]
     unsigned int contact_nodes    = 0; // closed

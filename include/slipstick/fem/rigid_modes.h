@@ -22,7 +22,7 @@ namespace slipstick::fem
   /// Columns (1,0), (0,1), (-(y - y_c), x - x_c) / L at every node, with centre and length of the subdomain; and the
   /// k x k matrix that turns them into the same motions about the body's frame.
   template <int dim>
-  void rigid_modes(const Spaces<dim>             &spaces,
+  void rigid_modes(const Element<dim>            &element,
                    const dealii::DoFHandler<dim> &dof_handler,
                    const Frame<dim>              &body,
                    Eigen::MatrixXd               &kernel,

@@ -7,11 +7,11 @@
 namespace slipstick::output
 {
   /// Writes subdomain_NNN_PPPP.vtu (NNN: step, PPPP: subdomain) on the ranks of the subdomains and solution_NNN.pvtu on
-  /// rank 0: displacement [mm], stress tensor, principal and von Mises stress [MPa] at the nodes; body, subdomain, rank
+  /// rank 0: displacement [mm], stress tensor, its out-of-plane component, principal (in the plane) and von
+  /// Mises stress [MPa] at the nodes; body, subdomain, rank
   /// and error estimate [sqrt(N mm)] by cell. Compressed binary. Collective.
   template <int dim>
   void write_fields(const OutputDirectory              &directory,
-                    const scene::Scene<dim>            &scene,
                     const fem::Mesh<dim>               &mesh,
                     const fem::Spaces<dim>             &spaces,
                     const std::vector<Eigen::VectorXd> &u,

@@ -108,6 +108,19 @@ namespace slipstick::output
     double peak_total    = 0;
   };
 
+  /// One load step.
+  struct StepSummary
+  {
+    double                           load_factor             = 1;
+    std::uint64_t                    hessian_multiplications = 0;
+    unsigned int                     outer_iterations        = 0;
+    unsigned int                     coulomb_iterations      = 0;
+    double                           max_displacement        = 0; // [mm]
+    double                           strain_energy           = 0; // [N mm]
+    std::vector<contact::PairResult> contact;
+  };
+
+  /// Counts are sums over the load steps, residuals the worst of them, results those of the last.
   struct Summary
   {
     std::string     case_name;
@@ -121,6 +134,8 @@ namespace slipstick::output
     ResultSummary   results;
     TimeSummary     time_s;
     MemorySummary   memory_mb;
+
+    std::vector<StepSummary> steps;
   };
 
   /// The text of summary.json. A number that is not finite becomes null, bytes that are not UTF-8 become U+FFFD.

@@ -149,6 +149,55 @@ namespace slipstick::qp
     return std::sqrt(reduction.sum(std::array<double, 1>{{sum}})[0]);
   }
 
+  /// p := derivative of the projection at y, times p: free entries stay, the others become 0.
+  template <typename Vector>
+  void multiply_derivative(const Box<Vector> &box, const Vector &y, Vector &p)
+  {
+    const auto        l = box.lower.begin(), u = box.upper.begin();
+    const auto        yi = y.begin();
+    const auto        pi = p.begin();
+    const std::size_t n  = local_size(y);
+    for (std::size_t i = 0; i < n; ++i)
+      if (!is_free(yi[i], l[i], u[i]))
+        pi[i] = 0;
+  }
+
+  /// Owned entries with lower > upper.
+  template <typename Vector>
+  double n_contradictions(const Box<Vector> &box)
+  {
+    const auto        l = box.lower.begin(), u = box.upper.begin();
+    const std::size_t n     = local_size(box.lower);
+    double            count = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      count += !(l[i] <= u[i]);
+    return count;
+  }
+
+  namespace detail
+  {
+    /// Of the owned entries: r'x_e - sup r'x over the bounded entries; |r|^2 of the unbounded ones; magnitude of the
+    /// terms summed.
+    template <typename Vector>
+    std::array<double, 3> farkas_sums(const Box<Vector> &box, const Vector &r, const Vector &x_e)
+    {
+      const auto            l = box.lower.begin(), u = box.upper.begin();
+      const auto            ri = r.begin(), xi = x_e.begin();
+      const std::size_t     n = local_size(r);
+      std::array<double, 3> s{{0, 0, 0}};
+      for (std::size_t i = 0; i < n; ++i)
+        {
+          const double bound      = ri[i] > 0 ? u[i] : l[i];
+          const bool   is_bounded = std::isfinite(bound);
+          const double support    = ri[i] != 0 && is_bounded ? ri[i] * bound : 0.0;
+          s[0] += ri[i] * xi[i] - support;
+          s[1] += is_bounded ? 0.0 : ri[i] * ri[i];
+          s[2] += std::abs(ri[i] * xi[i]) + std::abs(support);
+        }
+      return s;
+    }
+  } // namespace detail
+
   /// Does r, a vector in the range of Q, prove that no x with Q(x - x_e) = 0 and |x| <= radius lies within the box?
   /// It does if r'x_e > max r'x over the box; unbounded entries are taken as bounded by the radius, r'x <= |r||x|, and
   /// rounding is left a margin: `rounding` times |r| |x_e| and |r_i l_i|, |r_i u_i|. Farkas. One reduction.
@@ -160,21 +209,7 @@ namespace slipstick::qp
                              const double       rounding,
                              const Reduction   &reduction)
   {
-    const auto        l = box.lower.begin(), u = box.upper.begin();
-    const auto        ri = r.begin(), xi = x_e.begin();
-    const std::size_t n = local_size(r);
-    // r'x_e - sup over the bounded entries; |r|^2 of the unbounded ones; magnitude of the terms summed
-    std::array<double, 3> s{{0, 0, 0}};
-    for (std::size_t i = 0; i < n; ++i)
-      {
-        const double bound      = ri[i] > 0 ? u[i] : l[i];
-        const bool   is_bounded = std::isfinite(bound);
-        const double support    = ri[i] != 0 && is_bounded ? ri[i] * bound : 0.0;
-        s[0] += ri[i] * xi[i] - support;
-        s[1] += is_bounded ? 0.0 : ri[i] * ri[i];
-        s[2] += std::abs(ri[i] * xi[i]) + std::abs(support);
-      }
-    s = reduction.sum(s);
+    const auto s = reduction.sum(detail::farkas_sums(box, r, x_e));
     return s[0] > std::sqrt(s[1]) * radius + rounding * s[2];
   }
 } // namespace slipstick::qp

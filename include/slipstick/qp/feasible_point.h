@@ -1,12 +1,13 @@
-// The point nearest to zero within bounds and equalities, or the proof that there is none.
+// The point of a box (or of friction cones) and of equalities nearest to zero, or the proof that there is none.
 //
-// min 1/2 |x|^2 over the box and Q x = Q x_e. Dual: x = clip(y), y in the range of Q, maximise the concave
-//   theta(y) = 1/2 |clip(y)|^2 - y'clip(y) + y'x_e,   grad theta = r = Q(x_e - clip(y)),
-// by a semismooth Newton method (Newton matrix Q D Q, D = 1 where y is strictly inside its bounds) with line search.
-// If there is no such point, theta is unbounded and r tends to Q(x_e - x) of least length within the box, a Farkas
-// certificate: r'x <= r'x_e - |r|^2 for all x of the box, while Q x = Q x_e would need r'x = r'x_e.
+// min 1/2 |x|^2 over the set and Q x = Q x_e. Dual: x = proj(y), y in the range of Q, maximise the concave
+//   theta(y) = 1/2 |proj(y)|^2 - y'proj(y) + y'x_e,   grad theta = r = Q(x_e - proj(y)),
+// by a semismooth Newton method (Newton matrix Q D Q, D = derivative of the projection at y) with line search.
+// If there is no such point, theta is unbounded and r tends to Q(x_e - x) of least length within the set, a Farkas
+// certificate: r'x <= r'x_e - |r|^2 for all x of the set, while Q x = Q x_e would need r'x = r'x_e.
 #pragma once
 
+#include <slipstick/qp/friction_cones.h>
 #include <slipstick/qp/mpgp.h>
 
 namespace slipstick::qp
@@ -15,7 +16,7 @@ namespace slipstick::qp
   struct FeasiblePoint
   {
     Status       status;      // converged; infeasible, with a certificate; else neither was reached
-    Vector       x;           // within the box, exactly
+    Vector       x;           // within the set
     Vector       certificate; // infeasible: r in the range of Q, r'x_e > r'x for all x of the box; else Q(x_e - x)
     double       residual;    // |Q(x - x_e)| over the reference length max(|Q x_e|, |projection of 0 on the box|)
     bool         is_nearest;  // converged: is x the point nearest to zero, or just any?
@@ -25,14 +26,11 @@ namespace slipstick::qp
 
   namespace detail
   {
-    template <typename Vector, typename Problem>
+    template <typename Vector, typename Problem, typename Set>
     class NearestPoint
     {
     public:
-      NearestPoint(const Problem              &problem_,
-                   const Vector               &x_e,
-                   const Box<Vector>          &box_,
-                   const FeasiblePointOptions &options_)
+      NearestPoint(const Problem &problem_, const Vector &x_e, const Set &box_, const FeasiblePointOptions &options_)
         : problem(problem_)
         , reduction(problem.reduction())
         , box(box_)
@@ -48,9 +46,10 @@ namespace slipstick::qp
       {
         project_range(x_e, Qx_e);
         project(box, x);
-        const auto s = reduction.sum(std::array<double, 3>{{local_dot(Qx_e, Qx_e), local_dot(x, x), contradictions()}});
-        reference    = std::sqrt(std::max(s[0], s[1]));
-        is_empty     = s[2] > 0;
+        const auto s =
+          reduction.sum(std::array<double, 3>{{local_dot(Qx_e, Qx_e), local_dot(x, x), n_contradictions(box)}});
+        reference = std::sqrt(std::max(s[0], s[1]));
+        is_empty  = s[2] > 0;
       }
 
       FeasiblePoint<Vector> run()
@@ -63,16 +62,6 @@ namespace slipstick::qp
       }
 
     private:
-      double contradictions() const
-      {
-        const auto        l = box.lower.begin(), u = box.upper.begin();
-        const std::size_t n     = local_size(y);
-        double            count = 0;
-        for (std::size_t i = 0; i < n; ++i)
-          count += !(l[i] <= u[i]);
-        return count;
-      }
-
       void project_range(const Vector &v, Vector &Qv)
       {
         problem.project_range(v, Qv);
@@ -146,29 +135,23 @@ namespace slipstick::qp
       // Ap = (Q D Q + regularization Q) p, p in the range of Q
       void multiply_newton_matrix()
       {
-        const auto        l = box.lower.begin(), u = box.upper.begin();
-        const auto        yi = y.begin(), wi = x.begin();
-        const auto        pi = p.begin();
-        const std::size_t n  = local_size(y);
-        for (std::size_t i = 0; i < n; ++i)
-          wi[i] = ((is_free(yi[i], l[i], u[i]) ? 1.0 : 0.0) + options.newton_regularization) * pi[i];
+        std::copy(p.begin(), p.end(), x.begin());
+        multiply_derivative(box, y, x);
+        add(options.newton_regularization, p, x);
         project_range(x, Ap);
       }
 
       // d/dt theta(y + t d), falling in t
-      double slope(const double t) const
+      double slope(const double t)
       {
-        const auto        l = box.lower.begin(), u = box.upper.begin(), e = Qx_e.begin();
-        const auto        yi = y.begin(), di = d.begin();
-        const std::size_t n   = local_size(y);
-        double            sum = 0;
-        for (std::size_t i = 0; i < n; ++i)
-          sum += di[i] * (e[i] - clip(yi[i] + t * di[i], l[i], u[i]));
-        return reduction.sum(std::array<double, 1>{{sum}})[0];
+        std::copy(y.begin(), y.end(), x.begin());
+        add(t, d, x);
+        project(box, x);
+        return reduction.sum(std::array<double, 1>{{local_dot(d, Qx_e) - local_dot(d, x)}})[0];
       }
 
       // Step length t > 0 with |slope(t)| small against slope(0): growth, then regula falsi (Illinois).
-      double line_search() const
+      double line_search()
       {
         double       low = 0, low_slope = slope(0), high = 1, high_slope = slope(high);
         const double accepted = options.line_search_slope * low_slope;
@@ -209,6 +192,50 @@ namespace slipstick::qp
       // Newton did not end: least |Q(x - x_e)| within the box, by MPGP. It is positive if there is no such point.
       Status least_squares(const Status failure)
       {
+        if constexpr (std::is_same_v<Set, Box<Vector>>)
+          return least_squares_in_box(failure);
+        else
+          return least_squares_in_set(failure);
+      }
+
+      // The same by accelerated projected gradients (Nesterov 1983; restarts: O'Donoghue, Candes 2015). Q has norm 1.
+      Status least_squares_in_set(const Status failure)
+      {
+        is_nearest = false;
+        std::copy(y.begin(), y.end(), x.begin());
+        project(box, x);
+        std::copy(x.begin(), x.end(), y.begin()); // the extrapolated point
+        double momentum = 1;
+        for (unsigned int k = 0; k < options.fallback.max_iterations; ++k)
+          {
+            project_range(y, r);
+            combine(1.0, Qx_e, -1.0, r); // Q(x_e - y)
+            std::copy(x.begin(), x.end(), p.begin());
+            std::copy(y.begin(), y.end(), x.begin());
+            add(1.0, r, x);
+            project(box, x);
+            combine(1.0, x, -1.0, p); // the step
+            const double next    = 0.5 * (1 + std::sqrt(1 + 4 * momentum * momentum));
+            const bool   ascends = dot(r, p, reduction) < 0;
+            std::copy(x.begin(), x.end(), y.begin());
+            if (!ascends)
+              add((momentum - 1) / next, p, y);
+            momentum = ascends ? 1 : next;
+            if (k % check_interval != 0)
+              continue;
+            project_range(x, r);
+            combine(1.0, Qx_e, -1.0, r);
+            norm_r = norm(r, reduction);
+            if (norm_r <= options.tolerance * reference)
+              return Status::converged;
+            if (proves_infeasibility(r))
+              return Status::infeasible;
+          }
+        return failure;
+      }
+
+      Status least_squares_in_box(const Status failure)
+      {
         const auto multiply = [this](const Vector &v, Vector &Qv) { project_range(v, Qv); };
         const auto stop     = [this](const Vector &, const double gP) { return gP <= options.tolerance * reference; };
         MpgpStart<Vector> start{std::move(x)};
@@ -223,9 +250,11 @@ namespace slipstick::qp
         return proves_infeasibility(r) ? Status::infeasible : failure;
       }
 
+      static constexpr unsigned int check_interval = 10; // of the accelerated gradients
+
       const Problem                                        &problem;
       decltype(std::declval<const Problem &>().reduction()) reduction;
-      const Box<Vector>                                    &box;
+      const Set                                            &box;
       const FeasiblePointOptions                           &options;
 
       Vector       Qx_e, y, x, r, d, p, Ap, residual;
@@ -235,15 +264,25 @@ namespace slipstick::qp
     };
   } // namespace detail
 
-  /// The point nearest to zero of the box with Q x = Q x_e. Uses `problem.project_range` and `problem.reduction` only.
+  /// The point nearest to zero of the set (a Box, FrictionCones) with Q x = Q x_e. Uses `problem.project_range` and
+  /// `problem.reduction` only.
   /// status: infeasible with a certificate, see FeasiblePoint (without, if some lower > upper); iteration_limit or
   /// stagnated if neither a point nor a certificate was found.
+  template <typename Vector, typename Problem, typename Set>
+  FeasiblePoint<Vector> feasible_point(const Problem              &problem,
+                                       const Vector               &x_e,
+                                       const Set                  &set,
+                                       const FeasiblePointOptions &options = {})
+  {
+    return detail::NearestPoint<Vector, Problem, Set>(problem, x_e, set, options).run();
+  }
+
   template <typename Vector, typename Problem>
   FeasiblePoint<Vector> feasible_point(const Problem              &problem,
                                        const Vector               &x_e,
                                        const Box<Vector>          &box,
                                        const FeasiblePointOptions &options = {})
   {
-    return detail::NearestPoint<Vector, Problem>(problem, x_e, box, options).run();
+    return detail::NearestPoint<Vector, Problem, Box<Vector>>(problem, x_e, box, options).run();
   }
 } // namespace slipstick::qp

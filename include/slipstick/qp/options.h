@@ -74,6 +74,8 @@ namespace slipstick::qp
     double       settled_part         = 0.05; // of the inequalities may change for the set to have hardly changed
     double       progress             = 0.99; // residual + changes must fall below this times their best ...
     unsigned int patience             = 15;   // ... within so many outer steps
+    double       bound_accuracy       = 0.1; // bounds that depend on x are updated at residuals below this times their
+                                             // last relative change
     unsigned int max_outer_iterations = 100;
   };
 

@@ -7,6 +7,7 @@
 #include <slipstick/qp/stagnation.h>
 #include <slipstick/qp/types.h>
 
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -14,14 +15,6 @@
 
 namespace slipstick::qp
 {
-  /// Where PCPG starts. The product F x, if known, saves a multiplication.
-  template <typename Vector>
-  struct PcpgStart
-  {
-    Vector                x;
-    std::optional<Vector> product = std::nullopt;
-  };
-
   template <typename Vector>
   struct PcpgResult
   {
@@ -38,54 +31,96 @@ namespace slipstick::qp
   struct NoPreconditioner
   {};
 
-  namespace detail
+  /// F-orthogonal directions p with F p and p'Fp. Kept from one solve to the next they solve for what lies in their span
+  /// without a multiplication, as long as F, P and the free entries stay.
+  template <typename Vector>
+  class DirectionHistory
   {
-    /// Directions p with F p and p'Fp, and the projection along them.
-    template <typename Vector>
-    class DirectionHistory
+  public:
+    explicit DirectionHistory(const bool keeps_all_ = true)
+      : keeps_all(keeps_all_)
+    {}
+
+    bool empty() const
     {
-    public:
-      explicit DirectionHistory(const bool keeps_all_)
-        : keeps_all(keeps_all_)
-      {}
+      return directions.empty();
+    }
 
-      void push(Vector p, Vector Fp, const double pFp)
-      {
-        if (!keeps_all)
-          directions.clear();
-        directions.push_back({std::move(p), std::move(Fp), pFp});
-      }
+    void clear()
+    {
+      directions.clear();
+    }
 
-      /// p -= sum_j (p'F q_j / q_j'F q_j) q_j. One reduction for a batch of directions.
-      template <typename Reduction>
-      void orthogonalize(Vector &p, const Reduction &reduction) const
-      {
-        const Vector z(p);
-        for (std::size_t first = 0; first < directions.size(); first += batch)
-          {
-            const std::size_t         n = std::min(batch, directions.size() - first);
-            std::array<double, batch> zFq{};
-            for (std::size_t j = 0; j < n; ++j)
-              zFq[j] = local_dot(z, directions[first + j].Fq);
-            zFq = reduction.sum(zFq);
-            for (std::size_t j = 0; j < n; ++j)
-              add(-zFq[j] / directions[first + j].qFq, directions[first + j].q, p);
-          }
-      }
+    /// x += z, Fx += F z with the z of the span that makes b - F(x + z) orthogonal to it; r = P(b - F x).
+    template <typename Reduction>
+    void solve(const Vector &r, Vector &x, Vector &Fx, const Reduction &reduction) const
+    {
+      for (std::size_t first = 0; first < directions.size(); first += batch)
+        {
+          const std::size_t         n = std::min(batch, directions.size() - first);
+          std::array<double, batch> rq{};
+          for (std::size_t j = 0; j < n; ++j)
+            rq[j] = local_dot(r, directions[first + j].q);
+          rq = reduction.sum(rq);
+          for (std::size_t j = 0; j < n; ++j)
+            {
+              add(rq[j] / directions[first + j].qFq, directions[first + j].q, x);
+              add(rq[j] / directions[first + j].qFq, directions[first + j].Fq, Fx);
+            }
+        }
+    }
 
-    private:
-      struct Direction
-      {
-        Vector q, Fq;
-        double qFq;
-      };
+    void push(Vector p, Vector Fp, const double pFp)
+    {
+      if (!keeps_all)
+        directions.clear();
+      directions.push_back({std::move(p), std::move(Fp), pFp});
+    }
 
-      static constexpr std::size_t batch = 32; // scalars of one reduction: latency against wasted length
+    /// p -= sum_j (p'F q_j / q_j'F q_j) q_j. One reduction for a batch of directions.
+    template <typename Reduction>
+    void orthogonalize(Vector &p, const Reduction &reduction) const
+    {
+      const Vector z(p);
+      for (std::size_t first = 0; first < directions.size(); first += batch)
+        {
+          const std::size_t         n = std::min(batch, directions.size() - first);
+          std::array<double, batch> zFq{};
+          for (std::size_t j = 0; j < n; ++j)
+            zFq[j] = local_dot(z, directions[first + j].Fq);
+          zFq = reduction.sum(zFq);
+          for (std::size_t j = 0; j < n; ++j)
+            add(-zFq[j] / directions[first + j].qFq, directions[first + j].q, p);
+        }
+    }
 
-      const bool             keeps_all;
-      std::vector<Direction> directions;
+  private:
+    struct Direction
+    {
+      Vector q, Fq;
+      double qFq;
     };
 
+    static constexpr std::size_t batch = 32; // scalars of one reduction: latency against wasted length
+
+    const bool             keeps_all;
+    std::vector<Direction> directions;
+  };
+
+  /// Where PCPG starts. The product F x, if known, saves a multiplication.
+  template <typename Vector>
+  struct PcpgStart
+  {
+    Vector                x;
+    std::optional<Vector> product = std::nullopt;
+
+    /// Directions of earlier solves with the same F and P, and where this one leaves its own; full reorthogonalisation
+    /// only.
+    std::shared_ptr<DirectionHistory<Vector>> history = nullptr;
+  };
+
+  namespace detail
+  {
     template <typename Vector, typename Problem, typename Preconditioner>
     class Pcpg
     {
@@ -106,12 +141,18 @@ namespace slipstick::qp
         , Fx(start.product ? std::move(*start.product) : zero_like(b))
         , r(b)
         , w(b)
-        , directions(keeps_all_directions(options_))
+        , directions(start.history ? start.history
+                                   : std::make_shared<DirectionHistory<Vector>>(keeps_all_directions(options_)))
       {
         const auto s = problem.reduction().sum(std::array<double, 2>{{local_dot(b, b), local_dot(x, x)}});
         if (!start.product && s[1] > 0)
           multiply(x, Fx);
         update_residual();
+        if (!directions->empty())
+          {
+            directions->solve(r, x, Fx, problem.reduction());
+            update_residual();
+          }
         norm_b    = std::sqrt(s[0]);
         reference = goal.reference > 0 ? goal.reference : norm_b > 0 ? norm_b : norm_Fx > 0 ? norm_Fx : 1.0;
         target    = goal.tolerance * reference;
@@ -170,7 +211,7 @@ namespace slipstick::qp
             problem.project_range(z, w);
             add(-1.0, w, z);
           }
-        directions.orthogonalize(z, problem.reduction());
+        directions->orthogonalize(z, problem.reduction());
         return z;
       }
 
@@ -190,7 +231,7 @@ namespace slipstick::qp
         add(pr / pFp, p, x);
         add(pr / pFp, Fp, Fx);
         update_residual();
-        directions.push(std::move(p), std::move(Fp), pFp);
+        directions->push(std::move(p), std::move(Fp), pFp);
         ++counts.cg_steps;
         if (observer)
           observer({counts.cg_steps, counts.hessian_multiplications, norm_r / reference, 0.0, 0, 0});
@@ -215,11 +256,11 @@ namespace slipstick::qp
       const Preconditioner &preconditioner;
       const Observer       &observer;
 
-      Vector                   x, Fx, r, w;
-      DirectionHistory<Vector> directions;
-      double                   norm_b = 0, norm_r = 0, norm_Fx = 0;
-      double                   reference = 0, target = 0, largest_curvature = 0;
-      Counts                   counts;
+      Vector                                    x, Fx, r, w;
+      std::shared_ptr<DirectionHistory<Vector>> directions;
+      double                                    norm_b = 0, norm_r = 0, norm_Fx = 0;
+      double                                    reference = 0, target = 0, largest_curvature = 0;
+      Counts                                    counts;
     };
   } // namespace detail
 

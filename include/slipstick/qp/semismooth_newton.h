@@ -15,10 +15,21 @@
 #include <slipstick/qp/pcpg.h>
 
 #include <cmath>
+#include <functional>
 #include <vector>
 
 namespace slipstick::qp
 {
+  /// Bounds that depend on the solution (Coulomb friction), followed in an outer loop: called with x when the active set
+  /// of the present bounds stands and its residual is small against their last change. Changes the box that the solver
+  /// was given, or leaves it when the change is below `tolerance`; returns the relative change, or none to give up.
+  template <typename Vector>
+  struct BoundUpdate
+  {
+    std::function<std::optional<double>(const Vector &x)> update; // empty: the bounds are fixed
+    double                                                tolerance = 0;
+  };
+
   template <typename Vector>
   struct NewtonResult
   {
@@ -35,15 +46,16 @@ namespace slipstick::qp
     class SemismoothNewton
     {
     public:
-      SemismoothNewton(const Problem       &problem_,
-                       const double         norm_,
-                       const Vector        &d_,
-                       const Box<Vector>   &box_,
-                       Vector               x_,
-                       const Goal          &goal,
-                       const NewtonOptions &options_,
-                       const PcpgOptions   &pcpg_options_,
-                       const Observer      &observer_)
+      SemismoothNewton(const Problem             &problem_,
+                       const double               norm_,
+                       const Vector              &d_,
+                       const Box<Vector>         &box_,
+                       Vector                     x_,
+                       const Goal                &goal,
+                       const NewtonOptions       &options_,
+                       const PcpgOptions         &pcpg_options_,
+                       const Observer            &observer_,
+                       const BoundUpdate<Vector> &bounds_)
         : problem(problem_)
         , norm(norm_)
         , d(d_)
@@ -51,6 +63,7 @@ namespace slipstick::qp
         , options(options_)
         , pcpg_options(pcpg_options_)
         , observer(observer_)
+        , bounds(bounds_)
         , x(std::move(x_))
         , Fx(zero_like(d))
         , g(d)
@@ -59,6 +72,7 @@ namespace slipstick::qp
         , eps(goal.tolerance)
         , forcing(options.first_forcing)
       {
+        bound_change = bounds.update ? 1. : 0.;
         set_zero(g);
         active = next_set(); // entries at their bounds
       }
@@ -84,10 +98,32 @@ namespace slipstick::qp
             auto         next    = next_set();
             const double changed = count_changes(next);
             report();
-            if (changed == 0 && residual <= eps)
-              return Status::converged;
             if (!(residual < HUGE_VAL))
               return Status::stagnated;
+            if (changed == 0 &&
+                residual <= std::max(eps, std::min(options.first_forcing, options.bound_accuracy * bound_change)))
+              {
+                if (bounds.update)
+                  {
+                    const auto change = bounds.update(x);
+                    if (!change)
+                      return Status::iteration_limit;
+                    bound_change = *change;
+                  }
+                if (residual <= eps && bound_change <= bounds.tolerance)
+                  return Status::converged;
+                if (bound_change > bounds.tolerance)
+                  {
+                    tighten();
+                    next        = next_set();
+                    set_stands  = same_free(next);
+                    set_changed = true;
+                    active      = std::move(next);
+                    best        = HUGE_VAL;
+                    stuck       = 0;
+                    continue;
+                  }
+              }
             // progress: the residual or the number of changes falls below the best so far
             const double merit = residual + changed;
             stuck              = merit < options.progress * best ? 0 : stuck + 1;
@@ -97,10 +133,20 @@ namespace slipstick::qp
             if (counts.outer_iterations >= options.max_outer_iterations)
               return Status::iteration_limit;
             if (changed <= options.settled_part * n_inequalities)
-              forcing = std::max(options.last_forcing * eps, options.forcing_reduction * forcing);
+              tighten();
             set_changed = changed > 0;
+            set_stands  = same_free(next);
             active      = std::move(next);
           }
+      }
+
+      // Smaller residuals for the solves to come; bounds that move are not worth more than a part of their last change.
+      void tighten()
+      {
+        const double next = bounds.update
+                              ? std::max(options.last_forcing * forcing, options.bound_accuracy * bound_change)
+                              : options.forcing_reduction * forcing;
+        forcing           = std::max(options.last_forcing * eps, std::min(forcing, next));
       }
 
       // PCPG on the free entries of the present set; the others at their bounds.
@@ -109,6 +155,8 @@ namespace slipstick::qp
         std::vector<bool> free(active.size());
         for (std::size_t i = 0; i < free.size(); ++i)
           free[i] = active[i] == 0;
+        if (!set_stands || !history)
+          history = std::make_shared<DirectionHistory<Vector>>();
         const auto face = problem.face(free);
         if (!face.is_regular())
           return false;
@@ -122,7 +170,7 @@ namespace slipstick::qp
         const auto precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
         auto       result       = pcpg(face,
                            d,
-                           PcpgStart<Vector>{std::move(x), std::move(Fx)},
+                           PcpgStart<Vector>{std::move(x), std::move(Fx), history},
                            Goal(forcing, reference),
                            pcpg_options,
                            precondition);
@@ -151,11 +199,15 @@ namespace slipstick::qp
 
       void measure()
       {
+        const auto l = box.lower.begin(), u = box.upper.begin();
         const auto gi  = g.begin();
         double     sum = 0;
         for (std::size_t i = 0; i < active.size(); ++i)
           {
-            const double gp = active[i] == 0 ? gi[i] : active[i] < 0 ? std::min(gi[i], 0.0) : std::max(gi[i], 0.0);
+            const double gp = active[i] == 0   ? gi[i]
+                              : !(l[i] < u[i]) ? 0.0
+                              : active[i] < 0  ? std::min(gi[i], 0.0)
+                                               : std::max(gi[i], 0.0);
             sum += gp * gp;
           }
         residual = std::sqrt(problem.reduction().sum(std::array<double, 1>{{sum}})[0]) / reference;
@@ -173,6 +225,14 @@ namespace slipstick::qp
             set[i]         = t <= l[i] ? -1 : t >= u[i] ? 1 : 0;
           }
         return set;
+      }
+
+      bool same_free(const std::vector<signed char> &next) const
+      {
+        bool same = true;
+        for (std::size_t i = 0; i < next.size(); ++i)
+          same = same && (next[i] == 0) == (active[i] == 0);
+        return problem.reduction().min(same ? 1. : 0.) > 0;
       }
 
       double count_changes(const std::vector<signed char> &next)
@@ -204,22 +264,26 @@ namespace slipstick::qp
                     static_cast<std::size_t>(n_upper)});
       }
 
-      const Problem       &problem;
-      const double         norm;
-      const Vector        &d;
-      const Box<Vector>   &box;
-      const NewtonOptions &options;
-      const PcpgOptions   &pcpg_options;
-      const Observer      &observer;
+      const Problem             &problem;
+      const double               norm;
+      const Vector              &d;
+      const Box<Vector>         &box;
+      const NewtonOptions       &options;
+      const PcpgOptions         &pcpg_options;
+      const Observer            &observer;
+      const BoundUpdate<Vector> &bounds;
 
-      Vector                   x, Fx, g, w;
-      const double             reference, eps;
-      double                   forcing;
-      double                   residual       = HUGE_VAL;
-      double                   n_inequalities = 0, n_lower = 0, n_upper = 0;
-      bool                     set_changed = true;
-      std::vector<signed char> active;
-      Counts                   counts;
+      Vector       x, Fx, g, w;
+      const double reference, eps;
+      double       forcing;
+      double       residual       = HUGE_VAL;
+      double       n_inequalities = 0, n_lower = 0, n_upper = 0;
+      double       bound_change = 0;     // the last one
+      bool         set_changed  = true;  // x is not on its bounds, or does not balance: F x is not known
+      bool         set_stands   = false; // the free entries are those of the last solve
+      std::shared_ptr<DirectionHistory<Vector>> history;
+      std::vector<signed char>                  active;
+      Counts                                    counts;
     };
   } // namespace detail
 
@@ -229,18 +293,27 @@ namespace slipstick::qp
   /// status: infeasible if the free entries of some set leave the equalities singular, stagnated if neither residual nor
   /// changes of the set fall any more; MPGP with SMALBE goes on from there.
   template <typename Vector, typename Problem>
-  NewtonResult<Vector> semismooth_newton(const Problem       &problem,
-                                         const double         norm,
-                                         const Vector        &d,
-                                         const Box<Vector>   &box,
-                                         Vector               x,
-                                         const Goal          &goal,
-                                         const NewtonOptions &options      = {},
-                                         const PcpgOptions   &pcpg_options = {},
-                                         const Observer      &observer     = {})
+  NewtonResult<Vector> semismooth_newton(const Problem             &problem,
+                                         const double               norm,
+                                         const Vector              &d,
+                                         const Box<Vector>         &box,
+                                         Vector                     x,
+                                         const Goal                &goal,
+                                         const NewtonOptions       &options      = {},
+                                         const PcpgOptions         &pcpg_options = {},
+                                         const Observer            &observer     = {},
+                                         const BoundUpdate<Vector> &bounds       = {})
   {
-    return detail::SemismoothNewton<Vector,
-                                    Problem>(problem, norm, d, box, std::move(x), goal, options, pcpg_options, observer)
+    return detail::SemismoothNewton<Vector, Problem>(problem,
+                                                     norm,
+                                                     d,
+                                                     box,
+                                                     std::move(x),
+                                                     goal,
+                                                     options,
+                                                     pcpg_options,
+                                                     observer,
+                                                     bounds)
       .run();
   }
 } // namespace slipstick::qp

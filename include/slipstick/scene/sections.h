@@ -26,6 +26,30 @@ namespace slipstick::scene
                              const Parameters             &parameters,
                              const std::vector<Body<dim>> &bodies);
 
+  /// The body that the parameter @p path names. @throws InputError for an unknown one.
+  template <int dim>
+  unsigned int read_body(const std::string            &text,
+                         const std::string            &path,
+                         const Parameters             &parameters,
+                         const std::vector<Body<dim>> &bodies);
+
+  /// The bodies that the parameter @p path names: `all`, or names separated by commas.
+  /// @throws InputError for none, an unknown one or one named twice.
+  template <int dim>
+  std::vector<unsigned int> read_bodies(const std::string            &text,
+                                        const std::string            &path,
+                                        const Parameters             &parameters,
+                                        const std::vector<Body<dim>> &bodies);
+
+  /// The point of body number @p body, @p of, that the parameter @p path gives: coordinates, or for a body from a mesh
+  /// file a name (checked when the mesh is made). @throws InputError when it is neither.
+  template <int dim>
+  PointName<dim> read_point(const std::string &text,
+                            const std::string &path,
+                            const Parameters  &parameters,
+                            const unsigned int body,
+                            const Body<dim>   &of);
+
   /// Every read() returns the checked value and throws InputError for what is wrong in its own section; names are
   /// looked up in the part of the scene that is already read.
   struct MaterialSection
@@ -101,9 +125,53 @@ namespace slipstick::scene
     std::string                  name;
     std::string                  boundary;
     std::array<std::string, dim> components;
+    std::string                  pressure = "0";
 
     void          declare(dealii::ParameterHandler &prm);
     Traction<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
+  template <int dim>
+  struct BodyForceSection
+  {
+    explicit BodyForceSection(const std::string &name);
+
+    std::string                  name;
+    std::string                  bodies = "all";
+    std::array<std::string, dim> force;
+    std::array<std::string, dim> acceleration;
+    std::string                  angular_velocity = "0";
+    dealii::Point<dim>           axis;
+
+    void           declare(dealii::ParameterHandler &prm);
+    BodyForce<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
+  template <int dim>
+  struct PointLoadSection
+  {
+    explicit PointLoadSection(const std::string &name);
+
+    std::string                  name;
+    std::string                  body;
+    std::string                  point;
+    std::array<std::string, dim> force;
+
+    void           declare(dealii::ParameterHandler &prm);
+    PointLoad<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
+  template <int dim>
+  struct TemperatureSection
+  {
+    explicit TemperatureSection(const std::string &name);
+
+    std::string name;
+    std::string bodies = "all";
+    std::string change = "0";
+
+    void             declare(dealii::ParameterHandler &prm);
+    Temperature<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
   };
 
   template <int dim>
@@ -125,5 +193,7 @@ namespace slipstick::scene
   void declare(dealii::ParameterHandler &prm, Decomposition &decomposition);
   void declare(dealii::ParameterHandler &prm, Discretization &discretization);
   void declare(dealii::ParameterHandler &prm, SolverOptions &solver);
+  void declare(dealii::ParameterHandler &prm, FrictionOptions &friction);
   void declare(dealii::ParameterHandler &prm, OutputOptions &output);
+  void declare_load_steps(dealii::ParameterHandler &prm, std::vector<double> &factors);
 } // namespace slipstick::scene

@@ -21,7 +21,8 @@ namespace slipstick::tfeti
   {
     tangential, // friction: multiplier between -slip bound and +slip bound
     normal,     // contact: multiplier >= 0, b u = closing of the gap, c = gap [mm]
-    gluing,     // equality of two copies of a node, bonded pairs
+    gluing,     // equality of two copies of a node
+    bonded,     // equality across a bonded pair; counted as gluing
     prescribed  // prescribed displacement [mm], elastic foundation (with compliance)
   };
 

@@ -32,6 +32,13 @@ namespace slipstick::tfeti
                 const std::vector<std::string> &body_names,
                 const MPI_Comm                  comm);
 
+    /// Another load step: loads f_p of this rank's subdomains [N] and right-hand sides c of the owned rows [mm]. K, B
+    /// and all that depends on them alone stay. Collective.
+    void set_step(std::vector<Eigen::VectorXd> loads, std::vector<double> c);
+
+    /// Other right-hand sides c of the owned rows [mm] alone. Collective.
+    void set_right_hand_side(std::vector<double> c);
+
     // qp's Problem concept
     void                multiply(const DistributedVector &x, DistributedVector &y) const;      // y = F x / |P F P|
     void                project_range(const DistributedVector &x, DistributedVector &y) const; // y = Q x
@@ -66,6 +73,9 @@ namespace slipstick::tfeti
 
     /// B u of displacements of this rank's subdomains, owned rows [mm]. Collective.
     DistributedVector jumps(const std::vector<Eigen::VectorXd> &u) const;
+
+    /// B_p'x of this rank's subdomains, all unknowns [N]: what the multipliers (owned entries) exert. Collective.
+    std::vector<Eigen::VectorXd> forces(const DistributedVector &x) const;
 
     /// The rigid motion of the bodies behind a dual vector r = G'a. Collective.
     RigidMotion motion_behind(const DistributedVector &r) const;
@@ -110,6 +120,8 @@ namespace slipstick::tfeti
 
   private:
     double          power_method(const DualOptions &options) const;
+    void            apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
+    void            update_dual_load();
     Eigen::VectorXd resultants() const; // e
 
     MPI_Comm                                      comm;

@@ -53,6 +53,11 @@ namespace slipstick::tfeti
     {
       return matrices.load;
     }
+    /// Another load f_p [N] of the same size.
+    void set_load(Eigen::VectorXd load)
+    {
+      matrices.load = std::move(load);
+    }
     const Eigen::MatrixXd &kernel() const
     {
       return matrices.kernel;

@@ -1,0 +1,47 @@
+// Boundary edges found by place.
+#pragma once
+
+#include <slipstick/fem/surface.h>
+
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <boost/geometry/strategies/strategies.hpp>
+
+namespace slipstick::fem
+{
+  /// Tree of the bounding boxes of edges; numbers are positions in the list that it was made from.
+  class EdgeTree
+  {
+  public:
+    using Place = boost::geometry::model::point<double, 2, boost::geometry::cs::cartesian>;
+    using Box   = boost::geometry::model::box<Place>;
+
+    explicit EdgeTree(const std::vector<SurfaceEdge<2>> &edges);
+
+    /// Edges whose boxes meet @p box, ascending.
+    std::vector<unsigned int> near(const Box &box) const;
+
+    /// Calls f(edge) in order of the distance of their boxes from @p x until it returns false or the boxes are farther
+    /// away than @p radius() says.
+    template <class Radius, class F>
+    void for_each_by_distance(const dealii::Point<2> &x, const Radius &radius, const F &f) const
+    {
+      const Place place(x[0], x[1]);
+      for (auto at = tree.qbegin(boost::geometry::index::nearest(place, tree.size())); at != tree.qend(); ++at)
+        if (distance(x, at->first) > radius() || !f(at->second))
+          return;
+    }
+
+    /// Smallest box around points.
+    static Box box_around(const std::vector<dealii::Point<2>> &points);
+
+    /// Smallest box around an edge (curved ones lie in that of their Bezier points).
+    static Box box_around(const SurfaceEdge<2> &edge);
+
+  private:
+    static double distance(const dealii::Point<2> &x, const Box &box);
+
+    boost::geometry::index::rtree<std::pair<Box, unsigned int>, boost::geometry::index::rstar<8>> tree;
+  };
+} // namespace slipstick::fem

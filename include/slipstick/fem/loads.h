@@ -1,0 +1,20 @@
+// Loads of the subdomains: tractions, pressure, body forces, point loads, thermal strain.
+#pragma once
+
+#include <slipstick/fem/spaces.h>
+
+#include <Eigen/Dense>
+
+namespace slipstick::fem
+{
+  /// f_p [N] at load factor @p t, by subdomain of this rank. Forces per area and per volume act on the body's thickness;
+  /// pressure acts against the outward normal of the undeformed boundary; a point load acts on one copy of the node
+  /// nearest to it, whole (no thickness). Thermal strain enters as the force of the stress that would hold it back.
+  /// Collective.
+  /// @throws InputError on all ranks for a formula that gives no number and for a point load outside its body.
+  template <int dim>
+  std::vector<Eigen::VectorXd> assemble_loads(const scene::Scene<dim> &scene,
+                                              const Mesh<dim>         &mesh,
+                                              const Spaces<dim>       &spaces,
+                                              const double             t);
+} // namespace slipstick::fem

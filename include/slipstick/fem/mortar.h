@@ -1,0 +1,64 @@
+// Pairing of two curves and the mortar integrals between them.
+//
+// Notation: N_k shape functions of a slave edge, phi_i its test functions, y(x) the point of the master that the ray from
+// x along the slave's normal field meets, <.> the integral over that part of the slave that has such a point. A row says
+// n_i . (sum_k d_ik u_k - sum_j m_ij u_j) <= gap with d_ik = <phi_i N_k> / D_i, m_ij = <phi_i N_j(y)> / D_i, D_i = <phi_i>.
+#pragma once
+
+#include <slipstick/fem/surface.h>
+
+#include <optional>
+
+namespace slipstick::fem
+{
+  using Weights = std::vector<std::pair<NodeKey, double>>; // sorted by node, sum 1
+
+  /// How far a slave looks for its master along its normal, outwards and (for overlaps) inwards [mm].
+  struct Reach
+  {
+    double ahead = 0, behind = 0;
+  };
+
+  /// One slave node and what faces it.
+  template <int dim>
+  struct MortarRow
+  {
+    NodeKey                slave{};
+    unsigned int           side = 0;        // a node at a corner of the slave boundary has one row for each side
+    dealii::Point<dim>     position;        // of the slave node [mm]
+    dealii::Tensor<1, dim> normal;          // outward, averaged over the edges of the slave boundary on this side
+    Weights                slave_weights;   // d_ik
+    Weights                master_weights;  // m_ij
+    dealii::Point<dim>     master_position; // sum_j m_ij y_j [mm]
+    double                 gap    = 0;      // n_i . (sum_j m_ij y_j - sum_k d_ik x_k) [mm], negative when overlapping
+    double                 length = 0;      // D_i [mm]
+  };
+
+  /// The rows of the slave nodes that have a master within @p reach along the normal, on either side; in the order
+  /// of their nodes. Sides must face each other: the first crossing of the ray decides.
+  ///
+  /// Mortar: phi_i are the functions biorthogonal to N_k on the covered part of the edge (D_i is then the integral of
+  /// N_i), so that whole edges give d_ik = 1 for i = k and 0 else (Wohlmuth 2000; at overhangs Cichosz, Bischoff 2011). On
+  /// curved or quadratic edges that are covered in part phi_i are those of the linear shape functions: their midside nodes
+  /// have no row. Equal pressures at all nodes are then equal pressure on both sides, sums of weights are 1 and forces
+  /// balance; moments balance where the gap is closed, else up to the square of the mesh size.
+  /// Node to node: m is 1 at the master node across, d is 1 at the slave node. `automatic` takes it where every slave
+  /// node has a master node exactly across.
+  /// @throws InputError, with @p name of the pair, when node to node is asked for and the meshes do not match.
+  template <int dim>
+  std::vector<MortarRow<dim>> mortar_rows(const std::vector<SurfaceEdge<dim>> &slave,
+                                          const std::vector<SurfaceEdge<dim>> &master,
+                                          const Reach                         &reach,
+                                          const scene::ContactDiscretization   discretization,
+                                          const std::string                   &name);
+
+  /// Smallest distance of two curves where they face each other (nodes and middles of edges of one to the chords of the
+  /// other) [mm]; empty when nothing faces or nothing is closer than @p bound.
+  template <int dim>
+  std::optional<double> facing_distance(const std::vector<SurfaceEdge<dim>> &a,
+                                        const std::vector<SurfaceEdge<dim>> &b,
+                                        const double bound = std::numeric_limits<double>::max());
+
+  // Curves face each other where the product of their normals is below this.
+  constexpr double facing_cosine = -0.25; // 104 degrees
+} // namespace slipstick::fem

@@ -1,0 +1,60 @@
+#include <slipstick/fem/edge_tree.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::fem
+{
+  namespace
+  {
+    using Entry = std::pair<EdgeTree::Box, unsigned int>;
+
+    std::vector<Entry> entries(const std::vector<SurfaceEdge<2>> &edges)
+    {
+      std::vector<Entry> all;
+      for (unsigned int e = 0; e < edges.size(); ++e)
+        all.emplace_back(EdgeTree::box_around(edges[e]), e);
+      return all;
+    }
+  } // namespace
+
+  EdgeTree::EdgeTree(const std::vector<SurfaceEdge<2>> &edges)
+    : tree(entries(edges))
+  {}
+
+  std::vector<unsigned int> EdgeTree::near(const Box &box) const
+  {
+    std::vector<unsigned int> found;
+    for (auto at = tree.qbegin(boost::geometry::index::intersects(box)); at != tree.qend(); ++at)
+      found.push_back(at->second);
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+  double EdgeTree::distance(const dealii::Point<2> &x, const Box &box)
+  {
+    const double dx = std::max({box.min_corner().get<0>() - x[0], x[0] - box.max_corner().get<0>(), 0.});
+    const double dy = std::max({box.min_corner().get<1>() - x[1], x[1] - box.max_corner().get<1>(), 0.});
+    return std::hypot(dx, dy);
+  }
+
+  EdgeTree::Box EdgeTree::box_around(const std::vector<dealii::Point<2>> &points)
+  {
+    dealii::Point<2> low = points[0], high = points[0];
+    for (const auto &x : points)
+      for (unsigned int d = 0; d < 2; ++d)
+        {
+          low[d]  = std::min(low[d], x[d]);
+          high[d] = std::max(high[d], x[d]);
+        }
+    return {{low[0], low[1]}, {high[0], high[1]}};
+  }
+
+  EdgeTree::Box EdgeTree::box_around(const SurfaceEdge<2> &edge)
+  {
+    std::vector<dealii::Point<2>> points = {edge.node(0), edge.node(1)};
+    if (edge.n_nodes == 3) // control point of the parabola
+      points.emplace_back(2. * edge.node(2) - 0.5 * (edge.node(0) + dealii::Tensor<1, 2>(edge.node(1))));
+    return box_around(points);
+  }
+} // namespace slipstick::fem

@@ -1,0 +1,147 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/base/log.h>
+#include <slipstick/fem/nodal_conditions.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::fem
+{
+  namespace
+  {
+    // Two supports agree when their values differ by less than this part of the larger.
+    constexpr double same_value_tolerance = 1e-12;
+    // Stiffness of a spring against that across it, below which it is rounding.
+    constexpr double smallest_stiffness = 1e-12;
+
+    template <int dim>
+    dealii::Tensor<1, dim> tensor(const std::array<double, dim> &v)
+    {
+      dealii::Tensor<1, dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = v[d];
+      return result;
+    }
+
+    template <int dim>
+    std::string describe(const dealii::Tensor<1, dim> &direction, const unsigned int which)
+    {
+      if (which < dim)
+        return format("displacement %c", "xyz"[which]);
+      return format("displacement along (%.3g, %.3g)", direction[0], direction[1]);
+    }
+
+    /// Supports along normals: what edges agree in value is averaged where there is no corner.
+    template <int dim>
+    void hold_along_normals(InterfaceNode<dim> &node, const scene::Scene<dim> &scene, const double t)
+    {
+      std::map<double, std::vector<dealii::Tensor<1, dim>>> normals; // by value
+      for (const auto &side : node.sides)
+        if (side.condition < scene.supports.size())
+          normals[scene.supports[side.condition].normal->value(node.point(), t)].push_back(tensor<dim>(side.normal));
+      unsigned int which = dim;
+      for (const auto &[value, list] : normals)
+        {
+          std::vector<dealii::Tensor<1, dim>> means;
+          smooth_normals(list, means);
+          for (const auto &mean : means)
+            hold(node, mean, value, which++);
+        }
+    }
+
+    template <int dim>
+    void add_springs(InterfaceNode<dim> &node, const scene::Scene<dim> &scene)
+    {
+      Eigen::Matrix<double, dim, dim> stiffness = Eigen::Matrix<double, dim, dim>::Zero();
+      for (const auto &side : node.sides)
+        if (side.condition >= scene.supports.size())
+          {
+            const auto &foundation = scene.foundations[side.condition - scene.supports.size()];
+            const Eigen::Map<const Eigen::Matrix<double, dim, 1>> n(side.normal.data());
+            const Eigen::Matrix<double, dim, dim>                 nn = n * n.transpose();
+            stiffness +=
+              side.area * (foundation.normal_stiffness * nn +
+                           foundation.tangential_stiffness * (Eigen::Matrix<double, dim, dim>::Identity() - nn));
+          }
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>> principal(stiffness);
+      for (unsigned int k = 0; k < dim; ++k)
+        if (principal.eigenvalues()[k] > smallest_stiffness * principal.eigenvalues()[dim - 1])
+          {
+            typename InterfaceNode<dim>::Spring spring;
+            spring.stiffness = principal.eigenvalues()[k];
+            for (unsigned int d = 0; d < dim; ++d)
+              spring.direction[d] = principal.eigenvectors()(d, k);
+            if (node.free_part(spring.direction).norm() > held_direction_tolerance)
+              node.springs.push_back(spring);
+          }
+    }
+  } // namespace
+
+  template <int dim>
+  dealii::Tensor<1, dim> InterfaceNode<dim>::free_part(const dealii::Tensor<1, dim> &direction) const
+  {
+    static_assert(dim == 2, "one held direction or all");
+    if (held.size() >= dim)
+      return {};
+    if (held.empty())
+      return direction;
+    const auto d = tensor<dim>(held[0].direction);
+    return direction - (direction * d) * d;
+  }
+
+  template <int dim>
+  void hold(InterfaceNode<dim>           &node,
+            const dealii::Tensor<1, dim> &direction,
+            const double                  value,
+            const unsigned int            which)
+  {
+    if (node.free_part(direction).norm() > held_direction_tolerance)
+      {
+        typename InterfaceNode<dim>::Held held;
+        for (unsigned int d = 0; d < dim; ++d)
+          held.direction[d] = direction[d];
+        held.value = value;
+        held.which = which;
+        node.held.push_back(held);
+        return;
+      }
+    // the value that is implied: sum of w_k value_k with direction = sum of w_k direction_k
+    double there = 0, size = std::abs(value);
+    if (node.held.size() == 1)
+      there = (tensor<dim>(node.held[0].direction) * direction) * node.held[0].value;
+    else
+      {
+        const auto   a = tensor<dim>(node.held[0].direction), b = tensor<dim>(node.held[1].direction);
+        const double area = a[0] * b[1] - a[1] * b[0];
+        there             = ((direction[0] * b[1] - direction[1] * b[0]) * node.held[0].value +
+                 (a[0] * direction[1] - a[1] * direction[0]) * node.held[1].value) /
+                area;
+        const double turn = std::abs(area); // rounding of a nearly singular pair of directions
+        size              = std::max(size, (std::abs(node.held[0].value) + std::abs(node.held[1].value)) / turn);
+      }
+    size = std::max(size, std::abs(there));
+    if (std::abs(there - value) > same_value_tolerance * size)
+      throw InputError(format("supports prescribe both %g and %g for %s at (%g, %g)",
+                              there,
+                              value,
+                              describe(direction, which).c_str(),
+                              node.position[0],
+                              node.position[1]),
+                       "free that component in one of the supports, or make the values agree where boundaries meet");
+  }
+
+  template <int dim>
+  void resolve_sides(InterfaceNode<dim> &node, const scene::Scene<dim> &scene, const double t)
+  {
+    std::sort(node.sides.begin(), node.sides.end());
+    hold_along_normals(node, scene, t);
+    add_springs(node, scene);
+    std::sort(node.held.begin(), node.held.end(), [](const auto &a, const auto &b) { return a.which < b.which; });
+  }
+
+  template struct InterfaceNode<2>;
+  template void hold(InterfaceNode<2> &, const dealii::Tensor<1, 2> &, const double, const unsigned int);
+  template void resolve_sides(InterfaceNode<2> &, const scene::Scene<2> &, const double);
+} // namespace slipstick::fem

@@ -1,0 +1,400 @@
+#include <slipstick/fem/obstacle.h>
+#include <slipstick/fem/row_builder.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slipstick::fem
+{
+  namespace
+  {
+    // Normals are parallel when their product is above this.
+    constexpr double parallel_cosine = 1 - 1e-8;
+
+    double norm(const std::map<unsigned int, double> &v)
+    {
+      double squares = 0;
+      for (const auto &[i, value] : v)
+        squares += value * value;
+      return std::sqrt(squares);
+    }
+
+    template <int dim>
+    dealii::Tensor<1, dim> tangent_of(const dealii::Tensor<1, dim> &normal)
+    {
+      static_assert(dim == 2, "one tangent: two dimensions");
+      dealii::Tensor<1, dim> tangent;
+      tangent[0] = -normal[1];
+      tangent[1] = normal[0];
+      return tangent;
+    }
+
+    /// Gap of a pair at a node: of the geometry or given, and the offset.
+    template <int dim>
+    double gap_of(const scene::ContactPair<dim> &pair,
+                  const dealii::Point<dim>      &x,
+                  const double                   of_geometry,
+                  const double                   t)
+    {
+      return (pair.gap ? pair.gap->value(x, t) : of_geometry) + pair.offset.value(x, t);
+    }
+  } // namespace
+
+  template <int dim>
+  bool can_be_pruned(const scene::ContactPair<dim> &pair)
+  {
+    switch (pair.law)
+      {
+        case scene::ContactLaw::frictionless:
+        case scene::ContactLaw::coulomb:
+          return true;
+        case scene::ContactLaw::tresca:
+          return pair.only_closed;
+        case scene::ContactLaw::bonded:
+          return false;
+      }
+    return false;
+  }
+
+  template <int dim>
+  RowBuilder<dim>::RowBuilder(const scene::Scene<dim>               &scene,
+                              const std::vector<InterfaceNode<dim>> &nodes,
+                              const BodyContacts<dim>               &contacts,
+                              const double                           t,
+                              tfeti::Constraints                    &constraints)
+    : scene(scene)
+    , nodes(nodes)
+    , t(t)
+    , constraints(constraints)
+    , limits(scene.contacts.size(), std::numeric_limits<double>::infinity())
+  {
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      if (nodes[i].is_paired)
+        number[nodes[i].key] = i;
+    for (unsigned int k = 0; k < contacts.rows.size(); ++k)
+      for (const auto &row : contacts.rows[k])
+        if (number.count(row.slave) != 0)
+          pairs_of[row.slave].emplace_back(k, &row);
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::build()
+  {
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      add(i);
+    if (!scene.foundations.empty())
+      constraints.compliance.resize(constraints.kind.size(), 0.);
+  }
+
+  template <int dim>
+  std::vector<PairExtent> RowBuilder<dim>::extents() const
+  {
+    std::vector<PairExtent> result(scene.contacts.size());
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      for (const Touch &touch : touches_of(i))
+        {
+          auto &extent = result[touch.pair];
+          extent.gap   = std::min(extent.gap, touch.point.gap);
+          extent.length += touch.point.length;
+          ++extent.n_nodes;
+        }
+    return result;
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::limit_gaps(std::vector<double> limits_)
+  {
+    limits = std::move(limits_);
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::add(const unsigned int i)
+  {
+    const auto &node = nodes[i];
+    add_contact(i);
+    for (const auto &held : node.held)
+      {
+        Vector coefficients;
+        for (unsigned int c = 0; c < dim; ++c)
+          coefficients[dim * i + c] = held.direction[c];
+        fill(new_row(tfeti::RowKind::prescribed, held.value, node.key, held.which), coefficients);
+        ++constraints.counts.prescribed;
+      }
+    for (unsigned int k = 0; k < node.springs.size(); ++k)
+      {
+        Vector coefficients;
+        for (unsigned int c = 0; c < dim; ++c)
+          coefficients[dim * i + c] = node.springs[k].direction[c];
+        fill(new_row(tfeti::RowKind::prescribed, 0., node.key, 1000 + k), coefficients);
+        constraints.compliance.resize(constraints.kind.size(), 0.);
+        constraints.compliance.back() = 1 / node.springs[k].stiffness;
+        ++constraints.counts.prescribed;
+      }
+    for (unsigned int k = 0; k + 1 < node.copies.size(); ++k)
+      for (unsigned int c = 0; c < dim; ++c)
+        {
+          const unsigned int row = new_row(tfeti::RowKind::gluing, 0., node.key, k * dim + c);
+          entries.push_back({row, node.copies[k].first, node.copies[k].second * dim + c, 1., true});
+          entries.push_back({row, node.copies[k + 1].first, node.copies[k + 1].second * dim + c, -1., true});
+          ++constraints.counts.gluing;
+        }
+    for (unsigned int c = 0; c < dim; ++c)
+      {
+        for (const auto &copy : node.copies)
+          entries.push_back({n_interface, copy.first, copy.second * dim + c, 1., false});
+        constraints.interface_held.push_back(node.is_acted_on());
+        ++n_interface;
+      }
+  }
+
+  template <int dim>
+  unsigned int RowBuilder<dim>::new_row(const tfeti::RowKind kind,
+                                        const double         c,
+                                        const NodeKey       &key,
+                                        const std::uint64_t  which)
+  {
+    constraints.kind.push_back(kind);
+    constraints.c.push_back(c);
+    std::uint64_t label = 1469598103934665603ull; // FNV-1a over what names the row
+    for (const std::uint64_t part : {key[0], key[1], std::uint64_t(kind), which})
+      label = (label ^ part) * 1099511628211ull;
+    constraints.label.push_back(label);
+    return constraints.kind.size() - 1;
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::fill(const unsigned int row, const Vector &coefficients)
+  {
+    for (const auto &[i, value] : coefficients)
+      if (value != 0)
+        {
+          const auto &copy = nodes[i / dim].copies[0];
+          entries.push_back({row, copy.first, copy.second * dim + i % dim, value, true});
+        }
+  }
+
+  template <int dim>
+  bool RowBuilder<dim>::touch_obstacle(const unsigned int i,
+                                       const unsigned int pair,
+                                       const double       area,
+                                       Touch             &touch) const
+  {
+    const auto &node    = nodes[i];
+    const auto &where   = scene.contacts[pair];
+    const auto  contact = contact_with(scene.obstacles[where.obstacle], node.point(), t);
+    touch.point.gap     = gap_of(where, node.point(), contact.gap, t);
+    if (where.law == scene::ContactLaw::bonded || (where.reach && touch.point.gap > *where.reach))
+      return false;
+    touch.pair         = pair;
+    touch.normal       = contact.normal;
+    touch.slave        = {{i, 1.}};
+    touch.point.area   = area;
+    touch.point.length = area / scene.bodies[node.body].thickness;
+    return true;
+  }
+
+  template <int dim>
+  bool RowBuilder<dim>::touch_body(const unsigned int    i,
+                                   const unsigned int    pair,
+                                   const MortarRow<dim> &row,
+                                   Touch                &touch) const
+  {
+    const auto &where = scene.contacts[pair];
+    touch.pair        = pair;
+    touch.side        = row.side;
+    touch.normal      = row.normal;
+    for (const auto &[key, weight] : row.slave_weights)
+      touch.slave.emplace_back(number.at(key), weight);
+    for (const auto &[key, weight] : row.master_weights)
+      touch.master.emplace_back(number.at(key), weight);
+    auto &point       = touch.point;
+    point.has_master  = true;
+    point.master_body = where.master->body;
+    for (unsigned int d = 0; d < dim; ++d)
+      point.master_position[d] = row.master_position[d];
+    point.gap    = gap_of(where, nodes[i].point(), row.gap, t);
+    point.length = row.length;
+    point.area =
+      row.length * std::min(scene.bodies[where.slave.body].thickness, scene.bodies[where.master->body].thickness);
+    return true;
+  }
+
+  template <int dim>
+  std::vector<typename RowBuilder<dim>::Touch> RowBuilder<dim>::touches_of(const unsigned int i) const
+  {
+    const auto        &node = nodes[i];
+    std::vector<Touch> touches;
+    for (const auto &[pair, area] : node.areas)
+      if (Touch touch; touch_obstacle(i, pair, area, touch))
+        touches.push_back(touch);
+    if (const auto found = pairs_of.find(node.key); found != pairs_of.end())
+      for (const auto &[pair, row] : found->second)
+        if (Touch touch; touch_body(i, pair, *row, touch))
+          touches.push_back(touch);
+    for (auto &touch : touches)
+      {
+        touch.point.pair          = touch.pair;
+        touch.point.slave_body    = node.body;
+        touch.point.key           = node.key;
+        touch.point.interface_dof = dim * i;
+        touch.has_tangent         = scene.contacts[touch.pair].law != scene::ContactLaw::frictionless;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            touch.point.position[d] = node.position[d];
+            touch.point.normal[d]   = touch.normal[d];
+          }
+      }
+    // of obstacles in the same direction the nearest
+    std::vector<Touch> kept;
+    for (unsigned int a = 0; a < touches.size(); ++a)
+      {
+        bool is_nearest = true;
+        for (unsigned int b = 0; b < touches.size(); ++b)
+          if (a != b && touches[a].master.empty() && touches[b].master.empty() &&
+              touches[a].normal * touches[b].normal > parallel_cosine &&
+              std::make_pair(touches[b].point.gap, b) < std::make_pair(touches[a].point.gap, a))
+            is_nearest = false;
+        if (is_nearest)
+          kept.push_back(touches[a]);
+      }
+    return kept;
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::choose_tangents(std::vector<Touch> &touches) const
+  {
+    for (unsigned int a = 0; a < touches.size(); ++a)
+      for (unsigned int b = 0; b < a; ++b)
+        if (touches[a].has_tangent && touches[b].has_tangent && touches[a].master == touches[b].master &&
+            touches[a].slave == touches[b].slave)
+          (touches[a].point.gap < touches[b].point.gap ? touches[b] : touches[a]).has_tangent = false;
+  }
+
+  template <int dim>
+  typename RowBuilder<dim>::Vector RowBuilder<dim>::jump(const Touch &touch, const Tensor &direction) const
+  {
+    Vector row;
+    for (unsigned int c = 0; c < dim; ++c)
+      {
+        for (const auto &[node, weight] : touch.slave)
+          row[dim * node + c] += weight * direction[c];
+        for (const auto &[node, weight] : touch.master)
+          row[dim * node + c] -= weight * direction[c];
+      }
+    return row;
+  }
+
+  template <int dim>
+  typename RowBuilder<dim>::Vector RowBuilder<dim>::free_part(const Vector &row, const std::vector<Vector> &basis) const
+  {
+    Vector left;
+    for (auto at = row.begin(); at != row.end(); std::advance(at, dim))
+      {
+        const unsigned int node = at->first / dim;
+        Tensor             direction;
+        for (unsigned int c = 0; c < dim; ++c)
+          direction[c] = row.at(dim * node + c);
+        direction = nodes[node].free_part(direction);
+        for (unsigned int c = 0; c < dim; ++c)
+          left[dim * node + c] = direction[c];
+      }
+    for (const Vector &one : basis)
+      {
+        double product = 0;
+        for (const auto &[i, value] : one)
+          if (const auto found = left.find(i); found != left.end())
+            product += value * found->second;
+        for (const auto &[i, value] : one)
+          left[i] -= product * value;
+      }
+    return left;
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::add_contact(const unsigned int i)
+  {
+    auto touches = touches_of(i);
+    choose_tangents(touches);
+    const auto &key     = nodes[i].key;
+    const auto  is_free = [](const Vector &left) { return norm(left) > held_direction_tolerance; };
+    const auto  unit    = [](Vector left) {
+      const double size = norm(left);
+      for (auto &[index, value] : left)
+        value /= size;
+      return left;
+    };
+    std::vector<Vector> equal; // what bonds at this node imply
+    for (const Touch &touch : touches)
+      if (scene.contacts[touch.pair].law == scene::ContactLaw::bonded)
+        for (const unsigned int d : {0, 1})
+          {
+            const auto row  = jump(touch, d == 0 ? touch.normal : tangent_of<dim>(touch.normal));
+            const auto left = free_part(row, equal);
+            if (!is_free(left))
+              continue;
+            equal.push_back(unit(left));
+            fill(new_row(tfeti::RowKind::bonded, 0., key, (1ull << 32) + 16 * touch.pair + 4 * touch.side + d), row);
+            ++constraints.counts.gluing;
+          }
+    for (Touch &touch : touches)
+      {
+        if (scene.contacts[touch.pair].law == scene::ContactLaw::bonded)
+          continue;
+        const auto normal = jump(touch, touch.normal);
+        if (is_pruned(touch))
+          {
+            if (is_free(free_part(normal, equal)))
+              add_pruned(touch, normal);
+            continue;
+          }
+        const auto tangential = jump(touch, tangent_of<dim>(touch.normal));
+        const auto left       = free_part(normal, equal);
+        const bool has_normal = is_free(left);
+        auto       others     = equal;
+        if (has_normal)
+          others.push_back(unit(left));
+        const bool has_tangent = touch.has_tangent && is_free(free_part(tangential, others));
+        if (!has_normal && !has_tangent)
+          continue;
+        const std::uint64_t which = touch.pair + (std::uint64_t(touch.side) << 32);
+        if (has_tangent)
+          {
+            touch.point.tangential_row = new_row(tfeti::RowKind::tangential, 0., key, which);
+            fill(touch.point.tangential_row, tangential);
+            ++constraints.counts.tangential;
+          }
+        if (has_normal)
+          {
+            touch.point.normal_row = new_row(tfeti::RowKind::normal, touch.point.gap, key, which);
+            fill(touch.point.normal_row, normal);
+            ++constraints.counts.normal;
+          }
+        ++constraints.counts.candidates;
+        constraints.contact_points.push_back(touch.point);
+      }
+  }
+
+  template <int dim>
+  bool RowBuilder<dim>::is_pruned(const Touch &touch) const
+  {
+    return touch.point.gap > limits[touch.pair] && can_be_pruned(scene.contacts[touch.pair]);
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::add_pruned(const Touch &touch, const Vector &coefficients)
+  {
+    for (const auto &[i, value] : coefficients)
+      if (value != 0)
+        {
+          const auto &copy = nodes[i / dim].copies[0];
+          pruned_entries.push_back({pruned.c.size(), copy.first, copy.second * dim + i % dim, value, true});
+        }
+    pruned.kind.push_back(tfeti::RowKind::normal);
+    pruned.c.push_back(touch.point.gap);
+    ++constraints.counts.candidates;
+  }
+
+  template bool can_be_pruned(const scene::ContactPair<2> &);
+  template class RowBuilder<2>;
+} // namespace slipstick::fem

@@ -1,0 +1,174 @@
+#include <slipstick/fem/surface.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/vector.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::fem
+{
+  namespace
+  {
+    // Gauss, three points on [0, 1]: exact for straight edges of both degrees
+    const std::array<double, 3> gauss_points  = {{0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)}};
+    const std::array<double, 3> gauss_weights = {{5. / 18, 8. / 18, 5. / 18}};
+  } // namespace
+
+  template <int dim>
+  std::array<double, 3> SurfaceEdge<dim>::shape(const double s) const
+  {
+    if (n_nodes == 2)
+      return {{1 - s, s, 0}};
+    return {{(1 - s) * (1 - 2 * s), s * (2 * s - 1), 4 * s * (1 - s)}};
+  }
+
+  template <int dim>
+  std::array<double, 3> SurfaceEdge<dim>::shape_derivative(const double s) const
+  {
+    if (n_nodes == 2)
+      return {{-1, 1, 0}};
+    return {{4 * s - 3, 4 * s - 1, 4 - 8 * s}};
+  }
+
+  template <int dim>
+  dealii::Point<dim> SurfaceEdge<dim>::point(const double s) const
+  {
+    const auto         N = shape(s);
+    dealii::Point<dim> x;
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      x += N[i] * dealii::Tensor<1, dim>(node(i));
+    return x;
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim> SurfaceEdge<dim>::tangent(const double s) const
+  {
+    const auto             dN = shape_derivative(s);
+    dealii::Tensor<1, dim> t;
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      t += dN[i] * dealii::Tensor<1, dim>(node(i));
+    return t;
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim> SurfaceEdge<dim>::normal(const double s) const
+  {
+    static_assert(dim == 2, "the normal of a curve");
+    const auto             t = tangent(s);
+    dealii::Tensor<1, dim> n;
+    n[0] = t[1];
+    n[1] = -t[0];
+    return n / n.norm();
+  }
+
+  template <int dim>
+  std::array<double, 3> SurfaceEdge<dim>::tributary_lengths() const
+  {
+    std::array<double, 3> lengths{};
+    for (unsigned int q = 0; q < gauss_points.size(); ++q)
+      {
+        const auto   N  = shape(gauss_points[q]);
+        const double dx = gauss_weights[q] * tangent(gauss_points[q]).norm();
+        for (unsigned int i = 0; i < n_nodes; ++i)
+          lengths[i] += N[i] * dx;
+      }
+    return lengths;
+  }
+
+  template <int dim>
+  SurfaceEdge<dim> surface_edge(const SubdomainMesh<dim>                                     &subdomain,
+                                const Spaces<dim>                                            &spaces,
+                                const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+                                const unsigned int                                            f)
+  {
+    const auto       face = cell->face(f);
+    SurfaceEdge<dim> edge;
+    edge.body      = subdomain.body;
+    edge.boundary  = face->boundary_id();
+    edge.subdomain = subdomain.subdomain;
+    edge.n_nodes   = 0;
+    spaces.for_each_face_node(subdomain,
+                              face,
+                              [&](const unsigned int, const NodeKey &key, const dealii::Point<dim> &x) {
+                                edge.keys[edge.n_nodes] = key;
+                                for (unsigned int d = 0; d < dim; ++d)
+                                  edge.at[edge.n_nodes][d] = x[d];
+                                ++edge.n_nodes;
+                              });
+    const auto along = edge.node(1) - edge.node(0), inward = cell->center() - edge.node(0);
+    if (along[0] * inward[1] - along[1] * inward[0] < 0)
+      {
+        std::swap(edge.keys[0], edge.keys[1]);
+        std::swap(edge.at[0], edge.at[1]);
+      }
+    return edge;
+  }
+
+  template <int dim>
+  std::vector<SurfaceEdge<dim>> outlines(const Mesh<dim>         &mesh,
+                                         const Spaces<dim>       &spaces,
+                                         const std::vector<bool> &wanted)
+  {
+    std::vector<SurfaceEdge<dim>> own, all;
+    for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+      if (wanted[mesh.subdomains[p]->body])
+        for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
+          for (const unsigned int f : cell->face_indices())
+            if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != cut_id)
+              own.push_back(surface_edge(*mesh.subdomains[p], spaces, cell, f));
+    for (const auto &list : dealii::Utilities::MPI::all_gather(mesh.comm, own))
+      all.insert(all.end(), list.begin(), list.end());
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+  template <int dim>
+  std::vector<SurfaceEdge<dim>> edges_on(const Mesh<dim>                     &mesh,
+                                         const std::vector<SurfaceEdge<dim>> &outlines,
+                                         const scene::BoundaryName           &where)
+  {
+    std::vector<SurfaceEdge<dim>> edges;
+    for (const auto &edge : outlines)
+      if (edge.body == where.body && mesh.on_boundary(where, edge.boundary))
+        edges.push_back(edge);
+    return edges;
+  }
+
+  template <int dim>
+  std::vector<unsigned int> smooth_normals(const std::vector<dealii::Tensor<1, dim>> &normals,
+                                           std::vector<dealii::Tensor<1, dim>>       &means)
+  {
+    means.clear();
+    std::vector<unsigned int> group(normals.size()), first;
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      {
+        unsigned int g = 0;
+        while (g < first.size() && !(normals[first[g]] * normals[i] > corner_cosine))
+          ++g;
+        if (g == first.size())
+          {
+            first.push_back(i);
+            means.emplace_back();
+          }
+        group[i] = g;
+        means[g] += normals[i];
+      }
+    for (auto &mean : means)
+      mean /= mean.norm();
+    return group;
+  }
+
+  template struct SurfaceEdge<2>;
+  template SurfaceEdge<2>              surface_edge(const SubdomainMesh<2> &,
+                                                    const Spaces<2> &,
+                                                    const dealii::DoFHandler<2>::active_cell_iterator &,
+                                                    const unsigned int);
+  template std::vector<SurfaceEdge<2>> outlines(const Mesh<2> &, const Spaces<2> &, const std::vector<bool> &);
+  template std::vector<SurfaceEdge<2>> edges_on(const Mesh<2> &,
+                                                const std::vector<SurfaceEdge<2>> &,
+                                                const scene::BoundaryName &);
+  template std::vector<unsigned int>   smooth_normals(const std::vector<dealii::Tensor<1, 2>> &,
+                                                      std::vector<dealii::Tensor<1, 2>> &);
+} // namespace slipstick::fem
