@@ -1,4 +1,5 @@
 #include <slipstick/app/report.h>
+#include <slipstick/scene/checks.h>
 
 #include <deal.II/base/config.h>
 #include <deal.II/base/mpi.h>
@@ -93,6 +94,8 @@ namespace slipstick::app
                          spaces.n_dofs)));
     for (const auto &remark : mesh.remarks)
       log.line(line("", remark));
+    for (const auto &warning : scene::warnings(scene))
+      log.line(line("", warning));
     for (unsigned int b = 0; b < scene.bodies.size(); ++b)
       {
         std::string names;

@@ -14,11 +14,22 @@
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <limits>
+
 namespace slipstick::app
 {
   namespace
   {
-    constexpr int dim = 2;
+    constexpr int    dim      = 2;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+
+    // Contact nodes get multipliers at first when their gap exceeds the smallest of the pair by less than this part of the
+    // slave boundary's length ...
+    constexpr double first_kept_part = 0.1;
+    // ... more of them, by this factor, when others would penetrate ...
+    constexpr double growth_of_kept_part = 4;
+    // ... and all beyond this part.
+    constexpr double largest_kept_part = 1;
 
     std::vector<std::string> names_of(const std::vector<scene::Body<dim>> &bodies)
     {
@@ -126,7 +137,8 @@ namespace slipstick::app
 
       ExitStatus solve_and_write()
       {
-        build();
+        build_mesh();
+        build_dual(scene.load_factors.front());
         directory.remove_results(); // the scene is accepted: what an earlier run left is no longer true
         output::Summary summary;
         for (unsigned int step = 0; step < scene.load_factors.size(); ++step)
@@ -138,7 +150,7 @@ namespace slipstick::app
         clock.enter("output");
         write_tables();
         clock.leave();
-        summary.time_s    = times(clock, dual->factorization_seconds());
+        summary.time_s    = times(clock, factorization);
         summary.memory_mb = memory(comm);
         output::write_summary(directory, summary);
         print_result(log, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
@@ -146,41 +158,129 @@ namespace slipstick::app
       }
 
     private:
-      /// Meshes, K_p, B, F for the first load step.
-      void build()
+      void build_mesh()
       {
         print_header(log, scene, comm);
         clock.enter("mesh");
         mesh   = std::make_unique<fem::Mesh<dim>>(fem::make_mesh(scene, comm));
         spaces = std::make_unique<fem::Spaces<dim>>(*mesh, scene.discretization.degree);
         print_mesh(log, scene, *mesh, *spaces);
+      }
 
+      /// K_p, B, F at load factor t, without the rows of pruned contact nodes unless a body is held by them.
+      void build_dual(const double t)
+      {
+        if (options.prune_contact && kept_part < infinity)
+          try
+            {
+              make_dual(t);
+              return;
+            }
+          catch (const NoEquilibrium &) // on all ranks alike
+            {
+              if (pruned.rows->size() == 0)
+                throw;
+              kept_part = infinity;
+            }
+        kept_part = infinity;
+        make_dual(t);
+      }
+
+      void make_dual(const double t)
+      {
         clock.enter("assembly");
-        auto matrices    = fem::assemble(scene, *mesh, *spaces, scene.load_factors.front());
-        auto constraints = fem::contact_constraints(scene, *mesh, *spaces, scene.load_factors.front());
-        print_constraints(log, constraints);
+        auto matrices = fem::assemble(scene, *mesh, *spaces, t);
+        auto rows     = fem::contact_rows(scene, *mesh, *spaces, t, kept_part);
+        pruned        = std::move(rows.pruned);
+        print_constraints(log, rows.active);
 
         clock.enter("dual setup");
+        dual.reset();
         dual = std::make_unique<tfeti::DualProblem>(std::move(matrices),
-                                                    std::move(constraints),
+                                                    std::move(rows.active),
                                                     options.dual,
                                                     names_of(scene.bodies),
                                                     comm);
+        factorization += dual->factorization_seconds();
         print_dual(log, *dual);
       }
 
       /// Loads and right-hand sides of a later step; slip starts from where the step before ended.
-      void advance(const double t)
+      /// @return whether the multipliers of the step before fit the rows.
+      bool advance(const double t)
       {
         clock.enter("assembly");
         std::vector<Eigen::VectorXd> loads = fem::assemble_loads(scene, *mesh, *spaces, t);
-        std::vector<double>          c     = fem::contact_constraints(scene, *mesh, *spaces, t).c;
-        const auto                   jumps = dual->jumps(u);
+        auto                         rows  = fem::contact_rows(scene, *mesh, *spaces, t, kept_part);
+        const bool                   is_same =
+          dealii::Utilities::MPI::min(rows.active.label == dual->constraints().label ? 1 : 0, comm) > 0;
+        if (is_same) // gaps that follow the load factor may prune other nodes
+          {
+            pruned = std::move(rows.pruned);
+            clock.enter("dual setup");
+            dual->set_step(std::move(loads), std::move(rows.active.c));
+          }
+        else
+          make_dual(t);
+        start_slip_from_here();
+        return is_same;
+      }
+
+      /// Slip counts from the displacement at the end of the step before.
+      void start_slip_from_here()
+      {
+        auto       c     = dual->constraints().c;
+        const auto jumps = dual->jumps(u);
         for (unsigned int r = 0; r < c.size(); ++r)
           if (dual->constraints().kind[r] == tfeti::RowKind::tangential)
             c[r] = jumps.local_element(r);
-        clock.enter("dual setup");
-        dual->set_step(std::move(loads), std::move(c));
+        dual->set_right_hand_side(std::move(c));
+      }
+
+      /// Solves the present step; with rows for more contact nodes as long as pruned ones penetrate.
+      tfeti::DualProblem::Recovery solve_step(const unsigned int step, const std::uint64_t multiplications_before)
+      {
+        const double t         = scene.load_factors[step];
+        bool         is_warm   = step > 0 && advance(t);
+        qp::Counts   discarded = {};
+        for (;; is_warm = false)
+          {
+            std::string reason;
+            try
+              {
+                clock.enter("solve");
+                solution =
+                  contact::solve(*dual,
+                                 contact::SlipLaw(scene, *dual, t),
+                                 options,
+                                 scene.friction,
+                                 convergence_observer(log,
+                                                      options,
+                                                      step,
+                                                      multiplications_before + discarded.hessian_multiplications,
+                                                      convergence),
+                                 is_warm ? &solution : nullptr);
+                discarded += solution.counts;
+                solution.counts = discarded;
+                clock.enter("recovery");
+                auto         recovery    = dual->recover(solution.multipliers, solution.free);
+                const double penetration = fem::largest_penetration(pruned, recovery.u, comm);
+                if (!(penetration > 0))
+                  return recovery;
+                reason = format("contact nodes without multipliers would penetrate by %.3g mm", penetration);
+              }
+            catch (const NoEquilibrium &) // on all ranks alike
+              {
+                if (pruned.rows->size() == 0)
+                  throw;
+                reason = "no equilibrium without the contact nodes that are far apart";
+              }
+            kept_part = kept_part < largest_kept_part ? growth_of_kept_part * kept_part : infinity;
+            log.line("pruning      " + reason + ": solved again with more of them");
+            make_dual(t);
+            if (step > 0)
+              start_slip_from_here();
+          }
       }
 
       /// @param so_far of the steps before.
@@ -189,24 +289,11 @@ namespace slipstick::app
         const double t = scene.load_factors[step];
         if (scene.load_factors.size() > 1)
           log.line(format("load step    %u of %zu, t = %g", step + 1, scene.load_factors.size(), t));
-        if (step > 0)
-          advance(t);
-        const contact::SlipLaw law(scene, *dual, t);
-
-        clock.enter("solve");
-        solution =
-          contact::solve(*dual,
-                         law,
-                         options,
-                         scene.friction,
-                         convergence_observer(log, options, step, so_far.solver.hessian_multiplications, convergence),
-                         step > 0 ? &solution : nullptr);
-
-        clock.enter("recovery");
-        auto recovery        = dual->recover(solution.multipliers, solution.free);
+        auto recovery        = solve_step(step, so_far.solver.hessian_multiplications);
         u                    = std::move(recovery.u);
         solution.multipliers = std::move(recovery.multipliers);
-        const auto contact =
+        const contact::SlipLaw law(scene, *dual, t);
+        const auto             contact =
           contact::check(*dual,
                          solution.multipliers,
                          u,
@@ -264,8 +351,11 @@ namespace slipstick::app
       std::unique_ptr<fem::Mesh<dim>>     mesh;
       std::unique_ptr<fem::Spaces<dim>>   spaces;
       std::unique_ptr<tfeti::DualProblem> dual;
-      contact::DualSolution               solution; // of the last step
-      std::vector<Eigen::VectorXd>        u;        // of the last step
+      tfeti::Constraints                  pruned; // normal rows of the contact nodes without multipliers
+      double                              kept_part     = first_kept_part;
+      double                              factorization = 0; // [s]
+      contact::DualSolution               solution;          // of the last step
+      std::vector<Eigen::VectorXd>        u;                 // of the last step
       std::vector<output::ConvergenceRow> convergence;
       std::vector<output::ContactStep>    contact_steps;
     };

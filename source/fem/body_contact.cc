@@ -1,6 +1,7 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
 #include <slipstick/fem/body_contact.h>
+#include <slipstick/fem/row_builder.h>
 
 #include <algorithm>
 
@@ -48,6 +49,14 @@ namespace slipstick::fem
     }
 
     template <int dim>
+    double widest_reach(const std::vector<SurfaceEdge<dim>> &slave,
+                        const std::vector<SurfaceEdge<dim>> &master,
+                        const double                         distance)
+    {
+      return distance + 0.5 * std::min(extent(slave), extent(master));
+    }
+
+    template <int dim>
     std::vector<MortarRow<dim>> rows_of(const scene::Scene<dim>             &scene,
                                         const scene::ContactPair<dim>       &pair,
                                         const std::vector<SurfaceEdge<dim>> &slave,
@@ -59,8 +68,11 @@ namespace slipstick::fem
       if (slave.empty() || master.empty() || !distance)
         throw InputError(between + " do not face each other anywhere",
                          "choose boundaries whose outward normals are opposed, or move the bodies");
-      const double reach = pair.reach ? *pair.reach : automatic_reach(slave, master, *distance);
-      auto         rows  = mortar_rows(slave, master, reach, pair.discretization, pair.name);
+      const double near = pair.reach ? *pair.reach : automatic_reach(slave, master, *distance);
+      // nodes that are farther apart have no rows at first, but are looked at again when the solution is known
+      const double reach =
+        pair.reach || !can_be_pruned(pair) ? near : std::max(near, widest_reach(slave, master, *distance));
+      auto rows = mortar_rows(slave, master, {reach, near}, pair.discretization, pair.name);
       if (rows.empty())
         throw InputError(between + format(" do not meet within the reach of %g mm along the normals of the slave; "
                                           "where they face each other they are %g mm apart",

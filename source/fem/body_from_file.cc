@@ -11,9 +11,9 @@ namespace slipstick::fem
 {
   namespace
   {
-    constexpr double flat_tolerance     = 1e-8;  // of z, over the size of the body
-    constexpr double least_sine         = 1e-6;  // of the angles of a cell
-    constexpr unsigned int named_cells  = 3;     // in messages
+    constexpr double       flat_tolerance = 1e-8; // of z, over the size of the body
+    constexpr double       least_sine     = 1e-6; // of the angles of a cell
+    constexpr unsigned int named_cells    = 3;    // in messages
 
     std::string at(const dealii::Point<3> &x)
     {
@@ -84,12 +84,12 @@ namespace slipstick::fem
       void name_points();
       void check_connected();
 
-      const scene::Body<dim>               &body;
-      const MeshFile                       &file;
-      BodyMesh<dim>                         mesh;
-      std::vector<Element>                  cells;
-      std::map<unsigned int, unsigned int>  vertex_of_node;
-      std::map<Face, unsigned int>          n_cells_at; // by face
+      const scene::Body<dim>              &body;
+      const MeshFile                      &file;
+      BodyMesh<dim>                        mesh;
+      std::vector<Element>                 cells;
+      std::map<unsigned int, unsigned int> vertex_of_node;
+      std::map<Face, unsigned int>         n_cells_at; // by face
     };
 
     template <int dim>
@@ -170,9 +170,9 @@ namespace slipstick::fem
             }
           if (left != cell.n && right != cell.n)
             fail(std::string("has a degenerate cell: ") + cell_text(cell) + " " +
-                   (left > 0 && right > 0 ? "crosses itself or is not convex" :
-                    left + right == 0     ? "has no area" :
-                                            "has a corner of 0 or 180 degrees"),
+                   (left > 0 && right > 0 ? "crosses itself or is not convex"
+                    : left + right == 0   ? "has no area"
+                                          : "has a corner of 0 or 180 degrees"),
                  "mesh again, or repair the geometry there (doubled or nearly equal points)");
           if (right > 0)
             clockwise.push_back(c);
@@ -182,9 +182,10 @@ namespace slipstick::fem
           std::string some;
           for (unsigned int k = 0; k < clockwise.size() && k < named_cells; ++k)
             some += (k > 0 ? ", " : "") + cell_text(cells[clockwise[k]]);
-          fail("has " + std::to_string(clockwise.size()) + " of " + std::to_string(cells.size()) +
-                 " cells turned over (clockwise): " + some + (clockwise.size() > named_cells ? ", ..." : ""),
-               "give all cells the same orientation (in Gmsh: Recombine after Coherence, or ReverseMesh on the surface)");
+          fail(
+            "has " + std::to_string(clockwise.size()) + " of " + std::to_string(cells.size()) +
+              " cells turned over (clockwise): " + some + (clockwise.size() > named_cells ? ", ..." : ""),
+            "give all cells the same orientation (in Gmsh: Recombine after Coherence, or ReverseMesh on the surface)");
         }
       for (const unsigned int c : clockwise) // all of them
         std::reverse(cells[c].corners.begin(), cells[c].corners.begin() + cells[c].n);
@@ -196,8 +197,7 @@ namespace slipstick::fem
       const auto vertex = [this](const unsigned int node) {
         const auto [found, is_new] = vertex_of_node.emplace(node, mesh.piece.vertices.size());
         if (is_new)
-          mesh.piece.vertices.push_back(
-            body.scale * dealii::Point<dim>(file.nodes[node][0], file.nodes[node][1]));
+          mesh.piece.vertices.push_back(body.scale * dealii::Point<dim>(file.nodes[node][0], file.nodes[node][1]));
         return found->second;
       };
       for (const Element &cell : cells)
@@ -205,8 +205,8 @@ namespace slipstick::fem
           std::array<unsigned int, 4> v;
           for (unsigned int k = 0; k < cell.n; ++k)
             v[k] = vertex(cell.corners[k]);
-          mesh.piece.cells.push_back(cell.n == 3 ? triangle<dim>(v[0], v[1], v[2]) :
-                                                   quadrilateral<dim>(v[0], v[1], v[2], v[3]));
+          mesh.piece.cells.push_back(cell.n == 3 ? triangle<dim>(v[0], v[1], v[2])
+                                                 : quadrilateral<dim>(v[0], v[1], v[2], v[3]));
         }
       mesh.piece.global_vertices.resize(mesh.piece.vertices.size());
       std::iota(mesh.piece.global_vertices.begin(), mesh.piece.global_vertices.end(), GlobalVertex(0));

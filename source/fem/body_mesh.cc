@@ -48,12 +48,12 @@ namespace slipstick::fem
           if (towards || least << std::min(2 * refinements, 20u) < least_cells_of_one_kind)
             {
               mesh.piece = in_quadrilaterals(mesh.piece);
-              mesh.remarks.push_back(
-                "body " + body.name + ": its triangles and quadrilaterals " +
-                (towards ? std::string("are refined towards a boundary") :
-                           "mix in " + std::to_string(n_pieces) + " pieces, some of " + std::to_string(least) + " cells") +
-                ", so all are divided into quadrilaterals (" +
-                (refinements > 0 ? "in place of one refinement" : "half their size") + ")");
+              mesh.remarks.push_back("body " + body.name + ": its triangles and quadrilaterals " +
+                                     (towards ? std::string("are refined towards a boundary")
+                                              : "mix in " + std::to_string(n_pieces) + " pieces, some of " +
+                                                  std::to_string(least) + " cells") +
+                                     ", so all are divided into quadrilaterals (" +
+                                     (refinements > 0 ? "in place of one refinement" : "half their size") + ")");
               refinements -= refinements > 0;
             }
         }

@@ -11,6 +11,9 @@ namespace slipstick::fem
 {
   namespace
   {
+    // Contact nodes that are farther apart than the nearest ones by less than so many mesh sizes keep their rows.
+    constexpr double mesh_sizes = 2;
+
     tfeti::Partitioner make_partitioner(const std::uint64_t                           first,
                                         const std::uint64_t                           n_owned,
                                         const std::uint64_t                           n_total,
@@ -83,21 +86,66 @@ namespace slipstick::fem
   } // namespace
 
   template <int dim>
+  ContactRows contact_rows(const scene::Scene<dim> &scene,
+                           const Mesh<dim>         &mesh,
+                           const Spaces<dim>       &spaces,
+                           const double             t,
+                           const double             part)
+  {
+    const auto              contacts = pair_bodies(scene, mesh, spaces);
+    const auto              nodes    = interface_nodes(scene, mesh, spaces, contacts, t);
+    ContactRows             rows;
+    RowBuilder<dim>         builder(scene, nodes, contacts, t, rows.active);
+    std::vector<PairExtent> extents(scene.contacts.size());
+    collectively(mesh.comm, [&] { extents = builder.extents(); });
+    std::vector<double> limits;
+    for (const auto &own : extents)
+      {
+        const double gap     = dealii::Utilities::MPI::min(own.gap, mesh.comm);
+        const double length  = dealii::Utilities::MPI::sum(own.length, mesh.comm);
+        const double n_nodes = dealii::Utilities::MPI::sum(own.n_nodes, mesh.comm);
+        limits.push_back(n_nodes > 0 ? gap + std::max(part * length, mesh_sizes * length / n_nodes) : 0.);
+      }
+    builder.limit_gaps(limits);
+    collectively(mesh.comm, [&] { builder.build(); });
+    distribute(mesh, builder.entries, builder.n_interface, rows.active);
+    rows.active.counts = sum(rows.active.counts, mesh.comm);
+    rows.pruned        = std::move(builder.pruned);
+    distribute(mesh, builder.pruned_entries, 0, rows.pruned);
+    return rows;
+  }
+
+  template <int dim>
   tfeti::Constraints contact_constraints(const scene::Scene<dim> &scene,
                                          const Mesh<dim>         &mesh,
                                          const Spaces<dim>       &spaces,
                                          const double             t)
   {
-    const auto         contacts = pair_bodies(scene, mesh, spaces);
-    const auto         nodes    = interface_nodes(scene, mesh, spaces, contacts, t);
-    tfeti::Constraints constraints;
-    RowBuilder<dim>    builder(scene, nodes, contacts, t, constraints);
-    collectively(mesh.comm, [&] { builder.build(); });
-    distribute(mesh, builder.entries, builder.n_interface, constraints);
-    constraints.counts = sum(constraints.counts, mesh.comm);
-    return constraints;
+    return contact_rows(scene, mesh, spaces, t, std::numeric_limits<double>::infinity()).active;
   }
 
+  double largest_penetration(const tfeti::Constraints           &pruned,
+                             const std::vector<Eigen::VectorXd> &u,
+                             const MPI_Comm                      comm)
+  {
+    if (pruned.rows->size() == 0)
+      return 0;
+    tfeti::DistributedVector closing(pruned.rows);
+    for (unsigned int p = 0; p < u.size(); ++p)
+      for (const auto &entry : pruned.blocks[p])
+        closing.local_element(entry.row) += entry.value * u[p][entry.dof];
+    closing.compress(dealii::VectorOperation::add);
+    double largest = 0;
+    for (unsigned int r = 0; r < pruned.c.size(); ++r)
+      largest = std::max(largest, closing.local_element(r) - pruned.c[r]);
+    return dealii::Utilities::MPI::max(largest, comm);
+  }
+
+  template ContactRows        contact_rows(const scene::Scene<2> &,
+                                           const Mesh<2> &,
+                                           const Spaces<2> &,
+                                           const double,
+                                           const double);
   template tfeti::Constraints contact_constraints(const scene::Scene<2> &,
                                                   const Mesh<2> &,
                                                   const Spaces<2> &,

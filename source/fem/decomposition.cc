@@ -151,7 +151,7 @@ namespace slipstick::fem
                                                const std::vector<std::size_t> &n_cells,
                                                const unsigned int              wanted)
     {
-      std::vector<unsigned int>                             shares(cost.size(), 1);
+      std::vector<unsigned int>                            shares(cost.size(), 1);
       std::priority_queue<std::pair<double, unsigned int>> next; // first of equals: the last piece
       for (unsigned int k = 0; k < cost.size(); ++k)
         next.emplace(cost[k], k);
@@ -169,8 +169,9 @@ namespace slipstick::fem
 
     /// Cuts the bodies, pieces in order of the bodies.
     template <int dim>
-    std::vector<MeshPiece<dim>>
-    cut_bodies(const scene::Scene<dim> &scene, std::vector<BodyMesh<dim>> &bodies, std::vector<std::string> &remarks)
+    std::vector<MeshPiece<dim>> cut_bodies(const scene::Scene<dim>    &scene,
+                                           std::vector<BodyMesh<dim>> &bodies,
+                                           std::vector<std::string>   &remarks)
     {
       // pieces of one kind of cells that hang together through faces: less is not possible
       std::vector<MeshPiece<dim>> wholes;
@@ -190,9 +191,9 @@ namespace slipstick::fem
           cost.push_back(cost_of(whole));
           n_cells.push_back(whole.cells.size());
         }
-      const bool         one_each = scene.decomposition.method == scene::DecompositionMethod::none;
-      const unsigned int asked    = one_each ? scene.bodies.size() : scene.decomposition.subdomains;
-      const double       total    = std::accumulate(cost.begin(), cost.end(), 0.);
+      const bool         one_each          = scene.decomposition.method == scene::DecompositionMethod::none;
+      const unsigned int asked             = one_each ? scene.bodies.size() : scene.decomposition.subdomains;
+      const double       total             = std::accumulate(cost.begin(), cost.end(), 0.);
       const double       unknowns_per_node = scene.discretization.degree * scene.discretization.degree;
       const unsigned int wanted =
         asked > 0 ? asked : std::max(1., std::round(total * unknowns_per_node / automatic_cells_per_subdomain));
@@ -201,7 +202,7 @@ namespace slipstick::fem
                           ": as many as bodies and parts of them with one kind of cells");
       const auto shares = shares_of_pieces(cost, n_cells, wanted);
 
-      std::vector<MeshPiece<dim>> pieces;
+      std::vector<MeshPiece<dim>>                                   pieces;
       std::map<unsigned int, std::pair<unsigned int, unsigned int>> made; // by body: wanted, made
       for (unsigned int k = 0; k < wholes.size(); ++k)
         {
@@ -265,8 +266,9 @@ namespace slipstick::fem
       });
 
       std::map<unsigned int, std::vector<MeshPiece<dim>>> to_send;
-      const unsigned int n_pieces = dealii::Utilities::MPI::broadcast(mesh.comm, static_cast<unsigned int>(pieces.size()));
-      mesh.first_subdomain        = equal_shares(n_pieces, n_ranks);
+      const unsigned int                                  n_pieces =
+        dealii::Utilities::MPI::broadcast(mesh.comm, static_cast<unsigned int>(pieces.size()));
+      mesh.first_subdomain = equal_shares(n_pieces, n_ranks);
       for (unsigned int r = 0; r < n_ranks && is_root; ++r)
         for (unsigned int s = mesh.first_subdomain[r]; s < mesh.first_subdomain[r + 1]; ++s)
           to_send[r].push_back(std::move(pieces[s]));

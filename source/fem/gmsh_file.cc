@@ -152,8 +152,7 @@ namespace slipstick::fem
       {
         const std::string end   = "$End" + section;
         const auto        found = text.find(end, at);
-        if (found == std::string::npos ||
-            (!skip && text.find_first_not_of(" \t\r\n", at) != found))
+        if (found == std::string::npos || (!skip && text.find_first_not_of(" \t\r\n", at) != found))
           fail_broken();
         at = found + end.size();
       }
@@ -170,7 +169,7 @@ namespace slipstick::fem
       template <typename Number>
       Number word()
       {
-        at          = std::min(text.find_first_not_of(" \t\r\n", at), text.size());
+        at = std::min(text.find_first_not_of(" \t\r\n", at), text.size());
         Number     value{};
         const auto result = std::from_chars(text.data() + at, text.data() + text.size(), value);
         if (result.ec != std::errc())
@@ -221,18 +220,18 @@ namespace slipstick::fem
 
       /// The element whose node numbers follow.
       template <typename ReadTag>
-      void add_element(const ElementType  &type,
-                       const unsigned int  of_group,
-                       const std::size_t   number,
-                       const ReadTag      &read_tag);
+      void add_element(const ElementType &type,
+                       const unsigned int of_group,
+                       const std::size_t  number,
+                       const ReadTag     &read_tag);
 
-      Cursor                                         in;
-      MeshFile                                       mesh;
-      bool                                           is_version_2 = false;
-      std::unordered_map<std::size_t, unsigned int>  index_of_node;
-      std::map<std::vector<int>, unsigned int>       index_of_group;
+      Cursor                                          in;
+      MeshFile                                        mesh;
+      bool                                            is_version_2 = false;
+      std::unordered_map<std::size_t, unsigned int>   index_of_node;
+      std::map<std::vector<int>, unsigned int>        index_of_group;
       std::map<std::pair<int, int>, std::vector<int>> physicals_of_entity; // version 4: by dimension and number
-      bool                                           has_nodes = false, has_elements = false;
+      bool                                            has_nodes = false, has_elements = false;
     };
 
     void GmshReader::read_format()
@@ -434,9 +433,10 @@ namespace slipstick::fem
                   if (t == 0)
                     physical = std::abs(tag);
                 }
-              add_element(known, group(physical == 0 ? std::vector<int>() : std::vector<int>{physical}), number, [this] {
-                return static_cast<std::size_t>(in.integer());
-              });
+              add_element(known,
+                          group(physical == 0 ? std::vector<int>() : std::vector<int>{physical}),
+                          number,
+                          [this] { return static_cast<std::size_t>(in.integer()); });
             }
         }
     }

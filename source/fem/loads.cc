@@ -73,8 +73,7 @@ namespace slipstick::fem
           for (const unsigned int f : cell->face_indices())
             if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != cut_id)
               for (const auto &traction : scene.tractions)
-                if (traction.where.body == number &&
-                    on_boundary(mesh, number, traction.where.boundary, cell->face(f)->boundary_id()))
+                if (traction.where.body == number && mesh.on_boundary(traction.where, cell->face(f)->boundary_id()))
                   {
                     values.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell), f);
                     element.nodes_of(cell, dofs, nodes);

@@ -61,16 +61,16 @@ namespace slipstick::fem
           dealii::GridIn<2>  reader(triangulation);
           std::istringstream in(text);
           reader.read(in,
-                      format == "unv" ? dealii::GridIn<2>::unv :
-                      format == "vtk" ? dealii::GridIn<2>::vtk :
-                      format == "ucd" ? dealii::GridIn<2>::ucd :
-                                        dealii::GridIn<2>::abaqus);
+                      format == "unv"   ? dealii::GridIn<2>::unv
+                      : format == "vtk" ? dealii::GridIn<2>::vtk
+                      : format == "ucd" ? dealii::GridIn<2>::ucd
+                                        : dealii::GridIn<2>::abaqus);
         }
       catch (const std::exception &error)
         {
-          throw InputError("mesh file " + file + " could not be read as " + format + " in the plane: " +
-                             first_words(error),
-                           "check that it holds a plane mesh of triangles and quadrilaterals, or convert it to Gmsh's .msh");
+          throw InputError(
+            "mesh file " + file + " could not be read as " + format + " in the plane: " + first_words(error),
+            "check that it holds a plane mesh of triangles and quadrilaterals, or convert it to Gmsh's .msh");
         }
       for (const auto &x : triangulation.get_vertices())
         mesh.nodes.emplace_back(x[0], x[1], 0);

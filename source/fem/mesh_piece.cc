@@ -14,8 +14,8 @@ namespace slipstick::fem
   {
     /// Sub-piece of the given cells.
     template <int dim>
-    MeshPiece<dim> extract(const MeshPiece<dim>                                  &whole,
-                           const std::vector<unsigned int>                       &cells,
+    MeshPiece<dim> extract(const MeshPiece<dim>                                                      &whole,
+                           const std::vector<unsigned int>                                           &cells,
                            const std::map<typename MeshPiece<dim>::Face, dealii::types::boundary_id> &boundary)
     {
       MeshPiece<dim>                       piece;
@@ -34,7 +34,7 @@ namespace slipstick::fem
             }
           for (unsigned int k = 0; k < n_corners<dim>(cell); ++k)
             {
-              unsigned int &v          = cell[k];
+              unsigned int &v            = cell[k];
               const auto [entry, is_new] = local.emplace(v, piece.vertices.size());
               if (is_new)
                 {
@@ -91,8 +91,8 @@ namespace slipstick::fem
         first[d] = block[d] * n[d];
       }
     MeshPiece<dim> piece;
-    piece.ordered = true;
-    const auto     vertex = [&](const unsigned int i, const unsigned int j) { return j * (n[0] + 1) + i; };
+    piece.ordered     = true;
+    const auto vertex = [&](const unsigned int i, const unsigned int j) { return j * (n[0] + 1) + i; };
     for (unsigned int j = 0; j <= n[1]; ++j)
       for (unsigned int i = 0; i <= n[0]; ++i)
         {
@@ -173,7 +173,7 @@ namespace slipstick::fem
           root[std::max(a, b)] = std::min(a, b);
         }
 
-    const auto boundary = ids_of_faces(whole);
+    const auto                                                                 boundary = ids_of_faces(whole);
     std::map<std::pair<unsigned int, unsigned int>, std::vector<unsigned int>> cells_of_piece; // by part and root
     for (unsigned int c = 0; c < n_cells; ++c)
       cells_of_piece[{part[c], find(c)}].push_back(c);
@@ -184,8 +184,9 @@ namespace slipstick::fem
   }
 
   template <int dim>
-  std::vector<unsigned int>
-  metis_parts(const MeshPiece<dim> &piece, const unsigned int n_parts, const unsigned int seed)
+  std::vector<unsigned int> metis_parts(const MeshPiece<dim> &piece,
+                                        const unsigned int    n_parts,
+                                        const unsigned int    seed)
   {
     const unsigned int        n_cells = piece.cells.size();
     std::vector<unsigned int> part(n_cells, 0);
@@ -281,11 +282,11 @@ namespace slipstick::fem
   template struct MeshPiece<2>;
   template std::vector<std::pair<MeshPiece<2>::Face, unsigned int>> faces_with_cells(const MeshPiece<2> &);
   template std::map<MeshPiece<2>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<2> &);
-  template MeshPiece<2>                      rectangle_piece<2>(const scene::Body<2> &,
+  template MeshPiece<2>                                             rectangle_piece<2>(const scene::Body<2> &,
                                            const std::array<unsigned int, 2> &,
                                            const std::array<unsigned int, 2> &,
                                            const std::array<unsigned int, 2> &);
-  template void                              place(MeshPiece<2> &, const scene::Placement<2> &);
+  template void                                                     place(MeshPiece<2> &, const scene::Placement<2> &);
   template std::vector<MeshPiece<2>>         cut(const MeshPiece<2> &, const std::vector<unsigned int> &);
   template std::vector<unsigned int>         metis_parts(const MeshPiece<2> &, const unsigned int, const unsigned int);
   template std::unique_ptr<SubdomainMesh<2>> triangulate(const MeshPiece<2> &);

@@ -78,7 +78,7 @@ namespace slipstick::fem
       using Edge   = SurfaceEdge<2>;
       using Tensor = dealii::Tensor<1, 2>;
 
-      Pairing(const std::vector<Edge> &slave_, const std::vector<Edge> &master_, const double reach_)
+      Pairing(const std::vector<Edge> &slave_, const std::vector<Edge> &master_, const Reach &reach_)
         : slave(slave_)
         , master(master_)
         , reach(reach_)
@@ -187,7 +187,7 @@ namespace slipstick::fem
       {
         const Tensor n = field(e, s) / field(e, s).norm();
         // ahead and behind: the first crossing
-        std::array<double, 2>       distance{{reach, reach}};
+        std::array<double, 2>       distance{{reach.ahead, reach.behind}};
         std::array<unsigned int, 2> first{};
         std::array<bool, 2>         is_facing{{false, false}};
         for (const unsigned int m : candidates)
@@ -211,8 +211,8 @@ namespace slipstick::fem
       {
         std::vector<dealii::Point<2>> around;
         for (const double s : {0., 0.25, 0.5, 0.75, 1.})
-          for (const double way : {-1., 1.})
-            around.push_back(slave[e].point(s) + way * reach * field(e, s) / field(e, s).norm());
+          for (const double way : {-reach.behind, reach.ahead})
+            around.push_back(slave[e].point(s) + way * field(e, s) / field(e, s).norm());
         auto box = EdgeTree::box_around(around);
         // a little larger: the field turns, and exact touching is on the border
         const double more = 0.05 * slave[e].chord();
@@ -368,7 +368,7 @@ namespace slipstick::fem
 
     private:
       const std::vector<Edge>                 &slave, &master;
-      const double                             reach;
+      const Reach                              reach;
       const EdgeTree                           tree;
       const dealii::QGauss<1>                  gauss;
       std::vector<Node>                        nodes;
@@ -407,7 +407,7 @@ namespace slipstick::fem
   template <>
   std::vector<MortarRow<2>> mortar_rows(const std::vector<SurfaceEdge<2>> &slave,
                                         const std::vector<SurfaceEdge<2>> &master,
-                                        const double                       reach,
+                                        const Reach                       &reach,
                                         const scene::ContactDiscretization discretization,
                                         const std::string                 &name)
   {

@@ -91,13 +91,15 @@ namespace slipstick::fem
   {
     if (points.empty())
       return {};
+    std::vector<dealii::Point<dim>> at;
+    for (const auto &point : points)
+      at.push_back(point.point.empty() ? *point.coordinates : mesh.points[point.body].at(point.point).position);
     std::vector<Candidate<dim>> best(points.size());
     for (unsigned int k = 0; k < points.size(); ++k)
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
         if (mesh.subdomains[p]->body == points[k].body)
           {
-            AssertThrow(points[k].coordinates, dealii::ExcMessage("a named point has no coordinates yet"));
-            find_in_subdomain(spaces, mesh, p, *points[k].coordinates, best[k]);
+            find_in_subdomain(spaces, mesh, p, at[k], best[k]);
           }
     for (const auto &others : dealii::Utilities::MPI::all_gather(mesh.comm, best))
       for (unsigned int k = 0; k < points.size(); ++k)
@@ -115,8 +117,8 @@ namespace slipstick::fem
           throw InputError(format("%s: the point (%g, %g) is not on body '%s': its nearest node, (%g, %g), is %g away, "
                                   "more than half a cell",
                                   owners[k].c_str(),
-                                  (*points[k].coordinates)[0],
-                                  (*points[k].coordinates)[1],
+                                  at[k][0],
+                                  at[k][1],
                                   scene.bodies[points[k].body].name.c_str(),
                                   found[k].position[0],
                                   found[k].position[1],

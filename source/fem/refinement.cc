@@ -103,17 +103,17 @@ namespace slipstick::fem
             if (arc != coarse.arc_centers.end())
               {
                 const dealii::Tensor<1, dim> from = x - arc->second, to = y - arc->second;
-                const double                 angle = std::acos(std::clamp(from * to / (from.norm() * to.norm()), -1., 1.));
+                const double angle = std::acos(std::clamp(from * to / (from.norm() * to.norm()), -1., 1.));
                 return arc->second + (std::sin((1 - s) * angle) * from + std::sin(s * angle) * to) / std::sin(angle);
               }
           }
         return x + s * (y - x);
       }
 
-      const MeshPiece<dim>                                 &coarse;
-      const std::map<Face, dealii::types::boundary_id>      ids;
-      MeshPiece<dim>                                        fine;
-      std::map<std::array<unsigned int, 4>, unsigned int>   edge_vertices; // by edge, k, n
+      const MeshPiece<dim>                               &coarse;
+      const std::map<Face, dealii::types::boundary_id>    ids;
+      MeshPiece<dim>                                      fine;
+      std::map<std::array<unsigned int, 4>, unsigned int> edge_vertices; // by edge, k, n
     };
 
     template <int dim>
@@ -139,21 +139,21 @@ namespace slipstick::fem
       refiner.add(triangle<dim>(middle[0], middle[1], middle[2]));
     }
 
-    using Lattice  = std::array<unsigned int, 2>;  // position on the 3 x 3 division of a cell
+    using Lattice  = std::array<unsigned int, 2>; // position on the 3 x 3 division of a cell
     using Template = std::vector<std::array<Lattice, 4>>;
 
     // Corner 0 at (0, 0), corner 1 at (3, 0), corner 2 at (3, 3). An edge between marked corners has two points, one
     // with a single marked end has the point next to that.
-    const Template one_corner   = {{{{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}}},
-                                   {{{{1, 0}}, {{3, 0}}, {{3, 3}}, {{1, 1}}}},
-                                   {{{{1, 1}}, {{3, 3}}, {{0, 3}}, {{0, 1}}}}};
-    const Template two_adjacent = {{{{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}}},
-                                   {{{{1, 0}}, {{2, 0}}, {{2, 1}}, {{1, 1}}}},
-                                   {{{{2, 0}}, {{3, 0}}, {{3, 1}}, {{2, 1}}}},
-                                   {{{{0, 1}}, {{1, 1}}, {{1, 2}}, {{0, 3}}}},
-                                   {{{{1, 1}}, {{2, 1}}, {{2, 2}}, {{1, 2}}}},
-                                   {{{{2, 1}}, {{3, 1}}, {{3, 3}}, {{2, 2}}}},
-                                   {{{{1, 2}}, {{2, 2}}, {{3, 3}}, {{0, 3}}}}};
+    const Template one_corner    = {{{{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}}},
+                                    {{{{1, 0}}, {{3, 0}}, {{3, 3}}, {{1, 1}}}},
+                                    {{{{1, 1}}, {{3, 3}}, {{0, 3}}, {{0, 1}}}}};
+    const Template two_adjacent  = {{{{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}}},
+                                    {{{{1, 0}}, {{2, 0}}, {{2, 1}}, {{1, 1}}}},
+                                    {{{{2, 0}}, {{3, 0}}, {{3, 1}}, {{2, 1}}}},
+                                    {{{{0, 1}}, {{1, 1}}, {{1, 2}}, {{0, 3}}}},
+                                    {{{{1, 1}}, {{2, 1}}, {{2, 2}}, {{1, 2}}}},
+                                    {{{{2, 1}}, {{3, 1}}, {{3, 3}}, {{2, 2}}}},
+                                    {{{{1, 2}}, {{2, 2}}, {{3, 3}}, {{0, 3}}}}};
     const Template three_corners = {{{{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}}},
                                     {{{{1, 0}}, {{2, 0}}, {{2, 1}}, {{1, 1}}}},
                                     {{{{2, 0}}, {{3, 0}}, {{3, 1}}, {{2, 1}}}},
@@ -191,8 +191,7 @@ namespace slipstick::fem
         if (at[0] == 0)
           return refiner.on_edge(c(0), c(3), at[1], 3);
         const auto found = inner.find(at);
-        return found != inner.end() ? found->second :
-                                      inner[at] = refiner.inside(cell, first, at[0] / 3., at[1] / 3.);
+        return found != inner.end() ? found->second : inner[at] = refiner.inside(cell, first, at[0] / 3., at[1] / 3.);
       };
       for (const auto &[p, q, r, s] : cells)
         refiner.add(quadrilateral<dim>(vertex(p), vertex(q), vertex(r), vertex(s)));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace slipstick::fem
 {
@@ -41,6 +42,22 @@ namespace slipstick::fem
   } // namespace
 
   template <int dim>
+  bool can_be_pruned(const scene::ContactPair<dim> &pair)
+  {
+    switch (pair.law)
+      {
+        case scene::ContactLaw::frictionless:
+        case scene::ContactLaw::coulomb:
+          return true;
+        case scene::ContactLaw::tresca:
+          return pair.only_closed;
+        case scene::ContactLaw::bonded:
+          return false;
+      }
+    return false;
+  }
+
+  template <int dim>
   RowBuilder<dim>::RowBuilder(const scene::Scene<dim>               &scene,
                               const std::vector<InterfaceNode<dim>> &nodes,
                               const BodyContacts<dim>               &contacts,
@@ -50,6 +67,7 @@ namespace slipstick::fem
     , nodes(nodes)
     , t(t)
     , constraints(constraints)
+    , limits(scene.contacts.size(), std::numeric_limits<double>::infinity())
   {
     for (unsigned int i = 0; i < nodes.size(); ++i)
       if (nodes[i].is_paired)
@@ -67,6 +85,27 @@ namespace slipstick::fem
       add(i);
     if (!scene.foundations.empty())
       constraints.compliance.resize(constraints.kind.size(), 0.);
+  }
+
+  template <int dim>
+  std::vector<PairExtent> RowBuilder<dim>::extents() const
+  {
+    std::vector<PairExtent> result(scene.contacts.size());
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      for (const Touch &touch : touches_of(i))
+        {
+          auto &extent = result[touch.pair];
+          extent.gap   = std::min(extent.gap, touch.point.gap);
+          extent.length += touch.point.length;
+          ++extent.n_nodes;
+        }
+    return result;
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::limit_gaps(std::vector<double> limits_)
+  {
+    limits = std::move(limits_);
   }
 
   template <int dim>
@@ -295,14 +334,20 @@ namespace slipstick::fem
             if (!is_free(left))
               continue;
             equal.push_back(unit(left));
-            fill(new_row(tfeti::RowKind::gluing, 0., key, (1ull << 32) + 16 * touch.pair + 4 * touch.side + d), row);
+            fill(new_row(tfeti::RowKind::bonded, 0., key, (1ull << 32) + 16 * touch.pair + 4 * touch.side + d), row);
             ++constraints.counts.gluing;
           }
     for (Touch &touch : touches)
       {
         if (scene.contacts[touch.pair].law == scene::ContactLaw::bonded)
           continue;
-        const auto normal     = jump(touch, touch.normal);
+        const auto normal = jump(touch, touch.normal);
+        if (is_pruned(touch))
+          {
+            if (is_free(free_part(normal, equal)))
+              add_pruned(touch, normal);
+            continue;
+          }
         const auto tangential = jump(touch, tangent_of<dim>(touch.normal));
         const auto left       = free_part(normal, equal);
         const bool has_normal = is_free(left);
@@ -330,5 +375,26 @@ namespace slipstick::fem
       }
   }
 
+  template <int dim>
+  bool RowBuilder<dim>::is_pruned(const Touch &touch) const
+  {
+    return touch.point.gap > limits[touch.pair] && can_be_pruned(scene.contacts[touch.pair]);
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::add_pruned(const Touch &touch, const Vector &coefficients)
+  {
+    for (const auto &[i, value] : coefficients)
+      if (value != 0)
+        {
+          const auto &copy = nodes[i / dim].copies[0];
+          pruned_entries.push_back({pruned.c.size(), copy.first, copy.second * dim + i % dim, value, true});
+        }
+    pruned.kind.push_back(tfeti::RowKind::normal);
+    pruned.c.push_back(touch.point.gap);
+    ++constraints.counts.candidates;
+  }
+
+  template bool can_be_pruned(const scene::ContactPair<2> &);
   template class RowBuilder<2>;
 } // namespace slipstick::fem

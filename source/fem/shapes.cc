@@ -17,11 +17,11 @@ namespace slipstick::fem
     /// Point of the unit circle at @p fraction of the whole circle; exact at the quarters.
     dealii::Tensor<1, 2> on_circle(const double fraction)
     {
-      const double turn    = fraction - std::floor(fraction);
-      const int    quarter = static_cast<int>(std::lround(4 * turn));
-      const double angle   = 2 * dealii::numbers::PI * (turn - quarter / 4.); // in an eighth to both sides
-      const double c = std::cos(angle), s = std::sin(angle);
-      const double x[4] = {c, -s, -c, s}, y[4] = {s, c, -s, -c};
+      const double         turn    = fraction - std::floor(fraction);
+      const int            quarter = static_cast<int>(std::lround(4 * turn));
+      const double         angle   = 2 * dealii::numbers::PI * (turn - quarter / 4.); // in an eighth to both sides
+      const double         c = std::cos(angle), s = std::sin(angle);
+      const double         x[4] = {c, -s, -c, s}, y[4] = {s, c, -s, -c};
       dealii::Tensor<1, 2> point;
       point[0] = x[quarter % 4];
       point[1] = y[quarter % 4];
@@ -38,7 +38,7 @@ namespace slipstick::fem
     MeshPiece<2> ring(const scene::Body<2> &body, const unsigned int refinements)
     {
       const bool   whole = body.shape == scene::Shape::ring;
-      const double turn  = whole ? 1 : .25, r = body.inner_radius, R = body.radius;
+      const double turn = whole ? 1 : .25, r = body.inner_radius, R = body.radius;
       unsigned int around = whole ? automatic_cells_around : automatic_cells_around / 4;
       const double h      = dealii::numbers::PI * turn * (r + R) / around;
       unsigned int across = static_cast<unsigned int>(std::max(1., std::round((R - r) / h)));
@@ -55,8 +55,8 @@ namespace slipstick::fem
       const auto vertex = [&](const unsigned int i, const unsigned int j) { return (i % n_rays) * (across + 1) + j; };
       for (unsigned int i = 0; i < n_rays; ++i)
         for (unsigned int j = 0; j <= across; ++j)
-          piece.vertices.push_back(body.center + (j == across ? R : r + (R - r) * j / across) *
-                                                   on_circle(turn * i / around));
+          piece.vertices.push_back(body.center +
+                                   (j == across ? R : r + (R - r) * j / across) * on_circle(turn * i / around));
       for (unsigned int i = 0; i < around; ++i)
         {
           for (unsigned int j = 0; j < across; ++j)
@@ -103,10 +103,9 @@ namespace slipstick::fem
       n_layers <<= refinements;
 
       // points of the loop, by their place l on it
-      const double turn = whole ? 1. : .5;
-      const double start =
-        whole ? .5 - .5 * n_side / n_loop : .5; // fraction of the circle where the left side begins
-      const auto arc = [&](const unsigned int l) { return on_circle(start + turn * l / n_loop); };
+      const double turn  = whole ? 1. : .5;
+      const double start = whole ? .5 - .5 * n_side / n_loop : .5; // fraction of the circle where the left side begins
+      const auto   arc   = [&](const unsigned int l) { return on_circle(start + turn * l / n_loop); };
       const std::vector<unsigned int> ends = {0, n_side, n_side + n_bottom, 2 * n_side + n_bottom, n_loop}; // of sides
       const auto                      core = [&](const unsigned int l) {
         unsigned int side = 0;
@@ -114,8 +113,8 @@ namespace slipstick::fem
           ++side;
         const unsigned int n = ends[side + 1] - ends[side];
         const double       s = double(l - ends[side]) / n;
-        return core_radius * (core_bending * arc(l) +
-                              (1 - core_bending) * ((1 - s) * arc(ends[side]) + s * arc(ends[side + 1])));
+        return core_radius *
+               (core_bending * arc(l) + (1 - core_bending) * ((1 - s) * arc(ends[side]) + s * arc(ends[side + 1])));
       };
 
       MeshPiece<2> piece;
@@ -136,7 +135,7 @@ namespace slipstick::fem
         return whole ? core((2 * n_side + n_bottom + (n_bottom - i)) % n_loop) : (1 - u) * core(0) + u * core(n_loop);
       };
       std::vector<unsigned int> loop_vertex(n_loop + 1);
-      const auto                lattice = [&](const unsigned int i, const unsigned int j) { return j * (n_bottom + 1) + i; };
+      const auto lattice = [&](const unsigned int i, const unsigned int j) { return j * (n_bottom + 1) + i; };
       for (unsigned int j = 0; j <= n_side; ++j)
         for (unsigned int i = 0; i <= n_bottom; ++i)
           {

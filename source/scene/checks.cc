@@ -1,3 +1,4 @@
+#include <slipstick/base/text.h>
 #include <slipstick/scene/checks.h>
 
 #include <map>
@@ -22,35 +23,42 @@ namespace slipstick::scene
                          "declare one, for example: set Bodies = box, and describe it in a subsection Body box");
       for (unsigned int body = 0; body < scene.bodies.size(); ++body)
         {
-          bool held = false;
+          bool held = scene.contact_search.automatic;
           for (const auto &support : scene.supports)
             held = held || support.where.body == body;
+          for (const auto &foundation : scene.foundations)
+            held = held || foundation.where.body == body;
           for (const auto &contact : scene.contacts)
-            held = held || contact.slave.body == body;
+            held = held || contact.slave.body == body || (contact.master && contact.master->body == body);
           if (!held)
-            throw InputError(parameters.locate("Body " + scene.bodies[body].name) + ": nothing holds body '" +
-                               scene.bodies[body].name + "'",
-                             "add a support or a contact pair on one of its boundaries (lists Supports, Contacts)");
+            throw InputError(
+              parameters.locate("Body " + scene.bodies[body].name) + ": nothing holds body '" +
+                scene.bodies[body].name + "'",
+              "add a support, a foundation or a contact pair on one of its boundaries (lists Supports, Foundations, Contacts)");
         }
     }
 
     template <int dim>
     void check_boundaries_used_once(const Scene<dim> &scene, const Parameters &parameters)
     {
-      std::map<Boundary, std::string> contacts;
+      // of two bodies the pair says the same whichever side is the slave
+      std::map<std::pair<Boundary, Boundary>, std::string> contacts;
       for (const auto &contact : scene.contacts)
         {
-          const auto [first, is_new] = contacts.emplace(boundary_of(contact.slave), contact.name);
+          const Boundary slave       = boundary_of(contact.slave);
+          const Boundary other       = contact.master ? boundary_of(*contact.master)
+                                                      : Boundary(scene.bodies.size(), scene.obstacles[contact.obstacle].name);
+          const auto [first, is_new] = contacts.emplace(std::minmax(slave, other), contact.name);
           if (!is_new)
             throw parameters.error("Contact " + contact.name + "/Slave",
-                                   "Contact " + first->second + " has the same slave boundary",
+                                   "Contact " + first->second + " joins the same two sides",
                                    "keep one of the two, or choose another boundary");
         }
 
       std::map<std::pair<Boundary, unsigned int>, std::string> supports;
       for (const auto &support : scene.supports)
         for (unsigned int d = 0; d < dim; ++d)
-          if (support.components[d])
+          if (support.components[d] && !support.point)
             {
               const auto [first, is_new] =
                 supports.emplace(std::make_pair(boundary_of(support.where), d), support.name);
@@ -106,6 +114,19 @@ namespace slipstick::scene
                                "would change the bounds that SMALBE works with",
                                "set it to auto, or Solver/Algorithm to semismooth newton");
     }
+
+    // Poisson's ratio above which standard elements of plane strain are too stiff by much (bulk over shear modulus 100).
+    constexpr double locking_poisson_ratio = 0.495;
+
+    template <int dim>
+    void check_element(const Scene<dim> &scene, const Parameters &parameters)
+    {
+      if (scene.discretization.element == ElementKind::nearly_incompressible &&
+          scene.plane_state == PlaneState::plane_stress)
+        throw parameters.error("Discretization/Element",
+                               "is for plane strain; nothing locks in plane stress",
+                               "set it to standard, or Plane state = plane strain");
+    }
   } // namespace
 
   template <int dim>
@@ -115,7 +136,22 @@ namespace slipstick::scene
     check_boundaries_used_once(scene, parameters);
     check_decomposition(scene, parameters);
     check_algorithm(scene, parameters);
+    check_element(scene, parameters);
   }
 
-  template void check_scene(const Scene<2> &, const Parameters &);
+  template <int dim>
+  std::vector<std::string> warnings(const Scene<dim> &scene)
+  {
+    std::vector<std::string> texts;
+    if (scene.plane_state == PlaneState::plane_strain && scene.discretization.element == ElementKind::standard)
+      for (const Material &material : scene.materials)
+        if (material.poisson_ratio > locking_poisson_ratio)
+          texts.push_back("warning: standard elements lock in plane strain with Poisson ratio " +
+                          number_text(material.poisson_ratio) + " (Material " + material.name +
+                          "): displacements come out too small; set Discretization/Element = nearly incompressible");
+    return texts;
+  }
+
+  template void                     check_scene(const Scene<2> &, const Parameters &);
+  template std::vector<std::string> warnings(const Scene<2> &);
 } // namespace slipstick::scene

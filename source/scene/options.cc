@@ -136,6 +136,14 @@ namespace slipstick::scene
   {
     prm.enter_subsection("Discretization");
     add_count(prm, "Degree", discretization.degree, 1, 2, "polynomial degree of the elements");
+    add_choice(
+      prm,
+      "Element",
+      discretization.element,
+      Choices<ElementKind>{{"standard", ElementKind::standard},
+                           {"nearly incompressible", ElementKind::nearly_incompressible}},
+      "nearly incompressible: for plane strain with nu near 0.5, where standard elements lock; its dilatation is "
+      "projected on polynomials of one degree less");
     add_count(prm, "Refinements", discretization.refinements, 0, 10, "extra uniform refinements of the mesh");
     prm.leave_subsection();
   }
@@ -158,6 +166,10 @@ namespace slipstick::scene
                "-",
                Interval::inside(0, 1),
                "eps: projected gradient and G x relative to P d");
+    add_flag(prm,
+             "Prune contact",
+             solver.prune_contact,
+             "leave contact nodes that are far apart without multipliers, unless the solution makes them penetrate");
     declare_dual(prm, solver.dual);
     declare_smalbe(prm, solver.smalbe);
     prm.enter_subsection("PCG");

@@ -13,15 +13,27 @@ namespace slipstick::scene
   namespace
   {
     // The top level lists and the subsections whose names they declare.
-    const NamedKind material_kind = {"Material", "Materials"};
-    const NamedKind body_kind     = {"Body", "Bodies"};
-    const NamedKind obstacle_kind = {"Obstacle", "Obstacles"};
-    const NamedKind support_kind  = {"Support", "Supports"};
-    const NamedKind traction_kind = {"Traction", "Tractions"};
-    const NamedKind contact_kind  = {"Contact", "Contacts"};
+    const NamedKind material_kind    = {"Material", "Materials"};
+    const NamedKind body_kind        = {"Body", "Bodies"};
+    const NamedKind obstacle_kind    = {"Obstacle", "Obstacles"};
+    const NamedKind support_kind     = {"Support", "Supports"};
+    const NamedKind foundation_kind  = {"Foundation", "Foundations"};
+    const NamedKind traction_kind    = {"Traction", "Tractions"};
+    const NamedKind body_force_kind  = {"Body force", "Body forces"};
+    const NamedKind point_load_kind  = {"Point load", "Point loads"};
+    const NamedKind temperature_kind = {"Temperature", "Temperatures"};
+    const NamedKind contact_kind     = {"Contact", "Contacts"};
 
-    const std::vector<NamedKind> named_kinds =
-      {material_kind, body_kind, obstacle_kind, support_kind, traction_kind, contact_kind};
+    const std::vector<NamedKind> named_kinds = {material_kind,
+                                                body_kind,
+                                                obstacle_kind,
+                                                support_kind,
+                                                foundation_kind,
+                                                traction_kind,
+                                                body_force_kind,
+                                                point_load_kind,
+                                                temperature_kind,
+                                                contact_kind};
 
     /// Names of each kind, by its list.
     using Names = std::map<std::string, std::vector<std::string>>;
@@ -42,13 +54,18 @@ namespace slipstick::scene
     private:
       void declare_top_level(const Names &names);
 
-      Scene<dim>                        options; // those concerns that refer to no names
-      std::vector<MaterialSection>      materials;
-      std::vector<BodySection<dim>>     bodies;
-      std::vector<ObstacleSection<dim>> obstacles;
-      std::vector<SupportSection<dim>>  supports;
-      std::vector<TractionSection<dim>> tractions;
-      std::vector<ContactSection<dim>>  contacts;
+      Scene<dim>                           options; // those concerns that refer to no names
+      std::vector<MaterialSection>         materials;
+      std::vector<BodySection<dim>>        bodies;
+      std::vector<ObstacleSection<dim>>    obstacles;
+      std::vector<SupportSection<dim>>     supports;
+      std::vector<FoundationSection<dim>>  foundations;
+      std::vector<TractionSection<dim>>    tractions;
+      std::vector<BodyForceSection<dim>>   body_forces;
+      std::vector<PointLoadSection<dim>>   point_loads;
+      std::vector<TemperatureSection<dim>> temperatures;
+      std::vector<ContactSection<dim>>     contacts;
+      ContactSearchSection<dim>            contact_search;
     };
 
     template <int dim>
@@ -57,7 +74,11 @@ namespace slipstick::scene
       , bodies(names.at(body_kind.list).begin(), names.at(body_kind.list).end())
       , obstacles(names.at(obstacle_kind.list).begin(), names.at(obstacle_kind.list).end())
       , supports(names.at(support_kind.list).begin(), names.at(support_kind.list).end())
+      , foundations(names.at(foundation_kind.list).begin(), names.at(foundation_kind.list).end())
       , tractions(names.at(traction_kind.list).begin(), names.at(traction_kind.list).end())
+      , body_forces(names.at(body_force_kind.list).begin(), names.at(body_force_kind.list).end())
+      , point_loads(names.at(point_load_kind.list).begin(), names.at(point_load_kind.list).end())
+      , temperatures(names.at(temperature_kind.list).begin(), names.at(temperature_kind.list).end())
       , contacts(names.at(contact_kind.list).begin(), names.at(contact_kind.list).end())
     {
       options.decomposition.method = DecompositionMethod::automatic;
@@ -70,8 +91,13 @@ namespace slipstick::scene
       declare_all(bodies);
       declare_all(obstacles);
       declare_all(supports);
+      declare_all(foundations);
       declare_all(tractions);
+      declare_all(body_forces);
+      declare_all(point_loads);
+      declare_all(temperatures);
       declare_all(contacts);
+      contact_search.declare(prm);
       declare(prm, options.discretization);
       declare(prm, options.decomposition);
       declare_load_steps(prm, options.load_factors);
@@ -127,10 +153,19 @@ namespace slipstick::scene
         scene.obstacles.push_back(section.read(parameters));
       for (const auto &section : supports)
         scene.supports.push_back(section.read(parameters, scene));
+      for (const auto &section : foundations)
+        scene.foundations.push_back(section.read(parameters, scene));
       for (const auto &section : tractions)
         scene.tractions.push_back(section.read(parameters, scene));
+      for (const auto &section : body_forces)
+        scene.body_forces.push_back(section.read(parameters, scene));
+      for (const auto &section : point_loads)
+        scene.point_loads.push_back(section.read(parameters, scene));
+      for (const auto &section : temperatures)
+        scene.temperatures.push_back(section.read(parameters, scene));
       for (const auto &section : contacts)
         scene.contacts.push_back(section.read(parameters, scene));
+      scene.contact_search = contact_search.read(parameters);
       if (scene.decomposition.method == DecompositionMethod::automatic)
         scene.decomposition.method = automatic_method(scene);
       for (const Body<dim> &body : scene.bodies)
@@ -162,19 +197,33 @@ namespace slipstick::scene
                                                                     {body_kind.list, {"box"}},
                                                                     {obstacle_kind.list, {"disc"}},
                                                                     {support_kind.list, {"held"}},
+                                                                    {foundation_kind.list, {"bed"}},
                                                                     {traction_kind.list, {"pressed"}},
+                                                                    {body_force_kind.list, {"gravity"}},
+                                                                    {point_load_kind.list, {"pull"}},
+                                                                    {temperature_kind.list, {"warm"}},
                                                                     {contact_kind.list, {"circle"}}});
-    const std::vector<std::pair<std::string, std::string>> must_be_set = {{"Body box/Size", "10, 10"},
-                                                                          {"Body box/Material", "elastic"},
-                                                                          {"Obstacle disc/Center", "5, -20"},
-                                                                          {"Obstacle disc/Radius", "20"},
-                                                                          {"Support held/Boundary", "box/left"},
-                                                                          {"Support held/Displacement x", "0"},
-                                                                          {"Support held/Displacement y", "0"},
-                                                                          {"Traction pressed/Boundary", "box/top"},
-                                                                          {"Traction pressed/Traction y", "-250"},
-                                                                          {"Contact circle/Slave", "box/bottom"},
-                                                                          {"Contact circle/Master", "disc"}};
+    const std::vector<std::pair<std::string, std::string>> must_be_set = {
+      {"Body box/Size", "10, 10"},
+      {"Body box/Material", "elastic"},
+      {"Obstacle disc/Center", "5, -20"},
+      {"Obstacle disc/Radius", "20"},
+      {"Support held/Boundary", "box/left"},
+      {"Support held/Displacement x", "0"},
+      {"Support held/Displacement y", "0"},
+      {"Foundation bed/Boundary", "box/bottom"},
+      {"Foundation bed/Normal stiffness", "10"},
+      {"Traction pressed/Boundary", "box/top"},
+      {"Traction pressed/Traction y", "-250"},
+      {"Body force gravity/Acceleration y", "-9810"},
+      {"Point load pull/Body", "box"},
+      {"Point load pull/Point", "10, 10"},
+      {"Point load pull/Force x", "100"},
+      {"Temperature warm/Change", "50"},
+      {"Material elastic/Density", "7.85e-9"},
+      {"Material elastic/Thermal expansion", "1.2e-5"},
+      {"Contact circle/Slave", "box/bottom"},
+      {"Contact circle/Master", "disc"}};
     for (const auto &[path, value] : must_be_set)
       set_value(example.prm, path, value);
     write_parameters(out, example.prm, format);

@@ -77,6 +77,12 @@ namespace slipstick::tfeti
     update_dual_load();
   }
 
+  void DualProblem::set_right_hand_side(std::vector<double> c)
+  {
+    rows.c = std::move(c);
+    update_dual_load();
+  }
+
   // d = B K+ f - c
   void DualProblem::update_dual_load()
   {

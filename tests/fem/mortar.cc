@@ -20,7 +20,7 @@ namespace
             const double                reach          = 1,
             const ContactDiscretization discretization = ContactDiscretization::mortar)
   {
-    return fem::mortar_rows(slave, master, reach, discretization, "pair");
+    return fem::mortar_rows(slave, master, {reach, reach}, discretization, "pair");
   }
 
   /// Bottom of a body above: the slave runs to the right, the master to the left.

@@ -12,11 +12,11 @@ namespace slipstick::fem
   template <int dim>
   struct BodyMesh
   {
-    MeshPiece<dim>                                                               piece;
-    std::map<std::string, dealii::types::boundary_id>                            boundary_ids; // by name
-    std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>>   combined_ids; // as in Mesh
-    std::map<std::string, unsigned int>                                          points;       // by name: local vertex
-    std::vector<std::string>                                                     remarks;
+    MeshPiece<dim>                                                             piece;
+    std::map<std::string, dealii::types::boundary_id>                          boundary_ids; // by name
+    std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>> combined_ids; // as in Mesh
+    std::map<std::string, unsigned int>                                        points;       // by name: local vertex
+    std::vector<std::string>                                                   remarks;
   };
 
   /// The cells of @p file that make the body, scaled, not yet placed or refined: those of Body::part, or all. Lines

@@ -53,10 +53,10 @@ namespace slipstick::fem
     std::vector<unsigned int>                                      first_subdomain; // of each rank, and their number
     std::vector<std::map<std::string, dealii::types::boundary_id>> boundary_ids;    // by body and name
     std::vector<std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>>>
-                                                        combined_ids; // by body: id of faces with several names, their ids
-    std::vector<std::map<std::string, NamedPoint<dim>>> points;       // by body and name
-    std::uint64_t                                                  n_cells = 0;     // over all ranks
-    std::vector<std::string>                                       remarks;         // for the log, on rank 0
+      combined_ids;                                             // by body: id of faces with several names, their ids
+    std::vector<std::map<std::string, NamedPoint<dim>>> points; // by body and name
+    std::uint64_t                                       n_cells = 0; // over all ranks
+    std::vector<std::string>                            remarks;     // for the log, on rank 0
 
     unsigned int n_subdomains() const
     {
@@ -69,12 +69,4 @@ namespace slipstick::fem
     /// excepted). A face may lie on several. make_mesh() has checked that the boundaries of the scene exist.
     bool on_boundary(const scene::BoundaryName &where, const dealii::types::boundary_id id) const;
   };
-
-  /// Whether a boundary face with id @p id of a subdomain of @p body lies on the boundary @p name of that body; `*` is
-  /// the whole outline, which every face is part of that is no cut. The name must be in mesh.boundary_ids.
-  template <int dim>
-  bool on_boundary(const Mesh<dim>                 &mesh,
-                   const unsigned int               body,
-                   const std::string               &name,
-                   const dealii::types::boundary_id id);
 } // namespace slipstick::fem

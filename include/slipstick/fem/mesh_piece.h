@@ -33,8 +33,8 @@ namespace slipstick::fem
 
     struct BoundaryFace
     {
-      Face                        vertices;
-      dealii::types::boundary_id  id;
+      Face                       vertices;
+      dealii::types::boundary_id id;
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)
@@ -48,8 +48,8 @@ namespace slipstick::fem
     std::vector<dealii::Point<dim>> vertices;
     std::vector<GlobalVertex>       global_vertices;
     std::vector<Cell>               cells;
-    std::vector<BoundaryFace>       boundary_faces;    // of the body; all others are cut
-    bool                            ordered = false;   // lines of neighbouring cells already run the same way
+    std::vector<BoundaryFace>       boundary_faces;  // of the body; all others are cut
+    bool                            ordered = false; // lines of neighbouring cells already run the same way
 
     /// Boundaries that are arcs of circles, and their centres.
     std::map<dealii::types::boundary_id, dealii::Point<dim>> arc_centers;
@@ -93,8 +93,10 @@ namespace slipstick::fem
 
   /// Cell of the given corners, counterclockwise.
   template <int dim>
-  typename MeshPiece<dim>::Cell
-  quadrilateral(const unsigned int a, const unsigned int b, const unsigned int c, const unsigned int d)
+  typename MeshPiece<dim>::Cell quadrilateral(const unsigned int a,
+                                              const unsigned int b,
+                                              const unsigned int c,
+                                              const unsigned int d)
   {
     return {{a, b, d, c}};
   }
@@ -134,8 +136,9 @@ namespace slipstick::fem
   /// METIS partition of the cells of @p piece, which must hang together through faces. @return a part number for
   /// every cell.
   template <int dim>
-  std::vector<unsigned int>
-  metis_parts(const MeshPiece<dim> &piece, const unsigned int n_parts, const unsigned int seed = 0);
+  std::vector<unsigned int> metis_parts(const MeshPiece<dim> &piece,
+                                        const unsigned int    n_parts,
+                                        const unsigned int    seed = 0);
 
   /// The triangulation of a piece, whose cells are all of one kind; faces that lie on no boundary of the body get
   /// cut_id. Faces on arcs get a SphericalManifold, so that mappings of degree 2 put their midside nodes on the arc.

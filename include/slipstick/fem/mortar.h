@@ -13,6 +13,12 @@ namespace slipstick::fem
 {
   using Weights = std::vector<std::pair<NodeKey, double>>; // sorted by node, sum 1
 
+  /// How far a slave looks for its master along its normal, outwards and (for overlaps) inwards [mm].
+  struct Reach
+  {
+    double ahead = 0, behind = 0;
+  };
+
   /// One slave node and what faces it.
   template <int dim>
   struct MortarRow
@@ -28,7 +34,7 @@ namespace slipstick::fem
     double                 length = 0;      // D_i [mm]
   };
 
-  /// The rows of the slave nodes that have a master within @p reach [mm] along the normal, on either side; in the order
+  /// The rows of the slave nodes that have a master within @p reach along the normal, on either side; in the order
   /// of their nodes. Sides must face each other: the first crossing of the ray decides.
   ///
   /// Mortar: phi_i are the functions biorthogonal to N_k on the covered part of the edge (D_i is then the integral of
@@ -42,7 +48,7 @@ namespace slipstick::fem
   template <int dim>
   std::vector<MortarRow<dim>> mortar_rows(const std::vector<SurfaceEdge<dim>> &slave,
                                           const std::vector<SurfaceEdge<dim>> &master,
-                                          const double                         reach,
+                                          const Reach                         &reach,
                                           const scene::ContactDiscretization   discretization,
                                           const std::string                   &name);
 

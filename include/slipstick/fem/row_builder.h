@@ -4,6 +4,8 @@
 #include <slipstick/fem/interface_nodes.h>
 #include <slipstick/tfeti/constraints.h>
 
+#include <limits>
+
 namespace slipstick::fem
 {
   /// An entry of B, or one of an interface unknown, for the rank of its subdomain.
@@ -20,6 +22,18 @@ namespace slipstick::fem
     {
       archive &index &subdomain &dof &value &is_row;
     }
+  };
+
+  /// May nodes of the pair that are far apart go without rows? Not where a law acts on open nodes.
+  template <int dim>
+  bool can_be_pruned(const scene::ContactPair<dim> &pair);
+
+  /// Of one contact pair: smallest gap, length of the slave boundary and number of its nodes.
+  struct PairExtent
+  {
+    double        gap     = std::numeric_limits<double>::infinity(); // [mm]
+    double        length  = 0;                                       // [mm]
+    std::uint64_t n_nodes = 0;
   };
 
   /// Makes the rows of interface nodes: contact, bonds, supports, foundations, gluing.
@@ -39,10 +53,18 @@ namespace slipstick::fem
                const double                           t,
                tfeti::Constraints                    &constraints);
 
+    /// Of every pair, as far as this rank owns its slave nodes.
+    std::vector<PairExtent> extents() const;
+
+    /// Nodes of pair k with a gap above limits[k] get no rows (where can_be_pruned()); they go to `pruned`.
+    void limit_gaps(std::vector<double> limits);
+
     /// Fills kind, c, compliance, label, contact points, interface_held and counts of the constraints.
     void build();
 
     std::vector<RowEntry> entries;
+    tfeti::Constraints    pruned;         // kind and c of the normal rows of pruned nodes ...
+    std::vector<RowEntry> pruned_entries; // ... and their entries
     std::uint64_t         n_interface = 0;
 
   private:
@@ -65,6 +87,8 @@ namespace slipstick::fem
     bool touch_obstacle(const unsigned int node, const unsigned int pair, const double area, Touch &touch) const;
     bool touch_body(const unsigned int node, const unsigned int pair, const MortarRow<dim> &row, Touch &touch) const;
     void add_contact(const unsigned int node);
+    bool is_pruned(const Touch &touch) const;
+    void add_pruned(const Touch &touch, const Vector &coefficients);
     void choose_tangents(std::vector<Touch> &touches) const;
 
     /// Jump of the displacement along @p direction, slave less master.
@@ -80,6 +104,7 @@ namespace slipstick::fem
     const std::vector<InterfaceNode<dim>>                                          &nodes;
     const double                                                                    t;
     tfeti::Constraints                                                             &constraints;
+    std::vector<double>                                                             limits; // gaps, by pair [mm]
     std::map<NodeKey, unsigned int>                                                 number;
     std::map<NodeKey, std::vector<std::pair<unsigned int, const MortarRow<dim> *>>> pairs_of; // of slave nodes
   };

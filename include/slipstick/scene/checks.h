@@ -10,4 +10,8 @@ namespace slipstick::scene
   /// @throws InputError for the first that fails.
   template <int dim>
   void check_scene(const Scene<dim> &scene, const Parameters &parameters);
+
+  /// What may make the answer wrong although the scene can be solved, with the remedy; a line each.
+  template <int dim>
+  std::vector<std::string> warnings(const Scene<dim> &scene);
 } // namespace slipstick::scene

@@ -272,6 +272,7 @@ namespace slipstick::scene
     qp::NewtonOptions  newton;
     qp::PcpgOptions    pcpg;
     tfeti::DualOptions dual;
+    bool               prune_contact = true; // contact nodes far apart get no multipliers unless they would penetrate
   };
 
   struct OutputOptions

@@ -26,6 +26,30 @@ namespace slipstick::scene
                              const Parameters             &parameters,
                              const std::vector<Body<dim>> &bodies);
 
+  /// The body that the parameter @p path names. @throws InputError for an unknown one.
+  template <int dim>
+  unsigned int read_body(const std::string            &text,
+                         const std::string            &path,
+                         const Parameters             &parameters,
+                         const std::vector<Body<dim>> &bodies);
+
+  /// The bodies that the parameter @p path names: `all`, or names separated by commas.
+  /// @throws InputError for none, an unknown one or one named twice.
+  template <int dim>
+  std::vector<unsigned int> read_bodies(const std::string            &text,
+                                        const std::string            &path,
+                                        const Parameters             &parameters,
+                                        const std::vector<Body<dim>> &bodies);
+
+  /// The point of body number @p body, @p of, that the parameter @p path gives: coordinates, or for a body from a mesh
+  /// file a name (checked when the mesh is made). @throws InputError when it is neither.
+  template <int dim>
+  PointName<dim> read_point(const std::string &text,
+                            const std::string &path,
+                            const Parameters  &parameters,
+                            const unsigned int body,
+                            const Body<dim>   &of);
+
   /// Every read() returns the checked value and throws InputError for what is wrong in its own section; names are
   /// looked up in the part of the scene that is already read.
   struct MaterialSection
@@ -73,8 +97,11 @@ namespace slipstick::scene
   {
     explicit ObstacleSection(const std::string &name);
 
-    std::string   name;
-    Obstacle<dim> obstacle;
+    std::string        name;
+    Obstacle<dim>      obstacle;
+    dealii::Point<dim> normal; // as given
+    std::string        points;
+    std::string        height;
 
     void          declare(dealii::ParameterHandler &prm);
     Obstacle<dim> read(const Parameters &parameters) const;
@@ -87,10 +114,29 @@ namespace slipstick::scene
 
     std::string                  name;
     std::string                  boundary;
+    std::string                  body;
+    std::string                  point;
     std::array<std::string, dim> components;
+    std::string                  normal = "free";
 
     void                        declare(dealii::ParameterHandler &prm);
     PrescribedDisplacement<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+
+  private:
+    void read_place(const Parameters &parameters, const Scene<dim> &scene, PrescribedDisplacement<dim> &support) const;
+  };
+
+  template <int dim>
+  struct FoundationSection
+  {
+    explicit FoundationSection(const std::string &name);
+
+    std::string     name;
+    std::string     boundary;
+    Foundation<dim> foundation;
+
+    void            declare(dealii::ParameterHandler &prm);
+    Foundation<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
   };
 
   template <int dim>
@@ -101,9 +147,70 @@ namespace slipstick::scene
     std::string                  name;
     std::string                  boundary;
     std::array<std::string, dim> components;
+    std::string                  pressure = "0";
 
     void          declare(dealii::ParameterHandler &prm);
     Traction<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
+  template <int dim>
+  struct BodyForceSection
+  {
+    explicit BodyForceSection(const std::string &name);
+
+    std::string                  name;
+    std::string                  bodies = "all";
+    std::array<std::string, dim> force;
+    std::array<std::string, dim> acceleration;
+    std::string                  angular_velocity = "0";
+    dealii::Point<dim>           axis;
+
+    void           declare(dealii::ParameterHandler &prm);
+    BodyForce<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
+  template <int dim>
+  struct PointLoadSection
+  {
+    explicit PointLoadSection(const std::string &name);
+
+    std::string                  name;
+    std::string                  body;
+    std::string                  point;
+    std::array<std::string, dim> force;
+
+    void           declare(dealii::ParameterHandler &prm);
+    PointLoad<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
+  template <int dim>
+  struct TemperatureSection
+  {
+    explicit TemperatureSection(const std::string &name);
+
+    std::string name;
+    std::string bodies = "all";
+    std::string change = "0";
+
+    void             declare(dealii::ParameterHandler &prm);
+    Temperature<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
+  /// What acts between two sides that touch: of a contact pair and of those that the search finds.
+  template <int dim>
+  struct ContactLawSection
+  {
+    ContactLaw  law                  = ContactLaw::frictionless;
+    std::string slip_bound           = "0";
+    bool        only_closed          = false;
+    std::string friction_coefficient = "0";
+    std::string offset               = "0";
+
+    /// In the subsection that is open.
+    void declare(dealii::ParameterHandler &prm);
+
+    /// Law, bounds and offset into @p pair. @p section: the path of the subsection.
+    void read(const Parameters &parameters, const std::string &section, ContactPair<dim> &pair) const;
   };
 
   template <int dim>
@@ -111,14 +218,30 @@ namespace slipstick::scene
   {
     explicit ContactSection(const std::string &name);
 
-    std::string name;
-    std::string slave;
-    std::string master;
-    ContactLaw  law        = ContactLaw::frictionless;
-    std::string slip_bound = "0";
+    std::string            name;
+    std::string            slave;
+    std::string            master;
+    ContactLawSection<dim> law;
+    std::string            gap            = "geometry";
+    std::string            reach          = "auto";
+    ContactDiscretization  discretization = ContactDiscretization::automatic;
 
     void             declare(dealii::ParameterHandler &prm);
     ContactPair<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+
+  private:
+    void read_master(const Parameters &parameters, const Scene<dim> &scene, ContactPair<dim> &pair) const;
+  };
+
+  template <int dim>
+  struct ContactSearchSection
+  {
+    bool                   automatic = false;
+    double                 reach     = 0;
+    ContactLawSection<dim> law;
+
+    void               declare(dealii::ParameterHandler &prm);
+    ContactSearch<dim> read(const Parameters &parameters) const;
   };
 
   // Concerns without names of their own; each declares its own subsection.

@@ -36,6 +36,9 @@ namespace slipstick::tfeti
     /// and all that depends on them alone stay. Collective.
     void set_step(std::vector<Eigen::VectorXd> loads, std::vector<double> c);
 
+    /// Other right-hand sides c of the owned rows [mm] alone. Collective.
+    void set_right_hand_side(std::vector<double> c);
+
     // qp's Problem concept
     void                multiply(const DistributedVector &x, DistributedVector &y) const;      // y = F x / |P F P|
     void                project_range(const DistributedVector &x, DistributedVector &y) const; // y = Q x
