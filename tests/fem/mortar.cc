@@ -192,18 +192,26 @@ TEST(Mortar, matching_meshes_give_node_to_node_rows)
           }
 }
 
-TEST(Mortar, automatic_is_node_to_node_on_matching_arcs_with_a_gap)
+TEST(Mortar, automatic_is_node_to_node_on_matching_circles_with_a_gap)
 {
+  const auto closed = [](std::vector<Edge> edges) {
+    edges.back().keys[1] = edges.front().keys[0];
+    return edges;
+  };
   for (const unsigned int degree : {1, 2})
     for (const double radius : {1., 1.02, 0.97})
-      for (const auto &row : rows(arc(1, 200, 340, 12, degree, 0),
-                                  arc(radius, 340, 200, 12, degree, 1000),
-                                  1,
-                                  ContactDiscretization::automatic))
-        {
-          EXPECT_EQ(row.master_weights.size(), 1u);
-          EXPECT_NEAR(row.gap, radius - 1, 1e-3 * std::abs(radius - 1) + 1e-14);
-        }
+      {
+        const auto all = rows(closed(arc(1, 0, 360, 24, degree, 0)),
+                              closed(arc(radius, 360, 0, 24, degree, 1000)),
+                              0.5,
+                              ContactDiscretization::automatic);
+        EXPECT_EQ(all.size(), 24 * degree);
+        for (const auto &row : all)
+          {
+            EXPECT_EQ(row.master_weights.size(), 1u);
+            EXPECT_NEAR(row.gap, radius - 1, 1e-13);
+          }
+      }
 }
 
 TEST(Mortar, node_to_node_on_meshes_that_do_not_match_is_refused)
@@ -226,10 +234,10 @@ TEST(Mortar, gaps_of_concentric_arcs_converge)
     for (const unsigned int degree : {1, 2})
       {
         double previous = 1;
-        for (const unsigned int n : {10, 20, 40})
+        for (const unsigned int n : {9, 18, 36})
           {
             double error = 0;
-            for (const auto &row : rows(arc(1, 200, 340, n, degree, 0), arc(radius, 350, 190, n + 3, degree, 1000)))
+            for (const auto &row : rows(arc(1, 200, 340, n, degree, 0), arc(radius, 350, 190, n + n / 3, degree, 1000)))
               error = std::max(error, std::abs(row.gap - (radius - 1)));
             EXPECT_LT(error, previous / 3);
             previous = error;
@@ -308,7 +316,7 @@ TEST(Mortar, moments_of_the_sides_agree_to_the_square_of_the_mesh_size)
   for (const unsigned int degree : {1, 2})
     {
       double previous = 0;
-      for (const unsigned int n : {10, 20, 40})
+      for (const unsigned int n : {9, 18, 36})
         {
           const auto slave = arc(1, 200, 340, n, degree, 0), master = arc(1.04, 350, 190, n + n / 3, degree, 1000);
           const auto x = positions(slave), y = positions(master);
