@@ -91,13 +91,13 @@ namespace slipstick::scene
                                        PrescribedDisplacement<dim> &support) const
   {
     const std::string section  = "Support " + name;
-    const bool        is_point = parameters.is_set(section + "/Point") || parameters.is_set(section + "/Body");
+    const bool        is_point = !point.empty() || !body.empty();
     if (!is_point)
       {
         support.where = read_boundary(boundary, section + "/Boundary", parameters, scene.bodies);
         return;
       }
-    if (parameters.is_set(section + "/Boundary"))
+    if (!boundary.empty())
       throw parameters.error(section + "/Boundary",
                              "stands beside a point",
                              "set either Boundary, or Body and Point, and leave the other away");

@@ -70,14 +70,6 @@ namespace slipstick::scene
       parameters.require(section + "/Slip bound", "set it in MPa, or set Law = frictionless");
     if (law == ContactLaw::coulomb)
       parameters.require(section + "/Friction coefficient", "set it, or set Law = frictionless");
-    const auto only_for = [&](const std::string &parameter, const ContactLaw of, const std::string &word) {
-      if (law != of && parameters.is_set(section + "/" + parameter))
-        throw parameters.error(section + "/" + parameter,
-                               "means nothing without Law = " + word,
-                               "leave it away, or set Law = " + word);
-    };
-    only_for("Slip bound acts on", ContactLaw::tresca, "Tresca");
-    only_for("Friction coefficient", ContactLaw::coulomb, "Coulomb");
     pair.slip_bound =
       not_negative<dim>(slip_bound, section + "/Slip bound", "give a slip bound >= 0 [MPa]", parameters);
     pair.friction_coefficient =

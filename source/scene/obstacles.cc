@@ -10,6 +10,8 @@ namespace slipstick::scene
 {
   namespace
   {
+    const std::vector<std::string> geometry = {"Center", "Radius", "Point", "Normal", "Points", "Height"};
+
     /// "x y; x y; ..." @throws InputError naming @p path.
     std::vector<dealii::Point<2>> read_points(const std::string &text,
                                               const std::string &path,
@@ -63,7 +65,7 @@ namespace slipstick::scene
                "direction of travel, and where the normal of a half plane points");
     add_point(prm, "Center", obstacle.center, "mm", Interval(), "circle, hole: centre; must be set");
     add_number(prm, "Radius", obstacle.radius, "mm", Interval::above(0), "circle, hole: radius; must be set");
-    add_point(prm, "Point", obstacle.center, "mm", Interval(), "half plane: a point of its border; must be set");
+    add_point(prm, "Point", point, "mm", Interval(), "half plane: a point of its border; must be set");
     add_point(prm,
               "Normal",
               normal,
@@ -82,6 +84,8 @@ namespace slipstick::scene
              "mm",
              "a number or a formula of x, t",
              "function: the obstacle is below y = height; must be set");
+    for (const std::string &parameter : geometry)
+      defaults[parameter] = prm.get(parameter);
     prm.leave_subsection();
   }
 
@@ -89,10 +93,10 @@ namespace slipstick::scene
   Obstacle<dim> ObstacleSection<dim>::read(const Parameters &parameters) const
   {
     static_assert(dim == 2, "obstacles are curves");
-    const std::string section        = "Obstacle " + name;
-    Obstacle<dim>     result         = obstacle;
-    result.name                      = name;
-    std::vector<std::string> fitting = {"Shape"};
+    const std::string section = "Obstacle " + name;
+    Obstacle<dim>     result  = obstacle;
+    result.name               = name;
+    std::vector<std::string> fitting;
     switch (obstacle.shape)
       {
         case ObstacleShape::circle:
@@ -108,6 +112,7 @@ namespace slipstick::scene
                                    "has no length",
                                    "give a direction, for example: set Normal = 0, 1");
           result.normal = normal / normal.norm();
+          result.center = point;
           fitting.insert(fitting.end(), {"Point", "Normal"});
           break;
         case ObstacleShape::polyline:
@@ -121,8 +126,11 @@ namespace slipstick::scene
           fitting.push_back("Height");
           break;
       }
-    for (const std::string other : {"Center", "Radius", "Point", "Normal", "Points", "Height"})
-      if (parameters.is_set(section + "/" + other) && std::find(fitting.begin(), fitting.end(), other) == fitting.end())
+    for (const std::string &other : geometry)
+      // the default is harmless, and a .prm that the program printed sets everything
+      if (const auto value = parameters.value(section + "/" + other);
+          value && trim(*value) != defaults.at(other) &&
+          std::find(fitting.begin(), fitting.end(), other) == fitting.end())
         throw parameters.error(section + "/" + other, "means nothing for this shape", "leave it away, or change Shape");
     return result;
   }

@@ -99,12 +99,16 @@ namespace slipstick::scene
 
     std::string        name;
     Obstacle<dim>      obstacle;
+    dealii::Point<dim> point;  // of a half plane
     dealii::Point<dim> normal; // as given
     std::string        points;
     std::string        height;
 
     void          declare(dealii::ParameterHandler &prm);
     Obstacle<dim> read(const Parameters &parameters) const;
+
+  private:
+    std::map<std::string, std::string> defaults; // text of every parameter that nobody set
   };
 
   template <int dim>
