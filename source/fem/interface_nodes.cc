@@ -1,19 +1,20 @@
 #include <slipstick/base/collective.h>
-#include <slipstick/base/exceptions.h>
-#include <slipstick/base/log.h>
 #include <slipstick/fem/interface_nodes.h>
 #include <slipstick/fem/nodal_conditions.h>
 #include <slipstick/fem/obstacle.h>
+#include <slipstick/fem/points.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <cmath>
-#include <limits>
 
 namespace slipstick::fem
 {
   namespace
   {
+    // Keys of nodes inside a subdomain start here, far above the vertices.
+    constexpr GlobalVertex inside_key = GlobalVertex(1) << 63;
+
     template <int dim>
     using NodesOfSubdomain = std::map<unsigned int, InterfaceNode<dim>>; // by node number
 
@@ -104,96 +105,71 @@ namespace slipstick::fem
             }
     }
 
-    /// The vertex that a point support holds, on every rank. Collective.
+    /// A copy of the node of every support, those of boundaries unused. Collective.
     template <int dim>
-    GlobalVertex held_vertex(const scene::Scene<dim>                  &scene,
-                             const Mesh<dim>                          &mesh,
-                             const scene::PrescribedDisplacement<dim> &support)
+    std::vector<PointNode<dim>> held_points(const scene::Scene<dim> &scene,
+                                            const Mesh<dim>         &mesh,
+                                            const Spaces<dim>       &spaces)
     {
-      const auto &where = *support.point;
-      if (!where.point.empty())
-        return mesh.points[where.body].at(where.point).vertex;
-      using Candidate = std::tuple<double, double, double, double, GlobalVertex>; // distance, -cell size, x, y, vertex
-      constexpr double infinity = std::numeric_limits<double>::infinity();
-      Candidate        best{infinity, 0., 0., 0., 0};
-      for (const auto &subdomain : mesh.subdomains)
-        if (subdomain->body == where.body)
-          for (const auto &cell : subdomain->triangulation.active_cell_iterators())
-            for (const unsigned int v : cell->vertex_indices())
-              {
-                const auto x = cell->vertex(v);
-                best         = std::min(best,
-                                Candidate{where.coordinates->distance(x),
-                                          -cell->diameter(),
-                                          x[0],
-                                          x[1],
-                                          subdomain->global_vertices[cell->vertex_index(v)]});
-              }
-      std::array<double, 4> own{{std::get<0>(best), std::get<1>(best), std::get<2>(best), std::get<3>(best)}};
-      for (const auto &[other, vertex] :
-           dealii::Utilities::MPI::all_gather(mesh.comm, std::make_pair(own, std::get<4>(best))))
-        best = std::min(best, Candidate{other[0], other[1], other[2], other[3], vertex});
-      if (!(std::get<0>(best) <= -std::get<1>(best) / 2))
-        throw InputError(format("Support %s: no node of body %s lies within half a cell of (%g, %g); the nearest is at "
-                                "(%g, %g)",
-                                support.name.c_str(),
-                                scene.bodies[where.body].name.c_str(),
-                                (*where.coordinates)[0],
-                                (*where.coordinates)[1],
-                                std::get<2>(best),
-                                std::get<3>(best)),
-                         "give a point of the body");
-      return std::get<4>(best);
+      std::vector<scene::PointName<dim>> points;
+      std::vector<std::string>           names;
+      for (const auto &support : scene.supports)
+        if (support.point)
+          {
+            points.push_back(*support.point);
+            names.push_back("Support " + support.name);
+            if (!support.point->point.empty())
+              points.back().coordinates = mesh.points[support.point->body].at(support.point->point).position;
+          }
+      const auto                  found = nodes_at(scene, mesh, spaces, points, names);
+      std::vector<PointNode<dim>> of_support(scene.supports.size());
+      for (unsigned int s = 0, k = 0; s < scene.supports.size(); ++s)
+        if (scene.supports[s].point)
+          of_support[s] = found[k++];
+      return of_support;
     }
 
-    /// What point supports say; @p held: vertex of every support, those of boundaries unused.
+    /// What point supports say of one of the copies of their node.
     template <int dim>
-    void add_points(const scene::Scene<dim>         &scene,
-                    const Mesh<dim>                 &mesh,
-                    const Spaces<dim>               &spaces,
-                    const std::vector<GlobalVertex> &held,
-                    const unsigned int               p,
-                    const double                     t,
-                    NodesOfSubdomain<dim>           &nodes)
+    void add_points(const scene::Scene<dim>           &scene,
+                    const SubdomainMesh<dim>          &subdomain,
+                    const std::vector<PointNode<dim>> &points,
+                    const double                       t,
+                    NodesOfSubdomain<dim>             &nodes)
     {
-      const auto &subdomain = *mesh.subdomains[p];
       for (unsigned int s = 0; s < scene.supports.size(); ++s)
-        if (const auto &support = scene.supports[s]; support.point && support.point->body == subdomain.body)
+        if (const auto &support = scene.supports[s]; support.point && points[s].subdomain == subdomain.subdomain)
           {
-            bool is_done = false;
-            for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
-              for (const unsigned int v : cell->vertex_indices())
-                if (!is_done && subdomain.global_vertices[cell->vertex_index(v)] == held[s])
-                  {
-                    const unsigned int  number = cell->vertex_dof_index(v, 0) / dim;
-                    InterfaceNode<dim> &node   = nodes[number];
-                    node.key                   = {{held[s], held[s]}};
-                    node.body                  = subdomain.body;
-                    node.copies                = {{subdomain.subdomain, number}};
-                    for (unsigned int d = 0; d < dim; ++d)
-                      node.position[d] = cell->vertex(v)[d];
-                    for (unsigned int c = 0; c < dim; ++c)
-                      if (support.components[c])
-                        hold(node, axis<dim>(c), support.components[c]->value(node.point(), t), c);
-                    is_done = true;
-                  }
+            const auto [entry, is_inside] = nodes.emplace(points[s].node, InterfaceNode<dim>());
+            auto &node                    = entry->second;
+            if (is_inside) // on no face that is a boundary or a cut: one copy, no key from vertices needed
+              {
+                node.key    = {{inside_key + subdomain.subdomain, points[s].node}};
+                node.body   = subdomain.body;
+                node.copies = {{subdomain.subdomain, points[s].node}};
+                for (unsigned int d = 0; d < dim; ++d)
+                  node.position[d] = points[s].position[d];
+              }
+            for (unsigned int c = 0; c < dim; ++c)
+              if (support.components[c])
+                hold(node, axis<dim>(c), support.components[c]->value(node.point(), t), c);
           }
     }
 
     template <int dim>
-    NodesOfSubdomain<dim> boundary_nodes(const scene::Scene<dim>         &scene,
-                                         const Mesh<dim>                 &mesh,
-                                         const Spaces<dim>               &spaces,
-                                         const std::vector<GlobalVertex> &held,
-                                         const unsigned int               p,
-                                         const double                     t)
+    NodesOfSubdomain<dim> boundary_nodes(const scene::Scene<dim>           &scene,
+                                         const Mesh<dim>                   &mesh,
+                                         const Spaces<dim>                 &spaces,
+                                         const std::vector<PointNode<dim>> &points,
+                                         const unsigned int                 p,
+                                         const double                       t)
     {
       NodesOfSubdomain<dim> nodes;
       for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
         for (const unsigned int f : cell->face_indices())
           if (cell->face(f)->at_boundary())
             add_face(scene, mesh, *mesh.subdomains[p], spaces, cell, f, t, nodes);
-      add_points(scene, mesh, spaces, held, p, t, nodes);
+      add_points(scene, *mesh.subdomains[p], points, t, nodes);
       return nodes;
     }
 
@@ -270,16 +246,13 @@ namespace slipstick::fem
                                                   const BodyContacts<dim> &contacts,
                                                   const double             t)
   {
-    const unsigned int        n_ranks = mesh.first_subdomain.size() - 1;
-    std::vector<GlobalVertex> held(scene.supports.size(), 0);
-    for (unsigned int s = 0; s < scene.supports.size(); ++s)
-      if (scene.supports[s].point)
-        held[s] = held_vertex(scene, mesh, scene.supports[s]);
+    const unsigned int n_ranks = mesh.first_subdomain.size() - 1;
+    const auto         points  = held_points(scene, mesh, spaces);
 
     std::map<unsigned int, std::vector<InterfaceNode<dim>>> to_meet;
     collectively(mesh.comm, [&] {
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
-        for (auto &[number, node] : boundary_nodes(scene, mesh, spaces, held, p, t))
+        for (auto &[number, node] : boundary_nodes(scene, mesh, spaces, points, p, t))
           to_meet[(node.key[0] + node.key[1]) % n_ranks].push_back(std::move(node));
     });
     auto met = send_and_receive(mesh.comm, to_meet);

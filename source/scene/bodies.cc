@@ -39,36 +39,4 @@ namespace slipstick::scene
     result.name     = name;
     return result;
   }
-
-  template <int dim>
-  ObstacleSection<dim>::ObstacleSection(const std::string &own_name)
-    : name(own_name)
-  {}
-
-  template <int dim>
-  void ObstacleSection<dim>::declare(dealii::ParameterHandler &prm)
-  {
-    prm.enter_subsection("Obstacle " + name);
-    add_choice(prm,
-               "Shape",
-               obstacle.shape,
-               Choices<ObstacleShape>{{"circle", ObstacleShape::circle}},
-               "geometry of the rigid obstacle; bodies are outside");
-    add_point(prm, "Center", obstacle.center, "mm", Interval(), "centre; must be set");
-    add_number(prm, "Radius", obstacle.radius, "mm", Interval::above(0), "radius; must be set");
-    prm.leave_subsection();
-  }
-
-  template <int dim>
-  Obstacle<dim> ObstacleSection<dim>::read(const Parameters &parameters) const
-  {
-    const std::string section = "Obstacle " + name;
-    parameters.require(section + "/Center", "set it in mm, for example: set Center = 5, -20");
-    parameters.require(section + "/Radius", "set it in mm, for example: set Radius = 20");
-    Obstacle<dim> result = obstacle;
-    result.name          = name;
-    return result;
-  }
-
-  template struct ObstacleSection<2>;
 } // namespace slipstick::scene

@@ -23,35 +23,42 @@ namespace slipstick::scene
                          "declare one, for example: set Bodies = box, and describe it in a subsection Body box");
       for (unsigned int body = 0; body < scene.bodies.size(); ++body)
         {
-          bool held = false;
+          bool held = scene.contact_search.automatic;
           for (const auto &support : scene.supports)
             held = held || support.where.body == body;
+          for (const auto &foundation : scene.foundations)
+            held = held || foundation.where.body == body;
           for (const auto &contact : scene.contacts)
-            held = held || contact.slave.body == body;
+            held = held || contact.slave.body == body || (contact.master && contact.master->body == body);
           if (!held)
-            throw InputError(parameters.locate("Body " + scene.bodies[body].name) + ": nothing holds body '" +
-                               scene.bodies[body].name + "'",
-                             "add a support or a contact pair on one of its boundaries (lists Supports, Contacts)");
+            throw InputError(
+              parameters.locate("Body " + scene.bodies[body].name) + ": nothing holds body '" +
+                scene.bodies[body].name + "'",
+              "add a support, a foundation or a contact pair on one of its boundaries (lists Supports, Foundations, Contacts)");
         }
     }
 
     template <int dim>
     void check_boundaries_used_once(const Scene<dim> &scene, const Parameters &parameters)
     {
-      std::map<Boundary, std::string> contacts;
+      // of two bodies the pair says the same whichever side is the slave
+      std::map<std::pair<Boundary, Boundary>, std::string> contacts;
       for (const auto &contact : scene.contacts)
         {
-          const auto [first, is_new] = contacts.emplace(boundary_of(contact.slave), contact.name);
+          const Boundary slave       = boundary_of(contact.slave);
+          const Boundary other       = contact.master ? boundary_of(*contact.master)
+                                                      : Boundary(scene.bodies.size(), scene.obstacles[contact.obstacle].name);
+          const auto [first, is_new] = contacts.emplace(std::minmax(slave, other), contact.name);
           if (!is_new)
             throw parameters.error("Contact " + contact.name + "/Slave",
-                                   "Contact " + first->second + " has the same slave boundary",
+                                   "Contact " + first->second + " joins the same two sides",
                                    "keep one of the two, or choose another boundary");
         }
 
       std::map<std::pair<Boundary, unsigned int>, std::string> supports;
       for (const auto &support : scene.supports)
         for (unsigned int d = 0; d < dim; ++d)
-          if (support.components[d])
+          if (support.components[d] && !support.point)
             {
               const auto [first, is_new] =
                 supports.emplace(std::make_pair(boundary_of(support.where), d), support.name);

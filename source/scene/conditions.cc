@@ -59,7 +59,14 @@ namespace slipstick::scene
   void SupportSection<dim>::declare(dealii::ParameterHandler &prm)
   {
     prm.enter_subsection("Support " + name);
-    add_text(prm, "Boundary", boundary, "", boundary_format, "boundary that is held; must be set");
+    add_text(prm,
+             "Boundary",
+             boundary,
+             "",
+             boundary_format,
+             "boundary that is held; this or Body and Point must be set");
+    add_text(prm, "Body", body, "", "a name from Bodies", "body of which a point is held");
+    add_text(prm, "Point", point, "mm", "x, y, or the name of a point in the mesh file", "point that is held");
     for (unsigned int d = 0; d < dim; ++d)
       add_text(prm,
                "Displacement " + axes[d],
@@ -67,7 +74,38 @@ namespace slipstick::scene
                "mm",
                "free, " + field_format,
                "prescribed displacement along " + axes[d]);
+    add_text(
+      prm,
+      "Displacement normal",
+      normal,
+      "mm",
+      "free, " + field_format,
+      "prescribed displacement along the outward normal of the boundary, which then slides freely along it; 0 is a "
+      "roller or a plane of symmetry");
     prm.leave_subsection();
+  }
+
+  template <int dim>
+  void SupportSection<dim>::read_place(const Parameters            &parameters,
+                                       const Scene<dim>            &scene,
+                                       PrescribedDisplacement<dim> &support) const
+  {
+    const std::string section  = "Support " + name;
+    const bool        is_point = !point.empty() || !body.empty();
+    if (!is_point)
+      {
+        support.where = read_boundary(boundary, section + "/Boundary", parameters, scene.bodies);
+        return;
+      }
+    if (!boundary.empty())
+      throw parameters.error(section + "/Boundary",
+                             "stands beside a point",
+                             "set either Boundary, or Body and Point, and leave the other away");
+    parameters.require(section + "/Body", "set the body that the point belongs to");
+    parameters.require(section + "/Point", "set the point of the body, for example: set Point = 0, 0");
+    support.where.body = read_body(body, section + "/Body", parameters, scene.bodies);
+    support.point =
+      read_point(point, section + "/Point", parameters, support.where.body, scene.bodies[support.where.body]);
   }
 
   template <int dim>
@@ -75,8 +113,8 @@ namespace slipstick::scene
   {
     const std::string           section = "Support " + name;
     PrescribedDisplacement<dim> support;
-    support.name  = name;
-    support.where = read_boundary(boundary, section + "/Boundary", parameters, scene.bodies);
+    support.name = name;
+    read_place(parameters, scene, support);
 
     bool holds = false;
     for (unsigned int d = 0; d < dim; ++d)
@@ -85,62 +123,66 @@ namespace slipstick::scene
           support.components[d] = Field<dim>(components[d], parameters.locate(section + "/Displacement " + axes[d]));
           holds                 = true;
         }
+    if (normal != "free")
+      {
+        if (holds)
+          throw parameters.error(section + "/Displacement normal",
+                                 "stands beside a displacement along an axis",
+                                 "set the others to free, or make a second support of them");
+        if (support.point)
+          throw parameters.error(section + "/Displacement normal",
+                                 "needs a boundary, and this is a point",
+                                 "set Displacement x or y, or a Boundary");
+        support.normal = Field<dim>(normal, parameters.locate(section + "/Displacement normal"));
+        holds          = true;
+      }
     if (!holds)
       throw parameters.error(section,
                              "holds nothing, every component is free",
-                             "set Displacement x or y to a number or formula, or take '" + name +
+                             "set Displacement x, y or normal to a number or formula, or take '" + name +
                                "' out of the list Supports and leave its subsection away");
     return support;
   }
 
   template <int dim>
-  ContactSection<dim>::ContactSection(const std::string &own_name)
+  FoundationSection<dim>::FoundationSection(const std::string &own_name)
     : name(own_name)
   {}
 
   template <int dim>
-  void ContactSection<dim>::declare(dealii::ParameterHandler &prm)
+  void FoundationSection<dim>::declare(dealii::ParameterHandler &prm)
   {
-    prm.enter_subsection("Contact " + name);
-    add_text(prm, "Slave", slave, "", boundary_format, "boundary that may touch the master; must be set");
-    add_text(prm, "Master", master, "", "a name from Obstacles", "rigid obstacle that it may touch; must be set");
-    add_choice(prm,
-               "Law",
-               law,
-               Choices<ContactLaw>{{"frictionless", ContactLaw::frictionless}, {"Tresca", ContactLaw::tresca}},
-               "frictionless, or Tresca friction with a given slip bound");
-    add_text(prm,
-             "Slip bound",
-             slip_bound,
-             "MPa",
-             field_format + ", >= 0",
-             "Tresca: largest tangential traction, on the whole slave boundary, open nodes included; must be set");
+    prm.enter_subsection("Foundation " + name);
+    add_text(prm, "Boundary", boundary, "", boundary_format, "boundary that rests on springs; must be set");
+    const Interval not_negative = Interval::from(0);
+    add_number(prm,
+               "Normal stiffness",
+               foundation.normal_stiffness,
+               "MPa/mm",
+               not_negative,
+               "pressure per displacement along the normal, tension too");
+    add_number(prm,
+               "Tangential stiffness",
+               foundation.tangential_stiffness,
+               "MPa/mm",
+               not_negative,
+               "shear traction per displacement along the boundary");
     prm.leave_subsection();
   }
 
   template <int dim>
-  ContactPair<dim> ContactSection<dim>::read(const Parameters &parameters, const Scene<dim> &scene) const
+  Foundation<dim> FoundationSection<dim>::read(const Parameters &parameters, const Scene<dim> &scene) const
   {
-    const std::string section = "Contact " + name;
-    ContactPair<dim>  pair;
-    pair.name  = name;
-    pair.law   = law;
-    pair.slave = read_boundary(slave, section + "/Slave", parameters, scene.bodies);
-
-    std::vector<std::string> obstacles;
-    for (const Obstacle<dim> &obstacle : scene.obstacles)
-      obstacles.push_back(obstacle.name);
-    parameters.require(section + "/Master", "set a name from Obstacles (" + join_names(obstacles) + ")");
-    pair.obstacle = std::find(obstacles.begin(), obstacles.end(), master) - obstacles.begin();
-    if (pair.obstacle == obstacles.size())
-      throw parameters.error(section + "/Master", "there is no such obstacle", suggest_name(master, obstacles));
-
-    if (law == ContactLaw::tresca)
-      parameters.require(section + "/Slip bound", "set it in MPa, or set Law = frictionless");
-    pair.slip_bound = Field<dim>(slip_bound, parameters.locate(section + "/Slip bound"));
-    if (pair.slip_bound.is_constant() && pair.slip_bound.value(dealii::Point<dim>(), 1) < 0)
-      throw parameters.error(section + "/Slip bound", "is negative", "give a slip bound >= 0 [MPa]");
-    return pair;
+    const std::string section = "Foundation " + name;
+    Foundation<dim>   result  = foundation;
+    result.name               = name;
+    result.where              = read_boundary(boundary, section + "/Boundary", parameters, scene.bodies);
+    if (result.normal_stiffness == 0 && result.tangential_stiffness == 0)
+      throw parameters.error(section,
+                             "holds nothing, both stiffnesses are 0",
+                             "set Normal stiffness or Tangential stiffness, or take '" + name +
+                               "' out of the list Foundations and leave its subsection away");
+    return result;
   }
 
   template BoundaryName read_boundary(const std::string &,
@@ -148,5 +190,5 @@ namespace slipstick::scene
                                       const Parameters &,
                                       const std::vector<Body<2>> &);
   template struct SupportSection<2>;
-  template struct ContactSection<2>;
+  template struct FoundationSection<2>;
 } // namespace slipstick::scene

@@ -84,6 +84,13 @@ namespace slipstick::scene
     return {lower, std::numeric_limits<double>::infinity(), true, false};
   }
 
+  Interval Interval::from(const double lower)
+  {
+    Interval interval;
+    interval.lower = lower;
+    return interval;
+  }
+
   Interval Interval::inside(const double lower, const double upper)
   {
     return {lower, upper, true, true};

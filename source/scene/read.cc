@@ -17,6 +17,7 @@ namespace slipstick::scene
     const NamedKind body_kind        = {"Body", "Bodies"};
     const NamedKind obstacle_kind    = {"Obstacle", "Obstacles"};
     const NamedKind support_kind     = {"Support", "Supports"};
+    const NamedKind foundation_kind  = {"Foundation", "Foundations"};
     const NamedKind traction_kind    = {"Traction", "Tractions"};
     const NamedKind body_force_kind  = {"Body force", "Body forces"};
     const NamedKind point_load_kind  = {"Point load", "Point loads"};
@@ -27,6 +28,7 @@ namespace slipstick::scene
                                                 body_kind,
                                                 obstacle_kind,
                                                 support_kind,
+                                                foundation_kind,
                                                 traction_kind,
                                                 body_force_kind,
                                                 point_load_kind,
@@ -57,11 +59,13 @@ namespace slipstick::scene
       std::vector<BodySection<dim>>        bodies;
       std::vector<ObstacleSection<dim>>    obstacles;
       std::vector<SupportSection<dim>>     supports;
+      std::vector<FoundationSection<dim>>  foundations;
       std::vector<TractionSection<dim>>    tractions;
       std::vector<BodyForceSection<dim>>   body_forces;
       std::vector<PointLoadSection<dim>>   point_loads;
       std::vector<TemperatureSection<dim>> temperatures;
       std::vector<ContactSection<dim>>     contacts;
+      ContactSearchSection<dim>            contact_search;
     };
 
     template <int dim>
@@ -70,6 +74,7 @@ namespace slipstick::scene
       , bodies(names.at(body_kind.list).begin(), names.at(body_kind.list).end())
       , obstacles(names.at(obstacle_kind.list).begin(), names.at(obstacle_kind.list).end())
       , supports(names.at(support_kind.list).begin(), names.at(support_kind.list).end())
+      , foundations(names.at(foundation_kind.list).begin(), names.at(foundation_kind.list).end())
       , tractions(names.at(traction_kind.list).begin(), names.at(traction_kind.list).end())
       , body_forces(names.at(body_force_kind.list).begin(), names.at(body_force_kind.list).end())
       , point_loads(names.at(point_load_kind.list).begin(), names.at(point_load_kind.list).end())
@@ -86,11 +91,13 @@ namespace slipstick::scene
       declare_all(bodies);
       declare_all(obstacles);
       declare_all(supports);
+      declare_all(foundations);
       declare_all(tractions);
       declare_all(body_forces);
       declare_all(point_loads);
       declare_all(temperatures);
       declare_all(contacts);
+      contact_search.declare(prm);
       declare(prm, options.discretization);
       declare(prm, options.decomposition);
       declare_load_steps(prm, options.load_factors);
@@ -146,6 +153,8 @@ namespace slipstick::scene
         scene.obstacles.push_back(section.read(parameters));
       for (const auto &section : supports)
         scene.supports.push_back(section.read(parameters, scene));
+      for (const auto &section : foundations)
+        scene.foundations.push_back(section.read(parameters, scene));
       for (const auto &section : tractions)
         scene.tractions.push_back(section.read(parameters, scene));
       for (const auto &section : body_forces)
@@ -156,6 +165,7 @@ namespace slipstick::scene
         scene.temperatures.push_back(section.read(parameters, scene));
       for (const auto &section : contacts)
         scene.contacts.push_back(section.read(parameters, scene));
+      scene.contact_search = contact_search.read(parameters);
       if (scene.decomposition.method == DecompositionMethod::automatic)
         scene.decomposition.method = automatic_method(scene);
       for (const Body<dim> &body : scene.bodies)
@@ -187,6 +197,7 @@ namespace slipstick::scene
                                                                     {body_kind.list, {"box"}},
                                                                     {obstacle_kind.list, {"disc"}},
                                                                     {support_kind.list, {"held"}},
+                                                                    {foundation_kind.list, {"bed"}},
                                                                     {traction_kind.list, {"pressed"}},
                                                                     {body_force_kind.list, {"gravity"}},
                                                                     {point_load_kind.list, {"pull"}},
@@ -200,6 +211,8 @@ namespace slipstick::scene
       {"Support held/Boundary", "box/left"},
       {"Support held/Displacement x", "0"},
       {"Support held/Displacement y", "0"},
+      {"Foundation bed/Boundary", "box/bottom"},
+      {"Foundation bed/Normal stiffness", "10"},
       {"Traction pressed/Boundary", "box/top"},
       {"Traction pressed/Traction y", "-250"},
       {"Body force gravity/Acceleration y", "-9810"},

@@ -12,6 +12,9 @@ namespace slipstick::tfeti
 {
   namespace
   {
+    // Blocks of more rows are factorised as sparse ones.
+    constexpr unsigned int largest_dense_block = 32;
+
     /// One summand of an entry of W.
     struct Weight
     {
@@ -92,31 +95,52 @@ namespace slipstick::tfeti
         place[r] = {entry->second, blocks[entry->second].rows.size()};
         blocks[entry->second].rows.push_back(r);
       }
-    for (auto &block : blocks)
-      block.matrix = Eigen::MatrixXd::Zero(block.rows.size(), block.rows.size());
+    std::vector<std::vector<Eigen::Triplet<double>>> entries(blocks.size());
     for (const auto &[position, value] : sums)
-      blocks[place[position.first].first].matrix(place[position.first].second, place[position.second].second) = value;
+      entries[place[position.first].first].emplace_back(place[position.first].second,
+                                                        place[position.second].second,
+                                                        value);
+    for (unsigned int b = 0; b < blocks.size(); ++b)
+      {
+        blocks[b].matrix.resize(blocks[b].rows.size(), blocks[b].rows.size());
+        blocks[b].matrix.setFromTriplets(entries[b].begin(), entries[b].end());
+      }
   }
 
   RowWeights::Inverse::Inverse(const RowWeights &weights, const std::vector<bool> &active)
   {
     for (const auto &full : weights.blocks)
       {
-        std::vector<unsigned int> kept;
-        Block                     block;
+        std::vector<int> kept(full.rows.size(), -1); // position among the active rows
+        Block            block;
         for (unsigned int k = 0; k < full.rows.size(); ++k)
           if (active.empty() || active[full.rows[k]])
             {
-              kept.push_back(k);
+              kept[k] = block.rows.size();
               block.rows.push_back(full.rows[k]);
             }
-        if (kept.empty())
+        const unsigned int n = block.rows.size();
+        if (n == 0)
           continue;
-        Eigen::MatrixXd matrix(kept.size(), kept.size());
-        for (unsigned int a = 0; a < kept.size(); ++a)
-          for (unsigned int b = 0; b < kept.size(); ++b)
-            matrix(a, b) = full.matrix(kept[a], kept[b]);
-        block.inverse = matrix.llt().solve(Eigen::MatrixXd::Identity(kept.size(), kept.size()));
+        std::vector<Eigen::Triplet<double>> entries;
+        for (unsigned int k = 0; k < full.rows.size(); ++k)
+          if (kept[k] >= 0)
+            for (Eigen::SparseMatrix<double>::InnerIterator entry(full.matrix, k); entry; ++entry)
+              if (kept[entry.row()] >= 0)
+                entries.emplace_back(kept[entry.row()], kept[k], entry.value());
+        Eigen::SparseMatrix<double> matrix(n, n);
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        block.factor = std::make_unique<SemidefiniteFactor>(matrix);
+        if (n <= largest_dense_block)
+          {
+            block.inverse = Eigen::MatrixXd::Identity(n, n);
+            if (block.factor->n_left_out() == 0)
+              block.inverse = Eigen::MatrixXd(matrix).llt().solve(block.inverse).eval();
+            else
+              for (unsigned int k = 0; k < n; ++k)
+                block.inverse.col(k) = block.factor->solve(block.inverse.col(k).eval());
+            block.factor.reset();
+          }
         blocks.push_back(std::move(block));
       }
   }
@@ -125,13 +149,14 @@ namespace slipstick::tfeti
   {
     y = 0;
     for (const auto &block : blocks)
-      for (unsigned int a = 0; a < block.rows.size(); ++a)
-        {
-          double sum = 0;
-          for (unsigned int b = 0; b < block.rows.size(); ++b)
-            sum += block.inverse(a, b) * x.local_element(block.rows[b]);
-          y.local_element(block.rows[a]) = sum;
-        }
+      {
+        Eigen::VectorXd of_block(block.rows.size());
+        for (unsigned int a = 0; a < block.rows.size(); ++a)
+          of_block[a] = x.local_element(block.rows[a]);
+        const Eigen::VectorXd result = block.factor ? block.factor->solve(of_block) : block.inverse * of_block;
+        for (unsigned int a = 0; a < block.rows.size(); ++a)
+          y.local_element(block.rows[a]) = result[a];
+      }
   }
 
   PreconditionerBlocks::PreconditionerBlocks(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,

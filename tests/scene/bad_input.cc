@@ -44,7 +44,8 @@ TEST(bad_input, misspelt_list)
 
 TEST(bad_input, misspelt_value)
 {
-  refused({"Solver/Algorithm=smable"}, {"--set", "Solver/Algorithm = 'smable'", "auto, smalbe, semismooth newton, pcg", "'smalbe'"});
+  refused({"Solver/Algorithm=smable"},
+          {"--set", "Solver/Algorithm = 'smable'", "auto, smalbe, semismooth newton, pcg", "'smalbe'"});
   expect_box_refused("= blocks", "= block", {"box.prm:", "Decomposition/Method = 'block'", "METIS", "'blocks'"});
 }
 
@@ -65,18 +66,21 @@ TEST(bad_input, name_without_a_section)
   refused({"Bodies=box, wedge"}, {"'box, wedge'", "nothing describes 'wedge'", "subsection Body wedge"});
 }
 
-TEST(bad_input, what_later_versions_add_is_refused_with_what_is_available)
+TEST(bad_input, unknown_words_are_refused_with_what_is_available)
 {
-  refused({"Contact circle/Law=Coulomb"}, {"'Coulomb'", "available: frictionless, Tresca"});
-  refused({"Contact circle/Law=bonded"}, {"'bonded'", "available: frictionless, Tresca"});
+  refused({"Contact circle/Law=coulomb"}, {"'coulomb'", "bonded, frictionless, Tresca, Coulomb"});
+  refused({"Contact circle/Discretization=dual"}, {"'dual'", "auto, node to node, mortar"});
+  refused({"Contact circle/Slip bound acts on=open"}, {"'open'", "boundary, contact"});
+  refused({"Contact search/Mode=on"}, {"'on'", "declared, automatic"});
   refused({"Solver/Tolerance=auto"}, {"'auto'", "a number in (0, 1)"});
   refused({"Body box/Shape=dics"}, {"'dics'", "available: rectangle, disc, half disc, ring, quarter ring, mesh", "did you mean 'disc'"});
-  refused({"Obstacle disc/Shape=halfplane"}, {"'halfplane'", "available: circle"});
+  refused({"Obstacle disc/Shape=halfplane"}, {"'halfplane'", "circle, hole, half plane, polyline, function"});
 }
 
 TEST(bad_input, preconditioner_of_an_algorithm_that_has_none)
 {
-  refused({"Solver/Algorithm=smalbe", "Solver/Preconditioner=Dirichlet"}, {"Solver/Preconditioner", "semismooth newton"});
+  refused({"Solver/Algorithm=smalbe", "Solver/Preconditioner=Dirichlet"},
+          {"Solver/Preconditioner", "semismooth newton"});
 }
 
 // values out of range
@@ -188,7 +192,8 @@ TEST(bad_input, two_supports_of_one_component)
 
 TEST(bad_input, support_that_holds_nothing)
 {
-  refused({"Support held/Displacement x=free", "Support held/Displacement y=free"}, {"Support held", "free", "Supports"});
+  refused({"Support held/Displacement x=free", "Support held/Displacement y=free"},
+          {"Support held", "free", "Supports"});
 }
 
 TEST(bad_input, nothing_holds_a_body)
@@ -210,8 +215,7 @@ TEST(bad_input, cells_that_blocks_do_not_divide)
 
 TEST(bad_input, cells_need_not_be_divisible_without_blocks)
 {
-  EXPECT_NO_THROW(
-    scene::read_scene(prm("box_on_circle"), {"Body box/Cells=40, 42", "Decomposition/Method=METIS"}));
+  EXPECT_NO_THROW(scene::read_scene(prm("box_on_circle"), {"Body box/Cells=40, 42", "Decomposition/Method=METIS"}));
 }
 
 TEST(bad_input, algorithm_that_does_not_fit)

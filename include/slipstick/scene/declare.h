@@ -23,6 +23,7 @@ namespace slipstick::scene
     bool   upper_open = false;
 
     static Interval above(const double lower);
+    static Interval from(const double lower);
     static Interval inside(const double lower, const double upper);
 
     bool        contains(const double value) const;

@@ -97,11 +97,18 @@ namespace slipstick::scene
   {
     explicit ObstacleSection(const std::string &name);
 
-    std::string   name;
-    Obstacle<dim> obstacle;
+    std::string        name;
+    Obstacle<dim>      obstacle;
+    dealii::Point<dim> point;  // of a half plane
+    dealii::Point<dim> normal; // as given
+    std::string        points;
+    std::string        height;
 
     void          declare(dealii::ParameterHandler &prm);
     Obstacle<dim> read(const Parameters &parameters) const;
+
+  private:
+    std::map<std::string, std::string> defaults; // text of every parameter that nobody set
   };
 
   template <int dim>
@@ -111,10 +118,29 @@ namespace slipstick::scene
 
     std::string                  name;
     std::string                  boundary;
+    std::string                  body;
+    std::string                  point;
     std::array<std::string, dim> components;
+    std::string                  normal = "free";
 
     void                        declare(dealii::ParameterHandler &prm);
     PrescribedDisplacement<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+
+  private:
+    void read_place(const Parameters &parameters, const Scene<dim> &scene, PrescribedDisplacement<dim> &support) const;
+  };
+
+  template <int dim>
+  struct FoundationSection
+  {
+    explicit FoundationSection(const std::string &name);
+
+    std::string     name;
+    std::string     boundary;
+    Foundation<dim> foundation;
+
+    void            declare(dealii::ParameterHandler &prm);
+    Foundation<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
   };
 
   template <int dim>
@@ -174,19 +200,52 @@ namespace slipstick::scene
     Temperature<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
   };
 
+  /// What acts between two sides that touch: of a contact pair and of those that the search finds.
+  template <int dim>
+  struct ContactLawSection
+  {
+    ContactLaw  law                  = ContactLaw::frictionless;
+    std::string slip_bound           = "0";
+    bool        only_closed          = false;
+    std::string friction_coefficient = "0";
+    std::string offset               = "0";
+
+    /// In the subsection that is open.
+    void declare(dealii::ParameterHandler &prm);
+
+    /// Law, bounds and offset into @p pair. @p section: the path of the subsection.
+    void read(const Parameters &parameters, const std::string &section, ContactPair<dim> &pair) const;
+  };
+
   template <int dim>
   struct ContactSection
   {
     explicit ContactSection(const std::string &name);
 
-    std::string name;
-    std::string slave;
-    std::string master;
-    ContactLaw  law        = ContactLaw::frictionless;
-    std::string slip_bound = "0";
+    std::string            name;
+    std::string            slave;
+    std::string            master;
+    ContactLawSection<dim> law;
+    std::string            gap            = "geometry";
+    std::string            reach          = "auto";
+    ContactDiscretization  discretization = ContactDiscretization::automatic;
 
     void             declare(dealii::ParameterHandler &prm);
     ContactPair<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+
+  private:
+    void read_master(const Parameters &parameters, const Scene<dim> &scene, ContactPair<dim> &pair) const;
+  };
+
+  template <int dim>
+  struct ContactSearchSection
+  {
+    bool                   automatic = false;
+    double                 reach     = 0;
+    ContactLawSection<dim> law;
+
+    void               declare(dealii::ParameterHandler &prm);
+    ContactSearch<dim> read(const Parameters &parameters) const;
   };
 
   // Concerns without names of their own; each declares its own subsection.

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <slipstick/tfeti/dual_operator.h>
+#include <slipstick/tfeti/semidefinite_factor.h>
+
+#include <memory>
 
 namespace slipstick::tfeti
 {
-  /// W = B D^-1 B', D = diag K: couples only rows of one node, so it consists of small dense blocks, each on one rank.
+  /// W = B D^-1 B', D = diag K: couples rows that share nodes, so it consists of blocks, each on one rank: small ones of
+  /// single nodes, large sparse ones where mortar rows hang together. Rows may depend on each other.
   class RowWeights
   {
   public:
@@ -15,7 +19,7 @@ namespace slipstick::tfeti
                const Partitioner                                   &rows,
                const MPI_Comm                                       comm);
 
-    /// Inverse of W restricted to the active rows.
+    /// Inverse of W restricted to the active rows; of rows that depend on others, a generalised inverse.
     class Inverse
     {
     public:
@@ -27,8 +31,9 @@ namespace slipstick::tfeti
     private:
       struct Block
       {
-        std::vector<unsigned int> rows;
-        Eigen::MatrixXd           inverse;
+        std::vector<unsigned int>           rows;
+        Eigen::MatrixXd                     inverse; // of a small block
+        std::unique_ptr<SemidefiniteFactor> factor;  // of a large one
       };
       std::vector<Block> blocks;
     };
@@ -36,8 +41,8 @@ namespace slipstick::tfeti
   private:
     struct Block
     {
-      std::vector<unsigned int> rows; // owned
-      Eigen::MatrixXd           matrix;
+      std::vector<unsigned int>   rows; // owned
+      Eigen::SparseMatrix<double> matrix;
     };
     std::vector<Block> blocks;
   };

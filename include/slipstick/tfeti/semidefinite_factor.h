@@ -1,0 +1,32 @@
+// Sparse L D L' of a symmetric positive semidefinite matrix whose rows may depend on each other.
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include <vector>
+
+namespace slipstick::tfeti
+{
+  /// P A P' = L D L' with a fill-reducing order P. A row that depends on those before it, whose pivot is no more than
+  /// rounding of its diagonal entry, is left out: its entry in a solution is 0. Of a right hand side in the range of A
+  /// the result solves A x = b. Up-looking elimination, Davis 2005 (LDL).
+  class SemidefiniteFactor
+  {
+  public:
+    /// @p matrix: full symmetric, both triangles.
+    explicit SemidefiniteFactor(const Eigen::SparseMatrix<double> &matrix);
+
+    Eigen::VectorXd solve(const Eigen::VectorXd &b) const;
+
+    unsigned int n_left_out() const
+    {
+      return left_out;
+    }
+
+  private:
+    std::vector<int>    order;      // of the rows: order[k] is eliminated as the k-th
+    std::vector<int>    first, row; // columns of L below the diagonal
+    std::vector<double> value, inverse_pivot;
+    unsigned int        left_out = 0;
+  };
+} // namespace slipstick::tfeti

@@ -1,0 +1,206 @@
+#include <slipstick/base/nearest_name.h>
+#include <slipstick/scene/declare.h>
+#include <slipstick/scene/sections.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::scene
+{
+  namespace
+  {
+    const std::string boundary_format = "BODY/BOUNDARY, such as box/left";
+    const std::string field_format    = "a number or a formula of x, y, t";
+
+    /// A formula whose value, where it is a number, is not negative.
+    template <int dim>
+    Field<dim> not_negative(const std::string &text,
+                            const std::string &path,
+                            const std::string &remedy,
+                            const Parameters  &parameters)
+    {
+      const Field<dim> field(text, parameters.locate(path));
+      if (field.is_constant() && field.value(dealii::Point<dim>(), 1) < 0)
+        throw parameters.error(path, "is negative", remedy);
+      return field;
+    }
+  } // namespace
+
+  template <int dim>
+  void ContactLawSection<dim>::declare(dealii::ParameterHandler &prm)
+  {
+    add_choice(
+      prm,
+      "Law",
+      law,
+      Choices<ContactLaw>{{"bonded", ContactLaw::bonded},
+                          {"frictionless", ContactLaw::frictionless},
+                          {"Tresca", ContactLaw::tresca},
+                          {"Coulomb", ContactLaw::coulomb}},
+      "bonded (no relative displacement, tension too; a gap stays as it is), frictionless, Tresca friction with a "
+      "given slip bound, or Coulomb friction");
+    add_text(prm,
+             "Slip bound",
+             slip_bound,
+             "MPa",
+             field_format + ", >= 0",
+             "Tresca: largest tangential traction; must be set");
+    add_choice(prm,
+               "Slip bound acts on",
+               only_closed,
+               Choices<bool>{{"boundary", false}, {"contact", true}},
+               "Tresca: on the whole slave boundary, open nodes included, or where it is in contact");
+    add_text(prm,
+             "Friction coefficient",
+             friction_coefficient,
+             "-",
+             field_format + ", >= 0",
+             "Coulomb: tangential traction over pressure when slipping; must be set");
+    add_text(prm, "Offset", offset, "mm", field_format, "added to the gap; negative: interference of a press fit");
+  }
+
+  template <int dim>
+  void ContactLawSection<dim>::read(const Parameters  &parameters,
+                                    const std::string &section,
+                                    ContactPair<dim>  &pair) const
+  {
+    pair.law         = law;
+    pair.only_closed = only_closed;
+    if (law == ContactLaw::tresca)
+      parameters.require(section + "/Slip bound", "set it in MPa, or set Law = frictionless");
+    if (law == ContactLaw::coulomb)
+      parameters.require(section + "/Friction coefficient", "set it, or set Law = frictionless");
+    pair.slip_bound =
+      not_negative<dim>(slip_bound, section + "/Slip bound", "give a slip bound >= 0 [MPa]", parameters);
+    pair.friction_coefficient =
+      not_negative<dim>(friction_coefficient, section + "/Friction coefficient", "give a coefficient >= 0", parameters);
+    pair.offset = Field<dim>(offset, parameters.locate(section + "/Offset"));
+  }
+
+  template <int dim>
+  ContactSection<dim>::ContactSection(const std::string &own_name)
+    : name(own_name)
+  {}
+
+  template <int dim>
+  void ContactSection<dim>::declare(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Contact " + name);
+    add_text(prm,
+             "Slave",
+             slave,
+             "",
+             boundary_format,
+             "boundary that may touch the master; the finer or softer side of two bodies; must be set");
+    add_text(prm,
+             "Master",
+             master,
+             "",
+             "BODY/BOUNDARY, or a name from Obstacles",
+             "boundary of a body or rigid obstacle that it may touch; must be set");
+    law.declare(prm);
+    add_text(prm,
+             "Gap",
+             gap,
+             "mm",
+             "geometry, " + field_format,
+             "initial distance along the normal: that of the geometry, or given in its place");
+    add_text(prm,
+             "Reach",
+             reach,
+             "mm",
+             "auto, or a number > 0",
+             "what is farther apart along the normal is not paired; auto: two bodies from distance and mesh, obstacles "
+             "without limit");
+    add_choice(prm,
+               "Discretization",
+               discretization,
+               Choices<ContactDiscretization>{{"auto", ContactDiscretization::automatic},
+                                              {"node to node", ContactDiscretization::node_to_node},
+                                              {"mortar", ContactDiscretization::mortar}},
+               "two bodies: auto is node to node where all nodes meet a node, else mortar");
+    prm.leave_subsection();
+  }
+
+  template <int dim>
+  void ContactSection<dim>::read_master(const Parameters &parameters,
+                                        const Scene<dim> &scene,
+                                        ContactPair<dim> &pair) const
+  {
+    const std::string        path = "Contact " + name + "/Master";
+    std::vector<std::string> obstacles;
+    for (const Obstacle<dim> &obstacle : scene.obstacles)
+      obstacles.push_back(obstacle.name);
+    parameters.require(path, "set BODY/BOUNDARY, or a name from Obstacles (" + join_names(obstacles) + ")");
+    if (master.find('/') == std::string::npos)
+      {
+        pair.obstacle = std::find(obstacles.begin(), obstacles.end(), master) - obstacles.begin();
+        if (pair.obstacle == obstacles.size())
+          throw parameters.error(path, "there is no such obstacle", suggest_name(master, obstacles));
+        return;
+      }
+    pair.master = read_boundary(master, path, parameters, scene.bodies);
+    if (pair.master->body == pair.slave.body &&
+        (pair.master->boundary == pair.slave.boundary || pair.master->boundary == "*" || pair.slave.boundary == "*"))
+      throw parameters.error(path,
+                             "is a part of the slave boundary: no boundary can be in contact with itself",
+                             "choose two different boundaries of body '" + scene.bodies[pair.slave.body].name + "'");
+  }
+
+  template <int dim>
+  ContactPair<dim> ContactSection<dim>::read(const Parameters &parameters, const Scene<dim> &scene) const
+  {
+    const std::string section = "Contact " + name;
+    ContactPair<dim>  pair;
+    pair.name           = name;
+    pair.discretization = discretization;
+    pair.slave          = read_boundary(slave, section + "/Slave", parameters, scene.bodies);
+    read_master(parameters, scene, pair);
+    law.read(parameters, section, pair);
+    if (gap != "geometry")
+      pair.gap = Field<dim>(gap, parameters.locate(section + "/Gap"));
+    if (reach != "auto")
+      {
+        const Field<dim> number(reach, parameters.locate(section + "/Reach"));
+        if (!number.is_constant() || !(number.value(dealii::Point<dim>(), 1) > 0))
+          throw parameters.error(section + "/Reach", "is no number > 0", "give a length in mm, or auto");
+        pair.reach = number.value(dealii::Point<dim>(), 1);
+      }
+    return pair;
+  }
+
+  template <int dim>
+  void ContactSearchSection<dim>::declare(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Contact search");
+    add_choice(
+      prm,
+      "Mode",
+      automatic,
+      Choices<bool>{{"declared", false}, {"automatic", true}},
+      "automatic also pairs all bodies whose outlines face each other within Reach and that no pair of Contacts "
+      "joins");
+    add_number(prm,
+               "Reach",
+               reach,
+               "mm",
+               Interval::from(0),
+               "automatic: outlines closer than this make a pair; 0: outlines that touch");
+    law.declare(prm);
+    prm.leave_subsection();
+  }
+
+  template <int dim>
+  ContactSearch<dim> ContactSearchSection<dim>::read(const Parameters &parameters) const
+  {
+    ContactSearch<dim> search;
+    search.automatic = automatic;
+    search.reach     = reach;
+    law.read(parameters, "Contact search", search.pair);
+    return search;
+  }
+
+  template struct ContactLawSection<2>;
+  template struct ContactSection<2>;
+  template struct ContactSearchSection<2>;
+} // namespace slipstick::scene
