@@ -1,12 +1,27 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
 #include <slipstick/fem/body_contact.h>
-#include <slipstick/fem/row_builder.h>
 
 #include <algorithm>
 
 namespace slipstick::fem
 {
+  template <int dim>
+  bool can_be_pruned(const scene::ContactPair<dim> &pair)
+  {
+    switch (pair.law)
+      {
+        case scene::ContactLaw::frictionless:
+        case scene::ContactLaw::coulomb:
+          return true;
+        case scene::ContactLaw::tresca:
+          return pair.only_closed;
+        case scene::ContactLaw::bonded:
+          return false;
+      }
+    return false;
+  }
+
   namespace
   {
     template <int dim>
@@ -149,5 +164,6 @@ namespace slipstick::fem
     return contacts;
   }
 
+  template bool            can_be_pruned(const scene::ContactPair<2> &);
   template BodyContacts<2> pair_bodies(const scene::Scene<2> &, const Mesh<2> &, const Spaces<2> &);
 } // namespace slipstick::fem

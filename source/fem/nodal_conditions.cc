@@ -1,6 +1,7 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
 #include <slipstick/fem/nodal_conditions.h>
+#include <slipstick/fem/surface.h>
 
 #include <Eigen/Eigenvalues>
 

@@ -42,22 +42,6 @@ namespace slipstick::fem
   } // namespace
 
   template <int dim>
-  bool can_be_pruned(const scene::ContactPair<dim> &pair)
-  {
-    switch (pair.law)
-      {
-        case scene::ContactLaw::frictionless:
-        case scene::ContactLaw::coulomb:
-          return true;
-        case scene::ContactLaw::tresca:
-          return pair.only_closed;
-        case scene::ContactLaw::bonded:
-          return false;
-      }
-    return false;
-  }
-
-  template <int dim>
   RowBuilder<dim>::RowBuilder(const scene::Scene<dim>               &scene,
                               const std::vector<InterfaceNode<dim>> &nodes,
                               const BodyContacts<dim>               &contacts,
@@ -395,6 +379,5 @@ namespace slipstick::fem
     ++constraints.counts.candidates;
   }
 
-  template bool can_be_pruned(const scene::ContactPair<2> &);
   template class RowBuilder<2>;
 } // namespace slipstick::fem

@@ -1,7 +1,7 @@
 // What supports and foundations do to one node.
 #pragma once
 
-#include <slipstick/fem/interface_nodes.h>
+#include <slipstick/fem/interface_node.h>
 
 namespace slipstick::fem
 {

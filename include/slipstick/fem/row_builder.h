@@ -24,10 +24,6 @@ namespace slipstick::fem
     }
   };
 
-  /// May nodes of the pair that are far apart go without rows? Not where a law acts on open nodes.
-  template <int dim>
-  bool can_be_pruned(const scene::ContactPair<dim> &pair);
-
   /// Of one contact pair: smallest gap, length of the slave boundary and number of its nodes.
   struct PairExtent
   {
