@@ -3,6 +3,7 @@
 #include <slipstick/fem/arc_length.h>
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/contact_constraints.h>
+#include <slipstick/fem/contact_search.h>
 #include <slipstick/fem/decomposition.h>
 #include <slipstick/fem/loads.h>
 #include <slipstick/output/contact_line.h>
@@ -120,6 +121,20 @@ namespace slipstick::app
       return {dealii::Utilities::MPI::max(peak_memory_mb(), comm), dealii::Utilities::MPI::sum(peak_memory_mb(), comm)};
     }
 
+    /// Appends the contact pairs that a search finds; bodies that overlap must have one.
+    void add_found_contacts(scene::Scene<dim>      &scene,
+                            const fem::Mesh<dim>   &mesh,
+                            const fem::Spaces<dim> &spaces,
+                            const Log              &log)
+    {
+      for (auto &pair : fem::find_contacts(scene, mesh, spaces))
+        {
+          log.line("contact      found between " + pair.name);
+          scene.contacts.push_back(std::move(pair));
+        }
+      fem::check_overlap(scene, mesh, spaces);
+    }
+
     /// Everything that the load steps share, and what they leave behind.
     class Run
     {
@@ -165,6 +180,7 @@ namespace slipstick::app
         mesh   = std::make_unique<fem::Mesh<dim>>(fem::make_mesh(scene, comm));
         spaces = std::make_unique<fem::Spaces<dim>>(*mesh, scene.discretization.degree);
         print_mesh(log, scene, *mesh, *spaces);
+        add_found_contacts(scene, *mesh, *spaces, log);
       }
 
       /// K_p, B, F at load factor t, without the rows of pruned contact nodes unless a body is held by them.
@@ -341,7 +357,7 @@ namespace slipstick::app
           output::write_contact_csv(directory, contact_names(), contact_steps);
       }
 
-      const scene::Scene<dim>       &scene;
+      scene::Scene<dim>              scene; // with the contact pairs that are found
       const output::OutputDirectory &directory;
       const Log                     &log;
       const MPI_Comm                 comm;
@@ -361,12 +377,13 @@ namespace slipstick::app
     };
   } // namespace
 
-  void check_scene(const scene::Scene<dim> &scene, const Log &log, const MPI_Comm comm)
+  void check_scene(scene::Scene<dim> scene, const Log &log, const MPI_Comm comm)
   {
     print_header(log, scene, comm);
     const auto             mesh = fem::make_mesh(scene, comm);
     const fem::Spaces<dim> spaces(mesh, scene.discretization.degree);
     print_mesh(log, scene, mesh, spaces);
+    add_found_contacts(scene, mesh, spaces, log);
     const double t           = scene.load_factors.front();
     auto         constraints = fem::contact_constraints(scene, mesh, spaces, t);
     print_constraints(log, constraints);
