@@ -154,7 +154,8 @@ namespace slipstick::app
       {
         build_mesh();
         build_dual(scene.load_factors.front());
-        directory.remove_results(); // the scene is accepted: what an earlier run left is no longer true
+        contact::SlipLaw(scene, *dual, scene.load_factors.front()); // refuses bounds before anything is removed
+        directory.remove_results();                                 // the scene is accepted: what an earlier run left is no longer true
         output::Summary summary;
         for (unsigned int step = 0; step < scene.load_factors.size(); ++step)
           {

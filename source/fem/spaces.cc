@@ -58,15 +58,24 @@ namespace slipstick::fem
         return std::make_unique<dealii::MappingFE<dim>>(dealii::FE_SimplexP<dim>(1));
       return std::make_unique<CurvedSimplexMapping<dim>>(dealii::FE_SimplexP<dim>(degree));
     }
+    template <int dim>
+    bool is_curved(const dealii::Triangulation<dim> &triangulation)
+    {
+      for (const auto id : triangulation.get_manifold_ids())
+        if (id != dealii::numbers::flat_manifold_id)
+          return true;
+      return false;
+    }
   } // namespace
 
   template <int dim>
-  Element<dim>::Element(const dealii::ReferenceCell cell_, const unsigned int degree_)
+  Element<dim>::Element(const dealii::ReferenceCell cell_, const unsigned int degree_, const bool is_curved_)
     : cell(cell_)
     , degree(degree_)
+    , is_curved(is_curved_)
     , scalar(scalar_element<dim>(cell, degree))
     , vector(std::make_unique<dealii::FESystem<dim>>(*scalar, dim))
-    , mapping(isoparametric<dim>(cell, degree))
+    , mapping(isoparametric<dim>(cell, is_curved ? degree : 1))
     , stiffness(cell_quadrature(cell.is_simplex() && degree == 1 ? 1 : degree + 1))
     , loads(cell_quadrature(degree + 2))
     , stress(cell_quadrature(degree))
@@ -109,9 +118,12 @@ namespace slipstick::fem
       {
         const auto &types = subdomain->triangulation.get_reference_cells();
         AssertThrow(types.size() == 1, dealii::ExcMessage("the cells of a subdomain must be of one type"));
-        auto found = std::find_if(elements.begin(), elements.end(), [&](const auto &e) { return e->cell == types[0]; });
+        const bool curved = is_curved(subdomain->triangulation);
+        auto       found  = std::find_if(elements.begin(), elements.end(), [&](const auto &e) {
+          return e->cell == types[0] && e->is_curved == curved;
+        });
         if (found == elements.end())
-          found = elements.insert(elements.end(), std::make_unique<Element<dim>>(types[0], degree));
+          found = elements.insert(elements.end(), std::make_unique<Element<dim>>(types[0], degree, curved));
         element_of.push_back(found->get());
         dof_handlers.push_back(std::make_unique<dealii::DoFHandler<dim>>(subdomain->triangulation));
         dof_handlers.back()->distribute_dofs(*element_of.back()->vector);

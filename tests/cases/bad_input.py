@@ -117,7 +117,7 @@ class BadInput(unittest.TestCase):
 
     def test_no_support_and_no_contact(self):
         case = scenes.box(tractions={'pressed': scenes.PRESSED})
-        self.refused(case, {}, "nothing holds body 'box'", 'add a support or a contact')
+        self.refused(case, {}, "nothing holds body 'box'", 'add a support, a foundation or a contact')
 
     def test_supports_that_contradict_each_other_in_a_corner(self):
         case = scenes.box(supports={'held': scenes.HELD,

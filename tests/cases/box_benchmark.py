@@ -18,9 +18,9 @@ PRESSURE = {500: {1: 1259.5, 2: 1276.8, 4: 1282.9}, 150: {1: 1211.2, 2: 1208.2, 
 
 
 @functools.lru_cache(maxsize=None)
-def solved(blocks, bound, tolerance):
+def solved(blocks, bound, tolerance, algorithm='auto'):
     return converged(shipped('box_on_circle'),
-                     {'Decomposition/Blocks': blocks, 'Contact circle/Slip bound': bound, 'Solver/Tolerance': tolerance,
+                     {'Decomposition/Blocks': blocks, 'Contact circle/Slip bound': bound, 'Solver/Tolerance': tolerance, 'Solver/Algorithm': algorithm,
                       'Output/VTU': 'false'}, ranks=min(2, blocks))
 
 
@@ -36,10 +36,17 @@ class BoxBenchmark(unittest.TestCase):
                 self.assertEqual((problem['dual']['normal'], problem['dual']['tangential']), (50 * blocks, 50 * blocks))
                 self.assertEqual((problem['subdomains'], problem['cells']), (blocks ** 2, (50 * blocks) ** 2))
 
-    def test_multiplications_with_default_settings(self):
+    def test_multiplications_of_semismooth_newton(self):
         for blocks, bound in CELLS:
             with self.subTest(blocks=blocks, bound=bound):
                 solver = solved(blocks, bound, 1e-4).summary['solver']
+                self.assertEqual((solver['algorithm'], solver['fallbacks']), ('semismooth newton', 0))
+                self.assertLessEqual(solver['hessian_multiplications'], 40)
+
+    def test_multiplications_of_smalbe(self):
+        for blocks, bound in CELLS:
+            with self.subTest(blocks=blocks, bound=bound):
+                solver = solved(blocks, bound, 1e-4, 'smalbe').summary['solver']
                 self.assertEqual((solver['tolerance'], solver['algorithm'], solver['fallbacks']), (1e-4, 'smalbe', 0))
                 self.assertLessEqual(solver['hessian_multiplications'], min(PRINTED[bound][blocks], PERMON[bound][blocks]))
 

@@ -120,7 +120,7 @@ class Outputs(unittest.TestCase):
 
     def test_convergence_ends_below_the_tolerance(self):
         rows = box().rows('convergence.csv', text=('algorithm',))
-        self.assertEqual({row['algorithm'] for row in rows}, {'smalbe'})
+        self.assertEqual({row['algorithm'] for row in rows}, {'semismooth newton'})
         counts = [row['hessian_multiplications'] for row in rows]
         self.assertEqual(counts, sorted(counts))
         self.assertEqual(len(rows), box().summary['solver']['outer_iterations'])

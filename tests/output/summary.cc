@@ -45,6 +45,7 @@ TEST(Summary, sections_are_those_of_the_contract)
                   "residuals",
                   "error",
                   "results",
+                  "steps",
                   "time_s",
                   "memory_mb"}));
 }
@@ -105,6 +106,7 @@ TEST(Summary, results_have_the_keys_of_the_contract)
             Keys({"pair",
                   "normal_force",
                   "tangential_force",
+                  "moment_mismatch",
                   "max_pressure",
                   "contact_length",
                   "contact_nodes",

@@ -51,7 +51,7 @@ TEST(bad_input, misspelt_value)
 
 TEST(bad_input, right_name_in_the_wrong_section)
 {
-  refused({"Tolerance=1e-6"}, {"'Tolerance'", "did you mean 'Solver/Tolerance'?"});
+  refused({"Algorithm=smalbe"}, {"'Algorithm'", "did you mean 'Solver/Algorithm'?"});
 }
 
 TEST(bad_input, section_that_no_list_declares)

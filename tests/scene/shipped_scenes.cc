@@ -113,7 +113,7 @@ TEST(shipped_scenes, box_on_circle_is_the_paper_s)
 TEST(round_trip, parameters_of_every_scene_read_back_as_the_same_scene)
 {
   const std::vector<std::string> overrides = {"Solver/Tolerance=1.2345678901234567e-7",
-                                              "Body box/Thickness=0.1",
+                                              "Friction/Tolerance=0.1",
                                               "Solver/SMALBE/Expansion=projected CG",
                                               "Solver/Algorithm=auto"};
   TemporaryDirectory             directory;

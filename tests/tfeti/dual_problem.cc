@@ -175,7 +175,9 @@ TEST(DualProblem, linear_scene_agrees_with_the_untorn_bodies)
 {
   for (const unsigned int degree : {1, 2})
     {
-      const Scene scene     = accurate(bent_box(8, degree), 1e-13);
+      Scene scene = accurate(bent_box(8, degree), 1e-13);
+      // with a preconditioner fewer steps lead to the same residual, and a larger error may be left behind it
+      scene.solver.dual.preconditioner = tfeti::Preconditioner::none;
       const auto  reference = Untorn(scene).solution();
       for (const Cut &how : cuts)
         {

@@ -21,11 +21,12 @@ namespace slipstick::fem
   template <int dim>
   struct Element
   {
-    /// @p cell: quadrilateral or triangle; @p degree: 1 or 2.
-    Element(const dealii::ReferenceCell cell, const unsigned int degree);
+    /// @p cell: quadrilateral or triangle; @p degree: 1 or 2; @p is_curved: does the mesh have manifolds to follow?
+    Element(const dealii::ReferenceCell cell, const unsigned int degree, const bool is_curved = true);
 
     dealii::ReferenceCell                             cell;
     unsigned int                                      degree;
+    bool                                              is_curved; // else the mapping is of degree 1
     std::unique_ptr<const dealii::FiniteElement<dim>> scalar;
     std::unique_ptr<const dealii::FESystem<dim>>      vector; // dim times scalar
     std::unique_ptr<const dealii::Mapping<dim>>       mapping;
