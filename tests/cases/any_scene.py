@@ -74,8 +74,10 @@ class Figures(unittest.TestCase):
 
     def test_hertz(self):
         p0, a = 2307.7, 2.
-        rows = scene('hertz').contact
+        rows = scene('hertz', ('Body cylinder/Refine levels', 3), ('Body block/Refine levels', 3)).contact
         self.near(max(row['pressure'] for row in rows), p0, 0.015)
+        quadratic = scene('hertz', ('Discretization/Degree', 2)).contact
+        self.near(max(row['pressure'] for row in quadratic), p0, 0.005)
         closed = [row['x'] for row in rows if row['status'] != 'open']
         spacing = sorted(row['x'] for row in rows if abs(row['x']) < a)
         self.near(max(closed) - min(closed), 2 * a, 2 * (spacing[1] - spacing[0]) / a)
