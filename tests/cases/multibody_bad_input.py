@@ -1,0 +1,145 @@
+"""Bad meshes, names and pairs of scenes with several bodies: exit status 2, one message with its remedy."""
+
+import unittest
+
+import scenes
+from program import SOURCE, new_path, shipped, solve
+
+CYLINDERS = shipped('cattaneo_mindlin')
+MESHES = SOURCE / 'meshes'
+
+MESH = '''$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+1 1 "side"
+2 2 "part"
+$EndPhysicalNames
+$Nodes
+{n_nodes}
+{nodes}
+$EndNodes
+$Elements
+{n_elements}
+{elements}
+$EndElements
+'''
+
+SQUARE = ('0 0 0', '10 0 0', '10 10 0', '0 10 0')
+SIDE = '1 2 1 1 1 2'  # a line between nodes 1 and 2 on the boundary "side"
+RECTANGLE = {'Origin': '0, 0', 'Size': '10, 10', 'Cells': '4, 4', 'Material': 'elastic'}
+
+
+def mesh(nodes, *cells):
+    """Path of a mesh file of version 2.2; cells as type, tags and nodes."""
+    path = new_path('bad.msh')
+    elements = (SIDE,) + cells
+    path.write_text(MESH.format(n_nodes=len(nodes), nodes='\n'.join('{} {}'.format(i + 1, x) for i, x in enumerate(nodes)),
+                                n_elements=len(elements),
+                                elements='\n'.join('{} {}'.format(i + 1, cell) for i, cell in enumerate(elements))))
+    return path
+
+
+def changed(name, change):
+    """Copy of a shipped mesh with other bytes."""
+    path = new_path(name)
+    path.write_bytes(change((MESHES / name).read_bytes()))
+    return path
+
+
+class MultibodyBadInput(unittest.TestCase):
+
+    def refused(self, case, overrides, *words, ranks=(1, 2)):
+        for n in ranks:
+            with self.subTest(ranks=n):
+                result = solve(case, overrides, ranks=n)
+                self.assertEqual(result.status, 2, result)
+                lines = result.stderr.splitlines()
+                self.assertEqual([line for line in lines if line.startswith('error: ')], lines[-2:-1], result)
+                self.assertTrue(lines[-1].startswith('  remedy: '), result)
+                for word in words:
+                    self.assertIn(word, result.stderr, result)
+                self.assertFalse(result.directory.exists(), result)
+
+    def refused_mesh(self, path, *words):
+        case = scenes.box(bodies={'box': {'Shape': 'mesh', 'File': str(path), 'Material': 'elastic'}},
+                          supports={'held': {**scenes.HELD, 'Boundary': 'box/side'}},
+                          Decomposition={'Method': 'METIS'})
+        self.refused(case, {}, str(path), *words)
+
+    # names
+
+    def test_part_that_is_not_in_the_mesh(self):
+        self.refused(CYLINDERS, {'Body upper/Part': 'uper'}, "no part 'uper'", "did you mean 'upper'?")
+
+    def test_boundary_that_is_not_in_the_mesh(self):
+        self.refused(CYLINDERS, {'Contact touch/Slave': 'upper/contct'}, "no boundary 'contct'",
+                     "did you mean 'contact'?")
+
+    def test_boundary_of_another_part(self):
+        self.refused(shipped('clamp'), {'Contact back/Slave': 'A/back'}, "no boundary 'back'")
+
+    def test_point_that_is_not_in_the_mesh(self):
+        self.refused(CYLINDERS, {'Support middle/Point': 'lower midle'}, "no point 'lower midle'",
+                     "did you mean 'lower middle'?")
+
+    def test_mesh_file_that_is_not_there(self):
+        self.refused(CYLINDERS, {'Body upper/File': 'nowhere.msh'}, "'nowhere.msh'", 'no such file')
+
+    # files
+
+    def test_truncated_binary_file(self):
+        for share in (0.3, 0.6, 0.9):
+            path = changed('clamp.msh', lambda content: content[:int(share * len(content))])
+            self.refused(shipped('clamp'), {'Body A/File': path}, str(path), 'truncated or mixed up', ranks=(2,))
+
+    def test_binary_file_copied_as_text(self):
+        path = changed('bolt.msh', lambda content: content.replace(b'\n', b'\r\n'))
+        self.refused(shipped('lap_joint'), {'Body bolt/File': path}, str(path), 'mixed up')
+
+    def test_text_file_that_says_it_is_binary(self):
+        path = changed('patch.msh', lambda content: content.replace(b'4.1 0 8', b'4.1 1 8'))
+        self.refused(shipped('patch_gmsh'), {'Body lower/File': path, 'Body upper/File': path}, str(path))
+
+    # cells
+
+    def test_cell_that_crosses_itself(self):
+        self.refused_mesh(mesh(SQUARE, '3 2 2 2 1 2 4 3'), 'degenerate cell', 'crosses itself')
+
+    def test_cell_that_is_not_convex(self):
+        self.refused_mesh(mesh(('0 0 0', '10 0 0', '2 2 0', '0 10 0'), '3 2 2 2 1 2 3 4'), 'not convex')
+
+    def test_cell_without_area(self):
+        self.refused_mesh(mesh(('0 0 0', '10 0 0', '20 0 0', '0 10 0'), '2 2 2 2 1 2 3', '2 2 2 2 1 3 4'), 'no area',
+                          '(10, 0)')
+
+    def test_mesh_of_three_dimensions(self):
+        self.refused_mesh(mesh(SQUARE[:3] + ('0 0 10',), '4 2 2 2 1 2 3 4'), 'three-dimensional')
+
+    def test_mesh_of_one_dimension(self):
+        self.refused_mesh(mesh(SQUARE, '1 2 1 1 2 3'), 'no cells, only 2 lines')
+
+    def test_mesh_out_of_the_plane(self):
+        self.refused_mesh(mesh(('0 0 0', '10 0 0', '10 10 7', '0 10 7'), '3 2 2 2 1 2 3 4'), 'z goes from 0 to 7')
+
+    # pairs
+
+    def test_pair_out_of_reach(self):
+        self.refused(CYLINDERS, {'Body upper/Translation': '0, 60', 'Contact touch/Reach': 1}, 'Contact touch',
+                     'upper/contact and lower/contact do not meet', '60 mm apart', 'Reach')
+
+    def test_pair_on_one_side(self):
+        self.refused(CYLINDERS, {'Contact touch/Slave': 'upper/arc', 'Contact touch/Master': 'upper/contact'},
+                     'Contact touch', 'do not face each other')
+
+    def test_bodies_that_overlap_without_a_pair(self):
+        case = scenes.box(bodies={'a': RECTANGLE, 'b': {**RECTANGLE, 'Origin': '8, 2', 'Size': '10, 5'}},
+                          supports={'left': {**scenes.HELD, 'Boundary': 'a/left'},
+                                    'right': {**scenes.HELD, 'Boundary': 'b/right'}},
+                          Decomposition={'Method': 'METIS'})
+        self.refused(case, {}, "bodies 'a' and 'b' overlap", 'pair')
+
+
+if __name__ == '__main__':
+    unittest.main()
