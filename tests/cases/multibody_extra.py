@@ -4,7 +4,8 @@ leaves out."""
 import functools
 import unittest
 
-from program import SOURCE, converged, shipped
+import scenes
+from program import SOURCE, converged, shipped, solve
 
 # u_x [um] of the Raous block on 128 x 128 bilinear elements: doc/ (method, section 8)
 RAOUS = {0: 28.602, 1.25: 27.225, 5: 22.867, 7.5: 19.807, 11.25: 15.413}
@@ -58,7 +59,7 @@ class Figures(unittest.TestCase):
                         for row in result.contact:
                             self.near(row['pressure'], 10, 2e-10)
 
-    def test_moments_of_the_two_sides_agree_to_second_order(self):
+    def test_moments_of_the_two_sides_agree(self):  # and to second order: tests/fem/mortar.cc
         mismatch = []
         for n in (0, 1, 2):
             pair, = pairs(scene('hertz', ('Body cylinder/Refine levels', 2), ('Body block/Refine levels', 2),
@@ -70,6 +71,80 @@ class Figures(unittest.TestCase):
                                  ('Solver/Tolerance', 1e-8)))['fit']['moment_mismatch']) for n in (0, 1, 2)]
         self.assertLess(press[2], 1e-3 * 1981 * 20)
 
+
+
+class Parts(unittest.TestCase):
+    """What no shipped scene has."""
+
+    STIFF = {'elastic': {'Young modulus': '1e5', 'Poisson ratio': '0'}}
+    PRESSED = {'pressed': {'Boundary': 'box/top', 'Pressure': '10'}}
+    TIGHT = {'Tolerance': '1e-10'}
+
+    def test_foundation_sinks_by_pressure_over_stiffness(self):
+        case = scenes.box(materials=self.STIFF, foundations={'soil': {'Boundary': 'box/bottom', 'Normal stiffness': '200',
+                                                                      'Tangential stiffness': '50'}},
+                          tractions={'pressed': {'Boundary': 'box/top', 'Pressure': '10', 'Traction x': '2'},
+                                     'held': {'Boundary': 'box/bottom', 'Traction x': '1'}}, Solver=self.TIGHT)
+        energy = converged(case).summary['results']['strain_energy']
+        self.assertGreater(energy, 0)
+        case = scenes.box(materials=self.STIFF, foundations={'soil': {'Boundary': 'box/bottom', 'Normal stiffness': '200',
+                                                                      'Tangential stiffness': '50'}},
+                          tractions=self.PRESSED, Solver=self.TIGHT)
+        for ranks in (1, 2):
+            sinks = converged(case, ranks=ranks).summary['results']['max_displacement']
+            self.assertAlmostEqual(sinks / (10 / 200 + 10 / 1e5 * 10), 1, delta=1e-8)
+
+    def stack(self, contacts=None, **sections):
+        bodies = {'box': {'Origin': '0, 4', 'Size': '4, 4', 'Cells': '4, 4', 'Material': 'elastic'},
+                  'base': {'Size': '10, 4', 'Cells': '15, 6', 'Material': 'elastic'}}
+        floor = {'floor': {'Boundary': 'base/bottom', 'Displacement x': '0', 'Displacement y': '0'}}
+        kinds = {'contacts': contacts} if contacts else {}
+        return scenes.box(materials=self.STIFF, bodies=bodies, supports=floor, tractions=self.PRESSED, Solver=self.TIGHT,
+                          Decomposition={'Method': 'METIS', 'Subdomains': '4'}, **kinds, **sections)
+
+    def test_contact_that_is_found_is_the_one_that_would_be_declared(self):
+        law = {'Law': 'Coulomb', 'Friction coefficient': '0.3'}
+        found = converged(self.stack(**{'Contact search': {'Mode': 'automatic', 'Reach': '0.1', **law}}), ranks=2)
+        self.assertIn('found between', found.stdout)
+        declared = converged(self.stack({'pair': {'Slave': 'base/top', 'Master': 'box/bottom', **law}}))
+        for one, other in zip(found.summary['results']['contact'], declared.summary['results']['contact']):
+            self.assertAlmostEqual(one['normal_force'], 40, delta=1e-6)
+            self.assertAlmostEqual(one['max_pressure'] / other['max_pressure'], 1, delta=1e-5)
+
+    def test_obstacles_of_all_shapes_agree_on_a_plane(self):
+        rows = []
+        for shape in ({'Shape': 'half plane', 'Point': '3, -1', 'Normal': '0, 2'},
+                      {'Shape': 'polyline', 'Points': '-20 -1; 3 -1; 40 -1'},
+                      {'Shape': 'function', 'Height': '-1 + 0*x'}):
+            case = scenes.box(obstacles={'plane': shape}, tractions={'pressed': {'Boundary': 'box/top', 'Pressure': '10*(1+x/20)'}},
+                              contacts={'ground': {'Slave': 'box/bottom', 'Master': 'plane', 'Law': 'Coulomb',
+                                                   'Friction coefficient': '0.4'}}, Solver=self.TIGHT)
+            result = converged(case)
+            self.assertAlmostEqual(result.summary['results']['contact'][0]['normal_force'], 125, delta=1e-6)
+            rows.append([row['pressure'] for row in result.contact])
+        for other in rows[1:]:
+            for a, b in zip(rows[0], other):
+                self.assertAlmostEqual(a, b, delta=1e-5 * max(rows[0]))
+
+    def test_box_inside_a_hole(self):
+        case = scenes.box(obstacles={'pipe': {'Shape': 'hole', 'Center': '5, 20', 'Radius': '20.615528128088304'}},
+                          tractions=self.PRESSED,
+                          contacts={'bed': {'Slave': 'box/bottom', 'Master': 'pipe', 'Law': 'Coulomb',
+                                            'Friction coefficient': '0.5'}}, Solver=self.TIGHT)
+        result = converged(case)
+        self.assertEqual(result.summary['results']['contact'][0]['contact_nodes'], 2)
+        # the box bears on its two edges; their normals lean by asin(5 / 20.6), friction keeps them from parting
+        sine, cosine, area = 5 / 425 ** 0.5, 20 / 425 ** 0.5, 0.5
+        edges = [row for row in result.contact if row['pressure'] > 0]
+        self.assertAlmostEqual(sum(row['pressure'] * cosine - abs(row['tangential_traction']) * sine for row in edges) * area,
+                               100, delta=1e-6)
+
+    def test_large_friction_coefficients_end(self):
+        for mu in (2, 5):
+            result = solve(shipped('raous'), {'Contact ground/Friction coefficient': mu, 'Output/VTU': 'false'})
+            self.assertIn(result.status, (0, 3), result)
+            if result.status == 3:
+                self.assertIn('slip bounds still change', result.stderr)
 
 
 class Invariance(unittest.TestCase):

@@ -15,10 +15,10 @@ def text(**kinds):
     """kinds: supports={'held': {...}}, tractions=..., contacts=..., and sections of fixed name: Solver={...}; whatever
     is left out is a box without supports and loads on a small mesh."""
     kinds = {'materials': {'elastic': ELASTIC}, 'bodies': {'box': BOX}, 'Decomposition': SMALL, **kinds}
-    if kinds.get('contacts'):
+    if any('disc' == contact.get('Master') for contact in kinds.get('contacts', {}).values()):
         kinds.setdefault('obstacles', {'disc': DISC})
     lists = {'materials': 'Material', 'bodies': 'Body', 'obstacles': 'Obstacle', 'supports': 'Support',
-             'tractions': 'Traction', 'contacts': 'Contact'}
+             'foundations': 'Foundation', 'tractions': 'Traction', 'contacts': 'Contact'}
     lines = ['set Plane state = ' + kinds.pop('plane_state', 'plane stress')]
     sections = {}
     for kind, content in kinds.items():
