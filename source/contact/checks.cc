@@ -158,7 +158,10 @@ namespace slipstick::contact
 
     for (unsigned int p = 0; p < u.size(); ++p)
       {
-        checks.max_displacement = std::max(checks.max_displacement, u[p].cwiseAbs().maxCoeff());
+        // two components a node
+        checks.max_displacement = std::max(
+          checks.max_displacement,
+          Eigen::Map<const Eigen::Matrix2Xd>(u[p].data(), 2, u[p].size() / 2).colwise().norm().maxCoeff());
         checks.energy += u[p].dot(forces[p] + dual.subdomains()[p]->load());
       }
     const auto violation = [&](const unsigned int r) {

@@ -8,6 +8,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <cmath>
+
 namespace slipstick::contact
 {
   namespace
@@ -28,6 +30,10 @@ namespace slipstick::contact
     constexpr unsigned int cycling_window = 5;
     // ... down to this.
     constexpr double least_relaxation = 0.1;
+    // Semismooth Newton is started anew from SMALBE-M so often before SMALBE-M goes to the end ...
+    constexpr unsigned int max_restarts = 4;
+    // ... each time from a residual smaller by this factor.
+    constexpr double restart_accuracy = 0.1;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
 
@@ -109,7 +115,7 @@ namespace slipstick::contact
         const bool falls_back = options.algorithm == scene::Algorithm::semismooth_newton;
         if (falls_back)
           {
-            solution.fallbacks = 1;
+            ++solution.fallbacks;
             set_bounds(law.bounds(feasible));
           }
         follow_bounds(feasible);
@@ -198,19 +204,40 @@ namespace slipstick::contact
             from = smalbe(feasible, options.newton.start_tolerance, {});
             if (law.depends_on_pressure())
               set_bounds(law.bounds(from));
+            solution.counts.outer_iterations = 0;
           }
+        for (unsigned int restart = 0;; ++restart)
+          {
+            if (newton_from(from))
+              return true;
+            if (restart == max_restarts)
+              return false;
+            // a better first set: SMALBE-M from the nearest point within bounds that admit one, to a smaller residual
+            ++solution.fallbacks;
+            const auto next = law.bounds(solution.multipliers);
+            Vector     near = feasible;
+            set_bounds(law.bounds(feasible));
+            move_bounds(next, 1., near);
+            from = smalbe(near, options.newton.start_tolerance * std::pow(restart_accuracy, restart + 1.), counted());
+            set_bounds(law.bounds(from));
+          }
+      }
+
+      bool newton_from(const Vector &from)
+      {
         Vector d = dual.d();
         d /= dual.norm();
         qp::BoundUpdate<Vector> bounds;
         bounds.tolerance = friction.tolerance;
         if (law.depends_on_pressure())
           bounds.update = [this](const Vector &x) { return update_bounds(x); };
-        solution.counts.outer_iterations = 0;
-        auto result                      = qp::semismooth_newton(dual,
+        relaxation   = 1;
+        least_change = qp::infinity;
+        auto result  = qp::semismooth_newton(dual,
                                             1.,
                                             d,
                                             box,
-                                            std::move(from),
+                                            from,
                                             qp::Goal(options.tolerance, solution.reference),
                                             options.newton,
                                             options.pcpg,

@@ -12,6 +12,8 @@ namespace slipstick::fem
 {
   namespace
   {
+    constexpr unsigned int most_bisected = 8; // parts
+
     /// Sub-piece of the given cells.
     template <int dim>
     MeshPiece<dim> extract(const MeshPiece<dim>                                                      &whole,
@@ -218,22 +220,25 @@ namespace slipstick::fem
     METIS_SetDefaultOptions(options);
     options[METIS_OPTION_NUMBERING] = 0;
     options[METIS_OPTION_SEED]      = seed;
-    options[METIS_OPTION_CONTIG]    = 1; // no part in two pieces
+    if (n_parts > most_bisected)
+      options[METIS_OPTION_CONTIG] = 1; // no part in two pieces
     idx_t              n = n_cells, n_weights = 1, parts = n_parts, n_cut = 0;
     std::vector<idx_t> result(n_cells);
-    const int          status = METIS_PartGraphKway(&n,
-                                           &n_weights,
-                                           first.data(),
-                                           neighbours.data(),
-                                           nullptr,
-                                           nullptr,
-                                           nullptr,
-                                           &parts,
-                                           nullptr,
-                                           nullptr,
-                                           options,
-                                           &n_cut,
-                                           result.data());
+    // bisection gives rounder parts when there are few (METIS manual, section 5.1); k-way keeps each in one piece
+    const auto partition = n_parts <= most_bisected ? METIS_PartGraphRecursive : METIS_PartGraphKway;
+    const int  status    = partition(&n,
+                                 &n_weights,
+                                 first.data(),
+                                 neighbours.data(),
+                                 nullptr,
+                                 nullptr,
+                                 nullptr,
+                                 &parts,
+                                 nullptr,
+                                 nullptr,
+                                 options,
+                                 &n_cut,
+                                 result.data());
     AssertThrow(status == METIS_OK, dealii::ExcMessage("METIS failed with status " + std::to_string(status)));
     part.assign(result.begin(), result.end());
     return part;

@@ -20,7 +20,7 @@ namespace slipstick::contact
     double force_balance     = 0; // worst body: loads + supports + contact
     double moment_balance    = 0;
     double algebraic_error   = 0; // energy norm: root of |multipliers times violated constraints| over u'K u
-    double max_displacement  = 0; // [mm]
+    double max_displacement  = 0; // magnitude [mm]
     double energy            = 0; // u'K u, twice the strain energy [N mm]
 
     /// Name and value of the worst of the relative ones.

@@ -67,16 +67,17 @@ namespace slipstick::qp
   /// Options of the semismooth Newton method (own choice; method.md section 7).
   struct NewtonOptions
   {
-    double       start_tolerance      = 0.3;  // of the SMALBE steps that give the first active set
-    double       first_forcing        = 1e-2; // residual of the first solves over the reference
-    double       forcing_reduction    = 0.1;  // of it, whenever the set hardly changed
-    double       last_forcing         = 0.3;  // times the tolerance: never below
-    double       settled_part         = 0.05; // of the inequalities may change for the set to have hardly changed
-    double       progress             = 0.99; // residual + changes must fall below this times their best ...
-    unsigned int patience             = 15;   // ... within so many outer steps
-    double       bound_accuracy       = 0.1; // bounds that depend on x are updated at residuals below this times their
-                                             // last relative change
-    unsigned int max_outer_iterations = 100;
+    double       start_tolerance   = 0.3;  // of the SMALBE steps that give the first active set
+    double       first_forcing     = 1e-2; // residual of the first solves over the reference
+    double       forcing_reduction = 0.1;  // of it, whenever the set hardly changed
+    double       last_forcing      = 0.3;  // times the tolerance: never below
+    double       settled_part      = 0.05; // of the inequalities may change for the set to have hardly changed
+    double       progress          = 0.99; // residual + changes must fall below this times their best ...
+    unsigned int patience          = 15;   // ... within so many outer steps
+    double       bound_reduction   = 0.5;  // of the residual of the solves with every update of such bounds, at least
+    double       bound_accuracy    = 0.1;  // bounds that depend on x are updated at residuals below this times their
+                                           // last relative change
+    unsigned int max_outer_iterations = 300;
   };
 
   /// Options of the point nearest to zero within the bounds and the equalities (own choice).

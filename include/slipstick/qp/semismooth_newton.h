@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace slipstick::qp
@@ -115,6 +116,9 @@ namespace slipstick::qp
                 if (bound_change > bounds.tolerance)
                   {
                     tighten();
+                    forcing =
+                      std::max(options.last_forcing * eps, std::min(forcing, options.bound_reduction * solved_to));
+                    solved_to   = forcing;
                     next        = next_set();
                     set_stands  = same_free(next);
                     set_changed = true;
@@ -143,10 +147,11 @@ namespace slipstick::qp
       // Smaller residuals for the solves to come; bounds that move are not worth more than a part of their last change.
       void tighten()
       {
-        const double next = bounds.update
-                              ? std::max(options.last_forcing * forcing, options.bound_accuracy * bound_change)
-                              : options.forcing_reduction * forcing;
-        forcing           = std::max(options.last_forcing * eps, std::min(forcing, next));
+        const bool   follows = bounds.update && bound_change > bounds.tolerance;
+        const double next    = follows ? std::max(options.last_forcing * forcing,
+                                               options.last_forcing * options.bound_accuracy * bound_change)
+                                       : options.forcing_reduction * forcing;
+        forcing              = std::max(options.last_forcing * eps, std::min(forcing, next));
       }
 
       // PCPG on the free entries of the present set; the others at their bounds.
@@ -155,20 +160,29 @@ namespace slipstick::qp
         std::vector<bool> free(active.size());
         for (std::size_t i = 0; i < free.size(); ++i)
           free[i] = active[i] == 0;
+        std::optional<decltype(problem.face(free))> face;
+        face.emplace(problem.face(free));
+        if (!face->is_regular())
+          {
+            // entries between two bounds are freed: what they hold in the solution is not known yet
+            set_stands  = false;
+            set_changed = true;
+            free_two_sided(free);
+            face.emplace(problem.face(free));
+            if (!face->is_regular())
+              return false;
+          }
         if (!set_stands || !history)
           history = std::make_shared<DirectionHistory<Vector>>();
-        const auto face = problem.face(free);
-        if (!face.is_regular())
-          return false;
         if (set_changed)
           {
             put_on_bounds();
-            face.balance(x);
+            face->balance(x);
             problem.multiply(x, Fx);
             ++counts.hessian_multiplications;
           }
-        const auto precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
-        auto       result       = pcpg(face,
+        const auto precondition = [&face](const Vector &r, Vector &z) { face->precondition(r, z); };
+        auto       result       = pcpg(*face,
                            d,
                            PcpgStart<Vector>{std::move(x), std::move(Fx), history},
                            Goal(forcing, reference),
@@ -180,10 +194,21 @@ namespace slipstick::qp
         ++counts.outer_iterations;
         combine(1.0, Fx, 0.0, g);
         add(-1.0, d, g);
-        face.multiplier_shift(g, w);
+        face->multiplier_shift(g, w);
         add(-1.0, w, g);
         measure();
         return true;
+      }
+
+      void free_two_sided(std::vector<bool> &free)
+      {
+        const auto l = box.lower.begin(), u = box.upper.begin();
+        for (std::size_t i = 0; i < active.size(); ++i)
+          if (l[i] < u[i] && l[i] > -HUGE_VAL && u[i] < HUGE_VAL)
+            {
+              active[i] = 0;
+              free[i]   = true;
+            }
       }
 
       void put_on_bounds()
@@ -276,6 +301,7 @@ namespace slipstick::qp
       Vector       x, Fx, g, w;
       const double reference, eps;
       double       forcing;
+      double       solved_to      = 1; // forcing at the last update of the bounds
       double       residual       = HUGE_VAL;
       double       n_inequalities = 0, n_lower = 0, n_upper = 0;
       double       bound_change = 0;     // the last one
