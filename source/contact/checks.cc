@@ -27,11 +27,6 @@ namespace slipstick::contact
       return forces;
     }
 
-    bool is_equality(const tfeti::RowKind kind)
-    {
-      return kind == tfeti::RowKind::gluing || kind == tfeti::RowKind::bonded || kind == tfeti::RowKind::prescribed;
-    }
-
     /// Forces and moments left on the bodies and nodes by K u - f + B'x, and the force scales.
     struct Balance
     {
@@ -53,9 +48,9 @@ namespace slipstick::contact
       const auto all = dual.forces(multipliers), of_outside = dual.forces(outside);
 
       const unsigned int k =
-        dealii::Utilities::MPI::max(dual.subdomains().empty() ?
-                                      0u :
-                                      static_cast<unsigned int>(dual.subdomains()[0]->kernel().cols()),
+        dealii::Utilities::MPI::max(dual.subdomains().empty()
+                                      ? 0u
+                                      : static_cast<unsigned int>(dual.subdomains()[0]->kernel().cols()),
                                     dual.communicator());
       Balance result{Eigen::MatrixXd::Zero(k, n_bodies), Eigen::VectorXd::Zero(n_bodies)};
       for (unsigned int p = 0; p < nodal_forces.size(); ++p)
@@ -94,8 +89,8 @@ namespace slipstick::contact
           node.pressure = multipliers.local_element(point.normal_row) / point.area;
           node.gap      = dual.constraints().c[point.normal_row] - jumps.local_element(point.normal_row);
         }
-      node.is_closed = point.normal_row == tfeti::invalid_row || free[point.normal_row];
-      node.status    = node.is_closed ? ContactStatus::stick : ContactStatus::open;
+      node.is_closed    = point.normal_row == tfeti::invalid_row || free[point.normal_row];
+      node.status       = node.is_closed ? ContactStatus::stick : ContactStatus::open;
       double tangential = 0;
       if (point.tangential_row == tfeti::invalid_row)
         {
@@ -117,9 +112,10 @@ namespace slipstick::contact
         {
           // force on the slave body at its node, the opposite one at the mean of the master nodes: two dimensions
           const double N = node.pressure * node.area, T = tangential;
-          const double fx = -(N * point.normal[0] - T * point.normal[1]), fy = -(N * point.normal[1] + T * point.normal[0]);
-          node.moment_mismatch = (point.position[0] - point.master_position[0]) * fy -
-                                 (point.position[1] - point.master_position[1]) * fx;
+          const double fx = -(N * point.normal[0] - T * point.normal[1]),
+                       fy = -(N * point.normal[1] + T * point.normal[0]);
+          node.moment_mismatch =
+            (point.position[0] - point.master_position[0]) * fy - (point.position[1] - point.master_position[1]) * fx;
         }
       return node;
     }
@@ -159,16 +155,16 @@ namespace slipstick::contact
     for (unsigned int p = 0; p < u.size(); ++p)
       {
         // two components a node
-        checks.max_displacement = std::max(
-          checks.max_displacement,
-          Eigen::Map<const Eigen::Matrix2Xd>(u[p].data(), 2, u[p].size() / 2).colwise().norm().maxCoeff());
+        checks.max_displacement =
+          std::max(checks.max_displacement,
+                   Eigen::Map<const Eigen::Matrix2Xd>(u[p].data(), 2, u[p].size() / 2).colwise().norm().maxCoeff());
         checks.energy += u[p].dot(forces[p] + dual.subdomains()[p]->load());
       }
     const auto violation = [&](const unsigned int r) {
       const double compliance = constraints.compliance.empty() ? 0. : constraints.compliance[r];
       return jumps.local_element(r) - constraints.c[r] - compliance * multipliers.local_element(r);
     };
-    double     gap       = 0; // between primal and dual objective, as far as equalities make it
+    double gap = 0; // between primal and dual objective, as far as equalities make it
     for (unsigned int r = 0; r < constraints.kind.size(); ++r)
       if (is_equality(constraints.kind[r]))
         checks.interface_jump = std::max(checks.interface_jump, std::abs(violation(r)));

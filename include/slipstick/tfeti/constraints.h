@@ -26,6 +26,12 @@ namespace slipstick::tfeti
     prescribed  // prescribed displacement [mm], elastic foundation (with compliance)
   };
 
+  /// Are multipliers of this kind without bounds?
+  constexpr bool is_equality(const RowKind kind)
+  {
+    return kind != RowKind::tangential && kind != RowKind::normal;
+  }
+
   constexpr unsigned int invalid_row = static_cast<unsigned int>(-1);
 
   /// A node that may touch. The rows and the interface unknowns of a contact node are owned by one rank.
