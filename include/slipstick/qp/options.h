@@ -77,7 +77,8 @@ namespace slipstick::qp
   struct NewtonOptions
   {
     double       start_tolerance   = 0.3;  // of the SMALBE steps that give the first active set
-    double       first_forcing     = 1e-2; // residual of the first solves over the reference
+    double       face_reduction    = 0.3;  // of the residual by the linear solve of a new set
+    double       first_forcing     = 1e-2; // residual over the reference, at first, of solves of a set that stands
     double       forcing_reduction = 0.1;  // of it, whenever the set hardly changed
     double       last_forcing      = 0.3;  // times the tolerance: never below
     double       settled_part      = 0.05; // of the inequalities may change for the set to have hardly changed

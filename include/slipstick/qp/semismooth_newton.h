@@ -98,8 +98,8 @@ namespace slipstick::qp
       NewtonResult<Vector> run()
       {
         const Status status = iterate();
-        if (coupled.are_coupled) // ties to the last bit
-          put_on_bounds();
+        put_on_bounds(); // ties to the last bit
+        project(box(), x);
         std::vector<bool> free(active.size());
         for (std::size_t i = 0; i < free.size(); ++i)
           free[i] = active[i] == 0;
@@ -120,6 +120,8 @@ namespace slipstick::qp
             report();
             if (!(residual < HUGE_VAL))
               return Status::stagnated;
+            if (!bounds.update && residual + violation <= eps)
+              return Status::converged;
             if (changed == 0 &&
                 residual <= std::max(eps, std::min(options.first_forcing, options.bound_accuracy * bound_change)))
               {
@@ -205,6 +207,8 @@ namespace slipstick::qp
             problem.multiply(x, Fx);
             ++counts.hessian_multiplications;
           }
+        wanted = std::max(options.last_forcing * eps,
+                          std::min(set_changed ? 1. : forcing, options.face_reduction * residual_on(*face)));
         if (coupled.are_coupled && !all_stick())
           solve_unsymmetric(*face);
         else
@@ -218,6 +222,16 @@ namespace slipstick::qp
         return true;
       }
 
+      // |P(d - F x)| over the reference, of the face.
+      double residual_on(const Face &face)
+      {
+        combine(1.0, d, 0.0, g);
+        add(-1.0, Fx, g);
+        face.project_range(g, w);
+        add(-1.0, w, g);
+        return qp::norm(g, problem.reduction()) / reference;
+      }
+
       void solve_symmetric(const Face &face)
       {
         if (!history)
@@ -225,7 +239,7 @@ namespace slipstick::qp
         auto result = pcpg(face,
                            d,
                            PcpgStart<Vector>{std::move(x), std::move(Fx), history},
-                           Goal(forcing, reference),
+                           Goal(wanted, reference),
                            pcpg_options,
                            [&face](const Vector &r, Vector &z) { face.precondition(r, z); });
         x           = std::move(result.x);
@@ -242,7 +256,7 @@ namespace slipstick::qp
                           std::move(x),
                           std::move(Fx),
                           *residual_history,
-                          Goal(forcing, reference),
+                          Goal(wanted, reference),
                           options.gcr,
                           [&face](const Vector &r, Vector &z) { face.precondition(r, z); });
         x           = std::move(result.x);
@@ -288,20 +302,26 @@ namespace slipstick::qp
             xi[i] = u[i];
       }
 
+      // |gP|, and how far x is out of its bounds: as much, at most, does |gP| rise when x is moved there.
       void measure()
       {
-        const auto l = box().lower.begin(), u = box().upper.begin();
-        const auto gi  = g.begin();
-        double     sum = 0;
+        move_bounds(active, 0.);
+        const auto            l = box().lower.begin(), u = box().upper.begin();
+        const auto            xi = x.begin(), gi = g.begin();
+        std::array<double, 2> sum{{0, 0}};
         for (std::size_t i = 0; i < active.size(); ++i)
           {
-            const double gp = active[i] == 0   ? gi[i]
-                              : !(l[i] < u[i]) ? 0.0
-                              : active[i] < 0  ? std::min(gi[i], 0.0)
-                                               : std::max(gi[i], 0.0);
-            sum += gp * gp;
+            const double gp  = active[i] == 0   ? gi[i]
+                               : !(l[i] < u[i]) ? 0.0
+                               : active[i] < 0  ? std::min(gi[i], 0.0)
+                                                : std::max(gi[i], 0.0);
+            const double out = xi[i] - clip(xi[i], l[i], u[i]);
+            sum[0] += gp * gp;
+            sum[1] += out * out;
           }
-        residual = std::sqrt(problem.reduction().sum(std::array<double, 1>{{sum}})[0]) / reference;
+        sum       = problem.reduction().sum(sum);
+        residual  = std::sqrt(sum[0]) / reference;
+        violation = norm * std::sqrt(sum[1]) / reference;
       }
 
       const Box<Vector> &box() const
@@ -391,9 +411,10 @@ namespace slipstick::qp
 
       Vector       x, Fx, g, w;
       const double reference, eps;
-      double       forcing;
+      double       forcing, wanted = 0;
       double       solved_to      = 1; // forcing at the last update of the bounds
       double       residual       = HUGE_VAL;
+      double       violation      = HUGE_VAL; // of the bounds by x, over the reference, in terms of the residual
       double       n_inequalities = 0, n_lower = 0, n_upper = 0;
       double       bound_change = 0;     // the last one
       bool         set_changed  = true;  // x is not on its bounds, or does not balance: F x is not known
@@ -406,8 +427,8 @@ namespace slipstick::qp
   } // namespace detail
 
   /// Minimise 1/2 x'Fx - x'd over the box and G x = e. The start x tells the first active set: entries at their bounds.
-  /// `norm` is |PFP|; goal.reference must be given (|P(d - F x~)|). Converged: the active set stands and |gP| is at most
-  /// goal.tolerance times goal.reference.
+  /// `norm` is |PFP|; goal.reference must be given (|P(d - F x~)|). Converged: x is within its bounds, |gP| and |PFP| |G x - e| are
+  /// at most goal.tolerance times goal.reference (with bounds followed in an outer loop the active set stands besides).
   /// status: infeasible if the free entries of some set leave the equalities singular, stagnated if neither residual nor
   /// changes of the set fall any more; MPGP with SMALBE goes on from there.
   template <typename Vector, typename Problem>
