@@ -164,6 +164,41 @@ class MultibodyBadInput(unittest.TestCase):
             self.refused(BOX, {'Obstacle disc/Center': '5, -90', 'Contact circle/Reach': reach}, 'out of reach',
                          'smallest gap is 70 mm', words, 'Contact circle/Reach')
 
+    # units
+
+    def warnings(self, case, overrides=None):
+        result = solve(case, overrides, options=('--check',))
+        return [line for line in (result.stdout + result.stderr).splitlines() if 'same units' in line]
+
+    def test_metres_beside_millimetres_get_a_warning(self):
+        for name in ('upper', 'lower'):
+            for scale in ('1e-3', '1e3'):
+                warning, = self.warnings(CYLINDERS, {'Body {}/Scale'.format(name): scale, 'Contact touch/Reach': 1e6})
+                for word in ('warning: body', 'upper', 'lower', 'mm across', 'Scale'):
+                    self.assertIn(word, warning)
+
+    def with_moduli(self, below, above, size='10, 10'):
+        materials = {name: {'Young modulus': E, 'Poisson ratio': '0.3'} for name, E in (('below', below), ('above', above))}
+        return scenes.box(materials=materials,
+                          bodies={'lower': {**RECTANGLE, 'Material': 'below'},
+                                  'upper': {**RECTANGLE, 'Material': 'above', 'Origin': '0, 10', 'Size': size}},
+                          supports={'below': {**scenes.HELD, 'Boundary': 'lower/bottom'}},
+                          contacts={'touch': {'Slave': 'upper/bottom', 'Master': 'lower/top', 'Law': 'bonded'}},
+                          Decomposition={'Method': 'METIS'})
+
+    def test_pascal_beside_megapascal_gets_a_warning(self):
+        for moduli in (('2.1e5', '2.1e11'), ('2.1e11', '7e4')):
+            warning, = self.warnings(self.with_moduli(*moduli))
+            self.assertIn('MPa', warning)
+        self.assertEqual(len(self.warnings(self.with_moduli('2.1e5', '1e10', '0.2, 0.2'))), 1)  # both, each below its limit
+
+    def test_bodies_that_differ_as_parts_do_get_no_warning(self):
+        self.assertEqual(self.warnings(self.with_moduli('2.1e5', '2')), [])  # steel and rubber
+        self.assertEqual(self.warnings(self.with_moduli('2', '2.1e5')), [])
+        self.assertEqual(self.warnings(self.with_moduli('2.1e5', '2.1e5', '0.1, 0.1')), [])
+        for scene in ('arch', 'clamp', 'lap_joint', 'raous', 'press_fit', 'hertz', 'cattaneo_mindlin'):
+            self.assertEqual(self.warnings(shipped(scene)), [], scene)
+
     def accepted(self, case, overrides=None):
         result = solve(case, overrides, options=('--check',))
         self.assertEqual(result.status, 0, result)
