@@ -11,6 +11,9 @@ namespace slipstick::fem
   {
     // Normals are parallel when their product is above this.
     constexpr double parallel_cosine = 1 - 1e-8;
+    // Tractions are forces over no less than this part of the tributary length: a node at the end of a boundary has half
+    // of that of the others.
+    constexpr double smallest_covered_part = 0.5;
 
     double norm(const std::map<unsigned int, double> &v)
     {
@@ -170,11 +173,12 @@ namespace slipstick::fem
     touch.point.gap     = gap_of(where, node.point(), contact.gap, t);
     if (where.law == scene::ContactLaw::bonded || (where.reach && touch.point.gap > *where.reach))
       return false;
-    touch.pair         = pair;
-    touch.normal       = contact.normal;
-    touch.slave        = {{i, 1.}};
-    touch.point.area   = area;
-    touch.point.length = area / scene.bodies[node.body].thickness;
+    touch.pair                = pair;
+    touch.normal              = contact.normal;
+    touch.slave               = {{i, 1.}};
+    touch.point.area          = area;
+    touch.point.length        = area / scene.bodies[node.body].thickness;
+    touch.point.traction_area = area;
     return true;
   }
 
@@ -199,8 +203,10 @@ namespace slipstick::fem
       point.master_position[d] = row.master_position[d];
     point.gap    = gap_of(where, nodes[i].point(), row.gap, t);
     point.length = row.length;
-    point.area =
-      row.length * std::min(scene.bodies[where.slave.body].thickness, scene.bodies[where.master->body].thickness);
+    const double thickness =
+      std::min(scene.bodies[where.slave.body].thickness, scene.bodies[where.master->body].thickness);
+    point.area          = row.length * thickness;
+    point.traction_area = std::max(row.length, smallest_covered_part * row.full_length) * thickness;
     return true;
   }
 
@@ -309,18 +315,25 @@ namespace slipstick::fem
       return left;
     };
     std::vector<Vector> equal; // what bonds at this node imply
-    for (const Touch &touch : touches)
+    for (Touch &touch : touches)
       if (scene.contacts[touch.pair].law == scene::ContactLaw::bonded)
-        for (const unsigned int d : {0, 1})
-          {
-            const auto row  = jump(touch, d == 0 ? touch.normal : tangent_of<dim>(touch.normal));
-            const auto left = free_part(row, equal);
-            if (!is_free(left))
-              continue;
-            equal.push_back(unit(left));
-            fill(new_row(tfeti::RowKind::bonded, 0., key, (1ull << 32) + 16 * touch.pair + 4 * touch.side + d), row);
-            ++constraints.counts.gluing;
-          }
+        {
+          for (const unsigned int d : {0, 1})
+            {
+              const auto row  = jump(touch, d == 0 ? touch.normal : tangent_of<dim>(touch.normal));
+              const auto left = free_part(row, equal);
+              if (!is_free(left))
+                continue;
+              equal.push_back(unit(left));
+              const unsigned int number =
+                new_row(tfeti::RowKind::bonded, 0., key, (1ull << 32) + 16 * touch.pair + 4 * touch.side + d);
+              (d == 0 ? touch.point.normal_row : touch.point.tangential_row) = number;
+              fill(number, row);
+              ++constraints.counts.gluing;
+            }
+          if (touch.point.normal_row != tfeti::invalid_row || touch.point.tangential_row != tfeti::invalid_row)
+            constraints.bonded_points.push_back(touch.point);
+        }
     for (Touch &touch : touches)
       {
         if (scene.contacts[touch.pair].law == scene::ContactLaw::bonded)
