@@ -199,6 +199,45 @@ class Tractions(unittest.TestCase):
                         self.assertAlmostEqual(row['tangential_traction'], 0, delta=1e-6)
 
 
+class BondsThatMeet(unittest.TestCase):
+    """Bodies bonded to each other all around a point: one bond there follows from the others."""
+
+    PLACES = {'a': '0, 0', 'b': '5, 0', 'c': '5, 5', 'd': '0, 5'}
+    AROUND = (('a/right', 'b/left'), ('b/top', 'c/bottom'), ('d/right', 'c/left'), ('a/top', 'd/bottom'))
+
+    def around(self, pairs, **more):
+        square = {'Size': '5, 5', 'Cells': '4, 4', 'Material': 'elastic'}
+        return scenes.box(bodies={name: {'Origin': origin, **square} for name, origin in self.PLACES.items()},
+                          supports={'left': {**scenes.HELD, 'Boundary': 'a/left'}, 'upper': {**scenes.HELD, 'Boundary': 'd/left'}},
+                          tractions={'load': {'Boundary': 'c/top', 'Traction x': '20', 'Traction y': '-100'}},
+                          contacts={'pair {}'.format(i): {'Slave': slave, 'Master': master, 'Law': 'bonded'}
+                                    for i, (slave, master) in enumerate(pairs)},
+                          Decomposition={'Method': 'METIS'}, Solver={'Tolerance': '1e-10', **more})
+
+    def test_the_last_pair_gives_way_and_the_answer_is_that_of_one_body(self):
+        whole = converged(scenes.box(bodies={'box': {**scenes.BOX, 'Cells': '8, 8'}}, supports={'left': scenes.HELD},
+                                     tractions={'load': {'Boundary': 'box/top', 'Traction x': '20*(x>5)',
+                                                         'Traction y': '-100*(x>5)'}},
+                                     Decomposition={'Method': 'METIS'}, Solver={'Tolerance': '1e-10'}))
+        energy = whole.summary['results']['strain_energy']
+        for pairs in (self.AROUND, self.AROUND[::-1], tuple((master, slave) for slave, master in self.AROUND)):
+            tractions = []
+            for algorithm in ('semismooth newton', 'smalbe'):
+                for ranks in (1, 2):
+                    with self.subTest(pairs=pairs, algorithm=algorithm, ranks=ranks):
+                        result = converged(self.around(pairs, Algorithm=algorithm), ranks=ranks)
+                        dual = result.summary['problem']['dual']['total']
+                        self.assertEqual(dual, 2 * (20 - 1 - 1) + 2 * 10)  # less the one implied and that of held nodes; supports
+                        self.assertAlmostEqual(result.summary['results']['strain_energy'] / energy, 1, delta=1e-6)
+                        at_point = [row for row in result.contact if (row['x'], row['y']) == (5, 5)]
+                        self.assertEqual([row['pair'] for row in at_point], ['pair 0', 'pair 1', 'pair 2'])
+                        tractions.append([value for row in at_point
+                                          for value in (row['pressure'], row['tangential_traction'])])
+            for other in tractions[1:]:  # they are unique
+                for one, expected in zip(other, tractions[0]):
+                    self.assertAlmostEqual(one, expected, delta=1e-4)
+
+
 class Invariance(unittest.TestCase):
 
     def assert_same(self, a, b, tolerance):
