@@ -18,8 +18,9 @@ namespace slipstick::fem
 {
   namespace
   {
-    // Cells of a METIS subdomain when their number is left to us: that of the paper's 50 x 50 blocks.
-    constexpr double automatic_cells_per_subdomain = 2500;
+    // Cells (times the square of the degree) of a METIS subdomain when their number is left to us: benchmarks/README.md,
+    // "How many subdomains?".
+    constexpr double automatic_cells_per_subdomain = 10000;
 
     // Bodies that may not share units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus): the larger size or modulus over
     // the smaller one. Parts of one assembly differ less in size; steel and rubber differ by 1e5 in modulus. What is
@@ -70,13 +71,17 @@ namespace slipstick::fem
                          const std::vector<double> &size,
                          std::vector<std::string>  &remarks)
     {
+      const auto modulus = [&](const unsigned int body) { // meshes are also made before there are materials
+        const unsigned int material = scene.bodies[body].material;
+        return material < scene.materials.size() ? scene.materials[material].young_modulus
+                                                 : scene::Material().young_modulus;
+      };
       double       worst = 1; // over its limit
       unsigned int small = 0, large = 0;
       for (unsigned int a = 0; a < size.size(); ++a)
         for (unsigned int b = 0; b < size.size(); ++b)
           {
-            const double sizes = size[b] / size[a], moduli = scene.materials[scene.bodies[a].material].young_modulus /
-                                                             scene.materials[scene.bodies[b].material].young_modulus;
+            const double sizes = size[b] / size[a], moduli = modulus(a) / modulus(b);
             const double over =
               std::max({sizes / doubtful_size_ratio,
                         moduli / doubtful_modulus_ratio,
@@ -92,7 +97,7 @@ namespace slipstick::fem
         return;
       const auto describe = [&](const unsigned int b) {
         return "body " + scene.bodies[b].name + " is " + number_text(size[b]) + " mm across with a Young modulus of " +
-               number_text(scene.materials[scene.bodies[b].material].young_modulus) + " MPa";
+               number_text(modulus(b)) + " MPa";
       };
       remarks.push_back("warning: " + describe(large) + ", " + describe(small) +
                         ": do their meshes and materials have the same units? (Scale, Young modulus)");
