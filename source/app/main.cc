@@ -10,6 +10,8 @@
 
 // Present when the BLAS is OpenBLAS: its threads would fight with the ranks for the cores.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+// Present where CHOLMOD is built with OpenMP, whose regions ask for four threads whatever OMP_NUM_THREADS says.
+extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
 
 namespace
 {
@@ -66,6 +68,8 @@ int main(int argc, char **argv)
 {
   if (openblas_set_num_threads)
     openblas_set_num_threads(1);
+  if (omp_set_max_active_levels)
+    omp_set_max_active_levels(0);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   // Kokkos, below Tpetra, has options of its own (and a --help): it gets to see the program's name only
   int                n_arguments = 1;

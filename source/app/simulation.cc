@@ -1,5 +1,6 @@
 #include <slipstick/app/report.h>
 #include <slipstick/app/simulation.h>
+#include <slipstick/contact/refinement.h>
 #include <slipstick/fem/arc_length.h>
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/contact_constraints.h>
@@ -98,6 +99,7 @@ namespace slipstick::app
     output::TimeSummary times(const StageClock &clock, const double factorization)
     {
       output::TimeSummary time;
+      time.startup       = clock.seconds("startup");
       time.mesh          = clock.seconds("mesh");
       time.assembly      = clock.seconds("assembly");
       time.factorization = factorization;
@@ -105,6 +107,7 @@ namespace slipstick::app
       time.solve         = clock.seconds("solve");
       time.recovery      = clock.seconds("recovery");
       time.output        = clock.seconds("output");
+      time.other         = clock.seconds("other");
       time.total         = clock.total();
       return time;
     }
@@ -157,7 +160,7 @@ namespace slipstick::app
         build_mesh();
         build_dual(scene.load_factors.front());
         contact::SlipLaw(scene, *dual, scene.load_factors.front()); // refuses bounds before anything is removed
-        directory.remove_results();                                 // the scene is accepted: what an earlier run left is no longer true
+        directory.remove_results(); // the scene is accepted: what an earlier run left is no longer true
         output::Summary summary;
         for (unsigned int step = 0; step < scene.load_factors.size(); ++step)
           {
@@ -268,17 +271,17 @@ namespace slipstick::app
             try
               {
                 clock.enter("solve");
-                solution =
-                  contact::solve(*dual,
-                                 contact::SlipLaw(scene, *dual, t),
-                                 options,
-                                 scene.friction,
-                                 convergence_observer(log,
-                                                      options,
-                                                      step,
-                                                      multiplications_before + discarded.hessian_multiplications,
-                                                      convergence),
-                                 is_warm ? &solution : nullptr);
+                solution = contact::solve_refined(*dual,
+                                                  contact::SlipLaw(scene, *dual, t),
+                                                  options,
+                                                  scene.friction,
+                                                  convergence_observer(log,
+                                                                       options,
+                                                                       step,
+                                                                       multiplications_before +
+                                                                         discarded.hessian_multiplications,
+                                                                       convergence),
+                                                  is_warm ? &solution : nullptr);
                 discarded += solution.counts;
                 solution.counts = discarded;
                 clock.enter("recovery");

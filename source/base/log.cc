@@ -3,9 +3,15 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+#include <ctime>
+#include <fstream>
 #include <iostream>
+#include <sstream>
+
+#include <unistd.h>
 
 namespace slipstick
 {
@@ -45,7 +51,7 @@ namespace slipstick
   }
 
   StageClock::StageClock()
-    : start(MPI_Wtime())
+    : start(MPI_Wtime() - process_age())
     , entered(start)
   {}
 
@@ -71,6 +77,24 @@ namespace slipstick
   double StageClock::total() const
   {
     return MPI_Wtime() - start;
+  }
+
+  double process_age()
+  {
+    // /proc/self/stat: field 22 is the start in clock ticks since the machine was; field 2 may hold spaces
+    std::ifstream file("/proc/self/stat");
+    std::string   text;
+    std::getline(file, text);
+    const auto         end_of_name = text.rfind(')');
+    std::istringstream fields(end_of_name == std::string::npos ? "" : text.substr(end_of_name + 1));
+    std::string        skipped;
+    for (unsigned int field = 3; field < 22; ++field)
+      fields >> skipped;
+    double   ticks;
+    timespec now;
+    if (!(fields >> ticks) || clock_gettime(CLOCK_BOOTTIME, &now) != 0)
+      return 0;
+    return std::max(0., now.tv_sec + 1e-9 * now.tv_nsec - ticks / sysconf(_SC_CLK_TCK));
   }
 
   double peak_memory_mb()

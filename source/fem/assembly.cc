@@ -36,22 +36,23 @@ namespace slipstick::fem
               if (j >= i)
                 neighbours[i].push_back(j);
         }
-      Eigen::VectorXi sizes(n);
+      Eigen::SparseMatrix<double> lower(n, n);
+      int                        *begin = lower.outerIndexPtr();
       for (unsigned int i = 0; i < n / dim; ++i)
         {
           std::sort(neighbours[i].begin(), neighbours[i].end());
           neighbours[i].erase(std::unique(neighbours[i].begin(), neighbours[i].end()), neighbours[i].end());
           for (unsigned int c = 0; c < dim; ++c)
-            sizes[dim * i + c] = dim * neighbours[i].size() - c;
+            begin[dim * i + c + 1] = begin[dim * i + c] + dim * neighbours[i].size() - c;
         }
-      Eigen::SparseMatrix<double> lower(n, n);
-      lower.reserve(sizes);
+      lower.resizeNonZeros(begin[n]);
+      int *row = lower.innerIndexPtr();
       for (unsigned int i = 0; i < n / dim; ++i)
         for (unsigned int c = 0; c < dim; ++c)
           for (const unsigned int j : neighbours[i])
             for (unsigned int d = (j == i ? c : 0); d < dim; ++d)
-              lower.insert(dim * j + d, dim * i + c) = 0;
-      lower.makeCompressed();
+              *row++ = dim * j + d;
+      std::fill_n(lower.valuePtr(), begin[n], 0.);
       return lower;
     }
 

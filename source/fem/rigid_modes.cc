@@ -1,12 +1,35 @@
 #include <slipstick/fem/rigid_modes.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_system.h>
 
 #include <limits>
 
 namespace slipstick::fem
 {
+  namespace
+  {
+    template <int dim>
+    std::vector<dealii::Point<dim>> positions_of_unknowns(const Element<dim>            &element,
+                                                          const dealii::DoFHandler<dim> &dof_handler)
+    {
+      std::vector<dealii::Point<dim>>              points(dof_handler.n_dofs());
+      std::vector<dealii::types::global_dof_index> dofs;
+      std::vector<unsigned int>                    nodes;
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        {
+          element.nodes_of(cell, dofs, nodes);
+          for (unsigned int i = 0; i < nodes.size(); ++i) // the vertices come first
+            std::fill_n(points.begin() + dim * nodes[i],
+                        dim,
+                        i < cell->n_vertices()
+                          ? cell->vertex(i)
+                          : element.mapping->transform_unit_to_real_cell(cell, element.scalar->unit_support_point(i)));
+        }
+      return points;
+    }
+  } // namespace
+
   template <int dim>
   std::vector<Frame<dim>> body_frames(const scene::Scene<dim> &scene, const Mesh<dim> &mesh)
   {
@@ -44,8 +67,7 @@ namespace slipstick::fem
                    Eigen::MatrixXd               &body_modes)
   {
     static_assert(dim == 2, "one rotation: two dimensions");
-    std::vector<dealii::Point<dim>> points(dof_handler.n_dofs());
-    dealii::DoFTools::map_dofs_to_support_points(*element.mapping, dof_handler, points);
+    const auto points = positions_of_unknowns(element, dof_handler);
 
     Frame<dim> own;
     for (const auto &x : points)

@@ -3,68 +3,217 @@
 #include <slipstick/fem/elasticity.h>
 #include <slipstick/output/fields.h>
 
+#include <deal.II/base/data_out_base.h>
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
 #include <deal.II/dofs/dof_handler.h>
-#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe.h>
 #include <deal.II/fe/fe_system.h>
-#include <deal.II/numerics/data_out.h>
-#include <deal.II/numerics/data_postprocessor.h>
+#include <deal.II/fe/mapping.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
+
+#include <zlib.h>
 
 namespace slipstick::output
 {
   namespace
   {
-    /// What one node carries: displacement, stress xx yy xy zz.
+    /// Numbers of one .vtu array, and how VTK calls them.
+    template <class Number>
+    constexpr const char *vtk_type = nullptr;
+    template <>
+    constexpr const char *vtk_type<float> = "Float32";
+    template <>
+    constexpr const char *vtk_type<std::int32_t> = "Int32";
+    template <>
+    constexpr const char *vtk_type<std::uint8_t> = "UInt8";
+
+    /// A field: numbers of all nodes or cells in turn.
+    struct Field
+    {
+      std::string        name;
+      unsigned int       n_components;
+      std::vector<float> values;
+    };
+
+    /// What a .vtu holds. Nodes are shared by their cells.
+    struct Grid
+    {
+      std::vector<float>        points; // x, y, z
+      std::vector<std::int32_t> connectivity, offsets;
+      std::vector<std::uint8_t> types;
+      std::vector<Field>        nodal, of_cells;
+    };
+
+    constexpr std::uint8_t vtk_triangle = 5, vtk_quadrilateral = 9;
+
+    /// Nodes of the linear cells that a cell is drawn as, counterclockwise; degree 2: four, with the nodes on its edges.
+    std::vector<std::vector<unsigned int>> parts_of_cell(const bool is_simplex, const unsigned int degree)
+    {
+      if (is_simplex)
+        return degree == 1 ? std::vector<std::vector<unsigned int>>{{0, 1, 2}}
+                           : std::vector<std::vector<unsigned int>>{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+      return degree == 1
+               ? std::vector<std::vector<unsigned int>>{{0, 1, 3, 2}}
+               : std::vector<std::vector<unsigned int>>{{0, 6, 8, 4}, {6, 1, 5, 8}, {4, 8, 7, 2}, {8, 5, 3, 7}};
+    }
+
+    /// Positions and cells of a subdomain, and the fields that are constant in a cell.
     template <int dim>
-    constexpr unsigned int n_nodal_values = dim + 4;
+    Grid grid_of(const fem::Mesh<dim>       &mesh,
+                 const fem::Spaces<dim>     &spaces,
+                 const unsigned int          p,
+                 const fem::SubdomainStress &stress)
+    {
+      static_assert(dim == 2, "cell types of the plane");
+      const auto                                  &subdomain   = *mesh.subdomains[p];
+      const auto                                  &dof_handler = *spaces.dof_handlers[p];
+      const auto                                  &element     = spaces.of(p);
+      const auto                                   parts = parts_of_cell(element.cell.is_simplex(), element.degree);
+      std::vector<dealii::types::global_dof_index> dofs;
+      std::vector<unsigned int>                    nodes;
+      std::vector<float>                           error;
+      Grid                                         grid;
+      grid.points.resize(3 * dof_handler.n_dofs() / dim, 0.f);
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        {
+          element.nodes_of(cell, dofs, nodes);
+          for (unsigned int i = 0; i < nodes.size(); ++i)
+            {
+              const dealii::Point<dim> x =
+                i < cell->n_vertices()
+                  ? cell->vertex(i)
+                  : element.mapping->transform_unit_to_real_cell(cell, element.scalar->unit_support_point(i));
+              for (unsigned int c = 0; c < dim; ++c)
+                grid.points[3 * nodes[i] + c] = x[c];
+            }
+          for (const auto &part : parts)
+            {
+              for (const unsigned int i : part)
+                grid.connectivity.push_back(nodes[i]);
+              grid.offsets.push_back(grid.connectivity.size());
+              grid.types.push_back(part.size() == 3 ? vtk_triangle : vtk_quadrilateral);
+              error.push_back(stress.error[cell->active_cell_index()]);
+            }
+        }
+      const auto constant = [&grid](const unsigned int value) {
+        return std::vector<float>(grid.types.size(), static_cast<float>(value));
+      };
+      grid.of_cells = {{"body", 1, constant(subdomain.body)},
+                       {"subdomain", 1, constant(subdomain.subdomain)},
+                       {"rank", 1, constant(mesh.rank_of_subdomain(subdomain.subdomain))},
+                       {"error_estimate", 1, std::move(error)}};
+      return grid;
+    }
 
     /// From displacement and stress components to the fields that users look at.
-    template <int dim>
-    class Fields : public dealii::DataPostprocessor<dim>
+    /// @param stress nodes x 4: xx, yy, xy, zz [MPa].
+    std::vector<Field> nodal_fields(const Eigen::VectorXd &u, const Eigen::MatrixXd &stress)
     {
-    public:
-      std::vector<std::string> get_names() const override
-      {
-        std::vector<std::string> names(dim, "displacement");
-        names.insert(names.end(), dim * dim, "stress");
-        names.insert(names.end(), {"stress_zz", "von_mises", "principal_stress_1", "principal_stress_2"});
-        return names;
-      }
+      std::vector<Field> fields = {{"displacement", 3, {}},
+                                   {"stress", 9, {}},
+                                   {"stress_zz", 1, {}},
+                                   {"von_mises", 1, {}},
+                                   {"principal_stress_1", 1, {}},
+                                   {"principal_stress_2", 1, {}}};
+      for (Field &field : fields)
+        field.values.reserve(field.n_components * stress.rows());
+      const auto add = [&fields](const unsigned int field, const std::initializer_list<double> values) {
+        for (const double value : values)
+          fields[field].values.push_back(static_cast<float>(value));
+      };
+      for (unsigned int node = 0; node < stress.rows(); ++node)
+        {
+          const double xx = stress(node, 0), yy = stress(node, 1), xy = stress(node, 2), zz = stress(node, 3);
+          const double mean = (xx + yy) / 2, radius = std::hypot((xx - yy) / 2, xy);
+          add(0, {u[2 * node], u[2 * node + 1], 0.});
+          add(1, {xx, xy, 0., xy, yy, 0., 0., 0., 0.}); // of the plane
+          add(2, {zz});
+          add(3, {fem::von_mises(xx, yy, xy, zz)});
+          add(4, {mean + radius});
+          add(5, {mean - radius});
+        }
+      return fields;
+    }
 
-      std::vector<dealii::DataComponentInterpretation::DataComponentInterpretation> get_data_component_interpretation()
-        const override
-      {
-        using namespace dealii::DataComponentInterpretation;
-        std::vector<DataComponentInterpretation> kinds(dim, component_is_part_of_vector);
-        kinds.insert(kinds.end(), dim * dim, component_is_part_of_tensor);
-        kinds.insert(kinds.end(), 4, component_is_scalar);
-        return kinds;
-      }
+    /// Compressed in one block, as text: number of blocks, their size, size of the last, compressed size; the block.
+    template <class Number>
+    void write_array(std::ostream              &out,
+                     const std::string         &name,
+                     const unsigned int         n_components,
+                     const std::vector<Number> &values)
+    {
+      const auto                 n_bytes = static_cast<uLong>(values.size() * sizeof(Number));
+      std::vector<unsigned char> block(compressBound(n_bytes));
+      uLongf                     length = block.size();
+      AssertThrow(
+        compress2(block.data(), &length, reinterpret_cast<const Bytef *>(values.data()), n_bytes, Z_BEST_SPEED) == Z_OK,
+        dealii::ExcMessage("zlib failed"));
+      block.resize(length);
+      const std::array<std::uint32_t, 4> numbers{{1,
+                                                  static_cast<std::uint32_t>(n_bytes),
+                                                  static_cast<std::uint32_t>(n_bytes),
+                                                  static_cast<std::uint32_t>(length)}};
+      const auto                        *begin = reinterpret_cast<const unsigned char *>(numbers.data());
+      const std::vector<unsigned char>   header(begin, begin + sizeof(numbers));
+      out << "<DataArray type=\"" << vtk_type<Number> << '"';
+      if (!name.empty())
+        out << " Name=\"" << name << '"';
+      if (n_components > 1)
+        out << " NumberOfComponents=\"" << n_components << '"';
+      out << " format=\"binary\">\n"
+          << dealii::Utilities::encode_base64(header) << dealii::Utilities::encode_base64(block) << "\n</DataArray>\n";
+    }
 
-      dealii::UpdateFlags get_needed_update_flags() const override
-      {
-        return dealii::update_values;
-      }
+    void write_fields_of(std::ostream &out, const std::string &section, const std::vector<Field> &fields)
+    {
+      out << '<' << section << ">\n";
+      for (const Field &field : fields)
+        write_array(out, field.name, field.n_components, field.values);
+      out << "</" << section << ">\n";
+    }
 
-      void evaluate_vector_field(const dealii::DataPostprocessorInputs::Vector<dim> &input,
-                                 std::vector<dealii::Vector<double>>                &computed) const override
-      {
-        static_assert(dim == 2, "stress components of the plane");
-        for (unsigned int q = 0; q < computed.size(); ++q)
-          {
-            const auto  &in  = input.solution_values[q];
-            auto        &out = computed[q];
-            const double xx = in[2], yy = in[3], xy = in[4], zz = in[5];
-            const double mean = (xx + yy) / 2, radius = std::hypot((xx - yy) / 2, xy);
-            unsigned int k = 0;
-            for (const double value :
-                 {in[0], in[1], xx, xy, xy, yy, zz, fem::von_mises(xx, yy, xy, zz), mean + radius, mean - radius})
-              out[k++] = value;
-          }
-      }
-    };
+    constexpr const char *byte_order = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? "LittleEndian" : "BigEndian";
+
+    void write_vtu(std::ostream &out, const Grid &grid)
+    {
+      out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
+             "compressor=\"vtkZLibDataCompressor\" byte_order=\""
+          << byte_order << "\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" << grid.points.size() / 3
+          << "\" NumberOfCells=\"" << grid.types.size() << "\">\n<Points>\n";
+      write_array(out, "", 3, grid.points);
+      out << "</Points>\n<Cells>\n";
+      write_array(out, "connectivity", 1, grid.connectivity);
+      write_array(out, "offsets", 1, grid.offsets);
+      write_array(out, "types", 1, grid.types);
+      out << "</Cells>\n";
+      write_fields_of(out, "PointData", grid.nodal);
+      write_fields_of(out, "CellData", grid.of_cells);
+      out << "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+    }
+
+    /// The file that holds all subdomains together, whose fields are those of any.
+    void write_pvtu(std::ostream &out, const Grid &grid, const std::vector<std::string> &pieces)
+    {
+      const auto declare = [&out](const std::string &section, const std::vector<Field> &fields) {
+        out << '<' << section << ">\n";
+        for (const Field &field : fields)
+          out << "<PDataArray type=\"Float32\" Name=\"" << field.name << "\" NumberOfComponents=\""
+              << field.n_components << "\"/>\n";
+        out << "</" << section << ">\n";
+      };
+      out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\" byte_order=\"" << byte_order
+          << "\">\n<PUnstructuredGrid GhostLevel=\"0\">\n";
+      declare("PPointData", grid.nodal);
+      declare("PCellData", grid.of_cells);
+      out << "<PPoints>\n<PDataArray type=\"Float32\" NumberOfComponents=\"3\"/>\n</PPoints>\n";
+      for (const std::string &piece : pieces)
+        out << "<Piece Source=\"" << piece << "\"/>\n";
+      out << "</PUnstructuredGrid>\n</VTKFile>\n";
+    }
 
     std::string vtu_name(const unsigned int step, const unsigned int subdomain)
     {
@@ -74,44 +223,6 @@ namespace slipstick::output
     std::string pvtu_name(const unsigned int step)
     {
       return format("solution_%03u.pvtu", step);
-    }
-
-    template <int dim>
-    dealii::Vector<double> constant(const fem::SubdomainMesh<dim> &subdomain, const double value)
-    {
-      dealii::Vector<double> cells(subdomain.triangulation.n_active_cells());
-      cells = value;
-      return cells;
-    }
-
-    /// Displacement and stress, node by node, in the numbering of a space with all components.
-    template <int dim>
-    dealii::Vector<double> nodal_values(const dealii::DoFHandler<dim> &all,
-                                        const dealii::DoFHandler<dim> &displacements,
-                                        const Eigen::VectorXd         &u,
-                                        const Eigen::MatrixXd         &stress)
-    {
-      dealii::Vector<double>                       values(all.n_dofs());
-      std::vector<dealii::types::global_dof_index> from(displacements.get_fe().n_dofs_per_cell()),
-        to(all.get_fe().n_dofs_per_cell());
-      const unsigned int n_nodes = from.size() / dim;
-      for (const auto &cell : all.active_cell_iterators())
-        {
-          cell->get_dof_indices(to);
-          typename dealii::DoFHandler<dim>::active_cell_iterator(&all.get_triangulation(),
-                                                                 cell->level(),
-                                                                 cell->index(),
-                                                                 &displacements)
-            ->get_dof_indices(from);
-          for (unsigned int i = 0; i < n_nodes; ++i)
-            {
-              const unsigned int node = from[displacements.get_fe().component_to_system_index(0, i)] / dim;
-              for (unsigned int c = 0; c < n_nodal_values<dim>; ++c)
-                values[to[all.get_fe().component_to_system_index(c, i)]] =
-                  c < dim ? u[dim * node + c] : stress(node, c - dim);
-            }
-        }
-      return values;
     }
 
     /// One .vtu; the subdomain that comes first also writes the .pvtu, whose fields are the same.
@@ -124,35 +235,16 @@ namespace slipstick::output
                          const fem::SubdomainStress &stress,
                          const unsigned int          step)
     {
-      const auto                 &subdomain = *mesh.subdomains[p];
-      const dealii::FESystem<dim> element(*spaces.of(p).scalar, n_nodal_values<dim>);
-      dealii::DoFHandler<dim>     all(subdomain.triangulation);
-      all.distribute_dofs(element);
-      const auto                   values = nodal_values(all, *spaces.dof_handlers[p], u, stress.nodal);
-      const Fields<dim>            fields;
-      const dealii::Vector<double> error(stress.error.data(), stress.error.data() + stress.error.size());
-      const auto body = constant(subdomain, subdomain.body), number = constant(subdomain, subdomain.subdomain),
-                 owner = constant(subdomain, mesh.rank_of_subdomain(subdomain.subdomain));
-
-      dealii::DataOut<dim> data_out;
-      data_out.set_flags(dealii::DataOutBase::VtkFlags(std::numeric_limits<double>::min(),
-                                                       std::numeric_limits<unsigned int>::min(),
-                                                       false,
-                                                       dealii::DataOutBase::VtkFlags::best_speed));
-      data_out.attach_dof_handler(all);
-      data_out.add_data_vector(values, fields);
-      data_out.add_data_vector(body, "body", dealii::DataOut<dim>::type_cell_data);
-      data_out.add_data_vector(number, "subdomain", dealii::DataOut<dim>::type_cell_data);
-      data_out.add_data_vector(owner, "rank", dealii::DataOut<dim>::type_cell_data);
-      data_out.add_data_vector(error, "error_estimate", dealii::DataOut<dim>::type_cell_data);
-      data_out.build_patches(*spaces.of(p).mapping, spaces.degree);
-      directory.write(vtu_name(step, subdomain.subdomain), [&](std::ostream &out) { data_out.write_vtu(out); });
-      if (subdomain.subdomain == 0)
+      const unsigned int subdomain = mesh.subdomains[p]->subdomain;
+      Grid               grid      = grid_of(mesh, spaces, p, stress);
+      grid.nodal                   = nodal_fields(u, stress.nodal);
+      directory.write(vtu_name(step, subdomain), [&](std::ostream &out) { write_vtu(out, grid); });
+      if (subdomain == 0)
         directory.write(pvtu_name(step), [&](std::ostream &out) {
           std::vector<std::string> names;
           for (unsigned int s = 0; s < mesh.n_subdomains(); ++s)
             names.push_back(vtu_name(step, s));
-          data_out.write_pvtu_record(out, names);
+          write_pvtu(out, grid, names);
         });
     }
   } // namespace

@@ -103,13 +103,15 @@ namespace slipstick::output
     Json json(const TimeSummary &time)
     {
       return {{"total", time.total},
+              {"startup", time.startup},
               {"mesh", time.mesh},
               {"assembly", time.assembly},
               {"factorization", time.factorization},
               {"dual_setup", time.dual_setup},
               {"solve", time.solve},
               {"recovery", time.recovery},
-              {"output", time.output}};
+              {"output", time.output},
+              {"other", time.other}};
     }
   } // namespace
 

@@ -71,6 +71,7 @@ namespace slipstick::scene
     void declare_dual(dealii::ParameterHandler &prm, tfeti::DualOptions &dual)
     {
       using tfeti::DualOperatorKind;
+      using tfeti::Precision;
       using tfeti::Preconditioner;
       add_choice(prm,
                  "Preconditioner",
@@ -86,7 +87,21 @@ namespace slipstick::scene
                  Choices<DualOperatorKind>{{"auto", DualOperatorKind::automatic},
                                            {"explicit", DualOperatorKind::explicit_blocks},
                                            {"implicit", DualOperatorKind::implicit}},
-                 "F as dense blocks (explicit) or by a forward and backward solve per multiplication (implicit)");
+                 "F as dense blocks (explicit) or by a forward and backward solve per multiplication (implicit); auto: "
+                 "explicit where the blocks fit in the memory and pay");
+      const Choices<Precision> precisions{{"double", Precision::double_precision},
+                                          {"single", Precision::single_precision}};
+      add_choice(prm,
+                 "Operator precision",
+                 dual.operator_precision,
+                 precisions,
+                 "storage of the explicit dual operator; single: half the memory, and the solution is corrected by "
+                 "residuals in double, so that its accuracy is the same");
+      add_choice(prm,
+                 "Preconditioner precision",
+                 dual.preconditioner_precision,
+                 precisions,
+                 "storage of the preconditioner, which the accuracy of the solution does not depend on");
       prm.enter_subsection("Norm estimate");
       add_count(prm,
                 "Max iterations",

@@ -12,6 +12,8 @@ namespace slipstick::tfeti
   {
     // Below this estimate of 1 / condition number (square of the ratio of extreme pivots) the factor is noise.
     constexpr double smallest_reciprocal_condition = 1e-15;
+    // Analyses that are kept: blocks of a rectangle have some ten patterns, METIS parts one each.
+    constexpr std::size_t max_analyses = 32;
 
     /// View of Eigen's lower triangle for CHOLMOD; nothing is copied.
     cholmod_sparse view(const Eigen::SparseMatrix<double> &lower)
@@ -64,7 +66,54 @@ namespace slipstick::tfeti
 
   CholmodSession::~CholmodSession()
   {
+    forget_analyses();
     cholmod_finish(&common);
+  }
+
+  void CholmodSession::forget_analyses()
+  {
+    for (Analysis &known : analyses)
+      cholmod_free_factor(&known.factor, &common);
+    analyses.clear();
+  }
+
+  cholmod_factor *CholmodSession::analysis(cholmod_sparse &A, const std::vector<unsigned int> &last)
+  {
+    const auto *columns = static_cast<const int *>(A.p), *rows = static_cast<const int *>(A.i);
+    const auto  n = A.ncol, n_entries = static_cast<std::size_t>(columns[n]);
+    const auto  is_same = [&](const Analysis &known) {
+      return known.columns.size() == n + 1 && known.rows.size() == n_entries && known.last == last &&
+             std::equal(known.columns.begin(), known.columns.end(), columns) &&
+             std::equal(known.rows.begin(), known.rows.end(), rows);
+    };
+    const auto found = std::find_if(analyses.begin(), analyses.end(), is_same);
+    if (found != analyses.end())
+      return found->factor;
+
+    cholmod_factor *factor;
+    if (last.empty())
+      {
+        common.method[0].ordering = CHOLMOD_AMD;
+        common.postorder          = 1;
+        factor                    = cholmod_analyze(&A, &common);
+      }
+    else
+      {
+        auto permutation          = constrained_ordering(A, last, common);
+        common.method[0].ordering = CHOLMOD_GIVEN;
+        common.postorder          = 0; // CAMD has done so within its constraints; another one may mix the groups
+        factor                    = cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common);
+      }
+    if (factor == nullptr)
+      throw NumericalError("not enough memory for the analysis of a stiffness matrix",
+                           "use more or smaller subdomains (Decomposition), or more ranks on more machines");
+    if (analyses.size() == max_analyses)
+      {
+        cholmod_free_factor(&analyses.front().factor, &common);
+        analyses.erase(analyses.begin());
+      }
+    analyses.push_back({{columns, columns + n + 1}, {rows, rows + n_entries}, last, factor});
+    return factor;
   }
 
   void Cholesky::FactorDeleter::operator()(cholmod_factor *factor) const
@@ -86,20 +135,9 @@ namespace slipstick::tfeti
   {
     cholmod_common &common = session->common;
     cholmod_sparse  A      = view(lower);
-    if (last.empty())
-      {
-        common.method[0].ordering = CHOLMOD_AMD;
-        common.postorder          = 1;
-        factor.reset(cholmod_analyze(&A, &common));
-      }
-    else
-      {
-        auto permutation          = constrained_ordering(A, last, common);
-        common.method[0].ordering = CHOLMOD_GIVEN;
-        common.postorder          = 0; // CAMD has done so within its constraints; another one may mix the groups
-        factor.reset(cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common));
-        trailing.assign(permutation.end() - last.size(), permutation.end());
-      }
+    factor.reset(cholmod_copy_factor(session->analysis(A, last), &common));
+    const auto *permutation = static_cast<const int *>(factor->Perm);
+    trailing.assign(permutation + factor->n - last.size(), permutation + factor->n);
     cholmod_factorize(&A, factor.get(), &common);
     if (common.status == CHOLMOD_OUT_OF_MEMORY)
       throw NumericalError(name + ": not enough memory for the Cholesky factor",

@@ -20,20 +20,13 @@ namespace slipstick::tfeti
   {
     if (!problem.bodies->free(free).empty())
       return;
-    projector =
-      std::make_unique<Projector>(problem.systems, problem.gluing, *problem.F, problem.rows.rows, free, problem.comm);
+    projector = std::make_unique<Projector>(*problem.projector, free, problem.comm);
     if (dealii::Utilities::MPI::max(ties.empty() ? 0 : 1, problem.comm) > 0)
       {
         std::vector<bool> moving = free;
         for (const auto &tie : ties)
           moving[tie.tied] = true;
-        tied = std::make_unique<Projector>(problem.systems,
-                                           problem.gluing,
-                                           *problem.F,
-                                           problem.rows.rows,
-                                           moving,
-                                           problem.comm,
-                                           ties);
+        tied = std::make_unique<Projector>(*problem.projector, moving, problem.comm, ties);
       }
     if (problem.weights)
       {

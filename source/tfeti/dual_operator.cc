@@ -1,5 +1,4 @@
 #include <slipstick/tfeti/dual_operator.h>
-#include <slipstick/tfeti/packed.h>
 
 #include <set>
 
@@ -31,7 +30,8 @@ namespace slipstick::tfeti
   DualOperator::DualOperator(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                              const std::vector<LocalGluing>                      &gluing,
                              const Partitioner                                   &rows,
-                             const bool                                           explicit_blocks)
+                             const bool                                           explicit_blocks,
+                             const Precision                                      precision)
     : subdomains(subdomains)
     , gluing(gluing)
     , rows(rows)
@@ -40,7 +40,7 @@ namespace slipstick::tfeti
   {
     if (explicit_blocks)
       for (const auto &subdomain : subdomains)
-        blocks.push_back(packed_lower(subdomain->pseudo_inverse_block()));
+        blocks.emplace_back(subdomain->pseudo_inverse_block(), precision);
   }
 
   Eigen::VectorXd DualOperator::scatter(const unsigned int p, const DistributedVector &x) const
@@ -69,7 +69,8 @@ namespace slipstick::tfeti
     with_ghosts.update_ghost_values();
   }
 
-  void DualOperator::apply(const DistributedVector &x, DistributedVector &y) const
+  template <class Local>
+  void DualOperator::apply(const DistributedVector &x, DistributedVector &y, const Local &local) const
   {
     ++applications;
     import(x, source);
@@ -78,31 +79,48 @@ namespace slipstick::tfeti
     Eigen::VectorXd at_touched;
     for (unsigned int p = 0; p < subdomains.size(); ++p)
       {
-        const Eigen::VectorXd force = scatter(p, source);
-        if (is_explicit())
-          multiply_packed(blocks[p], force, at_touched);
-        else
-          {
-            const auto     &touched = subdomains[p]->touched();
-            Eigen::VectorXd full    = Eigen::VectorXd::Zero(subdomains[p]->n_unknowns());
-            for (unsigned int k = 0; k < touched.size(); ++k)
-              full[touched[k]] = force[k];
-            subdomains[p]->apply_pseudo_inverse(full);
-            at_touched.resize(touched.size());
-            for (unsigned int k = 0; k < touched.size(); ++k)
-              at_touched[k] = full[touched[k]];
-          }
+        local(p, scatter(p, source), at_touched);
         gather(p, at_touched, target);
       }
     target.compress(dealii::VectorOperation::add);
     y.copy_locally_owned_data_from(target);
   }
 
+  void DualOperator::apply(const DistributedVector &x, DistributedVector &y) const
+  {
+    if (is_explicit())
+      apply(x, y, [this](const unsigned int p, const Eigen::VectorXd &force, Eigen::VectorXd &at_touched) {
+        blocks[p].multiply(force, at_touched);
+      });
+    else
+      apply_by_solves(x, y);
+  }
+
+  void DualOperator::apply_by_solves(const DistributedVector &x, DistributedVector &y) const
+  {
+    apply(x, y, [this](const unsigned int p, const Eigen::VectorXd &force, Eigen::VectorXd &at_touched) {
+      solve(p, force, at_touched);
+    });
+  }
+
+  // K+ at the touched unknowns
+  void DualOperator::solve(const unsigned int p, const Eigen::VectorXd &force, Eigen::VectorXd &at_touched) const
+  {
+    const auto     &touched = subdomains[p]->touched();
+    Eigen::VectorXd full    = Eigen::VectorXd::Zero(subdomains[p]->n_unknowns());
+    for (unsigned int k = 0; k < touched.size(); ++k)
+      full[touched[k]] = force[k];
+    subdomains[p]->apply_pseudo_inverse(full);
+    at_touched.resize(touched.size());
+    for (unsigned int k = 0; k < touched.size(); ++k)
+      at_touched[k] = full[touched[k]];
+  }
+
   std::size_t DualOperator::block_bytes() const
   {
     std::size_t n = 0;
     for (const auto &block : blocks)
-      n += block.size() * sizeof(double);
+      n += block.bytes();
     return n;
   }
 } // namespace slipstick::tfeti

@@ -1,6 +1,7 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/tfeti/dual_problem.h>
+#include <slipstick/tfeti/operator_choice.h>
 #include <slipstick/tfeti/rigid_motions.h>
 
 #include <deal.II/base/mpi.h>
@@ -45,7 +46,7 @@ namespace slipstick::tfeti
     , owned_rows(std::make_shared<dealii::Utilities::MPI::Partitioner>(rows.rows->locally_owned_range(), comm))
     , names_of_bodies(body_names)
   {
-    const bool explicit_blocks     = options.dual_operator != DualOperatorKind::implicit;
+    const bool explicit_blocks     = is_explicit(options, matrices, rows, comm);
     const bool with_trailing_block = explicit_blocks || options.preconditioner == Preconditioner::dirichlet;
     const auto session             = std::make_shared<CholmodSession>();
     collectively(comm, [&] {
@@ -59,18 +60,21 @@ namespace slipstick::tfeti
                                                               std::move(touched),
                                                               with_trailing_block));
         }
+      session->forget_analyses();
       factorization_time = MPI_Wtime() - start;
-      F                  = std::make_unique<DualOperator>(systems, gluing, rows.rows, explicit_blocks);
+      F = std::make_unique<DualOperator>(systems, gluing, rows.rows, explicit_blocks, options.operator_precision);
     });
     bodies = std::make_unique<BodyMotions>(systems, gluing, rows, body_names.size(), comm);
     require_support(bodies->free({}), body_names);
     if (options.preconditioner == Preconditioner::lumped || options.preconditioner == Preconditioner::dirichlet)
       {
-        weights        = std::make_unique<RowWeights>(systems, gluing, rows.rows, comm);
-        preconditioner = std::make_unique<PreconditionerBlocks>(systems, options.preconditioner);
+        weights = std::make_unique<RowWeights>(systems, gluing, rows.rows, comm);
+        preconditioner =
+          std::make_unique<PreconditionerBlocks>(systems, options.preconditioner, options.preconditioner_precision);
       }
     projector = std::make_unique<Projector>(systems, gluing, *F, rows.rows, std::vector<bool>(), comm);
 
+    is_single = explicit_blocks && options.operator_precision == Precision::single_precision;
     update_dual_load();
     norm_PFP              = power_method(options);
     setup_multiplications = F->n_applications();
@@ -102,6 +106,24 @@ namespace slipstick::tfeti
     dual_load = jumps(u);
     for (unsigned int r = 0; r < rows.c.size(); ++r)
       dual_load.local_element(r) -= rows.c[r];
+    correction = zero();
+  }
+
+  double DualProblem::refine(const DistributedVector &x)
+  {
+    if (!is_single)
+      return 0;
+    DistributedVector error = zero(), approximate = zero();
+    F->apply_by_solves(x, error);
+    F->apply(x, approximate);
+    error -= approximate;
+    DistributedVector change = error, range = zero();
+    change -= correction;
+    dual_load -= change;
+    correction = error;
+    projector->project_range(change, range);
+    change -= range;
+    return change.l2_norm() / norm_PFP;
   }
 
   void DualProblem::apply_F(const DistributedVector &x, DistributedVector &y) const
@@ -291,7 +313,7 @@ namespace slipstick::tfeti
   {
     const auto      loose = bodies->free(free);
     const auto      fixed = loose.empty() ? free : rows_that_fix(loose, x, free);
-    const Projector on_free(systems, gluing, *F, rows.rows, fixed, comm);
+    const Projector on_free(*projector, fixed, comm);
     Recovery        result{{}, zero()};
     on_free.particular(resultants() - projector->multiply(x), result.multipliers);
     result.multipliers += x;

@@ -1,5 +1,4 @@
 #include <slipstick/base/exceptions.h>
-#include <slipstick/tfeti/packed.h>
 #include <slipstick/tfeti/preconditioner.h>
 
 #include <deal.II/base/mpi.h>
@@ -104,71 +103,97 @@ namespace slipstick::tfeti
       {
         blocks[b].matrix.resize(blocks[b].rows.size(), blocks[b].rows.size());
         blocks[b].matrix.setFromTriplets(entries[b].begin(), entries[b].end());
+        blocks[b].inverse = inverse(blocks[b], {});
       }
+  }
+
+  // of the active rows of a block; nothing if there are none
+  std::shared_ptr<const RowWeights::Inverse::Block> RowWeights::inverse(const Block             &full,
+                                                                        const std::vector<bool> &active) const
+  {
+    std::vector<int> kept(full.rows.size(), -1); // position among the active rows
+    auto             block = std::make_shared<Inverse::Block>();
+    for (unsigned int k = 0; k < full.rows.size(); ++k)
+      if (active.empty() || active[full.rows[k]])
+        {
+          kept[k] = block->rows.size();
+          block->rows.push_back(full.rows[k]);
+        }
+    const unsigned int n = block->rows.size();
+    if (n == 0)
+      return nullptr;
+    if (n == full.rows.size() && full.inverse)
+      return full.inverse;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (unsigned int k = 0; k < full.rows.size(); ++k)
+      if (kept[k] >= 0)
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(full.matrix, k); entry; ++entry)
+          if (kept[entry.row()] >= 0)
+            entries.emplace_back(kept[entry.row()], kept[k], entry.value());
+    if (n == 1)
+      {
+        block->inverse = Eigen::MatrixXd::Constant(1, 1, 1 / entries[0].value());
+        return block;
+      }
+    Eigen::SparseMatrix<double> matrix(n, n);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    block->factor = std::make_unique<SemidefiniteFactor>(matrix);
+    if (n <= largest_dense_block)
+      {
+        block->inverse = Eigen::MatrixXd::Identity(n, n);
+        if (block->factor->n_left_out() == 0)
+          block->inverse = Eigen::MatrixXd(matrix).llt().solve(block->inverse).eval();
+        else
+          for (unsigned int k = 0; k < n; ++k)
+            block->inverse.col(k) = block->factor->solve(block->inverse.col(k).eval());
+        block->factor.reset();
+      }
+    return block;
   }
 
   RowWeights::Inverse::Inverse(const RowWeights &weights, const std::vector<bool> &active)
   {
     for (const auto &full : weights.blocks)
-      {
-        std::vector<int> kept(full.rows.size(), -1); // position among the active rows
-        Block            block;
-        for (unsigned int k = 0; k < full.rows.size(); ++k)
-          if (active.empty() || active[full.rows[k]])
-            {
-              kept[k] = block.rows.size();
-              block.rows.push_back(full.rows[k]);
-            }
-        const unsigned int n = block.rows.size();
-        if (n == 0)
-          continue;
-        std::vector<Eigen::Triplet<double>> entries;
-        for (unsigned int k = 0; k < full.rows.size(); ++k)
-          if (kept[k] >= 0)
-            for (Eigen::SparseMatrix<double>::InnerIterator entry(full.matrix, k); entry; ++entry)
-              if (kept[entry.row()] >= 0)
-                entries.emplace_back(kept[entry.row()], kept[k], entry.value());
-        Eigen::SparseMatrix<double> matrix(n, n);
-        matrix.setFromTriplets(entries.begin(), entries.end());
-        block.factor = std::make_unique<SemidefiniteFactor>(matrix);
-        if (n <= largest_dense_block)
-          {
-            block.inverse = Eigen::MatrixXd::Identity(n, n);
-            if (block.factor->n_left_out() == 0)
-              block.inverse = Eigen::MatrixXd(matrix).llt().solve(block.inverse).eval();
-            else
-              for (unsigned int k = 0; k < n; ++k)
-                block.inverse.col(k) = block.factor->solve(block.inverse.col(k).eval());
-            block.factor.reset();
-          }
+      if (auto block = weights.inverse(full, active))
         blocks.push_back(std::move(block));
-      }
   }
 
   void RowWeights::Inverse::apply(const DistributedVector &x, DistributedVector &y) const
   {
     y = 0;
+    Eigen::VectorXd of_block, result;
     for (const auto &block : blocks)
       {
-        Eigen::VectorXd of_block(block.rows.size());
-        for (unsigned int a = 0; a < block.rows.size(); ++a)
-          of_block[a] = x.local_element(block.rows[a]);
-        const Eigen::VectorXd result = block.factor ? block.factor->solve(of_block) : block.inverse * of_block;
-        for (unsigned int a = 0; a < block.rows.size(); ++a)
-          y.local_element(block.rows[a]) = result[a];
+        const auto &rows = block->rows;
+        if (rows.size() == 1)
+          {
+            y.local_element(rows[0]) = block->inverse(0, 0) * x.local_element(rows[0]);
+            continue;
+          }
+        of_block.resize(rows.size());
+        for (unsigned int a = 0; a < rows.size(); ++a)
+          of_block[a] = x.local_element(rows[a]);
+        if (block->factor)
+          result = block->factor->solve(of_block);
+        else
+          result.noalias() = block->inverse * of_block;
+        for (unsigned int a = 0; a < rows.size(); ++a)
+          y.local_element(rows[a]) = result[a];
       }
   }
 
   PreconditionerBlocks::PreconditionerBlocks(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
-                                             const Preconditioner                                 kind)
+                                             const Preconditioner                                 kind,
+                                             const Precision                                      precision)
   {
     for (const auto &subdomain : subdomains)
-      blocks.push_back(
-        packed_lower(kind == Preconditioner::lumped ? subdomain->touched_stiffness() : subdomain->schur_complement()));
+      blocks.emplace_back(kind == Preconditioner::lumped ? subdomain->touched_stiffness()
+                                                         : subdomain->schur_complement(),
+                          precision);
   }
 
   void PreconditionerBlocks::apply(const unsigned int p, const Eigen::VectorXd &x, Eigen::VectorXd &y) const
   {
-    multiply_packed(blocks[p], x, y);
+    blocks[p].multiply(x, y);
   }
 } // namespace slipstick::tfeti

@@ -6,6 +6,10 @@
 
 #include <boost/serialization/vector.hpp>
 
+#include <array>
+#include <numeric>
+#include <set>
+
 namespace slipstick::tfeti
 {
   namespace
@@ -24,44 +28,76 @@ namespace slipstick::tfeti
       }
     };
 
-    /// Columns of tied rows become parts of those that they are tied to.
-    void fold(std::vector<ColumnPart> &parts, const std::vector<qp::Tie> &ties, const Partitioner &rows)
+    /// Sums of outer products of columns of G, as dense blocks: one for every two subdomains that share a row.
+    class Gram
     {
-      std::map<std::uint64_t, const qp::Tie *> tie_of;
-      for (const auto &tie : ties)
-        tie_of[rows->local_to_global(tie.tied)] = &tie;
-      if (!ties.empty())
-        for (ColumnPart &part : parts)
-          if (const auto tie = tie_of.find(part.row); tie != tie_of.end())
+    public:
+      /// Adds the column that parts (of different subdomains, in ascending order) make up.
+      void add(const ColumnPart *begin, const ColumnPart *end)
+      {
+        for (const ColumnPart *a = begin; a != end; ++a)
+          for (const ColumnPart *b = a; b != end; ++b)
             {
-              part.row = rows->local_to_global(tie->second->to);
-              for (double &value : part.values)
-                value *= tie->second->factor;
-            }
-    }
-
-    /// Sums of outer products of the columns of G over the active rows of this rank.
-    CoarseSolver::Entries gram_entries(std::vector<ColumnPart> &parts,
-                                       const Partitioner       &rows,
-                                       const std::vector<bool> &active)
-    {
-      std::sort(parts.begin(), parts.end(), [](const auto &a, const auto &b) {
-        return std::tie(a.row, a.first) < std::tie(b.row, b.first);
-      });
-      CoarseSolver::Entries entries;
-      for (auto begin = parts.begin(); begin != parts.end();)
-        {
-          const auto end =
-            std::find_if(begin, parts.end(), [row = begin->row](const auto &part) { return part.row != row; });
-          if (active.empty() || active[rows->global_to_local(begin->row)])
-            for (auto a = begin; a != end; ++a)
-              for (auto b = begin; b != end; ++b)
+              Eigen::MatrixXd &sum = block(*a, *b);
+              for (unsigned int j = 0; j < b->values.size(); ++j)
                 for (unsigned int i = 0; i < a->values.size(); ++i)
-                  for (unsigned int j = 0; j < b->values.size(); ++j)
-                    entries[{a->first + i, b->first + j}] += a->values[i] * b->values[j];
-          begin = end;
+                  sum(i, j) += a->values[i] * b->values[j];
+            }
+      }
+
+      CoarseSolver::Entries entries() const
+      {
+        CoarseSolver::Entries result;
+        for (const auto &[position, sum] : blocks)
+          for (unsigned int i = 0; i < sum.rows(); ++i)
+            for (unsigned int j = 0; j < sum.cols(); ++j)
+              {
+                result[{position.first + i, position.second + j}] = sum(i, j);
+                if (position.first != position.second)
+                  result[{position.second + j, position.first + i}] = sum(i, j);
+              }
+        return result;
+      }
+
+    private:
+      Eigen::MatrixXd &block(const ColumnPart &a, const ColumnPart &b)
+      {
+        const std::pair<long long, long long> position(a.first, b.first);
+        for (const auto &[known, sum] : recent) // rows come edge by edge
+          if (known == position)
+            return *sum;
+        auto &sum = blocks[position];
+        if (sum.size() == 0)
+          sum = Eigen::MatrixXd::Zero(a.values.size(), b.values.size());
+        recent[next++ % recent.size()] = {position, &sum};
+        return sum;
+      }
+
+      std::map<std::pair<long long, long long>, Eigen::MatrixXd>                   blocks;
+      std::array<std::pair<std::pair<long long, long long>, Eigen::MatrixXd *>, 4> recent = {
+        {{{-1, -1}, nullptr}, {{-1, -1}, nullptr}, {{-1, -1}, nullptr}, {{-1, -1}, nullptr}}};
+      unsigned int next = 0;
+    };
+
+    /// Column of the row that another one is tied to, with the tied one's share.
+    std::vector<ColumnPart> sum_of(std::vector<ColumnPart>        column,
+                                   const std::vector<ColumnPart> &tied,
+                                   const double                   factor)
+    {
+      for (ColumnPart part : tied)
+        {
+          for (double &value : part.values)
+            value *= factor;
+          const auto same =
+            std::find_if(column.begin(), column.end(), [&](const auto &other) { return other.first == part.first; });
+          if (same == column.end())
+            column.push_back(std::move(part));
+          else
+            for (unsigned int i = 0; i < part.values.size(); ++i)
+              same->values[i] += part.values[i];
         }
-      return entries;
+      std::sort(column.begin(), column.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
+      return column;
     }
 
     /// G of a subdomain: the rigid motions' share in every row that touches it.
@@ -80,6 +116,74 @@ namespace slipstick::tfeti
     }
   } // namespace
 
+  /// G, by subdomain and by row.
+  struct Projector::Motions
+  {
+    /// G of one subdomain: column k of `values` belongs to `rows[k]` (local dual number).
+    struct Block
+    {
+      unsigned int              first; // of its rigid motions among those of this rank
+      std::vector<unsigned int> rows;
+      Eigen::MatrixXd           values; // motions x rows
+    };
+
+    Motions(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+            const std::vector<LocalGluing>                      &gluing,
+            const Partitioner                                   &rows,
+            const MPI_Comm                                       comm)
+    {
+      for (const auto &subdomain : subdomains)
+        n_motions += subdomain->kernel().cols();
+      const long long first = first_and_total(n_motions, comm).first;
+
+      std::map<unsigned int, std::vector<ColumnPart>> to_send;
+      const auto                                      owner_of_ghost = owners_of_ghosts(rows);
+
+      unsigned int next = 0;
+      for (unsigned int p = 0; p < subdomains.size(); ++p)
+        {
+          const auto columns = columns_of(*subdomains[p], gluing[p]);
+          Block      block;
+          block.first = next;
+          block.values.resize(subdomains[p]->kernel().cols(), columns.size());
+          for (const auto &[row, column] : columns)
+            {
+              ColumnPart part;
+              part.row   = rows->local_to_global(row);
+              part.first = first + next;
+              part.values.assign(column.data(), column.data() + column.size());
+              if (row < rows->locally_owned_size())
+                parts.push_back(std::move(part));
+              else
+                to_send[owner_of_ghost[row - rows->locally_owned_size()]].push_back(std::move(part));
+              block.values.col(block.rows.size()) = column;
+              block.rows.push_back(row);
+            }
+          next += subdomains[p]->kernel().cols();
+          blocks.push_back(std::move(block));
+        }
+      for (auto &[rank, sent] : dealii::Utilities::MPI::some_to_some(comm, to_send))
+        std::move(sent.begin(), sent.end(), std::back_inserter(parts));
+      std::sort(parts.begin(), parts.end(), [](const auto &a, const auto &b) {
+        return std::tie(a.row, a.first) < std::tie(b.row, b.first);
+      });
+      first_part.assign(rows->locally_owned_size() + 1, 0);
+      for (const ColumnPart &part : parts)
+        ++first_part[rows->global_to_local(part.row) + 1];
+      std::partial_sum(first_part.begin(), first_part.end(), first_part.begin());
+    }
+
+    std::vector<ColumnPart> column(const unsigned int row) const
+    {
+      return {parts.begin() + first_part[row], parts.begin() + first_part[row + 1]};
+    }
+
+    std::vector<Block>        blocks;
+    unsigned int              n_motions = 0; // of this rank
+    std::vector<ColumnPart>   parts;         // of the owned rows, row by row
+    std::vector<unsigned int> first_part;    // of every owned row
+  };
+
   Projector::Projector(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                        const std::vector<LocalGluing>                      &gluing,
                        const DualOperator                                  &scatter_gather,
@@ -88,51 +192,54 @@ namespace slipstick::tfeti
                        const MPI_Comm                                       comm,
                        const std::vector<qp::Tie>                          &ties)
     : scatter_gather(scatter_gather)
+    , G(std::make_shared<Motions>(subdomains, gluing, rows, comm))
     , ties(ties)
     , source(rows)
     , target(rows)
   {
+    make_coarse(active, comm);
+  }
+
+  Projector::Projector(const Projector            &all,
+                       const std::vector<bool>    &active,
+                       const MPI_Comm              comm,
+                       const std::vector<qp::Tie> &ties)
+    : scatter_gather(all.scatter_gather)
+    , G(all.G)
+    , ties(ties)
+    , source(all.source)
+    , target(all.target)
+  {
+    make_coarse(active, comm);
+  }
+
+  void Projector::make_coarse(const std::vector<bool> &active, const MPI_Comm comm)
+  {
     // is a row active? owners know, ghosts ask
-    indicator.reinit(rows);
-    for (unsigned int r = 0; r < rows->locally_owned_size(); ++r)
+    indicator.reinit(source);
+    const unsigned int n = indicator.locally_owned_size();
+    for (unsigned int r = 0; r < n; ++r)
       indicator.local_element(r) = active.empty() || active[r];
     indicator.update_ghost_values();
 
-    for (const auto &subdomain : subdomains)
-      n_motions += subdomain->kernel().cols();
-    const long long first = first_and_total(n_motions, comm).first;
-
-    std::vector<ColumnPart>                         own;
-    std::map<unsigned int, std::vector<ColumnPart>> to_send;
-    const auto                                      owner_of_ghost = owners_of_ghosts(rows);
-
-    unsigned int next = 0;
-    for (unsigned int p = 0; p < subdomains.size(); ++p)
+    std::map<unsigned int, std::vector<ColumnPart>> with_ties; // columns of the rows that others are tied to
+    std::set<unsigned int>                          tied;
+    for (const qp::Tie &tie : ties)
       {
-        const auto columns = columns_of(*subdomains[p], gluing[p]);
-        Block      block;
-        block.first = next;
-        block.values.resize(subdomains[p]->kernel().cols(), columns.size());
-        for (const auto &[row, column] : columns)
-          {
-            ColumnPart part;
-            part.row   = rows->local_to_global(row);
-            part.first = first + next;
-            part.values.assign(column.data(), column.data() + column.size());
-            if (row < rows->locally_owned_size())
-              own.push_back(std::move(part));
-            else
-              to_send[owner_of_ghost[row - rows->locally_owned_size()]].push_back(std::move(part));
-            block.values.col(block.rows.size()) = column;
-            block.rows.push_back(row);
-          }
-        next += subdomains[p]->kernel().cols();
-        blocks.push_back(std::move(block));
+        const auto column = with_ties.emplace(tie.to, G->column(tie.to)).first;
+        column->second    = sum_of(std::move(column->second), G->column(tie.tied), tie.factor);
+        tied.insert(tie.tied);
       }
-    for (auto &[rank, parts] : dealii::Utilities::MPI::some_to_some(comm, to_send))
-      std::move(parts.begin(), parts.end(), std::back_inserter(own));
-    fold(own, ties, rows);
-    coarse = std::make_unique<CoarseSolver>(n_motions, gram_entries(own, rows, active), comm);
+    Gram gram;
+    for (unsigned int r = 0; r < n; ++r)
+      if (indicator.local_element(r) != 0 && tied.count(r) == 0)
+        {
+          if (const auto column = with_ties.find(r); column != with_ties.end())
+            gram.add(column->second.data(), column->second.data() + column->second.size());
+          else
+            gram.add(G->parts.data() + G->first_part[r], G->parts.data() + G->first_part[r + 1]);
+        }
+    coarse = std::make_unique<CoarseSolver>(G->n_motions, gram.entries(), comm);
   }
 
   Projector::~Projector() = default;
@@ -140,8 +247,8 @@ namespace slipstick::tfeti
   Eigen::VectorXd Projector::multiply(const DistributedVector &x) const
   {
     scatter_gather.import(x, source);
-    Eigen::VectorXd a = Eigen::VectorXd::Zero(n_motions);
-    for (const Block &block : blocks)
+    Eigen::VectorXd a = Eigen::VectorXd::Zero(G->n_motions);
+    for (const auto &block : G->blocks)
       for (unsigned int k = 0; k < block.rows.size(); ++k)
         a.segment(block.first, block.values.rows()) +=
           block.values.col(k) * (indicator.local_element(block.rows[k]) * source.local_element(block.rows[k]));
@@ -152,7 +259,7 @@ namespace slipstick::tfeti
   {
     target.zero_out_ghost_values();
     target = 0;
-    for (const Block &block : blocks)
+    for (const auto &block : G->blocks)
       for (unsigned int k = 0; k < block.rows.size(); ++k)
         target.local_element(block.rows[k]) += block.values.col(k).dot(a.segment(block.first, block.values.rows()));
     target.compress(dealii::VectorOperation::add);

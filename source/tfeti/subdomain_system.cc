@@ -1,5 +1,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
+#include <slipstick/tfeti/packed.h>
 #include <slipstick/tfeti/subdomain_system.h>
 
 #include <random>
@@ -119,30 +120,22 @@ namespace slipstick::tfeti
     check_no_larger_kernel(matrices, cholesky);
   }
 
-  Eigen::MatrixXd SubdomainSystem::pseudo_inverse_block() const
+  std::vector<double> SubdomainSystem::pseudo_inverse_block() const
   {
-    const Eigen::MatrixXd L = cholesky.trailing_block();
-    Eigen::MatrixXd       inverse_factor =
-      L.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(L.rows(), L.cols()));
-    Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(L.rows(), L.cols());
-    inverse.selfadjointView<Eigen::Lower>().rankUpdate(inverse_factor.transpose());
-
-    return at_touched(inverse);
+    return packed_lower(inverse_of_product(cholesky.trailing_block()), touched_in_last_order());
   }
 
-  Eigen::MatrixXd SubdomainSystem::schur_complement() const
+  std::vector<double> SubdomainSystem::schur_complement() const
   {
-    const Eigen::MatrixXd L     = cholesky.trailing_block();
-    Eigen::MatrixXd       schur = Eigen::MatrixXd::Zero(L.rows(), L.cols());
-    schur.selfadjointView<Eigen::Lower>().rankUpdate(L);
-    const auto &order = cholesky.last_order();
+    Eigen::MatrixXd schur = product_of_factor(cholesky.trailing_block());
+    const auto     &order = cholesky.last_order();
     for (unsigned int k = 0; k < order.size(); ++k)
       if (std::find(fixing_unknowns.begin(), fixing_unknowns.end(), order[k]) != fixing_unknowns.end())
         schur(k, k) -= regularization;
-    return at_touched(schur);
+    return packed_lower(schur, touched_in_last_order());
   }
 
-  Eigen::MatrixXd SubdomainSystem::touched_stiffness() const
+  std::vector<double> SubdomainSystem::touched_stiffness() const
   {
     std::vector<int> position(n_unknowns(), -1);
     for (unsigned int k = 0; k < touched_unknowns.size(); ++k)
@@ -153,7 +146,7 @@ namespace slipstick::tfeti
         if (position[entry.row()] >= 0)
           block(position[entry.row()], position[column]) = block(position[column], position[entry.row()]) =
             entry.value();
-    return block;
+    return packed_lower(block);
   }
 
   Eigen::VectorXd SubdomainSystem::touched_diagonal() const
@@ -164,18 +157,13 @@ namespace slipstick::tfeti
     return diagonal;
   }
 
-  Eigen::MatrixXd SubdomainSystem::at_touched(const Eigen::MatrixXd &in_last_order) const
+  std::vector<unsigned int> SubdomainSystem::touched_in_last_order() const
   {
-    std::vector<int> position(n_unknowns(), -1);
+    std::vector<unsigned int> position(n_unknowns(), 0), touched;
     for (unsigned int k = 0; k < cholesky.last_order().size(); ++k)
-      position[cholesky.last_order()[k]] = static_cast<int>(k);
-    Eigen::MatrixXd block(touched_unknowns.size(), touched_unknowns.size());
-    for (unsigned int a = 0; a < touched_unknowns.size(); ++a)
-      for (unsigned int b = 0; b <= a; ++b)
-        {
-          const int i = position[touched_unknowns[a]], j = position[touched_unknowns[b]];
-          block(a, b) = block(b, a) = in_last_order(std::max(i, j), std::min(i, j));
-        }
-    return block;
+      position[cholesky.last_order()[k]] = k;
+    for (const unsigned int i : touched_unknowns)
+      touched.push_back(position[i]);
+    return touched;
   }
 } // namespace slipstick::tfeti

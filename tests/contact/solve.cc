@@ -1,6 +1,7 @@
 #include "solved.h"
 
 #include <slipstick/base/exceptions.h>
+#include <slipstick/contact/refinement.h>
 
 using namespace slipstick;
 using namespace slipstick::test;
@@ -412,4 +413,57 @@ TEST(ContactSolve, frictionless_box_on_a_circle_may_roll_off)
       EXPECT_NE(text.find("nothing holds body box: translation along ("), std::string::npos) << text;
       EXPECT_NE(text.find("with rotation"), std::string::npos) << text;
     }
+}
+
+TEST(Solve, operator_in_single_precision_gives_the_solution_of_double)
+{
+  for (const auto algorithm : {scene::Algorithm::semismooth_newton, scene::Algorithm::smalbe})
+    for (const auto &how : {blocks(4), metis(6)})
+      {
+        Scene scene                            = cut(pushed_box("60"), how);
+        scene.solver.algorithm                 = algorithm;
+        scene.solver.dual.dual_operator        = tfeti::DualOperatorKind::explicit_blocks;
+        const auto         options             = contact::resolved_options(scene);
+        tfeti::DualOptions single              = options.dual;
+        single.operator_precision              = tfeti::Precision::single_precision;
+        const Torn torn(scene);
+        const auto in_double = torn.dual(options.dual), in_single = torn.dual(single);
+        const auto solve = [&](tfeti::DualProblem &dual, const bool refined) {
+          const contact::SlipLaw law(contact::slip_bounds(scene, dual, 1.));
+          auto solution = refined ? contact::solve_refined(dual, law, options, scene.friction, {})
+                                  : contact::solve(dual, law, options, scene.friction, {});
+          EXPECT_EQ(solution.status, qp::Status::converged);
+          return solution;
+        };
+        const auto at = [&](const contact::DualSolution &solution) {
+          return gathered(solution.multipliers, MPI_COMM_WORLD);
+        };
+        const auto exact = at(solve(*in_double, true)), rough = at(solve(*in_single, false));
+        const auto refined = solve(*in_single, true);
+        EXPECT_LE(refined.projected_gradient, scene.solver.tolerance);
+        EXPECT_LT(relative_difference(at(refined), exact), 1e-8);
+        EXPECT_GT(relative_difference(rough, exact), 1e-8); // else this test says nothing
+      }
+}
+
+TEST(Solve, linear_problem_in_single_precision_gives_the_solution_of_double)
+{
+  Scene scene            = cut(bent_box(8), blocks(4));
+  scene.solver.tolerance = 1e-10;
+  const auto options     = contact::resolved_options(scene);
+  auto       single      = options.dual;
+  single.dual_operator   = tfeti::DualOperatorKind::explicit_blocks;
+  single.operator_precision = tfeti::Precision::single_precision;
+  const Torn torn(scene);
+  const auto in_double = torn.dual(options.dual), in_single = torn.dual(single);
+  std::vector<Eigen::VectorXd> x;
+  for (auto *dual : {in_double.get(), in_single.get()})
+    {
+      const contact::SlipLaw law(contact::slip_bounds(scene, *dual, 1.));
+      const auto             solution = contact::solve_refined(*dual, law, options, scene.friction, {});
+      EXPECT_EQ(solution.status, qp::Status::converged);
+      EXPECT_LE(solution.projected_gradient, scene.solver.tolerance);
+      x.push_back(gathered(solution.multipliers, MPI_COMM_WORLD));
+    }
+  EXPECT_LT(relative_difference(x[1], x[0]), 1e-8);
 }

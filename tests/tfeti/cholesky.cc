@@ -89,6 +89,45 @@ TEST(Cholesky, session_may_change_between_orderings)
     }
 }
 
+TEST(Cholesky, matrices_of_one_pattern_are_analysed_once)
+{
+  const auto A = shifted_stiffness(5);
+  auto       B = A;
+  for (int i = 0; i < B.rows(); ++i)
+    B.coeffRef(i, i) += i;
+  const auto     C      = shifted_stiffness(6);
+  const auto     common = session();
+  const auto     last   = every(3, A.rows());
+  const Cholesky a(common, A, last, "a"), b(common, B, last, "b");
+  EXPECT_EQ(common->n_analyses(), 1u);
+  const Cholesky c(common, C, last, "c"), d(common, B, every(4, A.rows()), "d"), e(common, B, {}, "e");
+  EXPECT_EQ(common->n_analyses(), 4u);
+  common->forget_analyses();
+  EXPECT_EQ(common->n_analyses(), 0u);
+  for (const auto &[factor, matrix] : {std::pair(&a, &A), {&b, &B}, {&c, &C}, {&d, &B}, {&e, &B}})
+    {
+      const Eigen::VectorXd x = random_vector(matrix->rows(), 2);
+      Eigen::VectorXd       y = matrix->selfadjointView<Eigen::Lower>() * x;
+      factor->solve(y);
+      EXPECT_LT(relative_difference(y, x), 1e-13);
+    }
+}
+
+TEST(Cholesky, more_patterns_than_are_kept_are_solved_all_the_same)
+{
+  const auto A      = shifted_stiffness(5);
+  const auto common = session();
+  for (unsigned int round = 0; round < 2; ++round)
+    for (unsigned int step = 1; step < 45; ++step)
+      {
+        const Cholesky        factor(common, A, every(step, A.rows()), "a");
+        const Eigen::VectorXd x = random_vector(A.rows(), step);
+        Eigen::VectorXd       y = A.selfadjointView<Eigen::Lower>() * x;
+        factor.solve(y);
+        EXPECT_LT(relative_difference(y, x), 1e-13);
+      }
+}
+
 TEST(Cholesky, indefinite_and_singular_matrices_are_named)
 {
   auto indefinite = shifted_stiffness(3), singular = indefinite;

@@ -1,5 +1,7 @@
 #include "torn.h"
 
+#include <slipstick/tfeti/operator_choice.h>
+
 using namespace slipstick;
 using namespace slipstick::test;
 
@@ -43,6 +45,28 @@ TEST(DualOperator, explicit_and_implicit_agree)
       EXPECT_TRUE(blockwise->subdomains().empty() || blockwise->dual_operator().is_explicit());
       EXPECT_FALSE(by_solves->dual_operator().is_explicit());
       EXPECT_LT(relative_difference(F_times(*blockwise, x), F_times(*by_solves, x)), 1e-11) << name;
+    }
+}
+
+TEST(DualOperator, single_precision_is_near_double_and_half_as_large)
+{
+  for (const auto &[name, scene] : scenes())
+    {
+      const Torn            torn(scene);
+      const Eigen::VectorXd x = random_vector(torn.constraints.rows->size(), 1), y = random_vector(x.size(), 2);
+      tfeti::DualOptions    options;
+      options.dual_operator      = tfeti::DualOperatorKind::explicit_blocks;
+      const auto in_double       = torn.dual(options);
+      options.operator_precision = tfeti::Precision::single_precision;
+      const auto            in_single = torn.dual(options);
+      const Eigen::VectorXd Fx = F_times(*in_double, x), approximate = F_times(*in_single, x);
+      EXPECT_LT(relative_difference(approximate, Fx), 1e-6) << name;
+      EXPECT_GT(relative_difference(approximate, Fx), 1e-10) << name;
+      EXPECT_LT(std::abs(y.dot(approximate) - x.dot(F_times(*in_single, y))), 1e-12 * Fx.norm() * y.norm()) << name;
+      EXPECT_EQ(2 * in_single->dual_operator().block_bytes(), in_double->dual_operator().block_bytes());
+      auto by_solves = in_single->zero();
+      in_single->dual_operator().apply_by_solves(distributed(x, *in_single), by_solves);
+      EXPECT_LT(relative_difference(gathered(by_solves, MPI_COMM_WORLD), Fx), 1e-11) << name;
     }
 }
 
@@ -108,4 +132,81 @@ TEST(DualOperator, source_and_target_may_be_the_same_vector)
   auto                  y       = distributed(x, *problem);
   problem->dual_operator().apply(y, y);
   EXPECT_LT(relative_difference(gathered(y, MPI_COMM_WORLD), F_times(*problem, x)), 1e-15);
+}
+
+TEST(OperatorChoice, blocks_pay_unless_nearly_all_unknowns_are_touched)
+{
+  tfeti::DualOptions options;
+  const auto         gain = [&](const std::size_t n_unknowns, const std::size_t n_touched) {
+    const auto estimate = tfeti::estimate_block(n_unknowns, n_touched, options);
+    return 40 * estimate.saving - estimate.setup;
+  };
+  for (const std::size_t n : {5, 10, 50, 100, 200}) // cells along the edge of a block
+    EXPECT_GT(gain(2 * (n + 1) * (n + 1), 8 * n), 0) << n;
+  EXPECT_LT(gain(5202, 3000), 0);
+}
+
+TEST(OperatorChoice, memory_of_a_block_is_that_of_its_triangles)
+{
+  tfeti::DualOptions options;
+  const std::size_t  packed = 400 * 401 / 2;
+  EXPECT_EQ(tfeti::estimate_block(5202, 400, options).bytes, packed * sizeof(double));
+  options.preconditioner = tfeti::Preconditioner::dirichlet;
+  EXPECT_EQ(tfeti::estimate_block(5202, 400, options).bytes, packed * (sizeof(double) + sizeof(float)));
+  options.operator_precision = tfeti::Precision::single_precision;
+  EXPECT_EQ(tfeti::estimate_block(5202, 400, options).bytes, packed * 2 * sizeof(float));
+}
+
+TEST(OperatorChoice, automatic_goes_by_the_gain_and_the_user_overrules)
+{
+  std::vector<tfeti::SubdomainMatrices> matrices(1);
+  matrices[0].load = Eigen::VectorXd::Zero(1000);
+  tfeti::Constraints few, many;
+  few.blocks.resize(1);
+  many.blocks.resize(1);
+  for (unsigned int i = 0; i < 1000; ++i)
+    {
+      many.blocks[0].push_back({i, i, 1.});
+      if (i % 10 == 0)
+        few.blocks[0].push_back({i, i, 1.});
+    }
+  tfeti::DualOptions options;
+  EXPECT_TRUE(tfeti::is_explicit(options, matrices, few, MPI_COMM_WORLD));
+  EXPECT_FALSE(tfeti::is_explicit(options, matrices, many, MPI_COMM_WORLD));
+  options.dual_operator = tfeti::DualOperatorKind::explicit_blocks;
+  EXPECT_TRUE(tfeti::is_explicit(options, matrices, many, MPI_COMM_WORLD));
+  options.dual_operator = tfeti::DualOperatorKind::implicit;
+  EXPECT_FALSE(tfeti::is_explicit(options, matrices, few, MPI_COMM_WORLD));
+}
+
+TEST(PackedSymmetric, product_is_that_of_the_stored_numbers)
+{
+  for (const unsigned int n : {1, 2, 3, 7, 8, 9, 16, 17, 64, 131})
+    {
+      const Eigen::MatrixXd full = [n] {
+        Eigen::MatrixXd A(n, n);
+        for (unsigned int j = 0; j < n; ++j)
+          A.col(j) = random_vector(n, j);
+        return Eigen::MatrixXd(A + A.transpose());
+      }();
+      const Eigen::VectorXd x = random_vector(n, 77);
+      Eigen::VectorXd       y;
+      tfeti::PackedSymmetric(tfeti::packed_lower(full), tfeti::Precision::double_precision).multiply(x, y);
+      EXPECT_LT((y - full * x).norm(), 1e-14 * full.norm() * x.norm()) << n;
+      tfeti::PackedSymmetric(tfeti::packed_lower(full), tfeti::Precision::single_precision).multiply(x, y);
+      EXPECT_LT((y - full.cast<float>().cast<double>() * x).norm(), 1e-14 * full.norm() * x.norm()) << n;
+      EXPECT_EQ(tfeti::unpacked(tfeti::packed_lower(full)), full);
+    }
+}
+
+TEST(PackedSymmetric, product_and_inverse_of_a_factor)
+{
+  for (const unsigned int n : {1, 5, 63, 64, 65, 130})
+    {
+      Eigen::MatrixXd L = Eigen::MatrixXd::Identity(n, n);
+      for (unsigned int j = 0; j < n; ++j)
+        L.col(j).tail(n - j) += random_vector(n, j).tail(n - j) / n;
+      EXPECT_LT((tfeti::product_of_factor(L) - L * L.transpose()).norm(), 1e-13 * L.squaredNorm()) << n;
+      EXPECT_LT((tfeti::inverse_of_product(L) * L * L.transpose() - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-11) << n;
+    }
 }

@@ -40,7 +40,7 @@ namespace slipstick
   std::string format(const char *pattern, ...) __attribute__((format(printf, 1, 2)));
 
   /// Wall time of the stages of a run [s]. Stages do not nest: entering one ends the one before, so that they add up
-  /// to the time since construction.
+  /// to the time since the process was started, which counts as stage "startup" until the first is entered.
   class StageClock
   {
   public:
@@ -55,9 +55,12 @@ namespace slipstick
   private:
     double                        start;
     double                        entered;
-    std::string                   present = "other";
+    std::string                   present = "startup";
     std::map<std::string, double> stages;
   };
+
+  /// Age of this process [s], to the resolution of the kernel's clock (10 ms); 0 where the system does not tell.
+  double process_age();
 
   /// Largest resident memory of this process so far [MB].
   double peak_memory_mb();

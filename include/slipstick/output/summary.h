@@ -88,10 +88,11 @@ namespace slipstick::output
     std::vector<contact::PairResult> contact;
   };
 
-  /// Wall clock [s], slowest rank.
+  /// Wall clock of rank 0, which waits for the others where they meet [s]. The stages add up to the total.
   struct TimeSummary
   {
-    double total         = 0;
+    double total         = 0; // since the process was started
+    double startup       = 0; // libraries, MPI, reading of the scene
     double mesh          = 0;
     double assembly      = 0;
     double factorization = 0;
@@ -99,6 +100,7 @@ namespace slipstick::output
     double solve         = 0;
     double recovery      = 0;
     double output        = 0;
+    double other         = 0; // between the stages
   };
 
   /// Resident memory [MB].

@@ -11,7 +11,8 @@
 
 namespace slipstick::tfeti
 {
-  /// CHOLMOD's workspace, shared by the factorisations of a rank.
+  /// CHOLMOD's workspace, shared by the factorisations of a rank, and the analyses of their patterns: matrices of one
+  /// pattern are analysed once.
   class CholmodSession
   {
   public:
@@ -20,7 +21,28 @@ namespace slipstick::tfeti
     CholmodSession(const CholmodSession &)            = delete;
     CholmodSession &operator=(const CholmodSession &) = delete;
 
+    /// Symbolic factor of a matrix with the unknowns `last` ordered last; to be copied, not changed.
+    cholmod_factor *analysis(cholmod_sparse &A, const std::vector<unsigned int> &last);
+
+    /// Patterns analysed so far and not forgotten.
+    std::size_t n_analyses() const
+    {
+      return analyses.size();
+    }
+
+    /// Frees the analyses. Factors made with them stay.
+    void forget_analyses();
+
     cholmod_common common;
+
+  private:
+    struct Analysis
+    {
+      std::vector<int>          columns, rows; // compressed columns of the pattern
+      std::vector<unsigned int> last;
+      cholmod_factor           *factor;
+    };
+    std::vector<Analysis> analyses;
   };
 
   /// A = L L' of a symmetric positive definite matrix with n unknowns, of which the ones named `last` are ordered last,

@@ -3,6 +3,7 @@
 
 #include <slipstick/tfeti/constraints.h>
 #include <slipstick/tfeti/options.h>
+#include <slipstick/tfeti/packed.h>
 #include <slipstick/tfeti/subdomain_system.h>
 
 namespace slipstick::tfeti
@@ -33,10 +34,14 @@ namespace slipstick::tfeti
     DualOperator(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                  const std::vector<LocalGluing>                      &gluing,
                  const Partitioner                                   &rows,
-                 const bool                                           explicit_blocks);
+                 const bool                                           explicit_blocks,
+                 const Precision                                      precision = Precision::double_precision);
 
     /// y = F x; x: multipliers [N], y: displacement jumps [mm], owned entries. Collective. Farhat, Roux 1991.
     void apply(const DistributedVector &x, DistributedVector &y) const;
+
+    /// The same by sparse solves, whatever the blocks are stored in. Collective.
+    void apply_by_solves(const DistributedVector &x, DistributedVector &y) const;
 
     /// B' x on subdomain p of this rank: forces at the touched unknowns; x needs its ghosts.
     Eigen::VectorXd scatter(const unsigned int p, const DistributedVector &x) const;
@@ -64,10 +69,14 @@ namespace slipstick::tfeti
     std::size_t block_bytes() const;
 
   private:
+    template <class Local>
+    void apply(const DistributedVector &x, DistributedVector &y, const Local &local) const;
+    void solve(const unsigned int p, const Eigen::VectorXd &force, Eigen::VectorXd &at_touched) const;
+
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     const std::vector<LocalGluing>                      &gluing;
     Partitioner                                          rows;
-    std::vector<std::vector<double>>                     blocks; // packed lower triangles, column by column
+    std::vector<PackedSymmetric>                         blocks;
     mutable DistributedVector                            source, target;
     mutable unsigned long long                           applications = 0;
   };

@@ -39,6 +39,18 @@ namespace slipstick::tfeti
     /// Other right-hand sides c of the owned rows [mm] alone. Collective.
     void set_right_hand_side(std::vector<double> c);
 
+    /// With an operator stored in single precision (F~): d := B K+ f - c - (F - F~) x, F in double by sparse solves, so
+    /// that a point that solves the problem with F~ and this d near x solves the one with F. Another load step starts
+    /// from d again. Collective; two multiplications.
+    /// @return by how much that moved P d, in the units of multiply() (d over |P F P|) [N]; 0 in double precision.
+    double refine(const DistributedVector &x);
+
+    /// Is F stored in single precision?
+    bool is_approximate() const
+    {
+      return is_single;
+    }
+
     // qp's Problem concept
     void                multiply(const DistributedVector &x, DistributedVector &y) const;      // y = F x / |P F P|
     void                project_range(const DistributedVector &x, DistributedVector &y) const; // y = Q x
@@ -143,6 +155,8 @@ namespace slipstick::tfeti
     std::unique_ptr<RowWeights>                   weights; // with a preconditioner
     std::unique_ptr<PreconditionerBlocks>         preconditioner;
     DistributedVector                             dual_load;
+    DistributedVector                             correction; // (F - F~) x, taken off the dual load
+    bool                                          is_single             = false;
     double                                        norm_PFP              = 1;
     unsigned long long                            setup_multiplications = 0;
     double                                        factorization_time    = 0;

@@ -18,11 +18,20 @@ namespace slipstick::tfeti
     implicit
   };
 
+  /// How dense blocks are stored; products add up in double either way.
+  enum class Precision
+  {
+    double_precision,
+    single_precision
+  };
+
   struct DualOptions
   {
-    DualOperatorKind dual_operator       = DualOperatorKind::automatic;
-    Preconditioner   preconditioner      = Preconditioner::automatic;
-    unsigned int     max_norm_iterations = 40;   // of the power method for |PFP|
-    double           norm_tolerance      = 1e-3; // relative change at which it stops
+    DualOperatorKind dual_operator            = DualOperatorKind::automatic;
+    Preconditioner   preconditioner           = Preconditioner::automatic;
+    Precision        operator_precision       = Precision::double_precision; // single: see DualProblem::refine
+    Precision        preconditioner_precision = Precision::single_precision;
+    unsigned int     max_norm_iterations      = 40;   // of the power method for |PFP|
+    double           norm_tolerance           = 1e-3; // relative change at which it stops
   };
 } // namespace slipstick::tfeti

@@ -29,21 +29,25 @@ namespace slipstick::tfeti
       void apply(const DistributedVector &x, DistributedVector &y) const;
 
     private:
+      friend class RowWeights;
       struct Block
       {
         std::vector<unsigned int>           rows;
         Eigen::MatrixXd                     inverse; // of a small block
         std::unique_ptr<SemidefiniteFactor> factor;  // of a large one
       };
-      std::vector<Block> blocks;
+      std::vector<std::shared_ptr<const Block>> blocks;
     };
 
   private:
     struct Block
     {
-      std::vector<unsigned int>   rows; // owned
-      Eigen::SparseMatrix<double> matrix;
+      std::vector<unsigned int>             rows; // owned
+      Eigen::SparseMatrix<double>           matrix;
+      std::shared_ptr<const Inverse::Block> inverse; // with all rows active
     };
+    std::shared_ptr<const Inverse::Block> inverse(const Block &full, const std::vector<bool> &active) const;
+
     std::vector<Block> blocks;
   };
 
@@ -52,12 +56,14 @@ namespace slipstick::tfeti
   class PreconditionerBlocks
   {
   public:
-    PreconditionerBlocks(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains, const Preconditioner kind);
+    PreconditionerBlocks(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+                         const Preconditioner                                 kind,
+                         const Precision                                      precision);
 
     /// y = S x at the touched unknowns of subdomain p.
     void apply(const unsigned int p, const Eigen::VectorXd &x, Eigen::VectorXd &y) const;
 
   private:
-    std::vector<std::vector<double>> blocks; // packed lower triangles
+    std::vector<PackedSymmetric> blocks;
   };
 } // namespace slipstick::tfeti

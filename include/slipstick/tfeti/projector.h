@@ -24,6 +24,12 @@ namespace slipstick::tfeti
               const std::vector<bool>                             &active,
               const MPI_Comm                                       comm,
               const std::vector<qp::Tie>                          &ties = {});
+
+    /// The same with the G of another one, which is not kept but shared; @p all must be of all rows, without ties.
+    Projector(const Projector            &all,
+              const std::vector<bool>    &active,
+              const MPI_Comm              comm,
+              const std::vector<qp::Tie> &ties = {});
     ~Projector();
 
     /// y = Q x, owned entries. Collective.
@@ -48,23 +54,17 @@ namespace slipstick::tfeti
     unsigned long long dimension() const;
 
   private:
-    /// G of one subdomain: column k of `values` belongs to `rows[k]` (local dual number).
-    struct Block
-    {
-      unsigned int              first; // of its rigid motions among those of this rank
-      std::vector<unsigned int> rows;
-      Eigen::MatrixXd           values; // motions x rows
-    };
+    struct Motions; // G
 
+    void make_coarse(const std::vector<bool> &active, const MPI_Comm comm);
     void multiply_transpose(const Eigen::VectorXd &a, DistributedVector &y) const;
     void mask(DistributedVector &y) const;
 
-    const DualOperator           &scatter_gather;
-    std::vector<Block>            blocks;
-    unsigned int                  n_motions = 0; // of this rank
-    std::vector<qp::Tie>          ties;
-    std::unique_ptr<CoarseSolver> coarse;
-    DistributedVector             indicator; // 1 on active rows, ghosts included
-    mutable DistributedVector     source, target;
+    const DualOperator            &scatter_gather;
+    std::shared_ptr<const Motions> G;
+    std::vector<qp::Tie>           ties;
+    std::unique_ptr<CoarseSolver>  coarse;
+    DistributedVector              indicator; // 1 on active rows, ghosts included
+    mutable DistributedVector      source, target;
   };
 } // namespace slipstick::tfeti

@@ -36,15 +36,15 @@ namespace slipstick::tfeti
       return matrices.stiffness.selfadjointView<Eigen::Lower>() * x;
     }
 
-    /// Rows and columns of K+ at the touched unknowns, in their order; symmetric, full. Needs the trailing block.
-    Eigen::MatrixXd pseudo_inverse_block() const;
+    /// Rows and columns of K+ at the touched unknowns, in their order; packed lower triangle. Needs the trailing block.
+    std::vector<double> pseudo_inverse_block() const;
 
     /// Schur complement of K on the touched unknowns (the fixing ones among them or held together with them), in their
-    /// order; symmetric, full. Needs the trailing block.
-    Eigen::MatrixXd schur_complement() const;
+    /// order; packed lower triangle. Needs the trailing block.
+    std::vector<double> schur_complement() const;
 
-    /// Rows and columns of K at the touched unknowns, in their order; symmetric, full.
-    Eigen::MatrixXd touched_stiffness() const;
+    /// Rows and columns of K at the touched unknowns, in their order; packed lower triangle.
+    std::vector<double> touched_stiffness() const;
 
     /// Diagonal of K at the touched unknowns.
     Eigen::VectorXd touched_diagonal() const;
@@ -88,7 +88,7 @@ namespace slipstick::tfeti
     }
 
   private:
-    Eigen::MatrixXd at_touched(const Eigen::MatrixXd &in_last_order) const;
+    std::vector<unsigned int> touched_in_last_order() const;
 
     SubdomainMatrices         matrices;
     std::vector<unsigned int> touched_unknowns;

@@ -1,0 +1,31 @@
+// When dense blocks of K_p+ pay.
+#pragma once
+
+#include <slipstick/tfeti/constraints.h>
+#include <slipstick/tfeti/options.h>
+#include <slipstick/tfeti/subdomain_matrices.h>
+
+#include <cstddef>
+
+namespace slipstick::tfeti
+{
+  /// What the dense block of one subdomain costs and saves, by rates measured (doc/decisions.md, "Explicit or implicit").
+  struct BlockEstimate
+  {
+    std::size_t bytes  = 0; // of F_p, and S_p with the Dirichlet preconditioner
+    double      setup  = 0; // [s]
+    double      saving = 0; // per multiplication, against the sparse solves [s]
+  };
+
+  BlockEstimate estimate_block(const std::size_t n_unknowns, const std::size_t n_touched, const DualOptions &options);
+
+  /// Memory that this process may still take: its share of what the machine has free [bytes]. Collective.
+  std::size_t memory_share(const MPI_Comm comm);
+
+  /// Is F to be stored in dense blocks? As the options say; if it is left to us, when the blocks of every rank take no
+  /// more than a part of its memory share and the multiplications to be expected pay for them. Collective.
+  bool is_explicit(const DualOptions                    &options,
+                   const std::vector<SubdomainMatrices> &matrices,
+                   const Constraints                    &constraints,
+                   const MPI_Comm                        comm);
+} // namespace slipstick::tfeti

@@ -1,0 +1,65 @@
+#include <slipstick/contact/refinement.h>
+
+namespace slipstick::contact
+{
+  namespace
+  {
+    // Corrections before giving up; two reach rounding.
+    constexpr unsigned int max_corrections = 5;
+    // Multiplications that measuring the error of F~ takes.
+    constexpr unsigned int multiplications_per_check = 2;
+  } // namespace
+
+  DualSolution solve_refined(tfeti::DualProblem           &dual,
+                             const SlipLaw                &law,
+                             const scene::SolverOptions   &options,
+                             const scene::FrictionOptions &friction,
+                             const ProgressObserver       &observer,
+                             const DualSolution           *start)
+  {
+    auto       solution  = solve(dual, law, options, friction, observer, start);
+    const auto reference = [&dual] { // |P (d - F x~)|, as the solvers see it
+      auto x = dual.particular(), b = dual.zero(), q = dual.zero();
+      dual.multiply(x, b);
+      b.sadd(-1., 1. / dual.norm(), dual.d());
+      dual.project_range(b, q);
+      b -= q;
+      return b.l2_norm();
+    };
+    if (!dual.is_approximate() || solution.status != qp::Status::converged)
+      return solution;
+    const double norm = solution.reference > 0 ? solution.reference : reference();
+    for (unsigned int correction = 0;; ++correction)
+      {
+        const double change = norm > 0 ? dual.refine(solution.multipliers) / norm : 0.;
+        solution.counts.hessian_multiplications += multiplications_per_check;
+        solution.projected_gradient += change; // triangle inequality
+        if (solution.projected_gradient <= options.tolerance)
+          return solution;
+        if (correction == max_corrections)
+          {
+            solution.status = qp::Status::stagnated;
+            return solution;
+          }
+        const DualSolution before = std::move(solution);
+
+        solution = solve(
+          dual,
+          law,
+          options,
+          friction,
+          [&](Progress progress) {
+            progress.step.hessian_multiplications += before.counts.hessian_multiplications;
+            progress.step.outer += before.counts.outer_iterations;
+            if (observer)
+              observer(progress);
+          },
+          &before);
+        solution.counts += before.counts;
+        solution.fallbacks += before.fallbacks;
+        solution.friction_iterations += before.friction_iterations;
+        if (solution.status != qp::Status::converged)
+          return solution;
+      }
+  }
+} // namespace slipstick::contact

@@ -1,0 +1,82 @@
+#include <slipstick/tfeti/operator_choice.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <string>
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    // Rates of one core (benchmarks/cholesky.cc): dense inverse of a factor, reading of a factor or block.
+    constexpr double operations_per_second = 10e9;
+    constexpr double bytes_per_second      = 10e9;
+    // Nonzeros of the Cholesky factor over n log2 n, plane meshes (2.5e5 at n = 5202, 1.2e6 at n = 20402).
+    constexpr double factor_growth = 4;
+    // Multiplications with F that a run makes at least: norm estimate and solution.
+    constexpr double expected_multiplications = 40;
+    // Part of a process's memory share that the dense blocks may take.
+    constexpr double memory_part = 0.5;
+
+    std::size_t n_touched(const std::vector<Constraints::Entry> &block)
+    {
+      std::set<unsigned int> dofs;
+      for (const auto &entry : block)
+        dofs.insert(entry.dof);
+      return dofs.size();
+    }
+  } // namespace
+
+  BlockEstimate estimate_block(const std::size_t n_unknowns, const std::size_t n_touched, const DualOptions &options)
+  {
+    const double      n = n_unknowns, t = n_touched, factor = factor_growth * n * std::log2(std::max(n, 2.));
+    const std::size_t packed = n_touched * (n_touched + 1) / 2;
+    const auto        size   = [](const Precision precision) {
+      return precision == Precision::single_precision ? sizeof(float) : sizeof(double);
+    };
+    BlockEstimate estimate;
+    estimate.bytes = packed * size(options.operator_precision);
+    if (options.preconditioner == Preconditioner::dirichlet)
+      estimate.bytes += packed * size(options.preconditioner_precision);
+    estimate.setup  = 2. / 3. * t * t * t / operations_per_second;
+    estimate.saving = (2 * sizeof(double) * factor - packed * size(options.operator_precision)) / bytes_per_second;
+    return estimate;
+  }
+
+  std::size_t memory_share(const MPI_Comm comm)
+  {
+    MPI_Comm node;
+    MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+    int n_ranks;
+    MPI_Comm_size(node, &n_ranks);
+    MPI_Comm_free(&node);
+    std::ifstream file("/proc/meminfo");
+    for (std::string line; std::getline(file, line);)
+      if (line.rfind("MemAvailable:", 0) == 0)
+        return std::stoull(line.substr(line.find(':') + 1)) * 1024 / n_ranks; // kB
+    return std::numeric_limits<std::size_t>::max();
+  }
+
+  bool is_explicit(const DualOptions                    &options,
+                   const std::vector<SubdomainMatrices> &matrices,
+                   const Constraints                    &constraints,
+                   const MPI_Comm                        comm)
+  {
+    if (options.dual_operator != DualOperatorKind::automatic)
+      return options.dual_operator == DualOperatorKind::explicit_blocks;
+    std::size_t bytes = 0;
+    double      gain  = 0;
+    for (unsigned int p = 0; p < matrices.size(); ++p)
+      {
+        const auto estimate = estimate_block(matrices[p].load.size(), n_touched(constraints.blocks[p]), options);
+        bytes += estimate.bytes;
+        gain += expected_multiplications * estimate.saving - estimate.setup;
+      }
+    const bool fits = bytes <= memory_part * memory_share(comm);
+    return dealii::Utilities::MPI::min(fits ? 1 : 0, comm) > 0 && dealii::Utilities::MPI::sum(gain, comm) >= 0;
+  }
+} // namespace slipstick::tfeti
