@@ -6,6 +6,7 @@
 #include <slipstick/fem/contact_search.h>
 #include <slipstick/fem/decomposition.h>
 #include <slipstick/fem/loads.h>
+#include <slipstick/fem/pair_checks.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/convergence.h>
 #include <slipstick/output/fields.h>
@@ -133,6 +134,7 @@ namespace slipstick::app
           scene.contacts.push_back(std::move(pair));
         }
       fem::check_overlap(scene, mesh, spaces);
+      fem::check_obstacle_pairs(scene, mesh, spaces);
     }
 
     /// Everything that the load steps share, and what they leave behind.

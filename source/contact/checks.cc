@@ -3,6 +3,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <cmath>
+#include <limits>
 
 namespace slipstick::contact
 {
@@ -27,11 +28,6 @@ namespace slipstick::contact
       return forces;
     }
 
-    bool is_equality(const tfeti::RowKind kind)
-    {
-      return kind == tfeti::RowKind::gluing || kind == tfeti::RowKind::bonded || kind == tfeti::RowKind::prescribed;
-    }
-
     /// Forces and moments left on the bodies and nodes by K u - f + B'x, and the force scales.
     struct Balance
     {
@@ -53,9 +49,9 @@ namespace slipstick::contact
       const auto all = dual.forces(multipliers), of_outside = dual.forces(outside);
 
       const unsigned int k =
-        dealii::Utilities::MPI::max(dual.subdomains().empty() ?
-                                      0u :
-                                      static_cast<unsigned int>(dual.subdomains()[0]->kernel().cols()),
+        dealii::Utilities::MPI::max(dual.subdomains().empty()
+                                      ? 0u
+                                      : static_cast<unsigned int>(dual.subdomains()[0]->kernel().cols()),
                                     dual.communicator());
       Balance result{Eigen::MatrixXd::Zero(k, n_bodies), Eigen::VectorXd::Zero(n_bodies)};
       for (unsigned int p = 0; p < nodal_forces.size(); ++p)
@@ -75,6 +71,28 @@ namespace slipstick::contact
       return result;
     }
 
+    /// Moment of the forces on both sides: force on the slave body at its node, the opposite one at the mean of the
+    /// master nodes; two dimensions.
+    /// @param N pressing force, @param T minus the tangential force on the slave body.
+    double moment_mismatch(const tfeti::ContactPoint &point, const double N, const double T)
+    {
+      if (!point.has_master)
+        return 0;
+      const double fx = -(N * point.normal[0] - T * point.normal[1]), fy = -(N * point.normal[1] + T * point.normal[0]);
+      return (point.position[0] - point.master_position[0]) * fy - (point.position[1] - point.master_position[1]) * fx;
+    }
+
+    ContactNode node_at(const tfeti::ContactPoint &point)
+    {
+      ContactNode node;
+      node.pair     = point.pair;
+      node.position = point.position;
+      node.normal   = point.normal;
+      node.area     = point.traction_area;
+      node.length   = point.length;
+      return node;
+    }
+
     /// One contact node from the force on it and the jump of displacement there.
     ContactNode contact_node(const tfeti::DualProblem  &dual,
                              const tfeti::ContactPoint &point,
@@ -83,19 +101,14 @@ namespace slipstick::contact
                              const std::vector<double> &slip_bound,
                              const std::vector<bool>   &free)
     {
-      ContactNode node;
-      node.pair     = point.pair;
-      node.position = point.position;
-      node.normal   = point.normal;
-      node.area     = point.area;
-      node.length   = point.length;
+      ContactNode node = node_at(point);
       if (point.normal_row != tfeti::invalid_row)
         {
-          node.pressure = multipliers.local_element(point.normal_row) / point.area;
+          node.pressure = multipliers.local_element(point.normal_row) / node.area;
           node.gap      = dual.constraints().c[point.normal_row] - jumps.local_element(point.normal_row);
         }
-      node.is_closed = point.normal_row == tfeti::invalid_row || free[point.normal_row];
-      node.status    = node.is_closed ? ContactStatus::stick : ContactStatus::open;
+      node.is_closed    = point.normal_row == tfeti::invalid_row || free[point.normal_row];
+      node.status       = node.is_closed ? ContactStatus::stick : ContactStatus::open;
       double tangential = 0;
       if (point.tangential_row == tfeti::invalid_row)
         {
@@ -106,21 +119,40 @@ namespace slipstick::contact
       else
         {
           tangential               = multipliers.local_element(point.tangential_row);
-          node.tangential_traction = -tangential / point.area; // on the slave body
+          node.tangential_traction = -tangential / node.area; // on the slave body
           node.slip       = jumps.local_element(point.tangential_row) - dual.constraints().c[point.tangential_row];
-          node.slip_bound = slip_bound[point.tangential_row] / point.area;
+          node.slip_bound = slip_bound[point.tangential_row] / node.area;
           // a bound that acts on open nodes too (Tresca on the whole boundary) makes them slip as well
           if (!free[point.tangential_row] && (node.slip_bound > 0 || node.is_closed))
             node.status = ContactStatus::slip;
         }
-      if (point.has_master)
+      node.moment_mismatch = moment_mismatch(point, node.pressure * node.area, tangential);
+      return node;
+    }
+
+    /// One node of a bonded pair: it sticks whatever the tractions; a row that others imply carries none.
+    ContactNode bonded_node(const tfeti::ContactPoint &point,
+                            const DistributedVector   &multipliers,
+                            const DistributedVector   &jumps)
+    {
+      ContactNode node  = node_at(point);
+      node.status       = ContactStatus::stick;
+      node.is_closed    = true;
+      node.slip_bound   = std::numeric_limits<double>::infinity();
+      node.gap          = point.gap;
+      double tangential = 0;
+      if (point.normal_row != tfeti::invalid_row)
         {
-          // force on the slave body at its node, the opposite one at the mean of the master nodes: two dimensions
-          const double N = node.pressure * node.area, T = tangential;
-          const double fx = -(N * point.normal[0] - T * point.normal[1]), fy = -(N * point.normal[1] + T * point.normal[0]);
-          node.moment_mismatch = (point.position[0] - point.master_position[0]) * fy -
-                                 (point.position[1] - point.master_position[1]) * fx;
+          node.pressure = multipliers.local_element(point.normal_row) / node.area;
+          node.gap -= jumps.local_element(point.normal_row);
         }
+      if (point.tangential_row != tfeti::invalid_row)
+        {
+          tangential               = multipliers.local_element(point.tangential_row);
+          node.tangential_traction = -tangential / node.area;
+          node.slip                = jumps.local_element(point.tangential_row);
+        }
+      node.moment_mismatch = moment_mismatch(point, node.pressure * node.area, tangential);
       return node;
     }
   } // namespace
@@ -159,16 +191,16 @@ namespace slipstick::contact
     for (unsigned int p = 0; p < u.size(); ++p)
       {
         // two components a node
-        checks.max_displacement = std::max(
-          checks.max_displacement,
-          Eigen::Map<const Eigen::Matrix2Xd>(u[p].data(), 2, u[p].size() / 2).colwise().norm().maxCoeff());
+        checks.max_displacement =
+          std::max(checks.max_displacement,
+                   Eigen::Map<const Eigen::Matrix2Xd>(u[p].data(), 2, u[p].size() / 2).colwise().norm().maxCoeff());
         checks.energy += u[p].dot(forces[p] + dual.subdomains()[p]->load());
       }
     const auto violation = [&](const unsigned int r) {
       const double compliance = constraints.compliance.empty() ? 0. : constraints.compliance[r];
       return jumps.local_element(r) - constraints.c[r] - compliance * multipliers.local_element(r);
     };
-    double     gap       = 0; // between primal and dual objective, as far as equalities make it
+    double gap = 0; // between primal and dual objective, as far as equalities make it
     for (unsigned int r = 0; r < constraints.kind.size(); ++r)
       if (is_equality(constraints.kind[r]))
         checks.interface_jump = std::max(checks.interface_jump, std::abs(violation(r)));
@@ -195,6 +227,11 @@ namespace slipstick::contact
             checks.complementarity += std::abs(bound * std::abs(node.slip) + T * node.slip);
           }
         result.nodes.push_back(node);
+        result.keys.push_back(point.key);
+      }
+    for (const auto &point : constraints.bonded_points)
+      {
+        result.nodes.push_back(bonded_node(point, multipliers, jumps));
         result.keys.push_back(point.key);
       }
     const auto on_bodies = balance(dual, forces, multipliers, n_bodies);

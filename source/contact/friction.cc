@@ -206,6 +206,13 @@ namespace slipstick::contact
               set_bounds(law.bounds(from));
             solution.counts.outer_iterations = 0;
           }
+        if (law.depends_on_pressure())
+          {
+            if (coupled_newton_from(from))
+              return true;
+            ++solution.fallbacks;
+            set_bounds(law.bounds(from));
+          }
         for (unsigned int restart = 0;; ++restart)
           {
             if (newton_from(from))
@@ -221,6 +228,34 @@ namespace slipstick::contact
             from = smalbe(near, options.newton.start_tolerance * std::pow(restart_accuracy, restart + 1.), counted());
             set_bounds(law.bounds(from));
           }
+      }
+
+      /// Bounds differentiated with the rest.
+      bool coupled_newton_from(const Vector &from)
+      {
+        Vector d = dual.d();
+        d /= dual.norm();
+        auto result = qp::semismooth_newton(dual,
+                                            1.,
+                                            d,
+                                            box,
+                                            from,
+                                            qp::Goal(options.tolerance, solution.reference),
+                                            options.newton,
+                                            options.pcpg,
+                                            counted(),
+                                            {},
+                                            qp::CoupledBounds{law.pressure_bounds(), true});
+        solution.counts += result.counts;
+        solution.status              = result.status;
+        solution.projected_gradient  = result.projected_gradient;
+        solution.equality            = 0;
+        solution.friction_iterations = result.counts.outer_iterations;
+        solution.multipliers         = std::move(result.x);
+        const auto bounds            = law.bounds(solution.multipliers);
+        solution.bound_change        = change_of_bounds(bounds);
+        set_bounds(bounds);
+        return result.status == qp::Status::converged;
       }
 
       bool newton_from(const Vector &from)

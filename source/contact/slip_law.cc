@@ -104,6 +104,17 @@ namespace slipstick::contact
     return result;
   }
 
+  std::vector<qp::PressureBound> SlipLaw::pressure_bounds() const
+  {
+    std::vector<qp::PressureBound> result;
+    for (const Row &row : rows)
+      result.push_back({row.tangential,
+                        row.normal,
+                        row.is_coulomb ? 0. : fixed[row.tangential],
+                        row.is_coulomb ? row.coefficient : 0.});
+    return result;
+  }
+
   qp::FrictionCones<Vector> SlipLaw::admissible(const tfeti::DualProblem &dual) const
   {
     qp::FrictionCones<Vector> set{multiplier_box(dual, fixed), {}};

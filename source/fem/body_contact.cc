@@ -1,6 +1,5 @@
-#include <slipstick/base/exceptions.h>
-#include <slipstick/base/log.h>
 #include <slipstick/fem/body_contact.h>
+#include <slipstick/fem/pair_checks.h>
 
 #include <algorithm>
 
@@ -25,33 +24,12 @@ namespace slipstick::fem
   namespace
   {
     template <int dim>
-    std::string describe(const scene::Scene<dim> &scene, const scene::BoundaryName &where)
-    {
-      return scene.bodies[where.body].name + "/" + where.boundary;
-    }
-
-    template <int dim>
     double mean_chord(const std::vector<SurfaceEdge<dim>> &edges)
     {
       double sum = 0;
       for (const auto &edge : edges)
         sum += edge.chord();
       return sum / edges.size();
-    }
-
-    /// Diagonal of the box around the curve.
-    template <int dim>
-    double extent(const std::vector<SurfaceEdge<dim>> &edges)
-    {
-      dealii::Point<dim> low = edges[0].node(0), high = low;
-      for (const auto &edge : edges)
-        for (unsigned int i = 0; i < edge.n_nodes; ++i)
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              low[d]  = std::min(low[d], edge.at[i][d]);
-              high[d] = std::max(high[d], edge.at[i][d]);
-            }
-      return low.distance(high);
     }
 
     template <int dim>
@@ -72,28 +50,34 @@ namespace slipstick::fem
     }
 
     template <int dim>
-    std::vector<MortarRow<dim>> rows_of(const scene::Scene<dim>             &scene,
-                                        const scene::ContactPair<dim>       &pair,
-                                        const std::vector<SurfaceEdge<dim>> &slave,
-                                        const std::vector<SurfaceEdge<dim>> &master)
+    std::vector<SurfaceEdge<dim>> outline_of(const std::vector<SurfaceEdge<dim>> &all, const unsigned int body)
     {
-      const std::string between =
-        "Contact " + pair.name + ": " + describe(scene, pair.slave) + " and " + describe(scene, *pair.master);
-      const auto distance = facing_distance(slave, master);
-      if (slave.empty() || master.empty() || !distance)
-        throw InputError(between + " do not face each other anywhere",
-                         "choose boundaries whose outward normals are opposed, or move the bodies");
-      const double near = pair.reach ? *pair.reach : automatic_reach(slave, master, *distance);
+      std::vector<SurfaceEdge<dim>> outline;
+      std::copy_if(all.begin(), all.end(), std::back_inserter(outline), [&](const auto &e) { return e.body == body; });
+      return outline;
+    }
+
+    template <int dim>
+    std::vector<MortarRow<dim>> rows_of(const scene::Scene<dim>             &scene,
+                                        const Mesh<dim>                     &mesh,
+                                        const scene::ContactPair<dim>       &pair,
+                                        const std::vector<SurfaceEdge<dim>> &all)
+    {
+      const PairSides<dim> sides{edges_on(mesh, all, pair.slave),
+                                 edges_on(mesh, all, *pair.master),
+                                 outline_of(all, pair.slave.body),
+                                 outline_of(all, pair.master->body)};
+      const auto           distance = facing_distance(sides.slave, sides.master);
+      if (!distance) // of empty sides too
+        refuse_pair(scene, pair, sides, 0.);
+      const double near = pair.reach ? *pair.reach : automatic_reach(sides.slave, sides.master, *distance);
       // nodes that are farther apart have no rows at first, but are looked at again when the solution is known
       const double reach =
-        pair.reach || !can_be_pruned(pair) ? near : std::max(near, widest_reach(slave, master, *distance));
-      auto rows = mortar_rows(slave, master, {reach, near}, pair.discretization, pair.name);
+        pair.reach || !can_be_pruned(pair) ? near : std::max(near, widest_reach(sides.slave, sides.master, *distance));
+      auto rows = mortar_rows(sides.slave, sides.master, {reach, near}, pair.discretization, pair.name);
       if (rows.empty())
-        throw InputError(between + format(" do not meet within the reach of %g mm along the normals of the slave; "
-                                          "where they face each other they are %g mm apart",
-                                          reach,
-                                          *distance),
-                         "raise Contact " + pair.name + "/Reach, move the bodies, or exchange slave and master");
+        refuse_pair(scene, pair, sides, reach);
+      check_sides(scene, mesh, pair, sides, all, rows);
       return rows;
     }
 
@@ -138,10 +122,7 @@ namespace slipstick::fem
     for (unsigned int k = 0; k < scene.contacts.size(); ++k)
       if (scene.contacts[k].master)
         {
-          contacts.rows[k] = rows_of(scene,
-                                     scene.contacts[k],
-                                     edges_on(mesh, all, scene.contacts[k].slave),
-                                     edges_on(mesh, all, *scene.contacts[k].master));
+          contacts.rows[k] = rows_of(scene, mesh, scene.contacts[k], all);
           for (const auto &row : contacts.rows[k])
             for (const Weights *weights : {&row.slave_weights, &row.master_weights})
               for (const auto &[key, weight] : *weights)

@@ -66,43 +66,21 @@ namespace slipstick::fem
       return smallest;
     }
 
-    double right_end(const Edges &edges)
-    {
-      double right = -std::numeric_limits<double>::max();
-      for (const auto &edge : edges)
-        right = std::max(right, EdgeTree::box_around(edge).max_corner().get<0>());
-      return right;
-    }
-
-    /// Is x inside a closed outline (of chords)? Crossings of the ray along +x are counted.
-    bool is_inside(const Edges &outline, const EdgeTree &tree, const double right, const dealii::Point<2> &x)
-    {
-      bool inside = false;
-      if (x[0] <= right)
-        for (const unsigned int e : tree.near({{x[0], x[1]}, {right, x[1]}}))
-          {
-            const auto a = outline[e].node(0), b = outline[e].node(1);
-            if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < a[0] + (x[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
-              inside = !inside;
-          }
-      return inside;
-    }
-
     /// Distance to the nearest chord over its length.
-    double relative_depth(const Edges &outline, const EdgeTree &tree, const dealii::Point<2> &x)
+    double relative_depth(const ClosedOutline &outline, const dealii::Point<2> &x)
     {
       double best = std::numeric_limits<double>::max(), relative = 0;
-      tree.for_each_by_distance(
+      outline.tree.for_each_by_distance(
         x,
         [&] { return best; },
         [&](const unsigned int e) {
-          const auto   a = outline[e].node(0), b = outline[e].node(1);
+          const auto   a = outline.edges[e].node(0), b = outline.edges[e].node(1);
           const double s        = std::min(1., std::max(0., (x - a) * (b - a) / (b - a).norm_square()));
           const double distance = x.distance(a + s * (b - a));
           if (distance < best)
             {
               best     = distance;
-              relative = distance / outline[e].chord();
+              relative = distance / outline.edges[e].chord();
             }
           return true;
         });
@@ -115,10 +93,9 @@ namespace slipstick::fem
                     const unsigned int     b,
                     const Edges           &of_b)
     {
-      const EdgeTree tree(of_b);
-      const double   right = right_end(of_b);
+      const ClosedOutline outline(of_b);
       for (const auto &edge : of_a)
-        if (const auto x = edge.node(0); is_inside(of_b, tree, right, x) && relative_depth(of_b, tree, x) > overlap)
+        if (const auto x = edge.node(0); outline.contains(x) && relative_depth(outline, x) > overlap)
           throw InputError(format("bodies '%s' and '%s' overlap: the point (%g, %g) of %s is inside %s",
                                   scene.bodies[a].name.c_str(),
                                   scene.bodies[b].name.c_str(),

@@ -18,10 +18,16 @@ namespace slipstick::fem
 {
   namespace
   {
-    // Cells of a METIS subdomain when their number is left to us: that of the paper's 50 x 50 blocks.
-    constexpr double automatic_cells_per_subdomain = 2500;
+    // Cells (times the square of the degree) of a METIS subdomain when their number is left to us: benchmarks/README.md,
+    // "How many subdomains?".
+    constexpr double automatic_cells_per_subdomain = 10000;
 
-    constexpr double doubtful_size_ratio = 1e5; // of the largest body to the smallest: units are mixed up
+    // Bodies that may not share units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus): the larger size or modulus over
+    // the smaller one. Parts of one assembly differ less in size; steel and rubber differ by 1e5 in modulus. What is
+    // doubtful together: the smaller of two bodies is the stiffer one, as it is when metres and pascal meet mm and MPa.
+    constexpr double doubtful_size_ratio    = 300;
+    constexpr double doubtful_modulus_ratio = 3e5;
+    constexpr double doubtful_together_size = 30, doubtful_together_modulus = 3e4;
 
     template <int dim>
     std::uint64_t product(const std::array<unsigned int, dim> &n)
@@ -58,6 +64,45 @@ namespace slipstick::fem
              scene.decomposition.method == DecompositionMethod::none;
     }
 
+    /// A warning about the two bodies that are farthest over the limits, if any are.
+    /// @param size diagonals of the boxes around the bodies [mm].
+    template <int dim>
+    void remark_on_units(const scene::Scene<dim>   &scene,
+                         const std::vector<double> &size,
+                         std::vector<std::string>  &remarks)
+    {
+      const auto modulus = [&](const unsigned int body) { // meshes are also made before there are materials
+        const unsigned int material = scene.bodies[body].material;
+        return material < scene.materials.size() ? scene.materials[material].young_modulus
+                                                 : scene::Material().young_modulus;
+      };
+      double       worst = 1; // over its limit
+      unsigned int small = 0, large = 0;
+      for (unsigned int a = 0; a < size.size(); ++a)
+        for (unsigned int b = 0; b < size.size(); ++b)
+          {
+            const double sizes = size[b] / size[a], moduli = modulus(a) / modulus(b);
+            const double over =
+              std::max({sizes / doubtful_size_ratio,
+                        moduli / doubtful_modulus_ratio,
+                        std::min(sizes / doubtful_together_size, moduli / doubtful_together_modulus)});
+            if (over > worst)
+              {
+                worst = over;
+                small = a;
+                large = b;
+              }
+          }
+      if (worst == 1)
+        return;
+      const auto describe = [&](const unsigned int b) {
+        return "body " + scene.bodies[b].name + " is " + number_text(size[b]) + " mm across with a Young modulus of " +
+               number_text(modulus(b)) + " MPa";
+      };
+      remarks.push_back("warning: " + describe(large) + ", " + describe(small) +
+                        ": do their meshes and materials have the same units? (Scale, Young modulus)");
+    }
+
     /// Every rank makes its own blocks.
     template <int dim>
     void make_blocks(const scene::Scene<dim> &scene, Mesh<dim> &mesh)
@@ -75,6 +120,10 @@ namespace slipstick::fem
         }
       mesh.combined_ids.resize(scene.bodies.size());
       mesh.points.resize(scene.bodies.size());
+      std::vector<double> sizes;
+      for (const auto &body : scene.bodies)
+        sizes.push_back(body.size.norm());
+      remark_on_units(scene, sizes, mesh.remarks);
 
       const unsigned int N =
         scene.decomposition.method == scene::DecompositionMethod::none ? 1 : scene.decomposition.blocks;
@@ -127,22 +176,6 @@ namespace slipstick::fem
             high[d] = std::max(high[d], x[d]);
           }
       return low.distance(high);
-    }
-
-    template <int dim>
-    void remark_on_units(const scene::Scene<dim>          &scene,
-                         const std::vector<BodyMesh<dim>> &bodies,
-                         std::vector<std::string>         &remarks)
-    {
-      std::vector<double> size;
-      for (const auto &body : bodies)
-        size.push_back(size_of(body.piece));
-      const auto [least, most] = std::minmax_element(size.begin(), size.end());
-      if (*most <= doubtful_size_ratio * *least)
-        return;
-      remarks.push_back("warning: body " + scene.bodies[most - size.begin()].name + " is " + number_text(*most) +
-                        " mm across, body " + scene.bodies[least - size.begin()].name + " " + number_text(*least) +
-                        " mm: do their meshes have the same units? (Scale)");
     }
 
     /// Subdomains for pieces of the given costs and cells: the next one always goes to the piece with the most cost
@@ -256,7 +289,10 @@ namespace slipstick::fem
             for (const auto &[name, v] : body.points)
               names.back().points[name] = {body.piece.vertices[v], body.piece.global_vertices[v]};
           }
-        remark_on_units(scene, bodies, mesh.remarks);
+        std::vector<double> sizes;
+        for (const auto &body : bodies)
+          sizes.push_back(size_of(body.piece));
+        remark_on_units(scene, sizes, mesh.remarks);
         if (scene.decomposition.subdomains > mesh.n_cells &&
             scene.decomposition.method != scene::DecompositionMethod::none)
           throw InputError("Decomposition/Subdomains = " + std::to_string(scene.decomposition.subdomains) +

@@ -109,6 +109,7 @@ namespace slipstick::fem
         Tensor                    normal;
         double                    size   = 0;    // of the edges there
         double                    length = 0;    // D_i
+        double                    full   = 0;    // D_i of covered edges
         std::map<NodeKey, double> slave, master; // D_ik, M_ij
       };
 
@@ -137,6 +138,7 @@ namespace slipstick::fem
               }
             for (unsigned int k = 0; k < places.size(); ++k)
               {
+                nodes[first + side[k]].full += slave[places[k].first].tributary_lengths()[places[k].second];
                 node_of[places[k].first][places[k].second] = first + side[k];
                 nodes[first + side[k]].size += slave[places[k].first].chord();
               }
@@ -334,6 +336,7 @@ namespace slipstick::fem
         row.position       = node.position;
         row.normal         = node.normal;
         row.length         = node.length;
+        row.full_length    = node.full;
         row.slave_weights  = normalised(node.slave, node.length);
         row.master_weights = normalised(node.master, node.length);
         measure(row);

@@ -11,6 +11,9 @@ namespace slipstick::fem
   {
     // Normals are parallel when their product is above this.
     constexpr double parallel_cosine = 1 - 1e-8;
+    // Tractions are forces over no less than this part of the tributary length: a node at the end of a boundary has half
+    // of that of the others.
+    constexpr double smallest_covered_part = 0.5;
 
     double norm(const std::map<unsigned int, double> &v)
     {
@@ -18,6 +21,18 @@ namespace slipstick::fem
       for (const auto &[i, value] : v)
         squares += value * value;
       return std::sqrt(squares);
+    }
+
+    /// v less its part along w.
+    std::map<unsigned int, double> without(std::map<unsigned int, double> v, const std::map<unsigned int, double> &w)
+    {
+      double product = 0;
+      for (const auto &[i, value] : w)
+        if (const auto found = v.find(i); found != v.end())
+          product += value * found->second;
+      for (const auto &[i, value] : w)
+        v[i] -= product / (norm(w) * norm(w)) * value;
+      return v;
     }
 
     template <int dim>
@@ -65,6 +80,7 @@ namespace slipstick::fem
   template <int dim>
   void RowBuilder<dim>::build()
   {
+    find_bonds();
     for (unsigned int i = 0; i < nodes.size(); ++i)
       add(i);
     if (!scene.foundations.empty())
@@ -170,11 +186,12 @@ namespace slipstick::fem
     touch.point.gap     = gap_of(where, node.point(), contact.gap, t);
     if (where.law == scene::ContactLaw::bonded || (where.reach && touch.point.gap > *where.reach))
       return false;
-    touch.pair         = pair;
-    touch.normal       = contact.normal;
-    touch.slave        = {{i, 1.}};
-    touch.point.area   = area;
-    touch.point.length = area / scene.bodies[node.body].thickness;
+    touch.pair                = pair;
+    touch.normal              = contact.normal;
+    touch.slave               = {{i, 1.}};
+    touch.point.area          = area;
+    touch.point.length        = area / scene.bodies[node.body].thickness;
+    touch.point.traction_area = area;
     return true;
   }
 
@@ -199,8 +216,10 @@ namespace slipstick::fem
       point.master_position[d] = row.master_position[d];
     point.gap    = gap_of(where, nodes[i].point(), row.gap, t);
     point.length = row.length;
-    point.area =
-      row.length * std::min(scene.bodies[where.slave.body].thickness, scene.bodies[where.master->body].thickness);
+    const double thickness =
+      std::min(scene.bodies[where.slave.body].thickness, scene.bodies[where.master->body].thickness);
+    point.area          = row.length * thickness;
+    point.traction_area = std::max(row.length, smallest_covered_part * row.full_length) * thickness;
     return true;
   }
 
@@ -270,7 +289,13 @@ namespace slipstick::fem
   }
 
   template <int dim>
-  typename RowBuilder<dim>::Vector RowBuilder<dim>::free_part(const Vector &row, const std::vector<Vector> &basis) const
+  typename RowBuilder<dim>::Vector RowBuilder<dim>::bond(const Touch &touch, const unsigned int direction) const
+  {
+    return jump(touch, direction == 0 ? touch.normal : tangent_of<dim>(touch.normal));
+  }
+
+  template <int dim>
+  typename RowBuilder<dim>::Vector RowBuilder<dim>::free_part(const Vector &row) const
   {
     Vector left;
     for (auto at = row.begin(); at != row.end(); std::advance(at, dim))
@@ -283,16 +308,27 @@ namespace slipstick::fem
         for (unsigned int c = 0; c < dim; ++c)
           left[dim * node + c] = direction[c];
       }
-    for (const Vector &one : basis)
-      {
-        double product = 0;
-        for (const auto &[i, value] : one)
-          if (const auto found = left.find(i); found != left.end())
-            product += value * found->second;
-        for (const auto &[i, value] : one)
-          left[i] -= product * value;
-      }
     return left;
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::find_bonds()
+  {
+    // pairs in the order of the scene, so that the result does not depend on the numbers of the nodes
+    std::vector<std::vector<std::pair<unsigned int, Touch>>> by_pair(scene.contacts.size());
+    for (const auto &[key, list] : pairs_of)
+      for (const auto &[pair, row] : list)
+        if (scene.contacts[pair].law == scene::ContactLaw::bonded)
+          {
+            Touch touch;
+            touch_body(number.at(key), pair, *row, touch);
+            by_pair[pair].emplace_back(number.at(key), std::move(touch));
+          }
+    for (const auto &list : by_pair)
+      for (const auto &[i, touch] : list)
+        for (const unsigned int d : {0, 1})
+          if (bonds.add(free_part(bond(touch, d)), held_direction_tolerance, dim * i, dim * (i + 1)))
+            kept_bonds.insert(std::array<unsigned int, 4>{{i, touch.pair, touch.side, d}});
   }
 
   template <int dim>
@@ -302,25 +338,22 @@ namespace slipstick::fem
     choose_tangents(touches);
     const auto &key     = nodes[i].key;
     const auto  is_free = [](const Vector &left) { return norm(left) > held_direction_tolerance; };
-    const auto  unit    = [](Vector left) {
-      const double size = norm(left);
-      for (auto &[index, value] : left)
-        value /= size;
-      return left;
-    };
-    std::vector<Vector> equal; // what bonds at this node imply
-    for (const Touch &touch : touches)
+    for (Touch &touch : touches)
       if (scene.contacts[touch.pair].law == scene::ContactLaw::bonded)
-        for (const unsigned int d : {0, 1})
-          {
-            const auto row  = jump(touch, d == 0 ? touch.normal : tangent_of<dim>(touch.normal));
-            const auto left = free_part(row, equal);
-            if (!is_free(left))
-              continue;
-            equal.push_back(unit(left));
-            fill(new_row(tfeti::RowKind::bonded, 0., key, (1ull << 32) + 16 * touch.pair + 4 * touch.side + d), row);
-            ++constraints.counts.gluing;
-          }
+        {
+          for (const unsigned int d : {0, 1})
+            {
+              if (kept_bonds.count(std::array<unsigned int, 4>{{i, touch.pair, touch.side, d}}) == 0)
+                continue;
+              const unsigned int number =
+                new_row(tfeti::RowKind::bonded, 0., key, (1ull << 32) + 16 * touch.pair + 4 * touch.side + d);
+              (d == 0 ? touch.point.normal_row : touch.point.tangential_row) = number;
+              fill(number, bond(touch, d));
+              ++constraints.counts.gluing;
+            }
+          if (touch.point.normal_row != tfeti::invalid_row || touch.point.tangential_row != tfeti::invalid_row)
+            constraints.bonded_points.push_back(touch.point);
+        }
     for (Touch &touch : touches)
       {
         if (scene.contacts[touch.pair].law == scene::ContactLaw::bonded)
@@ -328,17 +361,17 @@ namespace slipstick::fem
         const auto normal = jump(touch, touch.normal);
         if (is_pruned(touch))
           {
-            if (is_free(free_part(normal, equal)))
+            if (is_free(bonds.reduce(free_part(normal))))
               add_pruned(touch, normal);
             continue;
           }
         const auto tangential = jump(touch, tangent_of<dim>(touch.normal));
-        const auto left       = free_part(normal, equal);
+        const auto left       = bonds.reduce(free_part(normal));
         const bool has_normal = is_free(left);
-        auto       others     = equal;
+        auto       across     = bonds.reduce(free_part(tangential));
         if (has_normal)
-          others.push_back(unit(left));
-        const bool has_tangent = touch.has_tangent && is_free(free_part(tangential, others));
+          across = without(across, left);
+        const bool has_tangent = touch.has_tangent && is_free(across);
         if (!has_normal && !has_tangent)
           continue;
         const std::uint64_t which = touch.pair + (std::uint64_t(touch.side) << 32);

@@ -1,23 +1,40 @@
 #include <slipstick/tfeti/dual_problem.h>
 
+#include <deal.II/base/mpi.h>
+
 namespace slipstick::tfeti
 {
-  DualProblem::Face DualProblem::face(const std::vector<bool> &free) const
+  DualProblem::Face DualProblem::face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties) const
   {
-    return Face(*this, free);
+    return Face(*this, free, ties);
   }
 
-  DualProblem::Face::Face(const DualProblem &problem_, const std::vector<bool> &free_)
+  DualProblem::Face::Face(const DualProblem          &problem_,
+                          const std::vector<bool>    &free_,
+                          const std::vector<qp::Tie> &ties_)
     : problem(problem_)
     , free(free_)
+    , ties(ties_)
     , source(problem.rows.rows)
     , target(problem.rows.rows)
   {
-    if (!free_motions(problem.systems, problem.gluing, problem.rows, free, problem.names_of_bodies.size(), problem.comm)
-           .empty())
+    if (!problem.bodies->free(free).empty())
       return;
     projector =
       std::make_unique<Projector>(problem.systems, problem.gluing, *problem.F, problem.rows.rows, free, problem.comm);
+    if (dealii::Utilities::MPI::max(ties.empty() ? 0 : 1, problem.comm) > 0)
+      {
+        std::vector<bool> moving = free;
+        for (const auto &tie : ties)
+          moving[tie.tied] = true;
+        tied = std::make_unique<Projector>(problem.systems,
+                                           problem.gluing,
+                                           *problem.F,
+                                           problem.rows.rows,
+                                           moving,
+                                           problem.comm,
+                                           ties);
+      }
     if (problem.weights)
       {
         weights = std::make_unique<RowWeights::Inverse>(*problem.weights, free);
@@ -47,8 +64,17 @@ namespace slipstick::tfeti
   void DualProblem::Face::balance(DistributedVector &x) const
   {
     DistributedVector step = problem.zero();
-    projector->particular(problem.resultants() - problem.projector->multiply(x), step);
+    balancing().particular(problem.resultants() - problem.projector->multiply(x), step);
     x += step;
+  }
+
+  void DualProblem::Face::project_kernel(DistributedVector &p) const
+  {
+    for (const qp::Tie &tie : ties)
+      p.local_element(tie.tied) = tie.factor * p.local_element(tie.to);
+    DistributedVector range = problem.zero();
+    balancing().project_range(p, range);
+    p -= range;
   }
 
   void DualProblem::Face::multiplier_shift(const DistributedVector &v, DistributedVector &y) const

@@ -20,6 +20,12 @@ namespace slipstick::tfeti
       return static_cast<double>(label >> 11) / static_cast<double>(1ull << 52) - 1.;
     }
 
+    // Friction rows hold loose motions if the shares of a choice of them differ by no more than this factor.
+    constexpr double least_hold = 1e-8;
+    // Newton steps of the amounts by which loose bodies slide, and the change at which they end.
+    constexpr unsigned int max_slide_steps = 100;
+    constexpr double       slide_tolerance = 1e-14;
+
     void require_support(const std::vector<RigidMotion> &motions, const std::vector<std::string> &body_names)
     {
       if (!motions.empty())
@@ -56,7 +62,8 @@ namespace slipstick::tfeti
       factorization_time = MPI_Wtime() - start;
       F                  = std::make_unique<DualOperator>(systems, gluing, rows.rows, explicit_blocks);
     });
-    require_support(free_motions(systems, gluing, rows, {}, body_names.size(), comm), body_names);
+    bodies = std::make_unique<BodyMotions>(systems, gluing, rows, body_names.size(), comm);
+    require_support(bodies->free({}), body_names);
     if (options.preconditioner == Preconditioner::lumped || options.preconditioner == Preconditioner::dirichlet)
       {
         weights        = std::make_unique<RowWeights>(systems, gluing, rows.rows, comm);
@@ -184,11 +191,107 @@ namespace slipstick::tfeti
     return y;
   }
 
+  // The free rows and as many of those with friction forces as hold the loose motions.
+  std::vector<bool> DualProblem::rows_that_fix(const std::vector<RigidMotion> &loose,
+                                               const DistributedVector        &x,
+                                               std::vector<bool>               free) const
+  {
+    const Eigen::MatrixXd            own = bodies->jumps(loose);
+    std::vector<std::vector<double>> candidates;
+    std::vector<std::uint64_t>       labels;
+    const auto                       is_candidate = [&](const unsigned int r) {
+      return !free[r] && rows.kind[r] == RowKind::tangential && x.local_element(r) != 0;
+    };
+    for (unsigned int r = 0; r < free.size(); ++r)
+      if (is_candidate(r))
+        {
+          const Eigen::VectorXd share = own.row(r);
+          candidates.emplace_back(share.data(), share.data() + share.size());
+          labels.push_back(rows.label[r]);
+        }
+    std::map<std::uint64_t, std::vector<double>> all; // in an order that no number of ranks changes
+    const auto                                   labels_of = dealii::Utilities::MPI::all_gather(comm, labels);
+    const auto                                   shares_of = dealii::Utilities::MPI::all_gather(comm, candidates);
+    for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
+      for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
+        all.emplace(labels_of[rank][i], shares_of[rank][i]);
+    Eigen::MatrixXd shares(loose.size(), all.size());
+    unsigned int    column = 0;
+    for (const auto &candidate : all)
+      shares.col(column++) = Eigen::Map<const Eigen::VectorXd>(candidate.second.data(), loose.size());
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted(shares);
+    pivoted.setThreshold(least_hold);
+    if (all.empty() || pivoted.rank() < static_cast<Eigen::Index>(loose.size()))
+      require_support(loose, names_of_bodies);
+    std::set<std::uint64_t> chosen;
+    for (unsigned int i = 0; i < loose.size(); ++i)
+      chosen.insert(std::next(all.begin(), pivoted.colsPermutation().indices()[i])->first);
+    for (unsigned int r = 0; r < free.size(); ++r)
+      free[r] = free[r] || (is_candidate(r) && chosen.count(rows.label[r]) > 0);
+    return free;
+  }
+
+  // Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of what is.
+  void DualProblem::slide_apart(const std::vector<RigidMotion> &loose,
+                                const std::vector<bool>        &free,
+                                Recovery                       &at) const
+  {
+    const Eigen::MatrixXd            own  = bodies->jumps(loose);
+    const DistributedVector          jump = jumps(at.u);
+    std::vector<std::vector<double>> conditions; // jump on the right side, then its derivatives
+    for (unsigned int r = 0; r < free.size(); ++r)
+      {
+        const double x    = at.multipliers.local_element(r);
+        const double side = free[r] || is_equality(rows.kind[r]) || (rows.kind[r] == RowKind::tangential && x == 0) ? 0.
+                            : rows.kind[r] == RowKind::tangential && x > 0                                          ? 1.
+                                                                           : -1.;
+        if (side == 0)
+          continue;
+        conditions.push_back({side * (jump.local_element(r) - rows.c[r])});
+        for (unsigned int m = 0; m < loose.size(); ++m)
+          conditions.back().push_back(side * own(r, m));
+      }
+    std::vector<std::vector<double>> all;
+    for (const auto &part : dealii::Utilities::MPI::all_gather(comm, conditions))
+      all.insert(all.end(), part.begin(), part.end());
+    Eigen::VectorXd amount = Eigen::VectorXd::Zero(loose.size());
+    for (unsigned int step = 0; step < max_slide_steps; ++step)
+      {
+        std::vector<Eigen::VectorXd> violated;
+        std::vector<double>          by;
+        for (const auto &condition : all)
+          {
+            const Eigen::Map<const Eigen::VectorXd> slope(condition.data() + 1, loose.size());
+            const double                            value = condition[0] + slope.dot(amount);
+            if (value < 0)
+              {
+                violated.push_back(slope);
+                by.push_back(-value);
+              }
+          }
+        if (violated.empty())
+          break;
+        Eigen::MatrixXd slopes(violated.size(), loose.size());
+        for (unsigned int i = 0; i < violated.size(); ++i)
+          slopes.row(i) = violated[i];
+        const Eigen::VectorXd change =
+          slopes.completeOrthogonalDecomposition().solve(Eigen::Map<const Eigen::VectorXd>(by.data(), by.size()));
+        amount += change;
+        if (change.norm() <= slide_tolerance * amount.norm())
+          break;
+      }
+    Eigen::VectorXd amplitudes = Eigen::VectorXd::Zero(loose[0].amplitudes.size());
+    for (unsigned int m = 0; m < loose.size(); ++m)
+      amplitudes += amount[m] * loose[m].amplitudes;
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      at.u[p] += bodies->displacements(p, amplitudes);
+  }
+
   DualProblem::Recovery DualProblem::recover(const DistributedVector &x, const std::vector<bool> &free) const
   {
-    require_support(free_motions(systems, gluing, rows, free, names_of_bodies.size(), comm), names_of_bodies);
-
-    const Projector on_free(systems, gluing, *F, rows.rows, free, comm);
+    const auto      loose = bodies->free(free);
+    const auto      fixed = loose.empty() ? free : rows_that_fix(loose, x, free);
+    const Projector on_free(systems, gluing, *F, rows.rows, fixed, comm);
     Recovery        result{{}, zero()};
     on_free.particular(resultants() - projector->multiply(x), result.multipliers);
     result.multipliers += x;
@@ -204,9 +307,9 @@ namespace slipstick::tfeti
     // a: B u - compliance x = c on the free rows, in the sense of least squares
     DistributedVector missing = jumps(u);
     for (unsigned int r = 0; r < rows.c.size(); ++r)
-      missing.local_element(r) = free[r] ? rows.c[r] - missing.local_element(r) : 0.;
+      missing.local_element(r) = fixed[r] ? rows.c[r] - missing.local_element(r) : 0.;
     for (unsigned int r = 0; r < rows.compliance.size(); ++r)
-      missing.local_element(r) += free[r] ? rows.compliance[r] * result.multipliers.local_element(r) : 0.;
+      missing.local_element(r) += fixed[r] ? rows.compliance[r] * result.multipliers.local_element(r) : 0.;
     const Eigen::VectorXd a    = on_free.amplitudes(missing);
     unsigned int          next = 0;
     for (unsigned int p = 0; p < systems.size(); ++p)
@@ -215,6 +318,8 @@ namespace slipstick::tfeti
         u[p] += systems[p]->kernel() * a.segment(next, k);
         next += k;
       }
+    if (!loose.empty())
+      slide_apart(loose, free, result);
     return result;
   }
 

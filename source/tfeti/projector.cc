@@ -24,6 +24,22 @@ namespace slipstick::tfeti
       }
     };
 
+    /// Columns of tied rows become parts of those that they are tied to.
+    void fold(std::vector<ColumnPart> &parts, const std::vector<qp::Tie> &ties, const Partitioner &rows)
+    {
+      std::map<std::uint64_t, const qp::Tie *> tie_of;
+      for (const auto &tie : ties)
+        tie_of[rows->local_to_global(tie.tied)] = &tie;
+      if (!ties.empty())
+        for (ColumnPart &part : parts)
+          if (const auto tie = tie_of.find(part.row); tie != tie_of.end())
+            {
+              part.row = rows->local_to_global(tie->second->to);
+              for (double &value : part.values)
+                value *= tie->second->factor;
+            }
+    }
+
     /// Sums of outer products of the columns of G over the active rows of this rank.
     CoarseSolver::Entries gram_entries(std::vector<ColumnPart> &parts,
                                        const Partitioner       &rows,
@@ -69,8 +85,10 @@ namespace slipstick::tfeti
                        const DualOperator                                  &scatter_gather,
                        const Partitioner                                   &rows,
                        const std::vector<bool>                             &active,
-                       const MPI_Comm                                       comm)
+                       const MPI_Comm                                       comm,
+                       const std::vector<qp::Tie>                          &ties)
     : scatter_gather(scatter_gather)
+    , ties(ties)
     , source(rows)
     , target(rows)
   {
@@ -113,6 +131,7 @@ namespace slipstick::tfeti
       }
     for (auto &[rank, parts] : dealii::Utilities::MPI::some_to_some(comm, to_send))
       std::move(parts.begin(), parts.end(), std::back_inserter(own));
+    fold(own, ties, rows);
     coarse = std::make_unique<CoarseSolver>(n_motions, gram_entries(own, rows, active), comm);
   }
 
@@ -142,6 +161,10 @@ namespace slipstick::tfeti
 
   void Projector::mask(DistributedVector &y) const
   {
+    for (const qp::Tie &tie : ties)
+      y.local_element(tie.to) += tie.factor * y.local_element(tie.tied);
+    for (const qp::Tie &tie : ties)
+      y.local_element(tie.tied) = tie.factor * y.local_element(tie.to);
     for (unsigned int r = 0; r < y.locally_owned_size(); ++r)
       y.local_element(r) *= indicator.local_element(r);
   }

@@ -68,45 +68,72 @@ namespace slipstick::tfeti
     }
   } // namespace
 
-  std::vector<RigidMotion> free_motions(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
-                                        const std::vector<LocalGluing>                      &gluing,
-                                        const Constraints                                   &constraints,
-                                        const std::vector<bool>                             &active,
-                                        const unsigned int                                   n_bodies,
-                                        const MPI_Comm                                       comm)
+  BodyMotions::BodyMotions(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains_,
+                           const std::vector<LocalGluing>                      &gluing,
+                           const Constraints                                   &constraints,
+                           const unsigned int                                   n_bodies,
+                           const MPI_Comm                                       comm_)
+    : subdomains(subdomains_)
+    , comm(comm_)
+    , n_owned_rows(constraints.kind.size())
+    , motions_of_body(
+        dealii::Utilities::MPI::max(subdomains.empty() ? 0u : static_cast<unsigned int>(subdomains[0]->kernel().cols()),
+                                    comm))
+    , n_motions(motions_of_body * n_bodies)
   {
-    const unsigned int k =
-      dealii::Utilities::MPI::max(subdomains.empty() ? 0u : static_cast<unsigned int>(subdomains[0]->kernel().cols()),
-                                  comm);
-    const unsigned int n     = k * n_bodies;
-    Eigen::MatrixXd    gram  = Eigen::MatrixXd::Zero(n, n);
-    const auto         parts = parts_of_owned_rows(subdomains, gluing, constraints, comm);
-    for (auto begin = parts.begin(); begin != parts.end();)
+    for (const auto &part : parts_of_owned_rows(subdomains, gluing, constraints, comm))
+      shares.push_back({constraints.rows->global_to_local(part.row),
+                        part.body,
+                        Eigen::Map<const Eigen::VectorXd>(part.values.data(), part.values.size())});
+  }
+
+  std::vector<RigidMotion> BodyMotions::free(const std::vector<bool> &active) const
+  {
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n_motions, n_motions);
+    for (auto begin = shares.begin(); begin != shares.end();)
       {
-        Eigen::VectorXd row    = Eigen::VectorXd::Zero(n);
-        const auto      number = begin->row;
-        for (; begin != parts.end() && begin->row == number; ++begin)
-          for (unsigned int i = 0; i < k; ++i)
-            row[begin->body * k + i] += begin->values[i];
-        if (active.empty() || active[constraints.rows->global_to_local(number)])
-          gram += row * row.transpose();
+        const auto end =
+          std::find_if(begin, shares.end(), [row = begin->row](const Share &share) { return share.row != row; });
+        if (active.empty() || active[begin->row])
+          for (auto a = begin; a != end; ++a)
+            for (auto b = begin; b != end; ++b)
+              gram.block(a->body * motions_of_body, b->body * motions_of_body, motions_of_body, motions_of_body) +=
+                a->values * b->values.transpose();
+        begin = end;
       }
-    Eigen::VectorXd load = Eigen::VectorXd::Zero(n);
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(n_motions);
     for (const auto &subdomain : subdomains)
-      load.segment(subdomain->body() * k, k) +=
+      load.segment(subdomain->body() * motions_of_body, motions_of_body) +=
         subdomain->body_modes().transpose() * (subdomain->kernel().transpose() * subdomain->load());
     MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, comm);
     MPI_Allreduce(MPI_IN_PLACE, load.data(), load.size(), MPI_DOUBLE, MPI_SUM, comm);
 
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
     std::vector<RigidMotion>                             motions;
-    for (unsigned int i = 0; i < n; ++i)
-      if (eigen.eigenvalues()[i] <= singular_tolerance * std::max(eigen.eigenvalues()[n - 1], 1.))
+    for (unsigned int i = 0; i < n_motions; ++i)
+      if (eigen.eigenvalues()[i] <= singular_tolerance * std::max(eigen.eigenvalues()[n_motions - 1], 1.))
         {
           const Eigen::VectorXd mode = eigen.eigenvectors().col(i);
           motions.push_back({mode, load.norm() > 0 ? mode.dot(load) / load.norm() : 0.});
         }
     return motions;
+  }
+
+  Eigen::MatrixXd BodyMotions::jumps(const std::vector<RigidMotion> &motions) const
+  {
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n_owned_rows, motions.size());
+    for (const Share &share : shares)
+      for (unsigned int m = 0; m < motions.size(); ++m)
+        result(share.row, m) +=
+          share.values.dot(motions[m].amplitudes.segment(share.body * motions_of_body, motions_of_body));
+    return result;
+  }
+
+  Eigen::VectorXd BodyMotions::displacements(const unsigned int p, const Eigen::VectorXd &amplitudes) const
+  {
+    const auto &subdomain = *subdomains[p];
+    return subdomain.kernel() *
+           (subdomain.body_modes() * amplitudes.segment(subdomain.body() * motions_of_body, motions_of_body));
   }
 
   RigidMotion body_motion(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,

@@ -6,6 +6,7 @@ import scenes
 from program import SOURCE, new_path, shipped, solve
 
 CYLINDERS = shipped('cattaneo_mindlin')
+BOX = shipped('box_on_circle')
 MESHES = SOURCE / 'meshes'
 
 MESH = '''$MeshFormat
@@ -132,6 +133,103 @@ class MultibodyBadInput(unittest.TestCase):
     def test_pair_on_one_side(self):
         self.refused(CYLINDERS, {'Contact touch/Slave': 'upper/arc', 'Contact touch/Master': 'upper/contact'},
                      'Contact touch', 'do not face each other')
+
+    FLATS = {'Contact touch/Slave': 'upper/flat', 'Contact touch/Master': 'lower/flat'}  # outer sides, 200 mm apart
+
+    def test_pair_of_sides_that_face_away_from_each_other(self):
+        for more in ({}, {'Contact touch/Reach': 1}, {'Contact touch/Law': 'bonded'}, {'Discretization/Degree': 2}):
+            self.refused(CYLINDERS, {**self.FLATS, **more}, 'Contact touch: upper/flat and lower/flat face away',
+                         '200 mm or more through its own body', 'mirror')
+
+    def test_pair_whose_normals_are_not_opposed_names_the_angle(self):
+        result = solve(CYLINDERS, {'Contact touch/Slave': 'upper/arc', 'Contact touch/Master': 'upper/contact'})
+        self.assertEqual(result.status, 2, result)
+        self.assertRegex(result.stderr, r'normals is 8\d\.\d+ degrees or less, facing is more than 104\.478')
+
+    def test_pair_far_apart_with_an_automatic_reach(self):
+        self.refused(CYLINDERS, {'Body upper/Translation': '0, 60'}, 'Contact touch: upper/contact and lower/contact are '
+                     'out of reach', 'smallest gap is 60 mm', 'goes to 3.2', 'Contact touch/Reach')
+
+    def test_obstacle_on_the_other_side(self):
+        self.refused(BOX, {'Contact circle/Slave': 'box/top'}, 'Contact circle: box/top and obstacle disc face away',
+                     '170.538 degrees')
+
+    def test_half_plane_that_is_turned_round(self):
+        case = scenes.box(supports={'held': scenes.HELD}, contacts={'ground': {**scenes.CIRCLE, 'Master': 'ground'}},
+                          obstacles={'ground': {'Shape': 'half plane', 'Point': '0, 0', 'Normal': '0, -1'}})
+        self.refused(case, {}, 'box/bottom and obstacle ground face away', '180 degrees')
+
+    def test_obstacle_out_of_reach(self):
+        for reach, words in (('auto', 'automatic reach goes to 40 mm'), ('5', 'Reach is 5 mm')):
+            self.refused(BOX, {'Obstacle disc/Center': '5, -90', 'Contact circle/Reach': reach}, 'out of reach',
+                         'smallest gap is 70 mm', words, 'Contact circle/Reach')
+
+    # units
+
+    def warnings(self, case, overrides=None):
+        result = solve(case, overrides, options=('--check',))
+        return [line for line in (result.stdout + result.stderr).splitlines() if 'same units' in line]
+
+    def test_metres_beside_millimetres_get_a_warning(self):
+        for name in ('upper', 'lower'):
+            for scale in ('1e-3', '1e3'):
+                warning, = self.warnings(CYLINDERS, {'Body {}/Scale'.format(name): scale, 'Contact touch/Reach': 1e6})
+                for word in ('warning: body', 'upper', 'lower', 'mm across', 'Scale'):
+                    self.assertIn(word, warning)
+
+    def with_moduli(self, below, above, size='10, 10'):
+        materials = {name: {'Young modulus': E, 'Poisson ratio': '0.3'} for name, E in (('below', below), ('above', above))}
+        return scenes.box(materials=materials,
+                          bodies={'lower': {**RECTANGLE, 'Material': 'below'},
+                                  'upper': {**RECTANGLE, 'Material': 'above', 'Origin': '0, 10', 'Size': size}},
+                          supports={'below': {**scenes.HELD, 'Boundary': 'lower/bottom'}},
+                          contacts={'touch': {'Slave': 'upper/bottom', 'Master': 'lower/top', 'Law': 'bonded'}},
+                          Decomposition={'Method': 'METIS'})
+
+    def test_pascal_beside_megapascal_gets_a_warning(self):
+        for moduli in (('2.1e5', '2.1e11'), ('2.1e11', '7e4')):
+            warning, = self.warnings(self.with_moduli(*moduli))
+            self.assertIn('MPa', warning)
+        self.assertEqual(len(self.warnings(self.with_moduli('2.1e5', '1e10', '0.2, 0.2'))), 1)  # both, each below its limit
+
+    def test_bodies_that_differ_as_parts_do_get_no_warning(self):
+        self.assertEqual(self.warnings(self.with_moduli('2.1e5', '2')), [])  # steel and rubber
+        self.assertEqual(self.warnings(self.with_moduli('2', '2.1e5')), [])
+        self.assertEqual(self.warnings(self.with_moduli('2.1e5', '2.1e5', '0.1, 0.1')), [])
+        for scene in ('arch', 'clamp', 'lap_joint', 'raous', 'press_fit', 'hertz', 'cattaneo_mindlin'):
+            self.assertEqual(self.warnings(shipped(scene)), [], scene)
+
+    def accepted(self, case, overrides=None):
+        result = solve(case, overrides, options=('--check',))
+        self.assertEqual(result.status, 0, result)
+
+    def test_pairs_that_meet_later_or_overlap_are_accepted(self):
+        self.accepted(CYLINDERS, {'Body upper/Translation': '0, 60', 'Contact touch/Reach': 61})
+        self.accepted(CYLINDERS, {'Body upper/Translation': '0, 60', 'Contact touch/Offset': '-60'})
+        self.accepted(CYLINDERS, {'Body upper/Translation': '0, 60', 'Contact touch/Gap': '0.01*x^2'})
+        self.accepted(CYLINDERS, {'Body upper/Translation': '0, 60', 'Support middle/Displacement y': '30*t'})
+        self.accepted(CYLINDERS, {'Body upper/Translation': '0, -0.5'})
+
+    def two(self, upper, **contact):
+        """One square below, a body above, pressed down by its top."""
+        return scenes.box(bodies={'lower': RECTANGLE, 'upper': {**RECTANGLE, **upper}},
+                          supports={'below': {**scenes.HELD, 'Boundary': 'lower/bottom'},
+                                    'above': {**scenes.HELD, 'Boundary': 'upper/top'}},
+                          contacts={'touch': {'Slave': 'upper/bottom', 'Master': 'lower/top', 'Law': 'frictionless',
+                                              **contact}},
+                          Decomposition={'Method': 'METIS'})
+
+    def test_deep_and_partial_overlaps_are_accepted(self):
+        self.accepted(self.two({'Origin': '0, 6'}))      # flush sides
+        self.accepted(self.two({'Origin': '9.5, 6'}))    # a fifth of an edge
+        self.accepted(self.two({'Origin': '2, 6', 'Size': '2, 10', 'Cells': '1, 4'}))  # one slave edge
+        self.accepted(self.two({'Origin': '-9, 10', 'Cells': '1, 4'}))
+        self.accepted(self.two({'Origin': '0, 0.5'}, Slave='upper/*', Master='lower/*'))
+
+    def test_body_behind_is_refused_whichever_side_is_slave(self):
+        for sides in (('upper/top', 'lower/bottom'), ('lower/bottom', 'upper/top')):
+            case = self.two({'Origin': '0, 12'}, Slave=sides[0], Master=sides[1])
+            self.refused(case, {}, 'Contact touch', 'face away', '22 mm', ranks=(2,))
 
     def test_bodies_that_overlap_without_a_pair(self):
         case = scenes.box(bodies={'a': RECTANGLE, 'b': {**RECTANGLE, 'Origin': '8, 2', 'Size': '10, 5'}},

@@ -147,6 +147,97 @@ class Parts(unittest.TestCase):
                 self.assertIn('slip bounds still change', result.stderr)
 
 
+class Tractions(unittest.TestCase):
+
+    @staticmethod
+    def blocks(overhang, load, **contact):
+        """A block whose top ends the overhang beyond a node of the block on it."""
+        return scenes.box(bodies={'lower': {'Size': '{}, 5'.format(5 + overhang), 'Cells': '10, 10', 'Material': 'elastic'},
+                                  'upper': {'Origin': '0, 5', 'Size': '10, 5', 'Cells': '20, 10', 'Material': 'elastic'}},
+                          supports={'below': {**scenes.HELD, 'Boundary': 'lower/bottom'},
+                                    'side': {'Boundary': 'upper/left', 'Displacement x': '0'}},
+                          tractions={'load': {'Boundary': 'upper/top', **load}},
+                          contacts={'touch': {'Slave': 'upper/bottom', 'Master': 'lower/top', 'Law': 'frictionless',
+                                              **contact}},
+                          Decomposition={'Method': 'METIS'}, Solver={'Tolerance': '1e-8'})
+
+    def test_slivers_of_slave_nodes_make_no_largest_pressure(self):
+        for law in ('frictionless', 'bonded'):
+            for overhang in (1e-3, 1e-2, 0.1, 0.2):
+                with self.subTest(law=law, overhang=overhang):
+                    result = converged(self.blocks(overhang, {'Traction y': '-100*(x<5)'}, Law=law))
+                    pair, = result.summary['results']['contact']
+                    *inside, last = sorted(result.contact, key=lambda row: row['x'])
+                    self.assertEqual(last['x'], 5.5)  # the node of which a sliver faces the lower block
+                    self.assertGreater(last['pressure'], 0)
+                    self.assertLess(last['pressure'], inside[-1]['pressure'])
+                    self.assertEqual(pair['max_pressure'], max(row['pressure'] for row in inside))
+                    self.assertAlmostEqual(pair['normal_force'] / 500, 1, delta=1e-9)
+                    self.assertAlmostEqual(pair['contact_length'], 5 + overhang, delta=1e-12)
+
+    def test_bonds_carry_tension_and_shear(self):
+        bodies = {name: {'Origin': '0, {}'.format(y), 'Size': '10, 5', 'Cells': '{}, 5'.format(n), 'Material': 'elastic'}
+                  for name, y, n in (('lower', 0, 10), ('upper', 5, 7))}
+        for load, normal, tangential in ((('0', '100'), -1000, 0), (('5', '-100'), 1000, -50)):
+            case = scenes.box(materials={'elastic': {'Young modulus': '1e5', 'Poisson ratio': '0'}}, bodies=bodies,
+                              supports={'below': {**scenes.HELD, 'Boundary': 'lower/bottom'}},
+                              tractions={'load': {'Boundary': 'upper/top', 'Traction x': load[0], 'Traction y': load[1]}},
+                              contacts={'bond': {'Slave': 'upper/bottom', 'Master': 'lower/top', 'Law': 'bonded'}},
+                              Decomposition={'Method': 'METIS', 'Subdomains': '5'}, Solver={'Tolerance': '1e-10'})
+            for ranks in (1, 2):
+                result = converged(case, ranks=ranks)
+                pair, = result.summary['results']['contact']
+                self.assertAlmostEqual(pair['normal_force'], normal, delta=1e-6)
+                self.assertAlmostEqual(pair['tangential_force'], tangential, delta=1e-6)
+                self.assertAlmostEqual(pair['contact_length'], 10, delta=1e-12)
+                self.assertEqual((pair['contact_nodes'], pair['stick_nodes'], pair['open_nodes'], pair['slip_nodes']),
+                                 (8, 8, 0, 0))
+                for row in result.contact:
+                    self.assertEqual((row['status'], row['slip_bound']), ('stick', float('inf')))
+                    if load[0] == '0':
+                        self.assertAlmostEqual(row['pressure'], -100, delta=1e-6)
+                        self.assertAlmostEqual(row['tangential_traction'], 0, delta=1e-6)
+
+
+class BondsThatMeet(unittest.TestCase):
+    """Bodies bonded to each other all around a point: one bond there follows from the others."""
+
+    PLACES = {'a': '0, 0', 'b': '5, 0', 'c': '5, 5', 'd': '0, 5'}
+    AROUND = (('a/right', 'b/left'), ('b/top', 'c/bottom'), ('d/right', 'c/left'), ('a/top', 'd/bottom'))
+
+    def around(self, pairs, **more):
+        square = {'Size': '5, 5', 'Cells': '4, 4', 'Material': 'elastic'}
+        return scenes.box(bodies={name: {'Origin': origin, **square} for name, origin in self.PLACES.items()},
+                          supports={'left': {**scenes.HELD, 'Boundary': 'a/left'}, 'upper': {**scenes.HELD, 'Boundary': 'd/left'}},
+                          tractions={'load': {'Boundary': 'c/top', 'Traction x': '20', 'Traction y': '-100'}},
+                          contacts={'pair {}'.format(i): {'Slave': slave, 'Master': master, 'Law': 'bonded'}
+                                    for i, (slave, master) in enumerate(pairs)},
+                          Decomposition={'Method': 'METIS'}, Solver={'Tolerance': '1e-10', **more})
+
+    def test_the_last_pair_gives_way_and_the_answer_is_that_of_one_body(self):
+        whole = converged(scenes.box(bodies={'box': {**scenes.BOX, 'Cells': '8, 8'}}, supports={'left': scenes.HELD},
+                                     tractions={'load': {'Boundary': 'box/top', 'Traction x': '20*(x>5)',
+                                                         'Traction y': '-100*(x>5)'}},
+                                     Decomposition={'Method': 'METIS'}, Solver={'Tolerance': '1e-10'}))
+        energy = whole.summary['results']['strain_energy']
+        for pairs in (self.AROUND, self.AROUND[::-1], tuple((master, slave) for slave, master in self.AROUND)):
+            tractions = []
+            for algorithm in ('semismooth newton', 'smalbe'):
+                for ranks in (1, 2):
+                    with self.subTest(pairs=pairs, algorithm=algorithm, ranks=ranks):
+                        result = converged(self.around(pairs, Algorithm=algorithm), ranks=ranks)
+                        dual = result.summary['problem']['dual']['total']
+                        self.assertEqual(dual, 2 * (20 - 1 - 1) + 2 * 10)  # less the one implied and that of held nodes; supports
+                        self.assertAlmostEqual(result.summary['results']['strain_energy'] / energy, 1, delta=1e-6)
+                        at_point = [row for row in result.contact if (row['x'], row['y']) == (5, 5)]
+                        self.assertEqual([row['pair'] for row in at_point], ['pair 0', 'pair 1', 'pair 2'])
+                        tractions.append([value for row in at_point
+                                          for value in (row['pressure'], row['tangential_traction'])])
+            for other in tractions[1:]:  # they are unique
+                for one, expected in zip(other, tractions[0]):
+                    self.assertAlmostEqual(one, expected, delta=1e-4)
+
+
 class Invariance(unittest.TestCase):
 
     def assert_same(self, a, b, tolerance):

@@ -26,7 +26,7 @@ namespace
     if (takes_part)
       for (unsigned int r = 0; r < torn.constraints.kind.size(); ++r)
         active.push_back(takes_part(torn, r));
-    return tfeti::free_motions(systems, gluing, torn.constraints, active, scene.bodies.size(), MPI_COMM_WORLD);
+    return tfeti::BodyMotions(systems, gluing, torn.constraints, scene.bodies.size(), MPI_COMM_WORLD).free(active);
   }
 
   std::string description(const Scene &scene, const tfeti::RigidMotion &motion)

@@ -23,13 +23,14 @@ namespace slipstick::contact
 
   /// One slave node of a contact pair, as found from the recovered displacement. A Tresca bound that acts on the whole
   /// declared boundary makes a node that is not closed slip too where the bound is reached; its status is then slip.
+  /// Nodes of bonded pairs are closed and stick; their pressure may be negative, their slip bound is infinite.
   struct ContactNode
   {
     unsigned int          pair = 0;            // index into Scene::contacts
     std::array<double, 3> position{{0, 0, 0}}; // reference configuration [mm]
     std::array<double, 3> normal{{0, 0, 0}};
     double                arc_length          = 0; // along the slave boundary from its first node [mm]
-    double                area                = 0; // tributary length times thickness [mm^2]
+    double                area                = 0; // that tractions are given for, see tfeti::ContactPoint [mm^2]
     double                length              = 0; // tributary length [mm]
     double                gap                 = 0; // [mm]
     double                pressure            = 0; // [MPa]
@@ -51,17 +52,17 @@ namespace slipstick::contact
 
   struct PairResult
   {
-    std::string  pair;
-    double       normal_force     = 0; // sum of pressure times area [N]
-    double       tangential_force = 0; // [N]
-    double       moment_mismatch  = 0; // sum of the moments on both sides [N mm]: the linearised gap leaves gap times
-                                       // force where a node and its mean on the other side are not on one normal
-    double       max_pressure     = 0; // [MPa]
-    double       contact_length   = 0; // of the nodes that are not open [mm]
-    unsigned int contact_nodes    = 0; // closed
-    unsigned int open_nodes       = 0; // not closed
-    unsigned int stick_nodes      = 0; // closed and not slipping
-    unsigned int open_slip_nodes  = 0; // of them, not closed
-    unsigned int slip_nodes       = 0; // slip bound reached, see ContactNode on nodes that are not closed
+    std::string pair;
+    double      normal_force     = 0; // sum of pressure times area [N]
+    double      tangential_force = 0; // [N]
+    double      moment_mismatch  = 0; // sum of the moments on both sides [N mm]: the linearised gap leaves gap times
+                                      // force where a node and its mean on the other side are not on one normal
+    double       max_pressure    = 0; // [MPa]
+    double       contact_length  = 0; // of the nodes that are not open [mm]
+    unsigned int contact_nodes   = 0; // closed
+    unsigned int open_nodes      = 0; // not closed
+    unsigned int stick_nodes     = 0; // closed and not slipping
+    unsigned int open_slip_nodes = 0; // of them, not closed
+    unsigned int slip_nodes      = 0; // slip bound reached, see ContactNode on nodes that are not closed
   };
 } // namespace slipstick::contact

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <slipstick/qp/friction_cones.h>
+#include <slipstick/qp/pressure_bounds.h>
 #include <slipstick/scene/scene.h>
 #include <slipstick/tfeti/dual_problem.h>
 
@@ -33,6 +34,9 @@ namespace slipstick::contact
 
     /// Slip bounds for the multipliers x [N], one an owned row.
     std::vector<double> bounds(const tfeti::DistributedVector &x) const;
+
+    /// The bounds that depend on the normal forces, for a solver that follows them itself; entries: owned rows.
+    std::vector<qp::PressureBound> pressure_bounds() const;
 
     /// All multipliers that some pressure admits: cones for Coulomb friction, bounds for the others.
     qp::FrictionCones<tfeti::DistributedVector> admissible(const tfeti::DualProblem &dual) const;

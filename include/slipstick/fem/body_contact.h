@@ -23,7 +23,7 @@ namespace slipstick::fem
   /// Pairs the boundaries as ContactPair says. The reach of a pair that sets none is the smallest distance of its sides
   /// where they face each other plus twice the mesh size (mean edge of the coarser side) or a tenth of the smaller side,
   /// whichever is more. Computed alike by every rank. Collective.
-  /// @throws InputError on all ranks for a pair without any facing parts within its reach.
+  /// @throws InputError on all ranks for a pair without any facing parts within its reach, and as check_sides does.
   template <int dim>
   BodyContacts<dim> pair_bodies(const scene::Scene<dim> &scene, const Mesh<dim> &mesh, const Spaces<dim> &spaces);
 } // namespace slipstick::fem

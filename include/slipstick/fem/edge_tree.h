@@ -44,4 +44,21 @@ namespace slipstick::fem
 
     boost::geometry::index::rtree<std::pair<Box, unsigned int>, boost::geometry::index::rstar<8>> tree;
   };
+
+  /// The whole outline of a body, holes included; curved edges count as their chords.
+  class ClosedOutline
+  {
+  public:
+    /// @param edges are not copied.
+    explicit ClosedOutline(const std::vector<SurfaceEdge<2>> &edges);
+
+    /// Is x inside? Crossings of the ray along +x are counted.
+    bool contains(const dealii::Point<2> &x) const;
+
+    const std::vector<SurfaceEdge<2>> &edges;
+    const EdgeTree                     tree;
+
+  private:
+    double right; // end
+  };
 } // namespace slipstick::fem

@@ -30,8 +30,9 @@ namespace slipstick::fem
     Weights                slave_weights;   // d_ik
     Weights                master_weights;  // m_ij
     dealii::Point<dim>     master_position; // sum_j m_ij y_j [mm]
-    double                 gap    = 0;      // n_i . (sum_j m_ij y_j - sum_k d_ik x_k) [mm], negative when overlapping
-    double                 length = 0;      // D_i [mm]
+    double                 gap         = 0; // n_i . (sum_j m_ij y_j - sum_k d_ik x_k) [mm], negative when overlapping
+    double                 length      = 0; // D_i [mm]
+    double                 full_length = 0; // D_i if all edges of the slave boundary on this side were covered [mm]
   };
 
   /// The rows of the slave nodes that have a master within @p reach along the normal, on either side; in the order

@@ -1,10 +1,12 @@
 // The rows of the nodes that one rank owns, before they are numbered over the ranks.
 #pragma once
 
+#include <slipstick/fem/echelon.h>
 #include <slipstick/fem/interface_nodes.h>
 #include <slipstick/tfeti/constraints.h>
 
 #include <limits>
+#include <set>
 
 namespace slipstick::fem
 {
@@ -34,8 +36,9 @@ namespace slipstick::fem
 
   /// Makes the rows of interface nodes: contact, bonds, supports, foundations, gluing.
   ///
-  /// Rows of contact and bonds that the supports and bonds of their own nodes already imply are left out; the tangential
-  /// row goes before the normal one. A node that may touch several obstacles has a normal row for each (for parallel
+  /// Rows of contact that the supports of their nodes and the bonds (of all nodes that hang together) already imply are left
+  /// out; the tangential row goes before the normal one. So are rows of bonds, as where three bonded bodies meet in a
+  /// point: the pair that comes last in the scene gives way. A node that may touch several obstacles has a normal row for each (for parallel
   /// normals the nearer obstacle only) and one tangential row, that of the nearest obstacle. So has a node at a corner of
   /// the slave boundary with one and the same master node on both its sides.
   template <int dim>
@@ -65,7 +68,7 @@ namespace slipstick::fem
 
   private:
     using Tensor = dealii::Tensor<1, dim>;
-    using Vector = std::map<unsigned int, double>; // by dim * node + component
+    using Vector = Echelon::Vector; // by dim * node + component
 
     /// One other side that a slave node may touch.
     struct Touch
@@ -83,25 +86,30 @@ namespace slipstick::fem
     bool touch_obstacle(const unsigned int node, const unsigned int pair, const double area, Touch &touch) const;
     bool touch_body(const unsigned int node, const unsigned int pair, const MortarRow<dim> &row, Touch &touch) const;
     void add_contact(const unsigned int node);
-    bool is_pruned(const Touch &touch) const;
-    void add_pruned(const Touch &touch, const Vector &coefficients);
-    void choose_tangents(std::vector<Touch> &touches) const;
+    void find_bonds();
+    /// Row of a bond along the normal (0) or the tangent (1).
+    Vector bond(const Touch &touch, const unsigned int direction) const;
+    bool   is_pruned(const Touch &touch) const;
+    void   add_pruned(const Touch &touch, const Vector &coefficients);
+    void   choose_tangents(std::vector<Touch> &touches) const;
 
     /// Jump of the displacement along @p direction, slave less master.
     Vector jump(const Touch &touch, const Tensor &direction) const;
 
-    /// What supports and the orthonormal @p basis leave of a row.
-    Vector free_part(const Vector &row, const std::vector<Vector> &basis) const;
+    /// What supports leave of a row.
+    Vector free_part(const Vector &row) const;
 
     unsigned int new_row(const tfeti::RowKind kind, const double c, const NodeKey &key, const std::uint64_t which);
     void         fill(const unsigned int row, const Vector &coefficients);
 
-    const scene::Scene<dim>                                                        &scene;
-    const std::vector<InterfaceNode<dim>>                                          &nodes;
-    const double                                                                    t;
-    tfeti::Constraints                                                             &constraints;
-    std::vector<double>                                                             limits; // gaps, by pair [mm]
-    std::map<NodeKey, unsigned int>                                                 number;
+    const scene::Scene<dim>               &scene;
+    const std::vector<InterfaceNode<dim>> &nodes;
+    const double                           t;
+    tfeti::Constraints                    &constraints;
+    std::vector<double>                    limits; // gaps, by pair [mm]
+    std::map<NodeKey, unsigned int>        number;
+    Echelon                                bonds;      // their free parts
+    std::set<std::array<unsigned int, 4>>  kept_bonds; // node, pair, side, direction of those that no others imply
     std::map<NodeKey, std::vector<std::pair<unsigned int, const MortarRow<dim> *>>> pairs_of; // of slave nodes
   };
 } // namespace slipstick::fem

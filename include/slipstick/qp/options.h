@@ -64,11 +64,21 @@ namespace slipstick::qp
     double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
   };
 
+  /// Options of GCR (own choice).
+  struct GcrOptions
+  {
+    unsigned int max_iterations = 300;
+    double       rounding = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
+    double       progress = 0.999; // a step that leaves more than this part of the residual ...
+    unsigned int patience = 10;    // ... so often in a row ends the solve
+  };
+
   /// Options of the semismooth Newton method (own choice; method.md section 7).
   struct NewtonOptions
   {
     double       start_tolerance   = 0.3;  // of the SMALBE steps that give the first active set
-    double       first_forcing     = 1e-2; // residual of the first solves over the reference
+    double       face_reduction    = 0.3;  // of the residual by the linear solve of a new set
+    double       first_forcing     = 1e-2; // residual over the reference, at first, of solves of a set that stands
     double       forcing_reduction = 0.1;  // of it, whenever the set hardly changed
     double       last_forcing      = 0.3;  // times the tolerance: never below
     double       settled_part      = 0.05; // of the inequalities may change for the set to have hardly changed
@@ -78,6 +88,7 @@ namespace slipstick::qp
     double       bound_accuracy    = 0.1;  // bounds that depend on x are updated at residuals below this times their
                                            // last relative change
     unsigned int max_outer_iterations = 300;
+    GcrOptions   gcr;
   };
 
   /// Options of the point nearest to zero within the bounds and the equalities (own choice).

@@ -1,18 +1,25 @@
 // Semismooth Newton (primal-dual active set) for bounds and equalities, with inexact projected conjugate gradients on
 // the free entries. Hintermueller, Ito, Kunisch 2003; on the multipliers of FETI: method.md section 7.
 //
+// Bounds that follow the solution (Coulomb friction) are differentiated too: a slipping entry is tied to its normal one,
+// x_T = +-(fixed + coefficient x_N), within each linear problem (Alart, Curnier 1991, on the multipliers), which GCR
+// solves since ties make it unsymmetric. Or they are followed in an outer loop (BoundUpdate).
+//
 // Besides the Problem of types.h it needs
-//   `auto face(const std::vector<bool> &free) const`   the problem on the free entries (owned ones), which has
-//       multiply, reduction as the Problem, and
+//   `auto face(const std::vector<bool> &free, const std::vector<Tie> &ties) const`   the problem on the free entries
+//       (owned ones) with others tied to them, which has multiply, reduction as the Problem, and
 //       `project_range(x, y)`   y = Q_f x on the free entries, y = x on the others, so that P_f = I - Q_f keeps G x
-//       `balance(x)`            moves the free entries by the least that makes G x = e
+//       `balance(x)`            moves the free entries (the tied ones with them) by the least that makes G x = e
+//       `project_kernel(p)`     the same for G p = 0; then sets the tied entries to factor times theirs
 //       `multiplier_shift(v, y)` y = G'a on ALL entries, with a such that v - G'a is least on the free ones
 //       `precondition(r, z)`    z = M r on the free entries, 0 on the others; symmetric positive semidefinite
 //       `is_regular()`          false when the free entries alone do not determine a
 #pragma once
 
 #include <slipstick/qp/box.h>
+#include <slipstick/qp/gcr.h>
 #include <slipstick/qp/pcpg.h>
+#include <slipstick/qp/pressure_bounds.h>
 
 #include <cmath>
 #include <functional>
@@ -29,6 +36,13 @@ namespace slipstick::qp
   {
     std::function<std::optional<double>(const Vector &x)> update; // empty: the bounds are fixed
     double                                                tolerance = 0;
+  };
+
+  /// Bounds that the method differentiates itself; all processes together have some or none of them.
+  struct CoupledBounds
+  {
+    std::vector<PressureBound> bounds; // of owned entries
+    bool                       are_coupled = false;
   };
 
   template <typename Vector>
@@ -56,15 +70,18 @@ namespace slipstick::qp
                        const NewtonOptions       &options_,
                        const PcpgOptions         &pcpg_options_,
                        const Observer            &observer_,
-                       const BoundUpdate<Vector> &bounds_)
+                       const BoundUpdate<Vector> &bounds_,
+                       const CoupledBounds       &coupled_)
         : problem(problem_)
         , norm(norm_)
         , d(d_)
-        , box(box_)
+        , given_box(box_)
         , options(options_)
         , pcpg_options(pcpg_options_)
         , observer(observer_)
         , bounds(bounds_)
+        , coupled(coupled_)
+        , moving_box(coupled_.are_coupled ? std::make_optional(box_) : std::nullopt)
         , x(std::move(x_))
         , Fx(zero_like(d))
         , g(d)
@@ -80,7 +97,9 @@ namespace slipstick::qp
 
       NewtonResult<Vector> run()
       {
-        const Status      status = iterate();
+        const Status status = iterate();
+        put_on_bounds(); // ties to the last bit
+        project(box(), x);
         std::vector<bool> free(active.size());
         for (std::size_t i = 0; i < free.size(); ++i)
           free[i] = active[i] == 0;
@@ -101,6 +120,8 @@ namespace slipstick::qp
             report();
             if (!(residual < HUGE_VAL))
               return Status::stagnated;
+            if (!bounds.update && residual + violation <= eps)
+              return Status::converged;
             if (changed == 0 &&
                 residual <= std::max(eps, std::min(options.first_forcing, options.bound_accuracy * bound_change)))
               {
@@ -139,7 +160,7 @@ namespace slipstick::qp
             if (changed <= options.settled_part * n_inequalities)
               tighten();
             set_changed = changed > 0;
-            set_stands  = same_free(next);
+            set_stands  = coupled.are_coupled ? changed == 0 : same_free(next);
             active      = std::move(next);
           }
       }
@@ -154,26 +175,31 @@ namespace slipstick::qp
         forcing              = std::max(options.last_forcing * eps, std::min(forcing, next));
       }
 
-      // PCPG on the free entries of the present set; the others at their bounds.
+      using Face = decltype(std::declval<Problem>().face(std::vector<bool>(), std::vector<Tie>()));
+
+      // The linear problem of the present set; entries that are not free at their bounds.
       bool solve_on_face()
       {
         std::vector<bool> free(active.size());
         for (std::size_t i = 0; i < free.size(); ++i)
           free[i] = active[i] == 0;
-        std::optional<decltype(problem.face(free))> face;
-        face.emplace(problem.face(free));
+        std::optional<Face> face;
+        face.emplace(problem.face(free, ties()));
         if (!face->is_regular())
           {
             // entries between two bounds are freed: what they hold in the solution is not known yet
             set_stands  = false;
             set_changed = true;
             free_two_sided(free);
-            face.emplace(problem.face(free));
+            face.emplace(problem.face(free, {}));
             if (!face->is_regular())
               return false;
           }
-        if (!set_stands || !history)
-          history = std::make_shared<DirectionHistory<Vector>>();
+        if (!set_stands)
+          {
+            history.reset();
+            residual_history.reset();
+          }
         if (set_changed)
           {
             put_on_bounds();
@@ -181,16 +207,12 @@ namespace slipstick::qp
             problem.multiply(x, Fx);
             ++counts.hessian_multiplications;
           }
-        const auto precondition = [&face](const Vector &r, Vector &z) { face->precondition(r, z); };
-        auto       result       = pcpg(*face,
-                           d,
-                           PcpgStart<Vector>{std::move(x), std::move(Fx), history},
-                           Goal(forcing, reference),
-                           pcpg_options,
-                           precondition);
-        x                       = std::move(result.x);
-        Fx                      = std::move(result.product);
-        counts += result.counts;
+        wanted = std::max(options.last_forcing * eps,
+                          std::min(set_changed ? 1. : forcing, options.face_reduction * residual_on(*face)));
+        if (coupled.are_coupled && !all_stick())
+          solve_unsymmetric(*face);
+        else
+          solve_symmetric(*face);
         ++counts.outer_iterations;
         combine(1.0, Fx, 0.0, g);
         add(-1.0, d, g);
@@ -200,9 +222,66 @@ namespace slipstick::qp
         return true;
       }
 
+      // |P(d - F x)| over the reference, of the face.
+      double residual_on(const Face &face)
+      {
+        combine(1.0, d, 0.0, g);
+        add(-1.0, Fx, g);
+        face.project_range(g, w);
+        add(-1.0, w, g);
+        return qp::norm(g, problem.reduction()) / reference;
+      }
+
+      void solve_symmetric(const Face &face)
+      {
+        if (!history)
+          history = std::make_shared<DirectionHistory<Vector>>();
+        auto result = pcpg(face,
+                           d,
+                           PcpgStart<Vector>{std::move(x), std::move(Fx), history},
+                           Goal(wanted, reference),
+                           pcpg_options,
+                           [&face](const Vector &r, Vector &z) { face.precondition(r, z); });
+        x           = std::move(result.x);
+        Fx          = std::move(result.product);
+        counts += result.counts;
+      }
+
+      void solve_unsymmetric(const Face &face)
+      {
+        if (!residual_history)
+          residual_history.emplace();
+        auto result = gcr(face,
+                          d,
+                          std::move(x),
+                          std::move(Fx),
+                          *residual_history,
+                          Goal(wanted, reference),
+                          options.gcr,
+                          [&face](const Vector &r, Vector &z) { face.precondition(r, z); });
+        x           = std::move(result.x);
+        Fx          = std::move(result.product);
+        counts += result.counts;
+      }
+
+      // Slipping entries whose bound moves with a free one.
+      std::vector<Tie> ties() const
+      {
+        std::vector<Tie> result;
+        for (const PressureBound &bound : coupled.bounds)
+          if (active[bound.tangential] != 0 && active[bound.normal] == 0 && bound.coefficient > 0)
+            result.push_back({bound.tangential, bound.normal, active[bound.tangential] * bound.coefficient});
+        return result;
+      }
+
+      bool all_stick() const
+      {
+        return problem.reduction().min(ties().empty() ? 1. : 0.) > 0;
+      }
+
       void free_two_sided(std::vector<bool> &free)
       {
-        const auto l = box.lower.begin(), u = box.upper.begin();
+        const auto l = box().lower.begin(), u = box().upper.begin();
         for (std::size_t i = 0; i < active.size(); ++i)
           if (l[i] < u[i] && l[i] > -HUGE_VAL && u[i] < HUGE_VAL)
             {
@@ -213,7 +292,8 @@ namespace slipstick::qp
 
       void put_on_bounds()
       {
-        const auto l = box.lower.begin(), u = box.upper.begin();
+        move_bounds(active, 0.);
+        const auto l = box().lower.begin(), u = box().upper.begin();
         const auto xi = x.begin();
         for (std::size_t i = 0; i < active.size(); ++i)
           if (active[i] < 0)
@@ -222,33 +302,61 @@ namespace slipstick::qp
             xi[i] = u[i];
       }
 
+      // |gP|, and how far x is out of its bounds: as much, at most, does |gP| rise when x is moved there.
       void measure()
       {
-        const auto l = box.lower.begin(), u = box.upper.begin();
-        const auto gi  = g.begin();
-        double     sum = 0;
+        move_bounds(active, 0.);
+        const auto            l = box().lower.begin(), u = box().upper.begin();
+        const auto            xi = x.begin(), gi = g.begin();
+        std::array<double, 2> sum{{0, 0}};
         for (std::size_t i = 0; i < active.size(); ++i)
           {
-            const double gp = active[i] == 0   ? gi[i]
-                              : !(l[i] < u[i]) ? 0.0
-                              : active[i] < 0  ? std::min(gi[i], 0.0)
-                                               : std::max(gi[i], 0.0);
-            sum += gp * gp;
+            const double gp  = active[i] == 0   ? gi[i]
+                               : !(l[i] < u[i]) ? 0.0
+                               : active[i] < 0  ? std::min(gi[i], 0.0)
+                                                : std::max(gi[i], 0.0);
+            const double out = xi[i] - clip(xi[i], l[i], u[i]);
+            sum[0] += gp * gp;
+            sum[1] += out * out;
           }
-        residual = std::sqrt(problem.reduction().sum(std::array<double, 1>{{sum}})[0]) / reference;
+        sum       = problem.reduction().sum(sum);
+        residual  = std::sqrt(sum[0]) / reference;
+        violation = norm * std::sqrt(sum[1]) / reference;
+      }
+
+      const Box<Vector> &box() const
+      {
+        return moving_box ? *moving_box : given_box;
+      }
+
+      // Bounds that follow the normal entries: of x, or of the point from which the next set is read; 0 where the set is
+      // open.
+      void move_bounds(const std::vector<signed char> &set, const double gradient_part)
+      {
+        const auto xi = x.begin(), gi = g.begin();
+        for (const PressureBound &bound : coupled.bounds)
+          {
+            const double pressure = std::max(xi[bound.normal] - gradient_part * gi[bound.normal], 0.);
+            const double radius   = set[bound.normal] == 0 ? bound.fixed + bound.coefficient * pressure : 0.;
+            moving_box->lower.begin()[bound.tangential] = -radius;
+            moving_box->upper.begin()[bound.tangential] = radius;
+          }
       }
 
       // -1 at the lower bound, 1 at the upper, 0 free: of x - g / |PFP|. Entries with l = u are never free.
-      std::vector<signed char> next_set() const
+      std::vector<signed char> next_set()
       {
-        const auto               l = box.lower.begin(), u = box.upper.begin();
-        const auto               xi = x.begin(), gi = g.begin();
         std::vector<signed char> set(local_size(x));
+        const auto               xi = x.begin(), gi = g.begin();
+        const auto               place = [&](const std::size_t i) {
+          const double t = xi[i] - gi[i] / norm;
+          set[i]         = t <= box().lower.begin()[i] ? -1 : t >= box().upper.begin()[i] ? 1 : 0;
+        };
         for (std::size_t i = 0; i < set.size(); ++i)
-          {
-            const double t = xi[i] - gi[i] / norm;
-            set[i]         = t <= l[i] ? -1 : t >= u[i] ? 1 : 0;
-          }
+          place(i);
+        move_bounds(set, 1. / norm);
+        for (const PressureBound &bound : coupled.bounds)
+          place(bound.tangential);
         return set;
       }
 
@@ -262,7 +370,7 @@ namespace slipstick::qp
 
       double count_changes(const std::vector<signed char> &next)
       {
-        const auto            l = box.lower.begin(), u = box.upper.begin();
+        const auto            l = box().lower.begin(), u = box().upper.begin();
         std::array<double, 4> s{{0, 0, 0, 0}};
         for (std::size_t i = 0; i < next.size(); ++i)
           {
@@ -292,30 +400,35 @@ namespace slipstick::qp
       const Problem             &problem;
       const double               norm;
       const Vector              &d;
-      const Box<Vector>         &box;
+      const Box<Vector>         &given_box;
       const NewtonOptions       &options;
       const PcpgOptions         &pcpg_options;
       const Observer            &observer;
       const BoundUpdate<Vector> &bounds;
+      const CoupledBounds       &coupled;
+
+      std::optional<Box<Vector>> moving_box; // with coupled bounds
 
       Vector       x, Fx, g, w;
       const double reference, eps;
-      double       forcing;
+      double       forcing, wanted = 0;
       double       solved_to      = 1; // forcing at the last update of the bounds
       double       residual       = HUGE_VAL;
+      double       violation      = HUGE_VAL; // of the bounds by x, over the reference, in terms of the residual
       double       n_inequalities = 0, n_lower = 0, n_upper = 0;
       double       bound_change = 0;     // the last one
       bool         set_changed  = true;  // x is not on its bounds, or does not balance: F x is not known
       bool         set_stands   = false; // the free entries are those of the last solve
       std::shared_ptr<DirectionHistory<Vector>> history;
+      std::optional<ResidualHistory<Vector>>    residual_history;
       std::vector<signed char>                  active;
       Counts                                    counts;
     };
   } // namespace detail
 
   /// Minimise 1/2 x'Fx - x'd over the box and G x = e. The start x tells the first active set: entries at their bounds.
-  /// `norm` is |PFP|; goal.reference must be given (|P(d - F x~)|). Converged: the active set stands and |gP| is at most
-  /// goal.tolerance times goal.reference.
+  /// `norm` is |PFP|; goal.reference must be given (|P(d - F x~)|). Converged: x is within its bounds, |gP| and |PFP| |G x - e| are
+  /// at most goal.tolerance times goal.reference (with bounds followed in an outer loop the active set stands besides).
   /// status: infeasible if the free entries of some set leave the equalities singular, stagnated if neither residual nor
   /// changes of the set fall any more; MPGP with SMALBE goes on from there.
   template <typename Vector, typename Problem>
@@ -328,7 +441,8 @@ namespace slipstick::qp
                                          const NewtonOptions       &options      = {},
                                          const PcpgOptions         &pcpg_options = {},
                                          const Observer            &observer     = {},
-                                         const BoundUpdate<Vector> &bounds       = {})
+                                         const BoundUpdate<Vector> &bounds       = {},
+                                         const CoupledBounds       &coupled      = {})
   {
     return detail::SemismoothNewton<Vector, Problem>(problem,
                                                      norm,
@@ -339,7 +453,8 @@ namespace slipstick::qp
                                                      options,
                                                      pcpg_options,
                                                      observer,
-                                                     bounds)
+                                                     bounds,
+                                                     coupled)
       .run();
   }
 } // namespace slipstick::qp

@@ -26,21 +26,30 @@ namespace slipstick::tfeti
     prescribed  // prescribed displacement [mm], elastic foundation (with compliance)
   };
 
+  /// Are multipliers of this kind without bounds?
+  constexpr bool is_equality(const RowKind kind)
+  {
+    return kind != RowKind::tangential && kind != RowKind::normal;
+  }
+
   constexpr unsigned int invalid_row = static_cast<unsigned int>(-1);
 
   /// A node that may touch. The rows and the interface unknowns of a contact node are owned by one rank.
   struct ContactPoint
   {
-    unsigned int                 pair = 0; // index into Scene::contacts
-    std::array<double, 3>        position{{0, 0, 0}};
-    std::array<double, 3>        normal{{0, 0, 0}};  // outward normal of the slave body
-    bool                         has_master = false; // another body, no obstacle
-    unsigned int                 slave_body = 0, master_body = 0;
-    std::array<double, 3>        master_position{{0, 0, 0}}; // weighted mean of the master nodes, where the force acts
-    double                       gap    = 0;                 // reference configuration [mm]
-    double                       area   = 0;                 // tributary length times thickness [mm^2]
-    double                       length = 0;                 // tributary length [mm]
-    std::array<std::uint64_t, 2> key{{0, 0}};                // the mesh's name of the node
+    unsigned int          pair = 0; // index into Scene::contacts
+    std::array<double, 3> position{{0, 0, 0}};
+    std::array<double, 3> normal{{0, 0, 0}};  // outward normal of the slave body
+    bool                  has_master = false; // another body, no obstacle
+    unsigned int          slave_body = 0, master_body = 0;
+    std::array<double, 3> master_position{{0, 0, 0}}; // weighted mean of the master nodes, where the force acts
+    double                gap           = 0;          // reference configuration [mm]
+    double                area          = 0;          // tributary length times thickness [mm^2]
+    double                length        = 0;          // tributary length [mm]
+    double                traction_area = 0;  // that tractions are given for: where less than half of the node's
+                                              // full tributary length faces the other side half of it counts, since
+                                              // the force of a sliver over its own area says nothing [mm^2]
+    std::array<std::uint64_t, 2> key{{0, 0}}; // the mesh's name of the node
     unsigned int                 normal_row     = invalid_row; // owned rows; invalid where a support takes their place
     unsigned int                 tangential_row = invalid_row;
     unsigned int                 interface_dof  = 0; // owned number of the node's first interface unknown
@@ -77,6 +86,7 @@ namespace slipstick::tfeti
     std::vector<double>                      compliance; // of the owned rows: b u - compliance x = c [mm/N]; empty: 0
     std::vector<std::uint64_t>               label;      // of the owned rows, the same for every number of ranks
     std::vector<ContactPoint>                contact_points; // whose rows this rank owns
+    std::vector<ContactPoint>                bonded_points;  // the same of bonded rows: of normal and tangent
     Partitioner                              interface_dofs;
     std::vector<std::vector<InterfaceEntry>> interface_blocks; // of the subdomains of this rank
     std::vector<bool> interface_held; // owned unknowns: does an outside force act (support, contact)?

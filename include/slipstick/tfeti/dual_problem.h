@@ -44,8 +44,8 @@ namespace slipstick::tfeti
     void                project_range(const DistributedVector &x, DistributedVector &y) const; // y = Q x
     const MpiReduction &reduction() const;
 
-    /// The problem on the free rows (owned ones), the others held. Collective.
-    Face face(const std::vector<bool> &free) const;
+    /// The problem on the free rows (owned ones), the others held, or tied to free ones. Collective.
+    Face face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties = {}) const;
 
     /// |P F P| [mm/N].
     double norm() const
@@ -67,8 +67,9 @@ namespace slipstick::tfeti
 
     /// Displacements u = K+(f - B'x) + R a. First x is moved, on the rows with `free` alone, to where G x = e holds to
     /// rounding, so that u is in equilibrium with it; then the amplitudes a of the rigid motions make those rows (which
-    /// hold with equality) fit in the sense of least squares. Collective.
-    /// @throws NoEquilibrium naming the body that slides or lifts off when the free rows do not fix a.
+    /// hold with equality) fit in the sense of least squares. Bodies that slide on all their contacts are put where every
+    /// slip follows its force and no gap is negative, as near as can be to where they just stop sticking. Collective.
+    /// @throws NoEquilibrium naming the body when neither free rows nor rows with friction forces fix a.
     Recovery recover(const DistributedVector &x, const std::vector<bool> &free) const;
 
     /// B u of displacements of this rank's subdomains, owned rows [mm]. Collective.
@@ -119,6 +120,11 @@ namespace slipstick::tfeti
     }
 
   private:
+    std::vector<bool> rows_that_fix(const std::vector<RigidMotion> &loose,
+                                    const DistributedVector        &x,
+                                    std::vector<bool>               free) const;
+    void slide_apart(const std::vector<RigidMotion> &loose, const std::vector<bool> &free, Recovery &at) const;
+
     double          power_method(const DualOptions &options) const;
     void            apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
     void            update_dual_load();
@@ -132,6 +138,7 @@ namespace slipstick::tfeti
     std::vector<LocalGluing>                      gluing;
     std::vector<std::unique_ptr<SubdomainSystem>> systems;
     std::unique_ptr<DualOperator>                 F;
+    std::unique_ptr<BodyMotions>                  bodies;
     std::unique_ptr<Projector>                    projector;
     std::unique_ptr<RowWeights>                   weights; // with a preconditioner
     std::unique_ptr<PreconditionerBlocks>         preconditioner;
@@ -145,7 +152,7 @@ namespace slipstick::tfeti
   class DualProblem::Face
   {
   public:
-    Face(const DualProblem &problem, const std::vector<bool> &free);
+    Face(const DualProblem &problem, const std::vector<bool> &free, const std::vector<qp::Tie> &ties);
 
     void                multiply(const DistributedVector &x, DistributedVector &y) const; // y = F x / |P F P|
     const MpiReduction &reduction() const;
@@ -153,8 +160,11 @@ namespace slipstick::tfeti
     /// y = Q_f x on the free rows, y = x on the others.
     void project_range(const DistributedVector &x, DistributedVector &y) const;
 
-    /// Moves the free rows of x by the least that makes G x = e.
+    /// Moves the free rows of x, and those tied to them, by the least that makes G x = e.
     void balance(DistributedVector &x) const;
+
+    /// Moves the free rows of p by the least that makes G p = 0, once the tied rows are factor times theirs.
+    void project_kernel(DistributedVector &p) const;
 
     /// y = G'a on all rows, with the a that makes v - G'a least on the free ones.
     void multiplier_shift(const DistributedVector &v, DistributedVector &y) const;
@@ -169,9 +179,16 @@ namespace slipstick::tfeti
     }
 
   private:
+    const Projector &balancing() const
+    {
+      return tied ? *tied : *projector;
+    }
+
     const DualProblem                   &problem;
     std::vector<bool>                    free;
+    std::vector<qp::Tie>                 ties;
     std::unique_ptr<Projector>           projector; // none if the free rows do not hold the bodies
+    std::unique_ptr<Projector>           tied;      // of free and tied rows, if some rank has ties
     std::unique_ptr<RowWeights::Inverse> weights;
     std::vector<Eigen::VectorXd>         inverse_diagonals; // of K at the touched unknowns
     mutable DistributedVector            source, target;

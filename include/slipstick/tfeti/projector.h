@@ -1,6 +1,7 @@
 // The coarse problem: G = R'B', its Gram matrix, and the orthogonal projectors Q and P = I - Q.
 #pragma once
 
+#include <slipstick/qp/pressure_bounds.h>
 #include <slipstick/tfeti/dual_operator.h>
 
 namespace slipstick::tfeti
@@ -14,12 +15,15 @@ namespace slipstick::tfeti
   public:
     /// @param active true for the rows (owned by this rank) that take part; the others count as zero columns of G.
     ///        Empty: all rows. G G' must be nonsingular (see rigid_motions.h). Collective.
+    /// @param ties owned rows, active too, whose entries are factor times those of another active one: with x = T y of the
+    ///        untied entries y, Q is T (G T)'(G T (G T)')^-1 G then (a projector on vectors that obey the ties).
     Projector(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
               const std::vector<LocalGluing>                      &gluing,
               const DualOperator                                  &scatter_gather,
               const Partitioner                                   &rows,
               const std::vector<bool>                             &active,
-              const MPI_Comm                                       comm);
+              const MPI_Comm                                       comm,
+              const std::vector<qp::Tie>                          &ties = {});
     ~Projector();
 
     /// y = Q x, owned entries. Collective.
@@ -58,6 +62,7 @@ namespace slipstick::tfeti
     const DualOperator           &scatter_gather;
     std::vector<Block>            blocks;
     unsigned int                  n_motions = 0; // of this rank
+    std::vector<qp::Tie>          ties;
     std::unique_ptr<CoarseSolver> coarse;
     DistributedVector             indicator; // 1 on active rows, ghosts included
     mutable DistributedVector     source, target;

@@ -12,14 +12,42 @@ namespace slipstick::tfeti
     double          work = 0;   // of the loads along it, over |loads| [-]
   };
 
-  /// Motions of the bodies that no active row of B resists (gluing aside, which moves with its body). Collective.
-  /// @param active rows (owned by this rank) that take part; empty: all.
-  std::vector<RigidMotion> free_motions(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
-                                        const std::vector<LocalGluing>                      &gluing,
-                                        const Constraints                                   &constraints,
-                                        const std::vector<bool>                             &active,
-                                        const unsigned int                                   n_bodies,
-                                        const MPI_Comm                                       comm);
+  /// What the rows of B (gluing aside, which moves with its body) see of the rigid motions of whole bodies.
+  class BodyMotions
+  {
+  public:
+    /// The arguments are not kept, but `subdomains` has to live as long as this. Collective.
+    BodyMotions(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+                const std::vector<LocalGluing>                      &gluing,
+                const Constraints                                   &constraints,
+                const unsigned int                                   n_bodies,
+                const MPI_Comm                                       comm);
+
+    /// Motions that no active row of B resists. Collective.
+    /// @param active rows (owned by this rank) that take part; empty: all.
+    std::vector<RigidMotion> free(const std::vector<bool> &active) const;
+
+    /// Jumps B u of all rows that this rank owns (0 for gluing) under motions; rows x motions.
+    Eigen::MatrixXd jumps(const std::vector<RigidMotion> &motions) const;
+
+    /// Displacements of subdomain p of this rank under a motion, all unknowns.
+    Eigen::VectorXd displacements(const unsigned int p, const Eigen::VectorXd &amplitudes) const;
+
+  private:
+    struct Share
+    {
+      unsigned int    row; // owned
+      unsigned int    body;
+      Eigen::VectorXd values; // of its motions
+    };
+
+    const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
+    MPI_Comm                                             comm;
+    unsigned int                                         n_owned_rows;
+    unsigned int                                         motions_of_body; // 3 in the plane
+    unsigned int                                         n_motions;       // of all bodies
+    std::vector<Share>                                   shares;          // sorted by row
+  };
 
   /// The motion of whole bodies in amplitudes of the rigid motions of this rank's subdomains (their mean). Collective.
   RigidMotion body_motion(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
