@@ -239,7 +239,7 @@ namespace slipstick::contact
                                             1.,
                                             d,
                                             box,
-                                            from,
+                                            qp::NewtonStart<Vector>{from, gradient},
                                             qp::Goal(options.tolerance, solution.reference),
                                             options.newton,
                                             options.pcpg,
@@ -272,7 +272,7 @@ namespace slipstick::contact
                                             1.,
                                             d,
                                             box,
-                                            from,
+                                            qp::NewtonStart<Vector>{from, gradient},
                                             qp::Goal(options.tolerance, solution.reference),
                                             options.newton,
                                             options.pcpg,
@@ -386,6 +386,7 @@ namespace slipstick::contact
         solution.projected_gradient = result.projected_gradient;
         solution.equality           = result.equality_residual;
         solution.reference          = result.reference;
+        gradient                    = result.gradient;
         Vector x                    = from;
         x += result.x;
         // entries that reached a shifted bound are put on the bound itself, to the last bit
@@ -418,11 +419,12 @@ namespace slipstick::contact
       const scene::FrictionOptions &friction;
       const ProgressObserver       &observer;
 
-      Box          box;
-      DualSolution solution;
-      double       relaxation     = 1; // damping of the bounds
-      double       least_change   = qp::infinity;
-      unsigned int updates_in_row = 0; // without progress
+      Box                   box;
+      std::optional<Vector> gradient; // where SMALBE-M ended
+      DualSolution          solution;
+      double                relaxation     = 1; // damping of the bounds
+      double                least_change   = qp::infinity;
+      unsigned int          updates_in_row = 0; // without progress
     };
   } // namespace
 

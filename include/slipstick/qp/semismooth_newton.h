@@ -45,6 +45,15 @@ namespace slipstick::qp
     bool                       are_coupled = false;
   };
 
+  /// The point that tells the first active set: entries at their bounds, or, with the gradient F x - d + G'a, those that
+  /// a step along it takes there.
+  template <typename Vector>
+  struct NewtonStart
+  {
+    Vector                x;
+    std::optional<Vector> gradient = std::nullopt;
+  };
+
   template <typename Vector>
   struct NewtonResult
   {
@@ -65,7 +74,7 @@ namespace slipstick::qp
                        const double               norm_,
                        const Vector              &d_,
                        const Box<Vector>         &box_,
-                       Vector                     x_,
+                       NewtonStart<Vector>        start,
                        const Goal                &goal,
                        const NewtonOptions       &options_,
                        const PcpgOptions         &pcpg_options_,
@@ -82,17 +91,16 @@ namespace slipstick::qp
         , bounds(bounds_)
         , coupled(coupled_)
         , moving_box(coupled_.are_coupled ? std::make_optional(box_) : std::nullopt)
-        , x(std::move(x_))
+        , x(std::move(start.x))
         , Fx(zero_like(d))
-        , g(d)
+        , g(start.gradient ? std::move(*start.gradient) : zero_like(d))
         , w(d)
         , reference(goal.reference)
         , eps(goal.tolerance)
         , forcing(options.first_forcing)
       {
         bound_change = bounds.update ? 1. : 0.;
-        set_zero(g);
-        active = next_set(); // entries at their bounds
+        active       = next_set();
       }
 
       NewtonResult<Vector> run()
@@ -426,7 +434,7 @@ namespace slipstick::qp
     };
   } // namespace detail
 
-  /// Minimise 1/2 x'Fx - x'd over the box and G x = e. The start x tells the first active set: entries at their bounds.
+  /// Minimise 1/2 x'Fx - x'd over the box and G x = e.
   /// `norm` is |PFP|; goal.reference must be given (|P(d - F x~)|). Converged: x is within its bounds, |gP| and |PFP| |G x - e| are
   /// at most goal.tolerance times goal.reference (with bounds followed in an outer loop the active set stands besides).
   /// status: infeasible if the free entries of some set leave the equalities singular, stagnated if neither residual nor
@@ -436,7 +444,7 @@ namespace slipstick::qp
                                          const double               norm,
                                          const Vector              &d,
                                          const Box<Vector>         &box,
-                                         Vector                     x,
+                                         NewtonStart<Vector>        start,
                                          const Goal                &goal,
                                          const NewtonOptions       &options      = {},
                                          const PcpgOptions         &pcpg_options = {},
@@ -448,7 +456,7 @@ namespace slipstick::qp
                                                      norm,
                                                      d,
                                                      box,
-                                                     std::move(x),
+                                                     std::move(start),
                                                      goal,
                                                      options,
                                                      pcpg_options,
