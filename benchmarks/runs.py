@@ -141,6 +141,8 @@ class Figures:
 
     def end(self):
         """Exit status, and a last line."""
+        if not self.records:
+            return 0
         print(f"\n{self.missed} of {len(self.records)} figures missed" if self.missed else
               f"\nall {len(self.records)} figures met", flush=True)
         return 1 if self.missed else 0
