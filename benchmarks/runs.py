@@ -1,5 +1,7 @@
 """What the benchmarks share: builds slipstick, runs a scene under mpirun, times it from outside, reads its summary."""
 
+import csv
+import datetime
 import json
 import os
 import pathlib
@@ -54,8 +56,11 @@ def mpirun(ranks):
     return command, environment
 
 
-def run(program, settings, ranks, scene=BOX):
-    """summary.json of one run, with "wall_s" from outside and "exit" added; raises RunFailed when there is none."""
+def run(program, settings, ranks, scene=BOX, look=None):
+    """summary.json of one run, with "wall_s" from outside and "exit" added; raises RunFailed when there is none.
+
+    look(directory of the outputs) is called before they are deleted, its result is "seen".
+    """
     launcher, environment = mpirun(ranks)
     output = pathlib.Path(tempfile.mkdtemp(prefix="slipstick-"))
     try:
@@ -71,6 +76,8 @@ def run(program, settings, ranks, scene=BOX):
             raise RunFailed(f"status {done.returncode}: {done.stdout.strip()[-500:]}") from None
         summary["wall_s"] = wall
         summary["exit"] = done.returncode
+        if look:
+            summary["seen"] = look(output / "out")
         return summary
     finally:
         shutil.rmtree(output, ignore_errors=True)
@@ -94,6 +101,60 @@ def box(n, slip_bound, **more):
     if "vtu" in more:
         settings["Output/VTU"] = "true" if more["vtu"] else "false"
     return settings
+
+
+def conditions(ranks=None):
+    """One line on where and when: commit, cores, ranks, load of the machine; goes above every table."""
+    commit = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty"], text=True, stdout=subprocess.PIPE,
+                            stderr=subprocess.DEVNULL, check=False).stdout.strip()
+    load = ", ".join(f"{value:.1f}" for value in os.getloadavg())
+    return (f"{datetime.datetime.now():%Y-%m-%d %H:%M}, commit {commit or '-'}, {os.cpu_count()} cores"
+            + (f", {ranks} rank(s)" if ranks else "") + f", load at the start {load} (1, 5, 15 min)")
+
+
+class Figures:
+    """What is asked for, and by how much it is met or missed; prints each as a line of a Markdown list."""
+
+    def __init__(self):
+        self.missed, self.records = 0, []
+
+    def at_most(self, what, value, limit, unit=""):
+        return self._judge(what, value, limit, value <= limit, f"at most {limit:g}{unit}", unit)
+
+    def at_least(self, what, value, limit, unit=""):
+        return self._judge(what, value, limit, value >= limit, f"at least {limit:g}{unit}", unit)
+
+    def true(self, what, is_met, text):
+        """A claim without a number."""
+        self.missed += not is_met
+        self.records.append({"what": what, "value": text, "limit": "", "met": int(is_met)})
+        print(f"- {what}: {text}: {'met' if is_met else 'MISSED'}", flush=True)
+        return is_met
+
+    def _judge(self, what, value, limit, is_met, asked, unit):
+        self.missed += not is_met
+        self.records.append({"what": what, "value": value, "limit": limit, "met": int(is_met)})
+        how = "met by" if is_met else "MISSED by"
+        print(f"- {what}: {value:.4g}{unit}, asked {asked}: {how} {abs(value - limit):.3g}{unit} "
+              f"({100 * abs(value - limit) / limit:.0f} %)", flush=True)
+        return is_met
+
+    def end(self):
+        """Exit status, and a last line."""
+        if not self.records:
+            return 0
+        print(f"\n{self.missed} of {len(self.records)} figures missed" if self.missed else
+              f"\nall {len(self.records)} figures met", flush=True)
+        return 1 if self.missed else 0
+
+
+def write_csv(file_name, rows):
+    """Dictionaries as lines; columns in the order in which they first occur."""
+    columns = list(dict.fromkeys(name for row in rows for name in row))
+    with open(file_name, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
 
 
 def markdown(head, rows):

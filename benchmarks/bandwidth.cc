@@ -1,0 +1,157 @@
+// benchmark_bandwidth CASE.prm [REPETITIONS] [--set Section/Name=value]...: one multiplication with the explicit F against
+// the time to read its blocks once. All ranks at the same time; in every repetition the product, then a plain sum over a
+// buffer as large as the rank's blocks, so that both see the same machine. Ratio of the medians and of the least times;
+// prints Markdown. Status 1 when the ratio of the medians is above the limit.
+#include <slipstick/fem/assembly.h>
+#include <slipstick/fem/contact_constraints.h>
+#include <slipstick/fem/decomposition.h>
+#include <slipstick/scene/read.h>
+#include <slipstick/tfeti/dual_operator.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+
+namespace
+{
+  using namespace slipstick;
+
+  constexpr double limit = 1.5; // of one multiplication over reading its data
+
+  /// Wall time of the slowest rank [s].
+  double seconds(const MPI_Comm comm, const std::function<void()> &work)
+  {
+    MPI_Barrier(comm);
+    const double start = MPI_Wtime();
+    work();
+    return dealii::Utilities::MPI::max(MPI_Wtime() - start, comm);
+  }
+
+  double median(std::vector<double> values)
+  {
+    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+    return values[values.size() / 2];
+  }
+
+  /// Reads all of it once; independent sums, so that memory and not the latency of the addition is the limit.
+  double sum(const std::vector<double> &buffer)
+  {
+    std::array<double, 32> sums{};
+    for (std::size_t i = 0; i + sums.size() <= buffer.size(); i += sums.size())
+      for (std::size_t k = 0; k < sums.size(); ++k)
+        sums[k] += buffer[i + k];
+    double total = 0;
+    for (const double s : sums)
+      total += s;
+    return total;
+  }
+
+  int run(const std::string &file, const std::vector<std::string> &overrides, const unsigned int repetitions)
+  {
+    const MPI_Comm       comm  = MPI_COMM_WORLD;
+    const auto           scene = scene::read_scene(file, overrides);
+    const auto           mesh  = fem::make_mesh(scene, comm);
+    const fem::Spaces<2> spaces(mesh, scene.discretization.degree);
+    const auto           constraints = fem::contact_constraints(scene, mesh, spaces, 1.);
+    auto                 matrices    = fem::assemble(scene, mesh, spaces, 1.);
+
+    const auto                                           session = std::make_shared<tfeti::CholmodSession>();
+    std::vector<std::unique_ptr<tfeti::SubdomainSystem>> systems;
+    std::vector<tfeti::LocalGluing>                      gluing;
+    for (unsigned int p = 0; p < matrices.size(); ++p)
+      {
+        auto [local, touched] = tfeti::LocalGluing::make(constraints.blocks[p]);
+        gluing.push_back(std::move(local));
+        systems.push_back(
+          std::make_unique<tfeti::SubdomainSystem>(session, std::move(matrices[p]), std::move(touched), true));
+      }
+    const tfeti::DualOperator F(systems, gluing, constraints.rows, true);
+    const std::size_t         own_bytes = F.block_bytes();
+    std::vector<double>       buffer(own_bytes / sizeof(double), 1.);
+
+    tfeti::DistributedVector x(constraints.rows), y(constraints.rows);
+    for (unsigned int r = 0; r < x.locally_owned_size(); ++r)
+      x.local_element(r) = std::sin(1. + r);
+    std::vector<double> product_times, read_times;
+    double              checksum = 0;
+    for (unsigned int k = 0; k < repetitions + 1; ++k)
+      {
+        const double product = seconds(comm, [&] { F.apply(x, y); });
+        const double reading = seconds(comm, [&] { checksum += sum(buffer); });
+        if (k == 0) // first touch
+          continue;
+        product_times.push_back(product);
+        read_times.push_back(reading);
+      }
+    const double bytes    = dealii::Utilities::MPI::sum(static_cast<double>(own_bytes), comm);
+    const double expected = dealii::Utilities::MPI::sum(static_cast<double>(buffer.size()), comm);
+    checksum              = dealii::Utilities::MPI::sum(checksum, comm) / (repetitions + 1);
+    if (std::abs(checksum / expected - 1) > 1e-4)
+      throw std::runtime_error("the buffer was not read");
+    const double ratio = median(product_times) / median(read_times);
+    if (dealii::Utilities::MPI::this_mpi_process(comm) == 0)
+      {
+        double load[1] = {0};
+        getloadavg(load, 1);
+        const auto least = [](const std::vector<double> &values) {
+          return *std::min_element(values.begin(), values.end());
+        };
+        std::printf(
+          "| subdomains | ranks | blocks MB | F x ms: median | least | reading ms: median | least | GB/s | ratio: "
+          "medians | least | load |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+        std::printf("| %u | %u | %.1f | %.3f | %.3f | %.3f | %.3f | %.1f | %.2f | %.2f | %.1f |\n",
+                    mesh.n_subdomains(),
+                    dealii::Utilities::MPI::n_mpi_processes(comm),
+                    bytes / 1e6,
+                    1e3 * median(product_times),
+                    1e3 * least(product_times),
+                    1e3 * median(read_times),
+                    1e3 * least(read_times),
+                    bytes / 1e9 / median(read_times),
+                    ratio,
+                    least(product_times) / least(read_times),
+                    load[0]);
+        std::printf("\n- F-multiplication over reading its data: %.2f, asked at most %.1f: %s %.2f\n",
+                    ratio,
+                    limit,
+                    ratio <= limit ? "met by" : "MISSED by",
+                    std::abs(ratio - limit));
+      }
+    return ratio <= limit ? 0 : 1;
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  if (openblas_set_num_threads)
+    openblas_set_num_threads(1);
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  std::string                              file;
+  unsigned int                             repetitions = 51;
+  std::vector<std::string>                 overrides;
+  for (int i = 1; i < argc; ++i)
+    if (std::string(argv[i]) == "--set" && i + 1 < argc)
+      overrides.push_back(argv[++i]);
+    else if (file.empty())
+      file = argv[i];
+    else
+      repetitions = std::stoul(argv[i]);
+  try
+    {
+      if (file.empty() || repetitions == 0)
+        throw std::runtime_error("usage: benchmark_bandwidth CASE.prm [REPETITIONS] [--set Section/Name=value]...");
+      return run(file, overrides, repetitions);
+    }
+  catch (const std::exception &error)
+    {
+      std::cerr << "benchmark_bandwidth: " << error.what() << std::endl;
+      MPI_Abort(MPI_COMM_WORLD, 2);
+    }
+}

@@ -1,0 +1,753 @@
+// benchmark_primal_newton CASE.prm [options]: the usual way to solve a contact problem with Tresca friction, to compare
+// slipstick with: a primal semismooth Newton method (primal-dual active set; Hueber, Wohlmuth 2005) on the untorn body,
+// sparse Cholesky factorisations by CHOLMOD. benchmarks/primal_newton runs it; prints one line of JSON.
+//
+// What makes it quick: same matrices as slipstick's (its fem layer, Decomposition/Method = none), normal and tangential
+// unknowns at the contact nodes, so that an active set fixes unknowns and the pattern of the matrix never changes: one
+// symbolic analysis, only the entries near the contact rewritten, the factor and all workspace used again; supports are
+// eliminated; the mesh is freed before the factorisation.
+//
+// --ordering amd|metis|nesdis   CHOLMOD's ordering
+// --start open|gap|coarse       first active set: nothing closed; the node with the smallest gap (default); that of the
+//                               solution on the mesh of half as many Blocks, and so on down to 1 (their time counts)
+// --condensed                   contact unknowns last in the ordering, one factorisation, Newton on their dense Schur
+//                               complement: beyond the usual way
+// --analysis-only               one analysis and one factorisation, to choose the ordering
+// --tolerance EPS, --threads N, --set NAME=VALUE
+#include <slipstick/base/log.h>
+#include <slipstick/fem/assembly.h>
+#include <slipstick/fem/contact_constraints.h>
+#include <slipstick/fem/decomposition.h>
+#include <slipstick/scene/read.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <cholmod.h>
+
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <malloc.h>
+#include <map>
+#include <nlohmann/json.hpp>
+
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+
+namespace
+{
+  using namespace slipstick;
+  using Vector = Eigen::VectorXd;
+
+  constexpr unsigned int max_steps = 60;
+
+  struct Options
+  {
+    std::string              file, ordering = "amd", start = "gap";
+    bool                     condensed = false, analysis_only = false;
+    double                   tolerance = 1e-4;
+    int                      threads   = 1;
+    std::vector<std::string> overrides;
+  };
+
+  /// Seconds by stage; the stage entered last runs.
+  class Clock
+  {
+  public:
+    void enter(const std::string &name)
+    {
+      const auto now = std::chrono::steady_clock::now();
+      if (!stage.empty())
+        seconds[stage] += std::chrono::duration<double>(now - since).count();
+      stage = name;
+      since = now;
+    }
+
+    std::map<std::string, double> seconds;
+
+  private:
+    std::string                           stage;
+    std::chrono::steady_clock::time_point since;
+  };
+
+  /// One contact node: unknowns v_n, v_t of the reduced problem, u = n v_n + t v_t.
+  struct ContactNode
+  {
+    std::array<int, 2> unknown;              // normal, tangential
+    double             position, gap, bound; // along x [mm], [mm], [N]
+  };
+
+  /// min 1/2 v'A v - b'v + sum bound |v_t|, v_n <= gap, supports eliminated.
+  struct Problem
+  {
+    Eigen::SparseMatrix<double> lower; // lower triangle of A [N/mm]
+    Vector                      load;  // [N]
+    std::vector<ContactNode>    nodes; // sorted by position
+  };
+
+  /// Normal and tangential directions in place of x and y at the contact nodes: A := Q'A Q on their blocks.
+  void rotate(Eigen::SparseMatrix<double> &A, Vector &b, const std::map<int, Eigen::Matrix2d> &directions)
+  {
+    const auto entry = [&A](const int i, const int j) -> double & {
+      const int *begin = A.innerIndexPtr() + A.outerIndexPtr()[j], *end = A.innerIndexPtr() + A.outerIndexPtr()[j + 1];
+      return A.valuePtr()[std::lower_bound(begin, end, i) - A.innerIndexPtr()];
+    };
+    const auto direction = [&directions](const int node) -> Eigen::Matrix2d {
+      const auto found = directions.find(node);
+      return found == directions.end() ? Eigen::Matrix2d(Eigen::Matrix2d::Identity()) : found->second;
+    };
+    for (int column = 0; 2 * column < A.cols(); ++column)
+      for (int k = A.outerIndexPtr()[2 * column]; k < A.outerIndexPtr()[2 * column + 1]; ++k)
+        {
+          const int row = A.innerIndexPtr()[k] / 2;
+          if (A.innerIndexPtr()[k] % 2 == 1 || (!directions.count(row) && !directions.count(column)))
+            continue;
+          Eigen::Matrix2d block;
+          for (int i = 0; i < 2; ++i)
+            for (int j = 0; j < 2; ++j)
+              block(i, j) =
+                row == column && i < j ? entry(2 * row + j, 2 * column + i) : entry(2 * row + i, 2 * column + j);
+          block = direction(row).transpose() * block * direction(column);
+          for (int i = 0; i < 2; ++i)
+            for (int j = 0; j < 2; ++j)
+              if (row != column || i >= j)
+                entry(2 * row + i, 2 * column + j) = block(i, j);
+        }
+    for (const auto &[node, Q] : directions)
+      b.segment<2>(2 * node) = Q.transpose() * b.segment<2>(2 * node).eval();
+  }
+
+  /// Removes rows and columns; in place, since indices only move down. Returns the new numbers, -1 for removed ones.
+  std::vector<int> eliminate(Eigen::SparseMatrix<double> &A, Vector &b, const std::vector<bool> &held)
+  {
+    std::vector<int> number(A.cols(), -1);
+    int              n = 0, kept = 0;
+    for (int i = 0; i < A.cols(); ++i)
+      if (!held[i])
+        number[i] = n++;
+    int begin = 0;
+    for (int j = 0; j < A.cols(); ++j)
+      {
+        const int end = A.outerIndexPtr()[j + 1];
+        if (!held[j])
+          {
+            for (int k = begin; k < end; ++k)
+              if (const int i = A.innerIndexPtr()[k]; !held[i])
+                {
+                  A.innerIndexPtr()[kept] = number[i];
+                  A.valuePtr()[kept++]    = A.valuePtr()[k];
+                }
+            b[number[j]]                     = b[j];
+            A.outerIndexPtr()[number[j] + 1] = kept;
+          }
+        begin = end;
+      }
+    b.conservativeResize(n);
+    Eigen::SparseMatrix<double> reduced =
+      Eigen::Map<Eigen::SparseMatrix<double>>(n, n, kept, A.outerIndexPtr(), A.innerIndexPtr(), A.valuePtr());
+    A.swap(reduced);
+    return number;
+  }
+
+  Problem assembled(const Options &options, const std::vector<std::string> &overrides, Clock &clock)
+  {
+    clock.enter("mesh");
+    const auto scene       = scene::read_scene(options.file, overrides);
+    const auto mesh        = std::make_unique<const fem::Mesh<2>>(fem::make_mesh(scene, MPI_COMM_WORLD));
+    const auto spaces      = std::make_unique<const fem::Spaces<2>>(*mesh, scene.discretization.degree);
+    const auto constraints = fem::contact_constraints(scene, *mesh, *spaces, 1.);
+    clock.enter("assembly");
+    auto matrices = fem::assemble(scene, *mesh, *spaces, 1.);
+    if (matrices.size() != 1)
+      throw std::runtime_error("one body and one rank, please");
+
+    Problem problem;
+    problem.lower = std::move(matrices[0].stiffness);
+    problem.load  = std::move(matrices[0].load);
+    std::vector<bool>                                   held(problem.load.size(), false);
+    std::vector<std::vector<tfeti::Constraints::Entry>> entries(constraints.kind.size());
+    for (const auto &entry : constraints.blocks[0])
+      entries[entry.row].push_back(entry);
+    for (unsigned int row = 0; row < entries.size(); ++row)
+      if (constraints.kind[row] == tfeti::RowKind::prescribed)
+        {
+          if (entries[row].size() != 1 || constraints.c[row] != 0)
+            throw std::runtime_error("supports must hold single unknowns at 0 here");
+          held[entries[row][0].dof] = true;
+        }
+    std::map<int, Eigen::Matrix2d> directions;
+    for (const auto &point : constraints.contact_points)
+      {
+        ContactNode     node;
+        Eigen::Matrix2d Q;
+        Q.setZero();
+        const int first = entries[point.normal_row][0].dof / 2 * 2;
+        for (const auto &[row, k] : {std::pair(point.normal_row, 0), std::pair(point.tangential_row, 1)})
+          for (const auto &entry : entries[row])
+            Q(entry.dof - first, k) = entry.value;
+        if (!(Q.transpose() * Q).isIdentity(1e-10))
+          throw std::runtime_error("contact rows are not orthonormal");
+        directions[first / 2] = Q;
+        node.unknown          = {{first, first + 1}};
+        node.position         = point.position[0];
+        node.gap              = constraints.c[point.normal_row];
+        const auto &slip      = scene.contacts[point.pair].slip_bound;
+        node.bound            = slip.value(dealii::Point<2>(point.position[0], point.position[1]), 1.) * point.area;
+        problem.nodes.push_back(node);
+      }
+    rotate(problem.lower, problem.load, directions);
+    const auto number = eliminate(problem.lower, problem.load, held);
+    for (auto &node : problem.nodes)
+      for (int &unknown : node.unknown)
+        unknown = number[unknown];
+    std::sort(problem.nodes.begin(), problem.nodes.end(), [](const auto &a, const auto &b) {
+      return a.position < b.position;
+    });
+    return problem;
+  }
+
+  /// Mesh and spaces are gone, and their memory is given back.
+  Problem make_problem(const Options &options, const std::vector<std::string> &overrides, Clock &clock)
+  {
+    Problem problem = assembled(options, overrides, clock);
+    malloc_trim(0);
+    return problem;
+  }
+
+  enum class Normal : signed char
+  {
+    open,
+    closed
+  };
+
+  /// What is assumed of every contact node in a Newton step; slip -1, 0 (sticks), 1: sign of v_t.
+  struct ActiveSet
+  {
+    std::vector<Normal>      normal;
+    std::vector<signed char> slip;
+
+    bool operator==(const ActiveSet &other) const
+    {
+      return normal == other.normal && slip == other.slip;
+    }
+  };
+
+  /// v and the forces at contact unknowns.
+  struct State
+  {
+    std::vector<std::array<double, 2>> v, force; // [mm]; -(A v - b) [N]
+  };
+
+  /// The next active set, and how far the state is from complementarity: violated forces over all forces, violated
+  /// displacements over all displacements, the larger. A node that slips against its friction sticks next: the constant
+  /// of the complementarity function is taken so small that it never reverses at once (with 1e5 N/mm it cycles).
+  std::pair<ActiveSet, double> next_set(const Problem &problem, const State &state, const ActiveSet &set)
+  {
+    ActiveSet  next        = set;
+    double     wrong_force = 0, wrong_motion = 0, force = 0, motion = 0;
+    const auto square = [](const double x) { return x * x; };
+    for (unsigned int i = 0; i < problem.nodes.size(); ++i)
+      {
+        const auto &node              = problem.nodes[i];
+        const auto [v_n, v_t]         = state.v[i];
+        const auto [force_n, force_t] = state.force[i];
+        const bool closed             = set.normal[i] == Normal::closed;
+        force += square(force_n) + square(force_t);
+        motion += square(v_n) + square(v_t);
+        (closed ? wrong_force : wrong_motion) += square(closed ? std::min(force_n, 0.) : std::max(v_n - node.gap, 0.));
+        next.normal[i] = (closed ? force_n > 0 : v_n > node.gap) ? Normal::closed : Normal::open;
+        if (set.slip[i] == 0)
+          {
+            wrong_force += square(std::max(std::abs(force_t) - node.bound, 0.));
+            next.slip[i] = force_t > node.bound ? 1 : (force_t < -node.bound ? -1 : 0);
+          }
+        else if (set.slip[i] * v_t < 0)
+          {
+            wrong_motion += square(v_t);
+            next.slip[i] = 0;
+          }
+      }
+    return {next,
+            std::max(std::sqrt(wrong_force / std::max(force, 1e-300)),
+                     std::sqrt(wrong_motion / std::max(motion, 1e-300)))};
+  }
+
+  /// CHOLMOD behind one matrix of constant pattern.
+  class Factor
+  {
+  public:
+    Factor(Eigen::SparseMatrix<double> &lower, const std::string &ordering)
+    {
+      cholmod_start(&common);
+      common.supernodal = CHOLMOD_SUPERNODAL;
+      common.final_ll   = 1;
+      common.nmethods   = 1;
+      common.method[0].ordering =
+        ordering == "metis" ? CHOLMOD_METIS : (ordering == "nesdis" ? CHOLMOD_NESDIS : CHOLMOD_AMD);
+      view_of(lower);
+      factor = cholmod_analyze(&A, &common);
+      check();
+    }
+
+    /// With the unknowns @p last ordered last, CHOLMOD's METIS ordering of the others.
+    Factor(Eigen::SparseMatrix<double> &lower, const std::vector<int> &last)
+    {
+      cholmod_start(&common);
+      common.supernodal         = CHOLMOD_SUPERNODAL;
+      common.final_ll           = 1;
+      common.nmethods           = 1;
+      common.method[0].ordering = CHOLMOD_GIVEN;
+      common.postorder          = 0;
+      view_of(lower);
+      std::vector<bool> is_last(lower.cols(), false);
+      for (const int i : last)
+        is_last[i] = true;
+      std::vector<int> others, permutation(lower.cols());
+      for (int i = 0; i < lower.cols(); ++i)
+        if (!is_last[i])
+          others.push_back(i);
+      cholmod_sparse *whole = cholmod_copy(&A, 0, 0, &common); // both triangles
+      cholmod_sparse *interior =
+        cholmod_submatrix(whole, others.data(), others.size(), others.data(), others.size(), 0, 1, &common);
+      cholmod_free_sparse(&whole, &common);
+      interior->stype                = -1;
+      cholmod_sparse *interior_lower = cholmod_copy(interior, -1, 0, &common);
+      cholmod_free_sparse(&interior, &common);
+      std::vector<int> inner(others.size());
+      cholmod_metis(interior_lower, nullptr, 0, 1, inner.data(), &common);
+      cholmod_free_sparse(&interior_lower, &common);
+      for (std::size_t i = 0; i < inner.size(); ++i)
+        permutation[i] = others[inner[i]];
+      std::copy(last.begin(), last.end(), permutation.begin() + inner.size());
+      factor = cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common);
+      check();
+    }
+
+    ~Factor()
+    {
+      for (cholmod_dense **dense : {&x, &y, &e})
+        cholmod_free_dense(dense, &common);
+      cholmod_free_factor(&factor, &common);
+      cholmod_finish(&common);
+    }
+
+    Factor(const Factor &)            = delete;
+    Factor &operator=(const Factor &) = delete;
+
+    void factorise()
+    {
+      cholmod_factorize(&A, factor, &common);
+      check();
+    }
+
+    /// The solution lives until the next call.
+    const double *solve(Vector &b)
+    {
+      cholmod_dense right{};
+      right.nrow = right.d = right.nzmax = b.size();
+      right.ncol                         = 1;
+      right.x                            = b.data();
+      right.xtype                        = CHOLMOD_REAL;
+      right.dtype                        = CHOLMOD_DOUBLE;
+      cholmod_solve2(CHOLMOD_A, factor, &right, nullptr, &x, nullptr, &y, &e, &common);
+      check();
+      return static_cast<const double *>(x->x);
+    }
+
+    double megabytes() const
+    {
+      return 8e-6 * factor->xsize;
+    }
+
+    /// The last n x n entries of L, lower triangle.
+    Eigen::MatrixXd trailing(const int n) const
+    {
+      const int   first  = static_cast<int>(factor->n) - n;
+      const auto *super  = static_cast<const int *>(factor->super);
+      const auto *pi     = static_cast<const int *>(factor->pi);
+      const auto *px     = static_cast<const int *>(factor->px);
+      const auto *rows   = static_cast<const int *>(factor->s);
+      const auto *values = static_cast<const double *>(factor->x);
+
+      Eigen::MatrixXd block = Eigen::MatrixXd::Zero(n, n);
+      for (int s = 0; s < static_cast<int>(factor->nsuper); ++s)
+        for (int column = std::max(super[s], first); column < super[s + 1]; ++column)
+          for (int k = column - super[s], height = pi[s + 1] - pi[s]; k < height; ++k)
+            block(rows[pi[s] + k] - first, column - first) =
+              values[px[s] + std::ptrdiff_t(column - super[s]) * height + k];
+      return block;
+    }
+
+  private:
+    void view_of(Eigen::SparseMatrix<double> &lower)
+    {
+      A.nrow = A.ncol = lower.rows();
+      A.nzmax         = lower.nonZeros();
+      A.p             = lower.outerIndexPtr();
+      A.i             = lower.innerIndexPtr();
+      A.x             = lower.valuePtr();
+      A.stype         = -1;
+      A.itype         = CHOLMOD_INT;
+      A.xtype         = CHOLMOD_REAL;
+      A.dtype         = CHOLMOD_DOUBLE;
+      A.sorted = A.packed = 1;
+    }
+
+    void check() const
+    {
+      if (common.status != CHOLMOD_OK)
+        throw std::runtime_error("CHOLMOD status " + std::to_string(common.status));
+    }
+
+    cholmod_common  common;
+    cholmod_sparse  A{};
+    cholmod_factor *factor = nullptr;
+    cholmod_dense  *x = nullptr, *y = nullptr, *e = nullptr;
+  };
+
+  /// The matrix of a Newton step: entries near the contact are those of A or of fixed unknowns.
+  class ContactEntries
+  {
+  public:
+    ContactEntries(Problem &problem_)
+      : problem(problem_)
+      , node_of(problem_.load.size(), -1)
+    {
+      for (unsigned int i = 0; i < problem.nodes.size(); ++i)
+        for (const int unknown : problem.nodes[i].unknown)
+          node_of[unknown] = i;
+      auto &A = problem.lower;
+      for (int j = 0; j < A.cols(); ++j)
+        for (int k = A.outerIndexPtr()[j]; k < A.outerIndexPtr()[j + 1]; ++k)
+          if (const int i = A.innerIndexPtr()[k]; node_of[i] >= 0 || node_of[j] >= 0)
+            entries.push_back({k, i, j, A.valuePtr()[k]});
+    }
+
+    /// Writes the matrix of a step into the lower triangle of the problem; returns its right hand side.
+    Vector matrix_and_load(const ActiveSet &set)
+    {
+      std::vector<char> fixed(problem.load.size(), 0);
+      Vector            b = problem.load, value = Vector::Zero(problem.load.size());
+      for (unsigned int i = 0; i < problem.nodes.size(); ++i)
+        {
+          const auto [n, t] = problem.nodes[i].unknown;
+          fixed[n]          = set.normal[i] == Normal::closed;
+          value[n]          = problem.nodes[i].gap;
+          fixed[t]          = set.slip[i] == 0;
+          if (set.slip[i] != 0)
+            b[t] -= set.slip[i] * problem.nodes[i].bound;
+        }
+      for (const auto &[k, i, j, a] : entries)
+        {
+          problem.lower.valuePtr()[k] = !fixed[i] && !fixed[j] ? a : (i == j ? a : 0.);
+          if (i != j && fixed[i] && !fixed[j])
+            b[j] -= a * value[i];
+          if (i != j && fixed[j] && !fixed[i])
+            b[i] -= a * value[j];
+        }
+      for (const auto &[k, i, j, a] : entries)
+        if (i == j && fixed[i])
+          b[i] = a * value[i];
+      return b;
+    }
+
+    State state(const double *v) const
+    {
+      State                              state;
+      std::vector<std::array<double, 2>> product(problem.nodes.size(), {{0, 0}});
+      const auto                         add = [&](const int i, const double x) {
+        if (node_of[i] >= 0)
+          product[node_of[i]][i == problem.nodes[node_of[i]].unknown[1]] += x;
+      };
+      for (const auto &[k, i, j, a] : entries)
+        {
+          add(i, a * v[j]);
+          if (i != j)
+            add(j, a * v[i]);
+        }
+      for (unsigned int i = 0; i < problem.nodes.size(); ++i)
+        {
+          const auto [n, t] = problem.nodes[i].unknown;
+          state.v.push_back({{v[n], v[t]}});
+          state.force.push_back({{problem.load[n] - product[i][0], problem.load[t] - product[i][1]}});
+        }
+      return state;
+    }
+
+  private:
+    struct Entry
+    {
+      int    place, i, j;
+      double value;
+    };
+
+    Problem           &problem;
+    std::vector<int>   node_of; // by unknown
+    std::vector<Entry> entries;
+  };
+
+  struct Result
+  {
+    ActiveSet    set;
+    State        state;
+    Vector       v;
+    unsigned int steps     = 0;
+    double       violation = 0, factor_mb = 0;
+    bool         converged = false;
+  };
+
+  /// Newton with a factorisation a step.
+  Result newton(Problem &problem, const ActiveSet &start, const Options &options, Clock &clock)
+  {
+    clock.enter("assembly");
+    ContactEntries contact(problem);
+    Result         result;
+    result.set = start;
+    clock.enter("analysis");
+    Factor factor(problem.lower, options.ordering);
+    while (result.steps < max_steps && !result.converged)
+      {
+        clock.enter("factorization");
+        Vector b = contact.matrix_and_load(result.set);
+        factor.factorise();
+        ++result.steps;
+        if (options.analysis_only)
+          break;
+        clock.enter("solve");
+        const double *v        = factor.solve(b);
+        result.state           = contact.state(v);
+        auto [next, violation] = next_set(problem, result.state, result.set);
+        result.violation       = violation;
+        result.converged       = violation <= options.tolerance || next == result.set;
+        if (result.converged)
+          result.v = Eigen::Map<const Vector>(v, b.size());
+        else
+          result.set = std::move(next);
+      }
+    result.factor_mb = factor.megabytes();
+    return result;
+  }
+
+  /// Newton on the Schur complement of the contact unknowns; one sparse factorisation in all.
+  Result condensed(Problem &problem, const ActiveSet &start, const Options &options, Clock &clock)
+  {
+    std::vector<int> last;
+    for (const auto &node : problem.nodes)
+      last.insert(last.end(), node.unknown.begin(), node.unknown.end());
+    clock.enter("analysis");
+    Factor factor(problem.lower, last);
+    clock.enter("factorization");
+    factor.factorise();
+    clock.enter("solve");
+    const int             n = last.size();
+    const Eigen::MatrixXd L = factor.trailing(n), S = L * L.transpose();
+    Vector                b = problem.load;
+    const double         *u = factor.solve(b);
+    Vector                u_last(n);
+    for (int k = 0; k < n; ++k)
+      u_last[k] = u[last[k]];
+    const Vector g = S * u_last; // condensed load
+    Result       result;
+    result.set       = start;
+    result.factor_mb = factor.megabytes();
+    Vector v(n), force(n);
+    while (result.steps < max_steps && !result.converged)
+      {
+        ++result.steps;
+        std::vector<int> free;
+        Vector           right = g;
+        v.setZero();
+        for (int i = 0; i < n / 2; ++i)
+          {
+            if (result.set.normal[i] == Normal::open)
+              free.push_back(2 * i);
+            else
+              v[2 * i] = problem.nodes[i].gap;
+            if (result.set.slip[i] != 0)
+              {
+                free.push_back(2 * i + 1);
+                right[2 * i + 1] -= result.set.slip[i] * problem.nodes[i].bound;
+              }
+          }
+        right -= S * v;
+        if (!free.empty())
+          {
+            const Eigen::MatrixXd part     = S(free, free);
+            const Vector          solution = part.llt().solve(Vector(right(free)));
+            v(free)                        = solution;
+          }
+        force        = g - S * v;
+        result.state = State();
+        for (int i = 0; i < n / 2; ++i)
+          {
+            result.state.v.push_back({{v[2 * i], v[2 * i + 1]}});
+            result.state.force.push_back({{force[2 * i], force[2 * i + 1]}});
+          }
+        auto [next, violation] = next_set(problem, result.state, result.set);
+        result.violation       = violation;
+        result.converged       = violation <= options.tolerance || next == result.set;
+        if (!result.converged)
+          result.set = std::move(next);
+      }
+    for (int k = 0; k < n; ++k)
+      b[last[k]] -= force[k];
+    result.v = Eigen::Map<const Vector>(factor.solve(b), b.size());
+    return result;
+  }
+
+  ActiveSet first_set(const Problem &problem, const std::string &start)
+  {
+    ActiveSet set{std::vector<Normal>(problem.nodes.size(), Normal::open),
+                  std::vector<signed char>(problem.nodes.size(), 0)};
+    double    smallest = HUGE_VAL;
+    for (const auto &node : problem.nodes)
+      smallest = std::min(smallest, node.gap);
+    if (start == "gap")
+      for (unsigned int i = 0; i < problem.nodes.size(); ++i)
+        if (problem.nodes[i].gap <= smallest + 1e-9)
+          set.normal[i] = Normal::closed;
+    return set;
+  }
+
+  /// The active set of the nearest node of a coarser mesh.
+  ActiveSet transferred(const Problem &from, const ActiveSet &set, const Problem &to)
+  {
+    ActiveSet    result = first_set(to, "open");
+    unsigned int k      = 0;
+    for (unsigned int i = 0; i < to.nodes.size(); ++i)
+      {
+        while (k + 1 < from.nodes.size() && std::abs(from.nodes[k + 1].position - to.nodes[i].position) <=
+                                              std::abs(from.nodes[k].position - to.nodes[i].position))
+          ++k;
+        result.normal[i] = set.normal[k];
+        result.slip[i]   = set.slip[k];
+      }
+    return result;
+  }
+
+  Result solve(Problem &problem, const ActiveSet &start, const Options &options, Clock &clock)
+  {
+    return options.condensed ? condensed(problem, start, options, clock) : newton(problem, start, options, clock);
+  }
+
+  std::vector<std::string> with_blocks(std::vector<std::string> overrides, const unsigned int blocks)
+  {
+    overrides.push_back("Decomposition/Method=none");
+    overrides.push_back("Decomposition/Blocks=" + std::to_string(blocks));
+    return overrides;
+  }
+
+  nlohmann::json run(const Options &options)
+  {
+    Clock clock;
+    clock.enter("mesh");
+    const unsigned int        blocks = scene::read_scene(options.file, options.overrides).decomposition.blocks;
+    std::vector<unsigned int> steps_before;
+    ActiveSet                 start;
+    Problem                   coarse;
+    if (options.start == "coarse")
+      for (unsigned int n = 1; n < blocks; n *= 2)
+        {
+          Problem finer = make_problem(options, with_blocks(options.overrides, n), clock);
+          start         = n == 1 ? first_set(finer, "open") : transferred(coarse, start, finer);
+          auto result   = solve(finer, start, options, clock);
+          steps_before.push_back(result.steps);
+          start        = std::move(result.set);
+          coarse.nodes = finer.nodes;
+        }
+    Problem problem = make_problem(options, with_blocks(options.overrides, blocks), clock);
+    start           = coarse.nodes.empty() ? first_set(problem, options.start) : transferred(coarse, start, problem);
+    const Result result = solve(problem, start, options, clock);
+    clock.enter("end");
+
+    nlohmann::json out;
+    double         total = 0;
+    for (const auto &[stage, seconds] : clock.seconds)
+      {
+        out["time_s"][stage] = seconds;
+        total += seconds;
+      }
+    out["time_s"]["total"] = total;
+    out["unknowns"]        = problem.load.size();
+    out["steps"]           = result.steps;
+    out["steps_before"]    = steps_before;
+    out["factor_mb"]       = result.factor_mb;
+    out["memory_mb"]       = peak_memory_mb();
+    if (options.analysis_only)
+      return out;
+    const double length           = problem.nodes[1].position - problem.nodes[0].position;
+    double       largest_pressure = 0, normal_force = 0, tangential_force = 0, displacement = 0;
+    unsigned int closed = 0, slips = 0;
+    for (unsigned int i = 0; i < problem.nodes.size(); ++i)
+      {
+        const bool   at_end = i + 1 == problem.nodes.size();
+        const double area   = at_end ? length / 2 : length; // thickness 1; the other end of the boundary is held
+        closed += result.set.normal[i] == Normal::closed;
+        slips += result.set.slip[i] != 0;
+        largest_pressure = std::max(largest_pressure, result.state.force[i][0] / area);
+        normal_force += result.state.force[i][0];
+        tangential_force += result.state.force[i][1];
+      }
+    for (int i = 0; i + 1 < result.v.size(); i += 2)
+      displacement = std::max(displacement, std::hypot(result.v[i], result.v[i + 1]));
+    out["converged"]        = result.converged;
+    out["violation"]        = result.violation;
+    out["contact_nodes"]    = closed;
+    out["slip_nodes"]       = slips;
+    out["max_pressure"]     = largest_pressure;
+    out["normal_force"]     = normal_force;
+    out["tangential_force"] = tangential_force;
+    out["max_displacement"] = displacement;
+    return out;
+  }
+
+  Options read(const int argc, char **argv)
+  {
+    Options options;
+    for (int i = 1; i < argc; ++i)
+      {
+        const std::string word = argv[i];
+        const auto        next = [&]() -> std::string {
+          if (i + 1 == argc)
+            throw std::runtime_error(word + " takes a value");
+          return argv[++i];
+        };
+        if (word == "--ordering")
+          options.ordering = next();
+        else if (word == "--start")
+          options.start = next();
+        else if (word == "--condensed")
+          options.condensed = true;
+        else if (word == "--analysis-only")
+          options.analysis_only = true;
+        else if (word == "--tolerance")
+          options.tolerance = std::stod(next());
+        else if (word == "--threads")
+          options.threads = std::stoi(next());
+        else if (word == "--set")
+          options.overrides.push_back(next());
+        else
+          options.file = word;
+      }
+    if (options.file.empty())
+      throw std::runtime_error("usage: benchmark_primal_newton CASE.prm [options], see the head of its source");
+    return options;
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  try
+    {
+      const Options options = read(argc, argv);
+      if (openblas_set_num_threads)
+        openblas_set_num_threads(options.threads);
+      std::cout << run(options).dump() << std::endl;
+    }
+  catch (const std::exception &error)
+    {
+      std::cerr << "benchmark_primal_newton: " << error.what() << std::endl;
+      return 1;
+    }
+  return 0;
+}
