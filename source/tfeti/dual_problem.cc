@@ -1,5 +1,6 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
+#include <slipstick/qp/box.h>
 #include <slipstick/tfeti/dual_problem.h>
 #include <slipstick/tfeti/operator_choice.h>
 #include <slipstick/tfeti/rigid_motions.h>
@@ -26,6 +27,9 @@ namespace slipstick::tfeti
     // Newton steps of the amounts by which loose bodies slide, and the change at which they end.
     constexpr unsigned int max_slide_steps = 100;
     constexpr double       slide_tolerance = 1e-14;
+
+    // Residuals are projected twice when stiffnesses of rows differ by more than this factor.
+    constexpr double large_stiffness_ratio = 1e3;
 
     void require_support(const std::vector<RigidMotion> &motions, const std::vector<std::string> &body_names)
     {
@@ -69,6 +73,16 @@ namespace slipstick::tfeti
     if (options.preconditioner == Preconditioner::lumped || options.preconditioner == Preconditioner::dirichlet)
       {
         weights = std::make_unique<RowWeights>(systems, gluing, rows.rows, comm);
+        metric  = weights->stiffnesses();
+        const double least =
+          dealii::Utilities::MPI::min(metric.empty() ? qp::infinity : *std::min_element(metric.begin(), metric.end()),
+                                      comm);
+        for (double &stiffness : metric)
+          stiffness /= least;
+        weights_of_residuals = metric;
+        projects_twice =
+          dealii::Utilities::MPI::max(metric.empty() ? 1. : *std::max_element(metric.begin(), metric.end()), comm) >
+          large_stiffness_ratio;
         preconditioner =
           std::make_unique<PreconditionerBlocks>(systems, options.preconditioner, options.preconditioner_precision);
       }
@@ -171,6 +185,16 @@ namespace slipstick::tfeti
   const MpiReduction &DualProblem::reduction() const
   {
     return reduce;
+  }
+
+  double DualProblem::residual_norm(const DistributedVector &r) const
+  {
+    const Face        all = face(std::vector<bool>(r.locally_owned_size(), true));
+    DistributedVector part(r), range = zero();
+    all.project_range(r, range);
+    part -= range;
+    return std::sqrt(
+      reduce.sum(std::array<double, 1>{{qp::local_weighted_dot(qp::residual_weights(*this, 0), part, part)}})[0]);
   }
 
   DistributedVector DualProblem::zero() const
@@ -313,7 +337,7 @@ namespace slipstick::tfeti
   {
     const auto      loose = bodies->free(free);
     const auto      fixed = loose.empty() ? free : rows_that_fix(loose, x, free);
-    const Projector on_free(*projector, fixed, comm);
+    const Projector on_free(*projector, fixed, comm, std::vector<qp::Tie>(), metric);
     Recovery        result{{}, zero()};
     on_free.particular(resultants() - projector->multiply(x), result.multipliers);
     result.multipliers += x;

@@ -107,6 +107,18 @@ namespace slipstick::tfeti
       }
   }
 
+  std::vector<double> RowWeights::stiffnesses() const
+  {
+    std::size_t n = 0;
+    for (const auto &block : blocks)
+      n += block.rows.size();
+    std::vector<double> result(n);
+    for (const auto &block : blocks)
+      for (unsigned int k = 0; k < block.rows.size(); ++k)
+        result[block.rows[k]] = 1 / block.matrix.coeff(k, k);
+    return result;
+  }
+
   // of the active rows of a block; nothing if there are none
   std::shared_ptr<const RowWeights::Inverse::Block> RowWeights::inverse(const Block             &full,
                                                                         const std::vector<bool> &active) const
