@@ -52,9 +52,9 @@ namespace slipstick::tfeti
           for (unsigned int i = 0; i < sum.rows(); ++i)
             for (unsigned int j = 0; j < sum.cols(); ++j)
               {
-                result[{position.first + i, position.second + j}] = sum(i, j);
+                result.push_back({position.first + i, position.second + j, sum(i, j)});
                 if (position.first != position.second)
-                  result[{position.second + j, position.first + i}] = sum(i, j);
+                  result.push_back({position.second + j, position.first + i, sum(i, j)});
               }
         return result;
       }
