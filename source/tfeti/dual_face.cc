@@ -70,8 +70,11 @@ namespace slipstick::tfeti
   void DualProblem::Face::balance(DistributedVector &x) const
   {
     DistributedVector step = problem.zero();
-    balancing().particular(problem.resultants() - problem.projector->multiply(x), step);
-    x += step;
+    for (unsigned int pass = 0; pass < (problem.projects_twice ? 2 : 1); ++pass)
+      {
+        balancing().particular(problem.resultants() - problem.projector->multiply(x), step);
+        x += step;
+      }
   }
 
   void DualProblem::Face::project_kernel(DistributedVector &p) const

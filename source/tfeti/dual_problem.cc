@@ -335,12 +335,17 @@ namespace slipstick::tfeti
 
   DualProblem::Recovery DualProblem::recover(const DistributedVector &x, const std::vector<bool> &free) const
   {
-    const auto      loose = bodies->free(free);
-    const auto      fixed = loose.empty() ? free : rows_that_fix(loose, x, free);
-    const Projector on_free(*projector, fixed, comm, std::vector<qp::Tie>(), metric);
-    Recovery        result{{}, zero()};
-    on_free.particular(resultants() - projector->multiply(x), result.multipliers);
-    result.multipliers += x;
+    const auto        loose = bodies->free(free);
+    const auto        fixed = loose.empty() ? free : rows_that_fix(loose, x, free);
+    const Projector   on_free(*projector, fixed, comm, std::vector<qp::Tie>(), metric);
+    Recovery          result{{}, zero()};
+    DistributedVector step{zero()};
+    result.multipliers = x;
+    for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
+      {
+        on_free.particular(resultants() - projector->multiply(result.multipliers), step);
+        result.multipliers += step;
+      }
 
     result.u = forces(result.multipliers);
     auto &u  = result.u;
@@ -356,8 +361,11 @@ namespace slipstick::tfeti
       missing.local_element(r) = fixed[r] ? rows.c[r] - missing.local_element(r) : 0.;
     for (unsigned int r = 0; r < rows.compliance.size(); ++r)
       missing.local_element(r) += fixed[r] ? rows.compliance[r] * result.multipliers.local_element(r) : 0.;
-    const Eigen::VectorXd a    = on_free.amplitudes(missing);
-    unsigned int          next = 0;
+    Eigen::VectorXd a = on_free.amplitudes(missing);
+    on_free.project_range(missing, step);
+    missing -= step;
+    a += on_free.amplitudes(missing);
+    unsigned int next = 0;
     for (unsigned int p = 0; p < systems.size(); ++p)
       {
         const unsigned int k = systems[p]->kernel().cols();
