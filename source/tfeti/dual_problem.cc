@@ -261,13 +261,15 @@ namespace slipstick::tfeti
     for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
       for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
         all.emplace(labels_of[rank][i], shares_of[rank][i]);
+    if (all.empty()) // Eigen's decomposition of no columns reads what is not there
+      require_support(loose, names_of_bodies);
     Eigen::MatrixXd shares(loose.size(), all.size());
     unsigned int    column = 0;
     for (const auto &candidate : all)
       shares.col(column++) = Eigen::Map<const Eigen::VectorXd>(candidate.second.data(), loose.size());
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted(shares);
     pivoted.setThreshold(least_hold);
-    if (all.empty() || pivoted.rank() < static_cast<Eigen::Index>(loose.size()))
+    if (pivoted.rank() < static_cast<Eigen::Index>(loose.size()))
       require_support(loose, names_of_bodies);
     std::set<std::uint64_t> chosen;
     for (unsigned int i = 0; i < loose.size(); ++i)
