@@ -282,6 +282,7 @@ namespace slipstick::tfeti
   // Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of what is.
   void DualProblem::slide_apart(const std::vector<RigidMotion> &loose,
                                 const std::vector<bool>        &free,
+                                const DistributedVector        &x,
                                 Recovery                       &at) const
   {
     const Eigen::MatrixXd            own  = bodies->jumps(loose);
@@ -289,10 +290,11 @@ namespace slipstick::tfeti
     std::vector<std::vector<double>> conditions; // jump on the right side, then its derivatives
     for (unsigned int r = 0; r < free.size(); ++r)
       {
-        const double x    = at.multipliers.local_element(r);
-        const double side = free[r] || is_equality(rows.kind[r]) || (rows.kind[r] == RowKind::tangential && x == 0) ? 0.
-                            : rows.kind[r] == RowKind::tangential && x > 0                                          ? 1.
-                                                                           : -1.;
+        const double force = x.local_element(r);
+        const double side  = free[r] || is_equality(rows.kind[r]) || (rows.kind[r] == RowKind::tangential && force == 0)
+                               ? 0.
+                             : rows.kind[r] == RowKind::tangential && force > 0 ? 1.
+                                                                                : -1.;
         if (side == 0)
           continue;
         conditions.push_back({side * (jump.local_element(r) - rows.c[r])});
@@ -375,7 +377,7 @@ namespace slipstick::tfeti
         next += k;
       }
     if (!loose.empty())
-      slide_apart(loose, free, result);
+      slide_apart(loose, free, x, result);
     return result;
   }
 

@@ -145,7 +145,10 @@ namespace slipstick::tfeti
     std::vector<bool> rows_that_fix(const std::vector<RigidMotion> &loose,
                                     const DistributedVector        &x,
                                     std::vector<bool>               free) const;
-    void slide_apart(const std::vector<RigidMotion> &loose, const std::vector<bool> &free, Recovery &at) const;
+    void              slide_apart(const std::vector<RigidMotion> &loose,
+                                  const std::vector<bool>        &free,
+                                  const DistributedVector        &x,
+                                  Recovery                       &at) const;
 
     double          power_method(const DualOptions &options) const;
     void            apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
