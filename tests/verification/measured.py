@@ -322,4 +322,4 @@ def layer_errors(measured, reference):
         (x0, p0), (x1, p1) = coarse[i], coarse[i + 1]
         return p0 + (p1 - p0) * (x - x0) / (x1 - x0)
     pressure = math.sqrt(integral(lambda p, x: (p - interpolated(x))**2, finer) / integral(lambda p, x: p * p, finer))
-    return {'energy': energy_error, 'displacement': math.sqrt(difference / total), 'pressure': pressure}
+    return {'energy': energy_error, 'displacement': math.sqrt(difference / total) if total else None, 'pressure': pressure}

@@ -1,0 +1,39 @@
+"""Receding contact of a layer: observed rates in energy, displacement and pressure; degree 1 and 2; on a rigid plane,
+through meshes that match and through mortar. Energy norm at least 0.95 and 1.4. The displacement of the end that lifts off
+and the pressure depend on where the contact ends between two nodes, so that their rates waver from mesh to mesh: theirs
+is taken over the whole ladder."""
+
+import unittest
+
+import measured
+from energy import rate
+
+CELLS = 4, 8, 16
+REFERENCE = 32
+
+
+class Receding(unittest.TestCase):
+
+    def ladder(self, kind):
+        reference = measured.layer(kind, REFERENCE, 2)
+        for degree, energy_rate in ((1, 0.95), (2, 1.4)):
+            with self.subTest(degree=degree):
+                errors = [measured.layer_errors(measured.layer(kind, cells, degree), reference) for cells in CELLS]
+                for coarse, fine in zip(errors, errors[1:]):
+                    self.assertGreaterEqual(rate(coarse['energy'], fine['energy']), energy_rate, errors)
+                span = CELLS[-1] / CELLS[0]
+                for name in ('displacement', 'pressure'):
+                    self.assertGreaterEqual(rate(errors[0][name], errors[-1][name], span), 0.95, (name, errors))
+
+    def test_on_a_rigid_plane(self):
+        self.ladder('obstacle')
+
+    def test_meshes_that_match(self):
+        self.ladder('matching')
+
+    def test_mortar(self):
+        self.ladder('mortar')
+
+
+if __name__ == '__main__':
+    unittest.main()
