@@ -136,3 +136,10 @@ def distance(field, finer, elasticity):
 def rate(coarse, fine, ratio=2):
     """Observed order from two errors on meshes that differ by this ratio."""
     return math.log(coarse / fine) / math.log(ratio)
+
+
+def slope(sizes, errors):
+    """Observed order over a whole ladder: least squares in logarithms."""
+    x, y = [math.log(size) for size in sizes], [math.log(value) for value in errors]
+    mean = sum(x) / len(x)
+    return sum((a - mean) * b for a, b in zip(x, y)) / sum((a - mean)**2 for a in x)
