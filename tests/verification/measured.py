@@ -152,8 +152,8 @@ def compared_with_cattaneo_mindlin(result, share, degree):
 
 
 def cattaneo_mindlin(cells=40, levels=3, degree=1, share=0.5, length=30):
-    """Two blocks of 30 x 15 (@p length, its half) with the gap x^2 / 2R' of the half planes of the closed form, meshes that do not match;
-    the middle of the upper one is held by contact and friction alone."""
+    """Two blocks of 30 x 15 (@p length, its half) with the gap x^2 / 2R' of the half planes of the closed form,
+    meshes that do not match; the middle of the upper one is held by contact and friction alone."""
     depth, shear = length / 2, 300 * share
     turned = '{}*x'.format(12 * shear * depth / length**3)  # turns the moment of the shear over both depths back
 
@@ -211,7 +211,8 @@ def flat_punch(cells=40, levels=2, degree=1):
     """Half of a block of 40 x 20, drawn against a flat punch of half width 1: its gap is that of a wedge of slope 10
     outside, far above the displacement. @p cells along 20 mm; a multiple of 20 puts the corner on a node."""
     case = scenes.box(
-        name='punch', plane_state='plane strain', obstacles={'plane': {'Shape': 'half plane', 'Point': '0, 0', 'Normal': '0, 1'}},
+        name='punch', plane_state='plane strain',
+        obstacles={'plane': {'Shape': 'half plane', 'Point': '0, 0', 'Normal': '0, 1'}},
         bodies={'block': {'Size': '20, 20', 'Cells': '{0}, {0}'.format(cells), 'Refine towards': 'bottom',
                           'Refine levels': levels, 'Material': 'elastic'}},
         supports={'axis': {'Boundary': 'block/left', 'Displacement x': '0'},
@@ -292,7 +293,8 @@ def layer(kind, cells, degree, fields=True):
     rectangles = [energy.Rectangle((0, 0), (8, 2), (4 * cells, cells), 0)]
     kinds = {}
     if below:
-        bodies['base'] = {'Origin': '0, -2', 'Size': '8, 2', 'Cells': '{}, {}'.format(4 * below, below), 'Material': 'elastic'}
+        bodies['base'] = {'Origin': '0, -2', 'Size': '8, 2', 'Cells': '{}, {}'.format(4 * below, below),
+                          'Material': 'elastic'}
         for side, component in (('left', 'x'), ('right', 'x'), ('bottom', 'y')):
             supports['base ' + side] = {'Boundary': 'base/' + side, 'Displacement ' + component: '0'}
         rectangles.append(energy.Rectangle((0, -2), (8, 2), (4 * below, below), 1))
@@ -325,7 +327,8 @@ def layer_errors(measured, reference):
         for key, value in b.values.items():
             difference += sum((x - y)**2 for x, y in zip(coarse[key], value))
             total += sum(y**2 for y in value)
-    return {'energy': math.sqrt(squared / (2 * reference['strain_energy'])), 'displacement': math.sqrt(difference / total)}
+    return {'energy': math.sqrt(squared / (2 * reference['strain_energy'])),
+            'displacement': math.sqrt(difference / total)}
 
 
 def layer_pressure_error(measured, reference):
