@@ -75,10 +75,10 @@ namespace slipstick::contact
         if (observer)
           observer({step, 0});
       };
-      const qp::Goal goal(options.tolerance);
+      const qp::Goal goal(options.tolerance, dual.residual_norm(b));
       const auto     result = dual.is_preconditioned()
-                                ? qp::pcpg(dual, b, from_zero, goal, options.pcpg, precondition, counted)
-                                : qp::pcpg(dual, b, from_zero, goal, options.pcpg, qp::NoPreconditioner(), counted);
+                                ? qp::pcpg(face, b, from_zero, goal, options.pcpg, precondition, counted)
+                                : qp::pcpg(face, b, from_zero, goal, options.pcpg, qp::NoPreconditioner(), counted);
       start += result.x;
       solution.status             = result.status;
       solution.multipliers        = start;
@@ -194,8 +194,10 @@ namespace slipstick::contact
         Vector from;
         if (start)
           {
-            from               = start->multipliers;
-            solution.reference = std::max(start->reference, homogenised_load(dual, feasible).l2_norm());
+            from                        = start->multipliers;
+            const auto load             = homogenised_load(dual, feasible);
+            solution.reference          = std::max(start->reference, load.l2_norm());
+            solution.weighted_reference = std::max(start->weighted_reference, dual.residual_norm(load));
             ++solution.counts.hessian_multiplications;
             set_bounds(law.bounds(from));
           }
@@ -240,7 +242,7 @@ namespace slipstick::contact
                                             d,
                                             box,
                                             qp::NewtonStart<Vector>{from, gradient},
-                                            qp::Goal(options.tolerance, solution.reference),
+                                            qp::Goal(options.tolerance, solution.weighted_reference),
                                             options.newton,
                                             options.pcpg,
                                             counted(),
@@ -273,7 +275,7 @@ namespace slipstick::contact
                                             d,
                                             box,
                                             qp::NewtonStart<Vector>{from, gradient},
-                                            qp::Goal(options.tolerance, solution.reference),
+                                            qp::Goal(options.tolerance, solution.weighted_reference),
                                             options.newton,
                                             options.pcpg,
                                             counted(),
@@ -369,12 +371,15 @@ namespace slipstick::contact
           if (progress)
             progress(step);
         };
+        const auto load = homogenised_load(dual, from);
+        if (options.algorithm == scene::Algorithm::semismooth_newton && solution.weighted_reference == 0)
+          solution.weighted_reference = dual.residual_norm(load);
         Box shifted = box;
         shifted.lower -= from;
         shifted.upper -= from;
         const auto result = qp::smalbe(dual,
                                        1.,
-                                       homogenised_load(dual, from),
+                                       load,
                                        shifted,
                                        qp::SmalbeStart<Vector>{dual.zero()},
                                        qp::Goal(tolerance, solution.reference),

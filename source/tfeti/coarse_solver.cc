@@ -3,8 +3,8 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <boost/serialization/utility.hpp>
-#include <boost/serialization/vector.hpp>
+#include <algorithm>
+#include <numeric>
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"
@@ -20,35 +20,74 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    using Entry       = std::pair<std::pair<long long, long long>, double>;
     using Map         = Tpetra::Map<int, long long>;
     using Matrix      = Tpetra::CrsMatrix<double, int, long long>;
     using MultiVector = Tpetra::MultiVector<double, int, long long>;
     using Solver      = Amesos2::Solver<Matrix, MultiVector>;
 
-    /// The entries of all ranks on every rank, those of one position added in the order of the ranks.
+    /// The entries of all ranks on every rank, in the order of the ranks.
     CoarseSolver::Entries gather(const CoarseSolver::Entries &entries, const MPI_Comm comm)
     {
-      CoarseSolver::Entries sum;
-      for (const auto &part :
-           dealii::Utilities::MPI::all_gather(comm, std::vector<Entry>(entries.begin(), entries.end())))
-        for (const auto &[position, value] : part)
-          sum[position] += value;
-      return sum;
+      MPI_Datatype entry;
+      MPI_Type_contiguous(sizeof(CoarseSolver::Entry), MPI_BYTE, &entry);
+      MPI_Type_commit(&entry);
+      std::vector<int> n, first = {0};
+      for (const unsigned int n_of_rank :
+           dealii::Utilities::MPI::all_gather(comm, static_cast<unsigned int>(entries.size())))
+        {
+          n.push_back(static_cast<int>(n_of_rank));
+          first.push_back(first.back() + n.back());
+        }
+      CoarseSolver::Entries all(first.back());
+      MPI_Allgatherv(entries.data(),
+                     static_cast<int>(entries.size()),
+                     entry,
+                     all.data(),
+                     n.data(),
+                     first.data(),
+                     entry,
+                     comm);
+      MPI_Type_free(&entry);
+      return all;
     }
 
-    /// Compressed rows on one process.
+    /// Compressed rows on one process; entries of one position are added in their order.
     Teuchos::RCP<Matrix> make_matrix(const CoarseSolver::Entries &entries, const Teuchos::RCP<const Map> &map)
     {
-      Teuchos::Array<std::size_t> row_lengths(map->getGlobalNumElements(), 0);
+      const std::size_t        n = map->getGlobalNumElements();
+      std::vector<std::size_t> first(n + 1, 0);
       for (const auto &entry : entries)
-        ++row_lengths[entry.first.first];
-      const auto matrix = Teuchos::rcp(new Matrix(map, row_lengths()));
-      for (const auto &[position, value] : entries)
-        matrix->insertGlobalValues(position.first,
-                                   Teuchos::tuple<long long>(position.second),
-                                   Teuchos::tuple<double>(value));
-      matrix->fillComplete();
+        ++first[entry.row + 1];
+      std::partial_sum(first.begin(), first.end(), first.begin());
+      std::vector<std::size_t>            next(first.begin(), first.end() - 1);
+      std::vector<std::pair<int, double>> by_row(entries.size());
+      for (const auto &entry : entries)
+        by_row[next[entry.row]++] = {static_cast<int>(entry.column), entry.value};
+
+      Teuchos::ArrayRCP<std::size_t> begin(n + 1);
+      Teuchos::ArrayRCP<int>         columns(entries.size());
+      Teuchos::ArrayRCP<double>      values(entries.size());
+      std::size_t                    size = 0;
+      begin[0]                            = 0;
+      for (std::size_t row = 0; row < n; ++row)
+        {
+          std::stable_sort(by_row.begin() + first[row],
+                           by_row.begin() + first[row + 1],
+                           [](const auto &a, const auto &b) { return a.first < b.first; });
+          for (std::size_t k = first[row]; k < first[row + 1]; ++k)
+            if (size > begin[row] && columns[size - 1] == by_row[k].first)
+              values[size - 1] += by_row[k].second;
+            else
+              {
+                columns[size]  = by_row[k].first;
+                values[size++] = by_row[k].second;
+              }
+          begin[row + 1] = size;
+        }
+      columns.resize(size);
+      values.resize(size);
+      const auto matrix = Teuchos::rcp(new Matrix(map, map, begin, columns, values));
+      matrix->expertStaticFillComplete(map, map);
       return matrix;
     }
   } // namespace

@@ -20,13 +20,14 @@ namespace slipstick::tfeti
   {
     if (!problem.bodies->free(free).empty())
       return;
-    projector = std::make_unique<Projector>(*problem.projector, free, problem.comm);
+    projector =
+      std::make_unique<Projector>(*problem.projector, free, problem.comm, std::vector<qp::Tie>(), problem.metric);
     if (dealii::Utilities::MPI::max(ties.empty() ? 0 : 1, problem.comm) > 0)
       {
         std::vector<bool> moving = free;
         for (const auto &tie : ties)
           moving[tie.tied] = true;
-        tied = std::make_unique<Projector>(*problem.projector, moving, problem.comm, ties);
+        tied = std::make_unique<Projector>(*problem.projector, moving, problem.comm, ties, problem.metric);
       }
     if (problem.weights)
       {
@@ -41,6 +42,11 @@ namespace slipstick::tfeti
     problem.multiply(x, y);
   }
 
+  const std::vector<double> &DualProblem::Face::residual_weights() const
+  {
+    return problem.residual_weights();
+  }
+
   const MpiReduction &DualProblem::Face::reduction() const
   {
     return problem.reduce;
@@ -49,6 +55,13 @@ namespace slipstick::tfeti
   void DualProblem::Face::project_range(const DistributedVector &x, DistributedVector &y) const
   {
     projector->project_range(x, y);
+    if (problem.projects_twice)
+      {
+        DistributedVector left(x), rest = problem.zero();
+        left -= y;
+        projector->project_range(left, rest);
+        y += rest;
+      }
     for (unsigned int r = 0; r < free.size(); ++r)
       if (!free[r])
         y.local_element(r) = x.local_element(r);
@@ -57,8 +70,11 @@ namespace slipstick::tfeti
   void DualProblem::Face::balance(DistributedVector &x) const
   {
     DistributedVector step = problem.zero();
-    balancing().particular(problem.resultants() - problem.projector->multiply(x), step);
-    x += step;
+    for (unsigned int pass = 0; pass < (problem.projects_twice ? 2 : 1); ++pass)
+      {
+        balancing().particular(problem.resultants() - problem.projector->multiply(x), step);
+        x += step;
+      }
   }
 
   void DualProblem::Face::project_kernel(DistributedVector &p) const
@@ -66,13 +82,20 @@ namespace slipstick::tfeti
     for (const qp::Tie &tie : ties)
       p.local_element(tie.tied) = tie.factor * p.local_element(tie.to);
     DistributedVector range = problem.zero();
-    balancing().project_range(p, range);
+    balancing().excess(p, range);
     p -= range;
   }
 
   void DualProblem::Face::multiplier_shift(const DistributedVector &v, DistributedVector &y) const
   {
     projector->extend_range(v, y);
+    if (problem.projects_twice)
+      {
+        DistributedVector left(v), rest = problem.zero();
+        left -= y;
+        projector->extend_range(left, rest);
+        y += rest;
+      }
   }
 
   void DualProblem::Face::precondition(const DistributedVector &r, DistributedVector &z) const

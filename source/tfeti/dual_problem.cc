@@ -1,5 +1,6 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
+#include <slipstick/qp/box.h>
 #include <slipstick/tfeti/dual_problem.h>
 #include <slipstick/tfeti/operator_choice.h>
 #include <slipstick/tfeti/rigid_motions.h>
@@ -26,6 +27,9 @@ namespace slipstick::tfeti
     // Newton steps of the amounts by which loose bodies slide, and the change at which they end.
     constexpr unsigned int max_slide_steps = 100;
     constexpr double       slide_tolerance = 1e-14;
+
+    // Residuals are projected twice when stiffnesses of rows differ by more than this factor.
+    constexpr double large_stiffness_ratio = 1e3;
 
     void require_support(const std::vector<RigidMotion> &motions, const std::vector<std::string> &body_names)
     {
@@ -69,6 +73,16 @@ namespace slipstick::tfeti
     if (options.preconditioner == Preconditioner::lumped || options.preconditioner == Preconditioner::dirichlet)
       {
         weights = std::make_unique<RowWeights>(systems, gluing, rows.rows, comm);
+        metric  = weights->stiffnesses();
+        const double least =
+          dealii::Utilities::MPI::min(metric.empty() ? qp::infinity : *std::min_element(metric.begin(), metric.end()),
+                                      comm);
+        for (double &stiffness : metric)
+          stiffness /= least;
+        weights_of_residuals = metric;
+        projects_twice =
+          dealii::Utilities::MPI::max(metric.empty() ? 1. : *std::max_element(metric.begin(), metric.end()), comm) >
+          large_stiffness_ratio;
         preconditioner =
           std::make_unique<PreconditionerBlocks>(systems, options.preconditioner, options.preconditioner_precision);
       }
@@ -173,6 +187,16 @@ namespace slipstick::tfeti
     return reduce;
   }
 
+  double DualProblem::residual_norm(const DistributedVector &r) const
+  {
+    const Face        all = face(std::vector<bool>(r.locally_owned_size(), true));
+    DistributedVector part(r), range = zero();
+    all.project_range(r, range);
+    part -= range;
+    return std::sqrt(
+      reduce.sum(std::array<double, 1>{{qp::local_weighted_dot(qp::residual_weights(*this, 0), part, part)}})[0]);
+  }
+
   DistributedVector DualProblem::zero() const
   {
     return DistributedVector(owned_rows);
@@ -237,13 +261,15 @@ namespace slipstick::tfeti
     for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
       for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
         all.emplace(labels_of[rank][i], shares_of[rank][i]);
+    if (all.empty()) // Eigen's decomposition of no columns reads what is not there
+      require_support(loose, names_of_bodies);
     Eigen::MatrixXd shares(loose.size(), all.size());
     unsigned int    column = 0;
     for (const auto &candidate : all)
       shares.col(column++) = Eigen::Map<const Eigen::VectorXd>(candidate.second.data(), loose.size());
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted(shares);
     pivoted.setThreshold(least_hold);
-    if (all.empty() || pivoted.rank() < static_cast<Eigen::Index>(loose.size()))
+    if (pivoted.rank() < static_cast<Eigen::Index>(loose.size()))
       require_support(loose, names_of_bodies);
     std::set<std::uint64_t> chosen;
     for (unsigned int i = 0; i < loose.size(); ++i)
@@ -256,6 +282,7 @@ namespace slipstick::tfeti
   // Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of what is.
   void DualProblem::slide_apart(const std::vector<RigidMotion> &loose,
                                 const std::vector<bool>        &free,
+                                const DistributedVector        &x,
                                 Recovery                       &at) const
   {
     const Eigen::MatrixXd            own  = bodies->jumps(loose);
@@ -263,10 +290,11 @@ namespace slipstick::tfeti
     std::vector<std::vector<double>> conditions; // jump on the right side, then its derivatives
     for (unsigned int r = 0; r < free.size(); ++r)
       {
-        const double x    = at.multipliers.local_element(r);
-        const double side = free[r] || is_equality(rows.kind[r]) || (rows.kind[r] == RowKind::tangential && x == 0) ? 0.
-                            : rows.kind[r] == RowKind::tangential && x > 0                                          ? 1.
-                                                                           : -1.;
+        const double force = x.local_element(r);
+        const double side  = free[r] || is_equality(rows.kind[r]) || (rows.kind[r] == RowKind::tangential && force == 0)
+                               ? 0.
+                             : rows.kind[r] == RowKind::tangential && force > 0 ? 1.
+                                                                                : -1.;
         if (side == 0)
           continue;
         conditions.push_back({side * (jump.local_element(r) - rows.c[r])});
@@ -311,12 +339,17 @@ namespace slipstick::tfeti
 
   DualProblem::Recovery DualProblem::recover(const DistributedVector &x, const std::vector<bool> &free) const
   {
-    const auto      loose = bodies->free(free);
-    const auto      fixed = loose.empty() ? free : rows_that_fix(loose, x, free);
-    const Projector on_free(*projector, fixed, comm);
-    Recovery        result{{}, zero()};
-    on_free.particular(resultants() - projector->multiply(x), result.multipliers);
-    result.multipliers += x;
+    const auto        loose = bodies->free(free);
+    const auto        fixed = loose.empty() ? free : rows_that_fix(loose, x, free);
+    const Projector   on_free(*projector, fixed, comm, std::vector<qp::Tie>(), metric);
+    Recovery          result{{}, zero()};
+    DistributedVector step{zero()};
+    result.multipliers = x;
+    for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
+      {
+        on_free.particular(resultants() - projector->multiply(result.multipliers), step);
+        result.multipliers += step;
+      }
 
     result.u = forces(result.multipliers);
     auto &u  = result.u;
@@ -332,8 +365,11 @@ namespace slipstick::tfeti
       missing.local_element(r) = fixed[r] ? rows.c[r] - missing.local_element(r) : 0.;
     for (unsigned int r = 0; r < rows.compliance.size(); ++r)
       missing.local_element(r) += fixed[r] ? rows.compliance[r] * result.multipliers.local_element(r) : 0.;
-    const Eigen::VectorXd a    = on_free.amplitudes(missing);
-    unsigned int          next = 0;
+    Eigen::VectorXd a = on_free.amplitudes(missing);
+    on_free.project_range(missing, step);
+    missing -= step;
+    a += on_free.amplitudes(missing);
+    unsigned int next = 0;
     for (unsigned int p = 0; p < systems.size(); ++p)
       {
         const unsigned int k = systems[p]->kernel().cols();
@@ -341,7 +377,7 @@ namespace slipstick::tfeti
         next += k;
       }
     if (!loose.empty())
-      slide_apart(loose, free, result);
+      slide_apart(loose, free, x, result);
     return result;
   }
 

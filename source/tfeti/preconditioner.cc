@@ -107,14 +107,29 @@ namespace slipstick::tfeti
       }
   }
 
+  std::vector<double> RowWeights::stiffnesses() const
+  {
+    std::size_t n = 0;
+    for (const auto &block : blocks)
+      n += block.rows.size();
+    std::vector<double> result(n);
+    for (const auto &block : blocks)
+      for (unsigned int k = 0; k < block.rows.size(); ++k)
+        result[block.rows[k]] = 1 / block.matrix.coeff(k, k);
+    return result;
+  }
+
   // of the active rows of a block; nothing if there are none
   std::shared_ptr<const RowWeights::Inverse::Block> RowWeights::inverse(const Block             &full,
                                                                         const std::vector<bool> &active) const
   {
+    const auto is_active = [&active](const unsigned int row) { return active.empty() || active[row]; };
+    if (full.inverse && std::all_of(full.rows.begin(), full.rows.end(), is_active))
+      return full.inverse;
     std::vector<int> kept(full.rows.size(), -1); // position among the active rows
     auto             block = std::make_shared<Inverse::Block>();
     for (unsigned int k = 0; k < full.rows.size(); ++k)
-      if (active.empty() || active[full.rows[k]])
+      if (is_active(full.rows[k]))
         {
           kept[k] = block->rows.size();
           block->rows.push_back(full.rows[k]);
@@ -122,8 +137,6 @@ namespace slipstick::tfeti
     const unsigned int n = block->rows.size();
     if (n == 0)
       return nullptr;
-    if (n == full.rows.size() && full.inverse)
-      return full.inverse;
     std::vector<Eigen::Triplet<double>> entries;
     for (unsigned int k = 0; k < full.rows.size(); ++k)
       if (kept[k] >= 0)

@@ -33,7 +33,7 @@ namespace slipstick::tfeti
     {
     public:
       /// Adds the column that parts (of different subdomains, in ascending order) make up.
-      void add(const ColumnPart *begin, const ColumnPart *end)
+      void add(const ColumnPart *begin, const ColumnPart *end, const double weight)
       {
         for (const ColumnPart *a = begin; a != end; ++a)
           for (const ColumnPart *b = a; b != end; ++b)
@@ -41,7 +41,7 @@ namespace slipstick::tfeti
               Eigen::MatrixXd &sum = block(*a, *b);
               for (unsigned int j = 0; j < b->values.size(); ++j)
                 for (unsigned int i = 0; i < a->values.size(); ++i)
-                  sum(i, j) += a->values[i] * b->values[j];
+                  sum(i, j) += weight * a->values[i] * b->values[j];
             }
       }
 
@@ -52,9 +52,9 @@ namespace slipstick::tfeti
           for (unsigned int i = 0; i < sum.rows(); ++i)
             for (unsigned int j = 0; j < sum.cols(); ++j)
               {
-                result[{position.first + i, position.second + j}] = sum(i, j);
+                result.push_back({position.first + i, position.second + j, sum(i, j)});
                 if (position.first != position.second)
-                  result[{position.second + j, position.first + i}] = sum(i, j);
+                  result.push_back({position.second + j, position.first + i, sum(i, j)});
               }
         return result;
       }
@@ -203,10 +203,12 @@ namespace slipstick::tfeti
   Projector::Projector(const Projector            &all,
                        const std::vector<bool>    &active,
                        const MPI_Comm              comm,
-                       const std::vector<qp::Tie> &ties)
+                       const std::vector<qp::Tie> &ties,
+                       const std::vector<double>  &metric)
     : scatter_gather(all.scatter_gather)
     , G(all.G)
     , ties(ties)
+    , metric(metric)
     , source(all.source)
     , target(all.target)
   {
@@ -234,10 +236,11 @@ namespace slipstick::tfeti
     for (unsigned int r = 0; r < n; ++r)
       if (indicator.local_element(r) != 0 && tied.count(r) == 0)
         {
+          const double weight = metric.empty() ? 1. : metric[r];
           if (const auto column = with_ties.find(r); column != with_ties.end())
-            gram.add(column->second.data(), column->second.data() + column->second.size());
+            gram.add(column->second.data(), column->second.data() + column->second.size(), weight);
           else
-            gram.add(G->parts.data() + G->first_part[r], G->parts.data() + G->first_part[r + 1]);
+            gram.add(G->parts.data() + G->first_part[r], G->parts.data() + G->first_part[r + 1], weight);
         }
     coarse = std::make_unique<CoarseSolver>(G->n_motions, gram.entries(), comm);
   }
@@ -268,12 +271,25 @@ namespace slipstick::tfeti
 
   void Projector::mask(DistributedVector &y) const
   {
-    for (const qp::Tie &tie : ties)
-      y.local_element(tie.to) += tie.factor * y.local_element(tie.tied);
-    for (const qp::Tie &tie : ties)
-      y.local_element(tie.tied) = tie.factor * y.local_element(tie.to);
     for (unsigned int r = 0; r < y.locally_owned_size(); ++r)
       y.local_element(r) *= indicator.local_element(r);
+  }
+
+  // y := T M T'y on the active rows
+  void Projector::spread(DistributedVector &y) const
+  {
+    for (const qp::Tie &tie : ties)
+      y.local_element(tie.to) += tie.factor * y.local_element(tie.tied);
+    weigh(y);
+    for (const qp::Tie &tie : ties)
+      y.local_element(tie.tied) = tie.factor * y.local_element(tie.to);
+    mask(y);
+  }
+
+  void Projector::weigh(DistributedVector &y) const
+  {
+    for (unsigned int r = 0; r < metric.size(); ++r)
+      y.local_element(r) *= metric[r];
   }
 
   Eigen::VectorXd Projector::solve(const Eigen::VectorXd &a) const
@@ -283,13 +299,22 @@ namespace slipstick::tfeti
 
   Eigen::VectorXd Projector::amplitudes(const DistributedVector &x) const
   {
-    return coarse->solve(multiply(x));
+    if (metric.empty())
+      return coarse->solve(multiply(x));
+    DistributedVector weighed(x);
+    weigh(weighed);
+    return coarse->solve(multiply(weighed));
   }
 
   void Projector::project_range(const DistributedVector &x, DistributedVector &y) const
   {
     multiply_transpose(amplitudes(x), y);
     mask(y);
+  }
+
+  void Projector::excess(const DistributedVector &x, DistributedVector &y) const
+  {
+    particular(multiply(x), y);
   }
 
   void Projector::extend_range(const DistributedVector &x, DistributedVector &y) const
@@ -300,7 +325,7 @@ namespace slipstick::tfeti
   void Projector::particular(const Eigen::VectorXd &e, DistributedVector &y) const
   {
     multiply_transpose(coarse->solve(e), y);
-    mask(y);
+    spread(y);
   }
 
   unsigned long long Projector::dimension() const

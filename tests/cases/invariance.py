@@ -8,7 +8,7 @@ import scenes
 from program import converged, shipped
 
 CELLS = {'Body box/Cells': '24, 24', 'Decomposition/Blocks': 4, 'Contact circle/Slip bound': 150,
-         'Solver/Tolerance': 1e-8}
+         'Solver/Tolerance': 1e-9}
 
 DECOMPOSITIONS = {'blocks': {},
                   'METIS': {'Decomposition/Method': 'METIS', 'Decomposition/Subdomains': 7},

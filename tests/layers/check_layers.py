@@ -40,7 +40,7 @@ RULES = {
                 headers={"tfeti/constraints.h", "tfeti/subdomain_matrices.h", "tfeti/subdomain_system.h"},
                 dealii=ALL_OF_DEALII, libraries={"MPI", "Boost", "Eigen", "METIS"}),
     "contact": Rule(layers={"base", "qp", "scene", "tfeti"}, dealii={"base", "lac"}, libraries={"MPI", "Eigen"}),
-    "output": Rule(layers={"base", "contact", "fem"}, dealii=ALL_OF_DEALII, libraries={"MPI", "JSON", "POSIX"}),
+    "output": Rule(layers={"base", "contact", "fem"}, dealii=ALL_OF_DEALII, libraries={"MPI", "JSON", "POSIX", "zlib"}),
     "app": Rule(layers={"base", "contact", "fem", "output", "qp", "scene", "tfeti"}, dealii=ALL_OF_DEALII,
                 libraries={"MPI", "Boost", "JSON", "CLI11", "POSIX", "Trilinos"}),
 }
@@ -56,6 +56,7 @@ LIBRARIES = [
     ("METIS", r"metis\.h$"),
     ("CHOLMOD", r"(suitesparse/)?(cholmod|SuiteSparse_config|amd|colamd|camd|ccolamd)\.h$"),
     ("Trilinos", r"(trilinos/)?(Amesos2|Tpetra|Teuchos|Kokkos|Belos|Epetra|Amesos|Xpetra|Trilinos)"),
+    ("zlib", r"zlib\.h$"),
     ("POSIX", r"(sys/|unistd\.h$|fcntl\.h$)"),
 ]
 

@@ -41,7 +41,8 @@ namespace
     for (int i = 0; i < A.rows(); ++i)
       for (int j = 0; j < A.cols(); ++j)
         if (A(i, j) != 0)
-          entries[{i, j}] = A(i, j) * (rank() + 1) / all;
+          for (const double part : {0.25, 0.75}) // entries of one position add up
+            entries.push_back({i, j, part * A(i, j) * (rank() + 1) / all});
     return entries;
   }
 

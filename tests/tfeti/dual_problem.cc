@@ -49,7 +49,7 @@ TEST(DualProblem, norm_is_the_largest_eigenvalue_of_PFP_in_the_limit)
       tfeti::DualOptions options;
       options.norm_tolerance      = 1e-14;
       options.max_norm_iterations = 3000;
-      const double largest        = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Dense(torn).PFP()).eigenvalues().tail(1)[0];
+      const double largest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Dense(torn).PFP()).eigenvalues().tail(1)[0];
       EXPECT_NEAR(torn.dual(options)->norm() / largest, 1, 1e-8);
     }
 }
@@ -94,17 +94,19 @@ TEST(DualProblem, projected_load_is_that_of_the_assembled_system)
 {
   for (const Cut &how : {whole(), blocks(3), metis(4)})
     {
-      const Torn            torn(cut(bent_box(6), how));
-      const Dense           dense(torn);
-      const auto            dual  = torn.dual();
-      const auto            start = dual->particular();
-      auto                  Fx    = dual->zero();
+      const Torn  torn(cut(bent_box(6), how));
+      const Dense dense(torn);
+      const auto  dual  = torn.dual();
+      const auto  start = dual->particular();
+      auto        Fx    = dual->zero();
       dual->dual_operator().apply(start, Fx);
       // of the same x~ on both sides, since d and F alone depend on the choice of K+
       const Eigen::VectorXd x = gathered(start, MPI_COMM_WORLD);
       const Eigen::VectorXd expect =
         dense.P() * (dense.B * (dense.pseudo_inverse() * (dense.f - dense.B.transpose() * x)) - dense.c);
-      EXPECT_LT(relative_difference(dense.P() * (gathered(dual->d(), MPI_COMM_WORLD) - gathered(Fx, MPI_COMM_WORLD)), expect), 1e-10);
+      EXPECT_LT(relative_difference(dense.P() * (gathered(dual->d(), MPI_COMM_WORLD) - gathered(Fx, MPI_COMM_WORLD)),
+                                    expect),
+                1e-10);
     }
 }
 
@@ -117,13 +119,15 @@ TEST(DualProblem, recovered_displacements_are_in_equilibrium_with_any_balanced_m
       const Torn            torn(cut(bent_box(8), how));
       const Dense           dense(torn);
       const auto            dual = torn.dual();
-      const Eigen::VectorXd x    = gathered(dual->particular(), MPI_COMM_WORLD) + 100 * dense.P() * random_vector(dense.B.rows(), 1);
-      const auto            u    = dual->recover(distributed(x, *dual), std::vector<bool>(torn.constraints.kind.size(), true)).u;
-      std::vector<double>   own;
+      const Eigen::VectorXd x =
+        gathered(dual->particular(), MPI_COMM_WORLD) + 100 * dense.P() * random_vector(dense.B.rows(), 1);
+      const auto u = dual->recover(distributed(x, *dual), std::vector<bool>(torn.constraints.kind.size(), true)).u;
+      std::vector<double> own;
       for (const auto &part : u)
         own.insert(own.end(), part.data(), part.data() + part.size());
-      const auto            all = gathered(own, MPI_COMM_WORLD);
-      const Eigen::VectorXd Ku = dense.K * Eigen::Map<const Eigen::VectorXd>(all.data(), all.size()), forces = dense.f - dense.B.transpose() * x;
+      const auto            all    = gathered(own, MPI_COMM_WORLD);
+      const Eigen::VectorXd Ku     = dense.K * Eigen::Map<const Eigen::VectorXd>(all.data(), all.size()),
+                            forces = dense.f - dense.B.transpose() * x;
       EXPECT_LT(relative_difference(Ku, forces), 1e-10);
     }
 }
@@ -132,9 +136,9 @@ TEST(DualProblem, jumps_are_B_times_the_displacements)
 {
   for (const Cut &how : cuts)
     {
-      const Torn            torn(cut(box_on_circle(8, "100"), how));
-      const Dense           dense(torn);
-      const Eigen::VectorXd all = random_vector(dense.K.rows(), 1);
+      const Torn                   torn(cut(box_on_circle(8, "100"), how));
+      const Dense                  dense(torn);
+      const Eigen::VectorXd        all = random_vector(dense.K.rows(), 1);
       std::vector<Eigen::VectorXd> u;
       for (const auto &system : torn.matrices)
         u.push_back(all.segment(dense.first[system.subdomain], system.load.size()));
@@ -164,8 +168,45 @@ TEST(DualProblem, recovery_names_the_body_that_the_held_rows_leave_free)
       std::vector<bool> free;
       for (const auto kind : torn.constraints.kind)
         free.push_back(kind != tfeti::RowKind::tangential);
-      const std::string text = message_on_all_ranks<NoEquilibrium>([&] { dual->recover(dual->particular(), free); });
+      auto x = dual->particular();
+      for (unsigned int r = 0; r < free.size(); ++r)
+        if (!free[r])
+          x.local_element(r) = 0;
+      const std::string text = message_on_all_ranks<NoEquilibrium>([&] { dual->recover(x, free); });
       EXPECT_NE(text.find("body box: translation along ("), std::string::npos) << text;
+    }
+}
+
+TEST(DualProblem, recovery_puts_a_body_that_slides_on_all_contacts_where_slips_follow_their_forces)
+{
+  for (const Cut &how : cuts)
+    {
+      Scene scene = box(8);
+      touch(scene, 0, "bottom", {5, -20}, 20, "100");
+      load(scene, 0, "top", "0", "-1");
+      const Torn        torn(cut(scene, how));
+      const auto        dual = torn.dual();
+      std::vector<bool> free;
+      for (const auto kind : torn.constraints.kind)
+        free.push_back(kind != tfeti::RowKind::tangential);
+      auto x = dual->particular();
+      for (unsigned int r = 0; r < free.size(); ++r)
+        if (!free[r])
+          x.local_element(r) = 0.1;
+      const auto recovery = dual->recover(x, free);
+      const auto jumps    = dual->jumps(recovery.u);
+      double     most     = 0; // slip, and how far one is on the wrong side
+      double     wrong    = 0;
+      for (unsigned int r = 0; r < free.size(); ++r)
+        if (!free[r])
+          {
+            most  = std::max(most, jumps.local_element(r));
+            wrong = std::max(wrong, -jumps.local_element(r));
+          }
+      most  = dealii::Utilities::MPI::max(most, MPI_COMM_WORLD);
+      wrong = dealii::Utilities::MPI::max(wrong, MPI_COMM_WORLD);
+      EXPECT_GT(most, 0) << how.n;
+      EXPECT_LE(wrong, 1e-9 * most) << how.n;
     }
 }
 
@@ -178,12 +219,13 @@ TEST(DualProblem, linear_scene_agrees_with_the_untorn_bodies)
       Scene scene = accurate(bent_box(8, degree), 1e-13);
       // with a preconditioner fewer steps lead to the same residual, and a larger error may be left behind it
       scene.solver.dual.preconditioner = tfeti::Preconditioner::none;
-      const auto  reference = Untorn(scene).solution();
+      const auto reference             = Untorn(scene).solution();
       for (const Cut &how : cuts)
         {
           const Solved solved(cut(scene, how));
           EXPECT_EQ(solved.solution.status, qp::Status::converged);
-          EXPECT_LT(largest_difference(nodal_field(solved.torn, solved.u), reference), 1e-9) << how.n << ", degree " << degree;
+          EXPECT_LT(largest_difference(nodal_field(solved.torn, solved.u), reference), 1e-9)
+            << how.n << ", degree " << degree;
         }
     }
 }

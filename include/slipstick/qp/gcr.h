@@ -103,22 +103,27 @@ namespace slipstick::qp
                         const Preconditioner    &precondition)
   {
     const auto &reduction = face.reduction();
-    const auto  norm      = [&reduction](const Vector &v) {
-      return std::sqrt(reduction.sum(std::array<double, 1>{{local_dot(v, v)}})[0]);
+    const auto  norm      = [&reduction](const Vector &v) { return qp::norm(v, reduction); };
+    const auto  weigh     = [weights = residual_weights(face, 0)](Vector &v) { // residuals are kept with their weights
+      if (weights)
+        for (std::size_t i = 0; i < local_size(v); ++i)
+          v.begin()[i] *= weights[i];
     };
-    Vector     r(b), w(b);
+    Vector     r(b), weighted(b), w(b);
     Counts     counts;
     const auto update_residual = [&] {
       std::copy(b.begin(), b.end(), r.begin());
       add(-1.0, product, r);
       face.project_range(r, w);
       add(-1.0, w, r);
-      return norm(r);
+      std::copy(r.begin(), r.end(), weighted.begin());
+      weigh(weighted);
+      return norm(weighted);
     };
     double norm_r = update_residual();
     if (!history.empty())
       {
-        history.solve(r, x, product, reduction);
+        history.solve(weighted, x, product, reduction);
         norm_r = update_residual();
       }
     const double target     = goal.tolerance * goal.reference;
@@ -141,6 +146,7 @@ namespace slipstick::qp
         std::copy(Fp.begin(), Fp.end(), q.begin());
         face.project_range(Fp, w);
         add(-1.0, w, q);
+        weigh(q);
         const double before = norm(q);
         history.orthogonalize(p, Fp, q, reduction);
         const double length = norm(q);
@@ -148,7 +154,7 @@ namespace slipstick::qp
           return ended_with(Status::stagnated);
         for (Vector *v : {&p, &Fp, &q})
           combine(1. / length, *v, 0., *v);
-        const double rq = reduction.sum(std::array<double, 1>{{local_dot(r, q)}})[0];
+        const double rq = reduction.sum(std::array<double, 1>{{local_dot(weighted, q)}})[0];
         add(rq, p, x);
         add(rq, Fp, product);
         history.push(std::move(p), std::move(Fp), std::move(q));

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace slipstick::qp
 {
@@ -58,6 +59,47 @@ namespace slipstick::qp
     for (std::size_t i = 0; i < n; ++i)
       sum += xi[i] * yi[i];
     return sum;
+  }
+
+  /// Weights of the entries of a residual in its norm: `residual_weights()` of a problem that has it, of the owned
+  /// entries; null for others, and when it is empty: all 1.
+  template <typename Problem>
+  auto residual_weights(const Problem &problem, int) -> decltype(problem.residual_weights(), (const double *)nullptr)
+  {
+    return problem.residual_weights().empty() ? nullptr : problem.residual_weights().data();
+  }
+  template <typename Problem>
+  const double *residual_weights(const Problem &, long)
+  {
+    return nullptr;
+  }
+
+  /// (w x)'(w y) of the owned entries.
+  template <typename Vector>
+  double local_weighted_dot(const double *w, const Vector &x, const Vector &y)
+  {
+    if (!w)
+      return local_dot(x, y);
+    const auto        xi  = x.begin();
+    const auto        yi  = y.begin();
+    const std::size_t n   = local_size(x);
+    double            sum = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      sum += w[i] * w[i] * xi[i] * yi[i];
+    return sum;
+  }
+
+  /// p := the nearest point with G p = 0, by `project_kernel(p)` of a problem that has it, else p - Q p. w: storage.
+  template <typename Problem, typename Vector>
+  auto project_kernel(const Problem &problem, Vector &p, Vector &, int) -> decltype(problem.project_kernel(p))
+  {
+    problem.project_kernel(p);
+  }
+  template <typename Problem, typename Vector>
+  void project_kernel(const Problem &problem, Vector &p, Vector &w, long)
+  {
+    problem.project_range(p, w);
+    add(-1.0, w, p);
   }
 
   template <typename Vector, typename Reduction>

@@ -77,6 +77,7 @@ namespace slipstick::qp
   struct NewtonOptions
   {
     double       start_tolerance   = 0.3;  // of the SMALBE steps that give the first active set
+    double       set_step          = 0.1;  // the next set is that of x - this times (weights) g / |PFP|
     double       face_reduction    = 0.3;  // of the residual by the linear solve of a new set
     double       first_forcing     = 1e-2; // residual over the reference, at first, of solves of a set that stands
     double       forcing_reduction = 0.1;  // of it, whenever the set hardly changed

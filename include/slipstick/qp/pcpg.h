@@ -1,5 +1,9 @@
 // PCPG: preconditioned conjugate gradients in the kernel of Q, for min 1/2 x'Fx - x'b without bounds.
 // Farhat, Crivelli, Roux 1994.
+//
+// A preconditioned problem may have `project_kernel(p)`, which makes G p = 0, apart from `project_range`, which then gives
+// some range part G'a of a residual: so oblique projections do, one the transpose of the other. `residual_weights()`
+// weighs the entries of residuals in their norms.
 #pragma once
 
 #include <slipstick/qp/kernels.h>
@@ -208,8 +212,7 @@ namespace slipstick::qp
           {
             preconditioner(static_cast<const Vector &>(r), z);
             ++counts.preconditioner_applications;
-            problem.project_range(z, w);
-            add(-1.0, w, z);
+            project_kernel(problem, z, w, 0);
           }
         directions->orthogonalize(z, problem.reduction());
         return z;
@@ -245,9 +248,10 @@ namespace slipstick::qp
         add(-1.0, Fx, r);
         problem.project_range(r, w);
         add(-1.0, w, r);
-        const auto s = problem.reduction().sum(std::array<double, 2>{{local_dot(r, r), local_dot(Fx, Fx)}});
-        norm_r       = std::sqrt(s[0]);
-        norm_Fx      = std::sqrt(s[1]);
+        const auto s = problem.reduction().sum(
+          std::array<double, 2>{{local_weighted_dot(residual_weights(problem, 0), r, r), local_dot(Fx, Fx)}});
+        norm_r  = std::sqrt(s[0]);
+        norm_Fx = std::sqrt(s[1]);
       }
 
       const Problem        &problem;

@@ -13,6 +13,7 @@
 //       `project_kernel(p)`     the same for G p = 0; then sets the tied entries to factor times theirs
 //       `multiplier_shift(v, y)` y = G'a on ALL entries, with a such that v - G'a is least on the free ones
 //       `precondition(r, z)`    z = M r on the free entries, 0 on the others; symmetric positive semidefinite
+//       the Problem and its faces may have residual_weights (pcpg.h): they scale the step to the next set too
 //       `is_regular()`          false when the free entries alone do not determine a
 #pragma once
 
@@ -237,7 +238,9 @@ namespace slipstick::qp
         add(-1.0, Fx, g);
         face.project_range(g, w);
         add(-1.0, w, g);
-        return qp::norm(g, problem.reduction()) / reference;
+        const double *weights = residual_weights(problem, 0);
+        return std::sqrt(problem.reduction().sum(std::array<double, 1>{{local_weighted_dot(weights, g, g)}})[0]) /
+               reference;
       }
 
       void solve_symmetric(const Face &face)
@@ -316,16 +319,18 @@ namespace slipstick::qp
         move_bounds(active, 0.);
         const auto            l = box().lower.begin(), u = box().upper.begin();
         const auto            xi = x.begin(), gi = g.begin();
+        const double         *weights = residual_weights(problem, 0);
         std::array<double, 2> sum{{0, 0}};
         for (std::size_t i = 0; i < active.size(); ++i)
           {
-            const double gp  = active[i] == 0   ? gi[i]
-                               : !(l[i] < u[i]) ? 0.0
-                               : active[i] < 0  ? std::min(gi[i], 0.0)
-                                                : std::max(gi[i], 0.0);
-            const double out = xi[i] - clip(xi[i], l[i], u[i]);
-            sum[0] += gp * gp;
-            sum[1] += out * out;
+            const double gp     = active[i] == 0   ? gi[i]
+                                  : !(l[i] < u[i]) ? 0.0
+                                  : active[i] < 0  ? std::min(gi[i], 0.0)
+                                                   : std::max(gi[i], 0.0);
+            const double out    = xi[i] - clip(xi[i], l[i], u[i]);
+            const double weight = weights ? weights[i] : 1.;
+            sum[0] += weight * weight * gp * gp;
+            sum[1] += out * out; // F out is as much smaller as the weight is larger
           }
         sum       = problem.reduction().sum(sum);
         residual  = std::sqrt(sum[0]) / reference;
@@ -356,13 +361,14 @@ namespace slipstick::qp
       {
         std::vector<signed char> set(local_size(x));
         const auto               xi = x.begin(), gi = g.begin();
-        const auto               place = [&](const std::size_t i) {
-          const double t = xi[i] - gi[i] / norm;
+        const double            *weights = residual_weights(problem, 0);
+        const auto               place   = [&](const std::size_t i) {
+          const double t = xi[i] - options.set_step * (weights ? weights[i] : 1.) * gi[i] / norm;
           set[i]         = t <= box().lower.begin()[i] ? -1 : t >= box().upper.begin()[i] ? 1 : 0;
         };
         for (std::size_t i = 0; i < set.size(); ++i)
           place(i);
-        move_bounds(set, 1. / norm);
+        move_bounds(set, options.set_step / norm);
         for (const PressureBound &bound : coupled.bounds)
           place(bound.tangential);
         return set;

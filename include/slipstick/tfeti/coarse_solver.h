@@ -5,9 +5,7 @@
 
 #include <mpi.h>
 
-#include <map>
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace slipstick::tfeti
@@ -18,8 +16,13 @@ namespace slipstick::tfeti
   class CoarseSolver
   {
   public:
-    /// Entries by global row and column; entries of one position given by several ranks are added.
-    using Entries = std::map<std::pair<long long, long long>, double>;
+    /// An entry by global row and column; entries of one position, of whatever rank, are added.
+    struct Entry
+    {
+      long long row, column;
+      double    value;
+    };
+    using Entries = std::vector<Entry>;
 
     /// @param n_owned rows of this rank, which follow those of the rank before. Collective.
     /// @throws NumericalError when the matrix is singular.

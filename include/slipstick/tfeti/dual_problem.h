@@ -56,6 +56,16 @@ namespace slipstick::tfeti
     void                project_range(const DistributedVector &x, DistributedVector &y) const; // y = Q x
     const MpiReduction &reduction() const;
 
+    /// Weights of the owned rows' residuals for solvers with a preconditioner: stiffnesses over the least one, so that
+    /// residuals count as forces and all bodies are solved alike. Empty without a preconditioner.
+    const std::vector<double> &residual_weights() const
+    {
+      return weights_of_residuals;
+    }
+
+    /// Norm of the part of a residual (such as d - F x over norm()) that multipliers can change, with its weights.
+    double residual_norm(const DistributedVector &r) const;
+
     /// The problem on the free rows (owned ones), the others held, or tied to free ones. Collective.
     Face face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties = {}) const;
 
@@ -135,7 +145,10 @@ namespace slipstick::tfeti
     std::vector<bool> rows_that_fix(const std::vector<RigidMotion> &loose,
                                     const DistributedVector        &x,
                                     std::vector<bool>               free) const;
-    void slide_apart(const std::vector<RigidMotion> &loose, const std::vector<bool> &free, Recovery &at) const;
+    void              slide_apart(const std::vector<RigidMotion> &loose,
+                                  const std::vector<bool>        &free,
+                                  const DistributedVector        &x,
+                                  Recovery                       &at) const;
 
     double          power_method(const DualOptions &options) const;
     void            apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
@@ -154,12 +167,14 @@ namespace slipstick::tfeti
     std::unique_ptr<Projector>                    projector;
     std::unique_ptr<RowWeights>                   weights; // with a preconditioner
     std::unique_ptr<PreconditionerBlocks>         preconditioner;
-    DistributedVector                             dual_load;
-    DistributedVector                             correction; // (F - F~) x, taken off the dual load
-    bool                                          is_single             = false;
-    double                                        norm_PFP              = 1;
-    unsigned long long                            setup_multiplications = 0;
-    double                                        factorization_time    = 0;
+    std::vector<double>                           metric, weights_of_residuals; // of the owned rows
+    bool               projects_twice = false; // rounding of one projection would show in the stiffest rows
+    DistributedVector  dual_load;
+    DistributedVector  correction; // (F - F~) x, taken off the dual load
+    bool               is_single             = false;
+    double             norm_PFP              = 1;
+    unsigned long long setup_multiplications = 0;
+    double             factorization_time    = 0;
   };
 
   /// The dual problem on its free rows, as qp's semismooth Newton and PCPG ask for it.
@@ -168,8 +183,9 @@ namespace slipstick::tfeti
   public:
     Face(const DualProblem &problem, const std::vector<bool> &free, const std::vector<qp::Tie> &ties);
 
-    void                multiply(const DistributedVector &x, DistributedVector &y) const; // y = F x / |P F P|
-    const MpiReduction &reduction() const;
+    void                       multiply(const DistributedVector &x, DistributedVector &y) const; // y = F x / |P F P|
+    const MpiReduction        &reduction() const;
+    const std::vector<double> &residual_weights() const;
 
     /// y = Q_f x on the free rows, y = x on the others.
     void project_range(const DistributedVector &x, DistributedVector &y) const;

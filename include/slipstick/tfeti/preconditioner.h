@@ -19,6 +19,9 @@ namespace slipstick::tfeti
                const Partitioner                                   &rows,
                const MPI_Comm                                       comm);
 
+    /// 1 / W_rr of the owned rows [N/mm]: the force that opens a row, its other rows held, over what it opens by.
+    std::vector<double> stiffnesses() const;
+
     /// Inverse of W restricted to the active rows; of rows that depend on others, a generalised inverse.
     class Inverse
     {

@@ -10,6 +10,11 @@ namespace slipstick::tfeti
 
   /// Q = G'(G G')^-1 G projects dual vectors on the range of G'. With T from G G' = T^-1 T^-T the rows of T G are
   /// orthonormal; they are never formed, since |T G x| = |Q x|.
+  ///
+  /// With a metric M (a positive number a row, the inverse of what the row yields to a force) least is meant in that
+  /// metric: G'(G M G')^-1 G M takes its part from a residual [mm], M G'(G M G')^-1 G from multipliers [N], one the
+  /// transpose of the other. Stiff and soft bodies then share what they exchange as their stiffnesses tell (Bhardwaj et
+  /// al. 2000; Klawonn, Widlund 2001).
   class Projector
   {
   public:
@@ -29,11 +34,15 @@ namespace slipstick::tfeti
     Projector(const Projector            &all,
               const std::vector<bool>    &active,
               const MPI_Comm              comm,
-              const std::vector<qp::Tie> &ties = {});
+              const std::vector<qp::Tie> &ties   = {},
+              const std::vector<double>  &metric = {});
     ~Projector();
 
-    /// y = Q x, owned entries. Collective.
+    /// y = Q x, owned entries; with a metric that of residuals. Not with ties. Collective.
     void project_range(const DistributedVector &x, DistributedVector &y) const;
+
+    /// The least y with G y = G x, by which multipliers that obey the ties miss the kernel of G. Collective.
+    void excess(const DistributedVector &x, DistributedVector &y) const;
 
     /// As project_range(), but on all rows: y = G'a with the a that makes x - G'a least on the active ones. Collective.
     void extend_range(const DistributedVector &x, DistributedVector &y) const;
@@ -41,7 +50,7 @@ namespace slipstick::tfeti
     /// G x, the rigid motions of this rank's subdomains in turn; inactive rows count as zero. Collective.
     Eigen::VectorXd multiply(const DistributedVector &x) const;
 
-    /// y = G'(G G')^-1 e: the smallest y with G y = e. e: the rigid motions of this rank's subdomains in turn. Collective.
+    /// The least y with G y = e, G'(G G')^-1 e without metric and ties. e: the rigid motions of this rank's subdomains in turn. Collective.
     void particular(const Eigen::VectorXd &e, DistributedVector &y) const;
 
     /// (G G')^-1 G x: amplitudes of the rigid motions of this rank's subdomains in turn. Collective.
@@ -59,10 +68,13 @@ namespace slipstick::tfeti
     void make_coarse(const std::vector<bool> &active, const MPI_Comm comm);
     void multiply_transpose(const Eigen::VectorXd &a, DistributedVector &y) const;
     void mask(DistributedVector &y) const;
+    void spread(DistributedVector &y) const;
+    void weigh(DistributedVector &y) const;
 
     const DualOperator            &scatter_gather;
     std::shared_ptr<const Motions> G;
     std::vector<qp::Tie>           ties;
+    std::vector<double>            metric; // of the owned rows; empty: 1
     std::unique_ptr<CoarseSolver>  coarse;
     DistributedVector              indicator; // 1 on active rows, ghosts included
     mutable DistributedVector      source, target;
