@@ -1,0 +1,113 @@
+"""scripts/study on a small scene: its table, the sentence, going on after an interruption, closed forms, wrong input."""
+
+import csv
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import measured  # noqa: F401  the path of tests/cases
+import scenes
+from program import ENVIRONMENT, PROGRAM, SOURCE, WORK, new_path
+
+LADDER = ('--refinements', '0,1', '--degrees', '1,2', '--tolerances', '1e-2,1e-4', '--subdomains', 'auto,4', '--ranks', '1')
+RUNS = 2 * 2 * (2 + 1 + 1)  # and one more number of subdomains and algorithm for each mesh and degree
+
+
+def case():
+    return scenes.box(name='box', contacts={'circle': scenes.CIRCLE}, supports={'held': scenes.HELD},
+                      tractions={'pressed': scenes.PRESSED}, bodies={'box': {**scenes.BOX, 'Cells': '6, 6'}},
+                      Decomposition={'Method': 'none'})
+
+
+def command(*arguments):
+    return [sys.executable, '-B', str(SOURCE / 'scripts' / 'study'), *map(str, arguments)]
+
+
+ENVIRONMENT = dict(ENVIRONMENT, SLIPSTICK=PROGRAM)
+
+
+def study(*arguments):
+    return subprocess.run(command(*arguments), env=ENVIRONMENT, cwd=WORK, capture_output=True, text=True, timeout=200)
+
+
+def rows(directory):
+    with open(directory / 'study.csv', newline='') as stream:
+        return list(csv.DictReader(stream))
+
+
+class Study(unittest.TestCase):
+
+    def test_ladder_sentence_and_resumption(self):
+        scene, directory = case(), new_path('study')
+        arguments = (scene, *LADDER, '--accuracy', '0.05', '--output', directory)
+        process = subprocess.Popen(command(*arguments), env=ENVIRONMENT, cwd=WORK, stderr=subprocess.PIPE, text=True)
+        for line in process.stderr:  # interrupted after its third run
+            if line.startswith('study: [3/'):
+                break
+        process.send_signal(signal.SIGINT)
+        rest = process.stderr.read()
+        process.stderr.close()
+        self.assertEqual(process.wait(timeout=60), 130, rest)
+        kept = rows(directory)
+        self.assertGreaterEqual(len(kept), 3)
+        self.assertLess(len(kept), RUNS)
+        with open(directory / 'study.csv', 'a') as stream:
+            stream.write('torn,0,1')  # as a machine that stops leaves it
+
+        result = study(*arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        found = rows(directory)
+        self.assertEqual(len(found), RUNS)
+        self.assertEqual([row['time_s'] for row in found[:len(kept)]], [row['time_s'] for row in kept], 'solved again')
+        self.assertEqual({row['status'] for row in found}, {'converged'})
+        without = [row for row in found if not row['error']]
+        self.assertEqual([(row['refinements'], row['degree'], row['tolerance']) for row in without], [('1', '2', '0.0001')])
+        reference = float(without[0]['strain_energy'])
+        for row in found:
+            if row['error']:
+                self.assertAlmostEqual(float(row['error']), abs(float(row['strain_energy']) / reference - 1),
+                                       delta=1e-3 * float(row['error']) + 1e-15)
+        good = [row for row in found if row['error'] and float(row['error']) <= 0.05]
+        best = min(good, key=lambda row: float(row['time_s']))
+        self.assertIn('degree {degree}, {refinements} refinements'.format(**best), result.stdout)
+        self.assertIn(best['time_s'] + ' s', result.stdout)
+        self.assertEqual((directory / 'study.txt').read_text(), result.stdout)
+        drawn = (directory / 'study.png').is_file()
+        self.assertTrue(drawn or 'study.png not drawn' in result.stderr, result.stderr)
+
+        again = time.monotonic()
+        result = study(*arguments)  # nothing is left to solve
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stderr.count('converged, from'), RUNS)
+        self.assertLess(time.monotonic() - again, 30)
+
+        scene.write_text(scene.read_text().replace('500', '400'))
+        result = study(*arguments)  # another scene
+        self.assertEqual(result.returncode, 2)
+        self.assertIn('is of another scene', result.stderr)
+        self.assertEqual(len(rows(directory)), RUNS)
+
+    def test_closed_form_out_of_reach(self):
+        directory = new_path('study')
+        result = study(case(), '--refinements', '0', '--degrees', '1', '--tolerances', '1e-4', '--subdomains', 'auto',
+                       '--algorithms', 'auto', '--ranks', '1', '--reference', 'circle.max_pressure=1', '--output', directory)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        row, = rows(directory)
+        self.assertAlmostEqual(float(row['error']) / abs(float(row['circle.max_pressure']) - 1), 1, delta=1e-3)
+        self.assertIn('none of 1 runs gives circle.max_pressure to 1 % of the closed form', result.stdout)
+
+    def test_wrong_input(self):
+        for arguments, message in ((('missing.prm',), 'is no file'), ((case(), '--degrees', '3'), 'out of range'),
+                                   ((case(), '--reference', 'x'), 'KEY=VALUE'),
+                                   ((case(), '--quantity', 'nothing', '--ranks', '1', '--output', new_path('s')), 'unknown'),
+                                   ((case(), '--set', 'Sover/Tolerance=1', '--ranks', '1', '--output', new_path('s')),
+                                    'was refused')):
+            result = study(*arguments)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn(message, result.stderr)
+
+
+if __name__ == '__main__':
+    unittest.main()
