@@ -212,7 +212,7 @@ namespace
                                                products_per_sample);
           std::size_t bytes = F->block_bytes();
           for (const auto &system : systems)
-            bytes += system->factor_nonzeros() * sizeof(double);
+            bytes += system->factor_bytes();
           megabytes[is_explicit] = bytes / 1e6;
         }
 

@@ -191,9 +191,4 @@ namespace slipstick::tfeti
   {
     return factor->xsize;
   }
-
-  void Cholesky::release()
-  {
-    factor.reset();
-  }
 } // namespace slipstick::tfeti

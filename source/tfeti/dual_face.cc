@@ -120,5 +120,6 @@ namespace slipstick::tfeti
     target.compress(dealii::VectorOperation::add);
     weighted.copy_locally_owned_data_from(target);
     weights->apply(weighted, z);
+    z *= problem.norm();
   }
 } // namespace slipstick::tfeti

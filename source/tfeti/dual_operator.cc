@@ -30,18 +30,14 @@ namespace slipstick::tfeti
   DualOperator::DualOperator(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                              const std::vector<LocalGluing>                      &gluing,
                              const Partitioner                                   &rows,
-                             const bool                                           explicit_blocks,
-                             const Precision                                      precision)
+                             std::vector<PackedSymmetric>                         dense_blocks)
     : subdomains(subdomains)
     , gluing(gluing)
     , rows(rows)
+    , blocks(std::move(dense_blocks))
     , source(rows)
     , target(rows)
-  {
-    if (explicit_blocks)
-      for (const auto &subdomain : subdomains)
-        blocks.emplace_back(subdomain->pseudo_inverse_block(), precision);
-  }
+  {}
 
   Eigen::VectorXd DualOperator::scatter(const unsigned int p, const DistributedVector &x) const
   {

@@ -53,21 +53,34 @@ namespace slipstick::tfeti
     const bool explicit_blocks     = is_explicit(options, matrices, rows, comm);
     const bool with_trailing_block = explicit_blocks || options.preconditioner == Preconditioner::dirichlet;
     const auto session             = std::make_shared<CholmodSession>();
+    std::vector<PackedSymmetric> inverses, stiffnesses;
+    std::vector<Eigen::VectorXd> u; // K+ f
     collectively(comm, [&] {
-      const double start = MPI_Wtime();
       for (unsigned int p = 0; p < matrices.size(); ++p)
         {
+          const double start    = MPI_Wtime();
           auto [local, touched] = LocalGluing::make(rows.blocks[p]);
           gluing.push_back(std::move(local));
           systems.push_back(std::make_unique<SubdomainSystem>(session,
                                                               std::move(matrices[p]),
                                                               std::move(touched),
                                                               with_trailing_block));
+          factorization_time += MPI_Wtime() - start;
+          SubdomainSystem &system = *systems.back();
+          if (explicit_blocks)
+            inverses.emplace_back(system.pseudo_inverse_block(), options.operator_precision);
+          if (options.preconditioner == Preconditioner::dirichlet)
+            stiffnesses.emplace_back(system.schur_complement(), options.preconditioner_precision);
+          else if (options.preconditioner == Preconditioner::lumped)
+            stiffnesses.emplace_back(system.touched_stiffness(), options.preconditioner_precision);
+          u.push_back(system.load());
+          system.apply_pseudo_inverse(u.back());
+          if (explicit_blocks)
+            system.compress(); // one whole factor at a time
         }
       session->forget_analyses();
-      factorization_time = MPI_Wtime() - start;
-      F = std::make_unique<DualOperator>(systems, gluing, rows.rows, explicit_blocks, options.operator_precision);
     });
+    F      = std::make_unique<DualOperator>(systems, gluing, rows.rows, std::move(inverses));
     bodies = std::make_unique<BodyMotions>(systems, gluing, rows, body_names.size(), comm);
     require_support(bodies->free({}), body_names);
     if (options.preconditioner == Preconditioner::lumped || options.preconditioner == Preconditioner::dirichlet)
@@ -83,13 +96,12 @@ namespace slipstick::tfeti
         projects_twice =
           dealii::Utilities::MPI::max(metric.empty() ? 1. : *std::max_element(metric.begin(), metric.end()), comm) >
           large_stiffness_ratio;
-        preconditioner =
-          std::make_unique<PreconditionerBlocks>(systems, options.preconditioner, options.preconditioner_precision);
+        preconditioner = std::make_unique<PreconditionerBlocks>(std::move(stiffnesses));
       }
     projector = std::make_unique<Projector>(systems, gluing, *F, rows.rows, std::vector<bool>(), comm);
 
     is_single = explicit_blocks && options.operator_precision == Precision::single_precision;
-    update_dual_load();
+    set_dual_load(u);
     norm_PFP              = power_method(options);
     setup_multiplications = F->n_applications();
   }
@@ -117,6 +129,11 @@ namespace slipstick::tfeti
         u.push_back(system->load());
         system->apply_pseudo_inverse(u.back());
       }
+    set_dual_load(u);
+  }
+
+  void DualProblem::set_dual_load(const std::vector<Eigen::VectorXd> &u)
+  {
     dual_load = jumps(u);
     for (unsigned int r = 0; r < rows.c.size(); ++r)
       dual_load.local_element(r) -= rows.c[r];

@@ -195,15 +195,9 @@ namespace slipstick::tfeti
       }
   }
 
-  PreconditionerBlocks::PreconditionerBlocks(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
-                                             const Preconditioner                                 kind,
-                                             const Precision                                      precision)
-  {
-    for (const auto &subdomain : subdomains)
-      blocks.emplace_back(kind == Preconditioner::lumped ? subdomain->touched_stiffness()
-                                                         : subdomain->schur_complement(),
-                          precision);
-  }
+  PreconditionerBlocks::PreconditionerBlocks(std::vector<PackedSymmetric> given)
+    : blocks(std::move(given))
+  {}
 
   void PreconditionerBlocks::apply(const unsigned int p, const Eigen::VectorXd &x, Eigen::VectorXd &y) const
   {

@@ -19,6 +19,12 @@ namespace slipstick::tfeti
     // more than 1e-15 without one up to a slenderness of 4000.
     constexpr double smallest_stiffness = 2e-16;
 
+    // Residual of solves with the compact factor over that of their start, as the steps tell it, and how many those may be.
+    constexpr double       compact_tolerance = 1e-15;
+    constexpr unsigned int max_compact_steps = 12;
+    // A residual below this part of the right-hand side is left as it is.
+    constexpr double visible_residual = 1e-12;
+
     std::string name_of(const SubdomainMatrices &matrices)
     {
       return "subdomain " + std::to_string(matrices.subdomain);
@@ -108,27 +114,96 @@ namespace slipstick::tfeti
                                    SubdomainMatrices                      given,
                                    std::vector<unsigned int>              touched,
                                    const bool                             with_trailing_block)
-    : matrices((check_kernel(given), std::move(given)))
+    : session(session)
+    , with_trailing_block(with_trailing_block)
+    , matrices((check_kernel(given), std::move(given)))
     , touched_unknowns(std::move(touched))
     , fixing_unknowns(choose_fixing(matrices, touched_unknowns))
     , regularization(matrices.stiffness.diagonal().mean())
-    , cholesky(session,
-               regularised(matrices.stiffness, fixing_unknowns, regularization),
-               with_trailing_block ? merged(touched_unknowns, fixing_unknowns) : std::vector<unsigned int>(),
-               name_of(matrices))
+    , cholesky(factorised())
   {
-    check_no_larger_kernel(matrices, cholesky);
+    check_no_larger_kernel(matrices, *cholesky);
+  }
+
+  Cholesky SubdomainSystem::factorised() const
+  {
+    return {session,
+            regularised(matrices.stiffness, fixing_unknowns, regularization),
+            with_trailing_block ? merged(touched_unknowns, fixing_unknowns) : std::vector<unsigned int>(),
+            name_of(matrices)};
+  }
+
+  void SubdomainSystem::compress()
+  {
+    compact.emplace(cholesky->compact());
+    if (compact->bytes() < cholesky->n_nonzeros() * sizeof(double))
+      cholesky.reset();
+    else
+      compact.reset();
+  }
+
+  void SubdomainSystem::apply_pseudo_inverse(Eigen::VectorXd &x) const
+  {
+    if (!cholesky && solve_with_compact(x))
+      return;
+    if (!cholesky)
+      cholesky.emplace(factorised());
+    cholesky->solve(x);
+  }
+
+  // Conjugate gradients preconditioned by the compact factor, anew from the residual that rounding has left as long as
+  // that falls. x stays what it was when they do not converge.
+  bool SubdomainSystem::solve_with_compact(Eigen::VectorXd &x) const
+  {
+    const auto multiply = [this](const Eigen::VectorXd &v) {
+      Eigen::VectorXd product = apply_stiffness(v);
+      for (const unsigned int i : fixing_unknowns)
+        product[i] += regularization * v[i];
+      return product;
+    };
+    Eigen::VectorXd solution = Eigen::VectorXd::Zero(x.size()), r = x, z, p;
+    double          left = x.norm();
+    for (;;)
+      {
+        Eigen::VectorXd step = Eigen::VectorXd::Zero(x.size());
+        const double    goal = compact_tolerance * left;
+        double          rz   = 0;
+        for (unsigned int k = 0; !(r.norm() <= goal); ++k)
+          {
+            compact->apply(matrices.stiffness, r, z);
+            const double rz_before = rz;
+            rz                     = r.dot(z);
+            if (k == max_compact_steps || !(rz > 0) || !std::isfinite(rz))
+              return false;
+            p                        = k == 0 ? z : Eigen::VectorXd(z + rz / rz_before * p);
+            const Eigen::VectorXd Kp = multiply(p);
+            const double          t  = rz / p.dot(Kp);
+            step += t * p;
+            r -= t * Kp;
+          }
+        const Eigen::VectorXd next = solution + step;
+        r                          = x - multiply(next);
+        const double before        = left;
+        left                       = r.norm();
+        if (left < before)
+          solution = next;
+        if (left <= visible_residual * x.norm() || left > before / 2)
+          {
+            x = solution;
+            return true;
+          }
+      }
   }
 
   std::vector<double> SubdomainSystem::pseudo_inverse_block() const
   {
-    return packed_lower(inverse_of_product(cholesky.trailing_block()), touched_in_last_order());
+    return packed_lower(inverse_of_product(cholesky->trailing_block()), touched_in_last_order());
   }
 
   std::vector<double> SubdomainSystem::schur_complement() const
   {
-    Eigen::MatrixXd schur = product_of_factor(cholesky.trailing_block());
-    const auto     &order = cholesky.last_order();
+    Eigen::MatrixXd schur = product_of_factor(cholesky->trailing_block());
+    const auto     &order = cholesky->last_order();
     for (unsigned int k = 0; k < order.size(); ++k)
       if (std::find(fixing_unknowns.begin(), fixing_unknowns.end(), order[k]) != fixing_unknowns.end())
         schur(k, k) -= regularization;
@@ -160,8 +235,8 @@ namespace slipstick::tfeti
   std::vector<unsigned int> SubdomainSystem::touched_in_last_order() const
   {
     std::vector<unsigned int> position(n_unknowns(), 0), touched;
-    for (unsigned int k = 0; k < cholesky.last_order().size(); ++k)
-      position[cholesky.last_order()[k]] = k;
+    for (unsigned int k = 0; k < cholesky->last_order().size(); ++k)
+      position[cholesky->last_order()[k]] = k;
     for (const unsigned int i : touched_unknowns)
       touched.push_back(position[i]);
     return touched;

@@ -85,8 +85,9 @@ namespace slipstick::qp
   {
     Status status;
     Vector x;
-    Vector product; // F x
-    Counts counts;  // cg_steps, hessian_multiplications, preconditioner_applications
+    Vector product;        // F x
+    Counts counts;         // cg_steps, hessian_multiplications, preconditioner_applications
+    double first_step = 0; // along the preconditioned residual of the start
   };
 
   /// Find x with P(b - F x) = 0 on the free entries, ties and G x as in the start, until |P(b - F x)| is at most
@@ -128,8 +129,9 @@ namespace slipstick::qp
       }
     const double target     = goal.tolerance * goal.reference;
     unsigned int stuck      = 0;
+    double       first_step = 0;
     const auto   ended_with = [&](const Status status) {
-      return GcrResult<Vector>{status, std::move(x), std::move(product), counts};
+      return GcrResult<Vector>{status, std::move(x), std::move(product), counts, first_step};
     };
     for (unsigned int iteration = 0;; ++iteration)
       {
@@ -155,6 +157,8 @@ namespace slipstick::qp
         for (Vector *v : {&p, &Fp, &q})
           combine(1. / length, *v, 0., *v);
         const double rq = reduction.sum(std::array<double, 1>{{local_dot(weighted, q)}})[0];
+        if (counts.cg_steps == 0)
+          first_step = rq / length;
         add(rq, p, x);
         add(rq, Fp, product);
         history.push(std::move(p), std::move(Fp), std::move(q));

@@ -101,6 +101,7 @@ namespace slipstick::qp
         , forcing(options.first_forcing)
       {
         bound_change = bounds.update ? 1. : 0.;
+        has_gradient = problem.reduction().sum(std::array<double, 1>{{local_dot(g, g)}})[0] > 0;
         active       = next_set();
       }
 
@@ -211,8 +212,11 @@ namespace slipstick::qp
           }
         if (set_changed)
           {
+            const std::optional<Vector> step = has_gradient ? std::make_optional(descent(*face)) : std::nullopt;
             put_on_bounds();
             face->balance(x);
+            if (step)
+              add(-std::min(options.descent_step, last_step), *step, x);
             problem.multiply(x, Fx);
             ++counts.hessian_multiplications;
           }
@@ -227,8 +231,22 @@ namespace slipstick::qp
         add(-1.0, d, g);
         face->multiplier_shift(g, w);
         add(-1.0, w, g);
+        has_gradient = true;
         measure();
         return true;
+      }
+
+      // The preconditioned gradient of the face before entries that have left it are put on their bounds. A short step
+      // along it goes with that one since F is multiplied with x anyway.
+      Vector descent(const Face &face)
+      {
+        Vector r(g), z(g);
+        face.project_range(g, w);
+        add(-1.0, w, r);
+        face.precondition(r, z);
+        ++counts.preconditioner_applications;
+        project_kernel(face, z, w, 0);
+        return z;
       }
 
       // |P(d - F x)| over the reference, of the face.
@@ -256,6 +274,8 @@ namespace slipstick::qp
         x           = std::move(result.x);
         Fx          = std::move(result.product);
         counts += result.counts;
+        if (result.first_step > 0)
+          last_step = result.first_step;
       }
 
       void solve_unsymmetric(const Face &face)
@@ -273,6 +293,8 @@ namespace slipstick::qp
         x           = std::move(result.x);
         Fx          = std::move(result.product);
         counts += result.counts;
+        if (result.first_step > 0)
+          last_step = result.first_step;
       }
 
       // Slipping entries whose bound moves with a free one.
@@ -431,8 +453,10 @@ namespace slipstick::qp
       double       violation      = HUGE_VAL; // of the bounds by x, over the reference, in terms of the residual
       double       n_inequalities = 0, n_lower = 0, n_upper = 0;
       double       bound_change = 0;     // the last one
-      bool         set_changed  = true;  // x is not on its bounds, or does not balance: F x is not known
-      bool         set_stands   = false; // the free entries are those of the last solve
+      double       last_step = HUGE_VAL; // the first one of the last solve of a face, along its preconditioned residual
+      bool         has_gradient;         // g is that of x
+      bool         set_changed = true;   // x is not on its bounds, or does not balance: F x is not known
+      bool         set_stands  = false;  // the free entries are those of the last solve
       std::shared_ptr<DirectionHistory<Vector>> history;
       std::optional<ResidualHistory<Vector>>    residual_history;
       std::vector<signed char>                  active;

@@ -1,6 +1,8 @@
 // Sparse Cholesky factorisation (SuiteSparse CHOLMOD, supernodal), whole or ending in a dense trailing block.
 #pragma once
 
+#include <slipstick/tfeti/compact_cholesky.h>
+
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
 
@@ -72,8 +74,11 @@ namespace slipstick::tfeti
     /// Nonzeros of L as stored.
     std::size_t n_nonzeros() const;
 
-    /// Frees the part of L that only solve() needs. trailing_block() and solve() may not be called afterwards.
-    void release();
+    /// L in a quarter of the memory.
+    CompactCholesky compact() const
+    {
+      return CompactCholesky(*factor, trailing.size());
+    }
 
   private:
     struct FactorDeleter

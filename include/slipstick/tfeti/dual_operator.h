@@ -31,11 +31,11 @@ namespace slipstick::tfeti
   class DualOperator
   {
   public:
+    /// @p blocks of K+ at the touched unknowns of every subdomain; none: implicit.
     DualOperator(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                  const std::vector<LocalGluing>                      &gluing,
                  const Partitioner                                   &rows,
-                 const bool                                           explicit_blocks,
-                 const Precision                                      precision = Precision::double_precision);
+                 std::vector<PackedSymmetric>                         blocks);
 
     /// y = F x; x: multipliers [N], y: displacement jumps [mm], owned entries. Collective. Farhat, Roux 1991.
     void apply(const DistributedVector &x, DistributedVector &y) const;

@@ -153,7 +153,8 @@ namespace slipstick::tfeti
     double          power_method(const DualOptions &options) const;
     void            apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
     void            update_dual_load();
-    Eigen::VectorXd resultants() const; // e
+    void            set_dual_load(const std::vector<Eigen::VectorXd> &u); // u = K+ f
+    Eigen::VectorXd resultants() const;                                   // e
 
     MPI_Comm                                      comm;
     MpiReduction                                  reduce;

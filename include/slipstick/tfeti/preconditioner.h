@@ -59,9 +59,7 @@ namespace slipstick::tfeti
   class PreconditionerBlocks
   {
   public:
-    PreconditionerBlocks(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
-                         const Preconditioner                                 kind,
-                         const Precision                                      precision);
+    explicit PreconditionerBlocks(std::vector<PackedSymmetric> blocks);
 
     /// y = S x at the touched unknowns of subdomain p.
     void apply(const unsigned int p, const Eigen::VectorXd &x, Eigen::VectorXd &y) const;

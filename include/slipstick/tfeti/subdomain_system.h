@@ -4,6 +4,8 @@
 #include <slipstick/tfeti/cholesky.h>
 #include <slipstick/tfeti/subdomain_matrices.h>
 
+#include <optional>
+
 namespace slipstick::tfeti
 {
   /// K, K+ and R of a subdomain with n unknowns.
@@ -25,10 +27,12 @@ namespace slipstick::tfeti
                     const bool                             with_trailing_block);
 
     /// x := K+ x; n entries [N] to [mm].
-    void apply_pseudo_inverse(Eigen::VectorXd &x) const
-    {
-      cholesky.solve(x);
-    }
+    void apply_pseudo_inverse(Eigen::VectorXd &x) const;
+
+    /// Keeps no more of the factor than its compact form, with which K+ is applied by conjugate gradients to rounding: a
+    /// quarter of the memory. Where most unknowns are touched it would be more, and
+    /// nothing is done. The dense blocks may not be asked for afterwards.
+    void compress();
 
     /// K x; n entries [mm] to [N].
     Eigen::VectorXd apply_stiffness(const Eigen::VectorXd &x) const
@@ -82,19 +86,27 @@ namespace slipstick::tfeti
     {
       return touched_unknowns;
     }
-    std::size_t factor_nonzeros() const
+    /// Memory of the factor [bytes].
+    std::size_t factor_bytes() const
     {
-      return cholesky.n_nonzeros();
+      return (compact ? compact->bytes() : 0) + (cholesky ? cholesky->n_nonzeros() * sizeof(double) : 0);
     }
 
   private:
     std::vector<unsigned int> touched_in_last_order() const;
+    Cholesky                  factorised() const;
+    bool                      solve_with_compact(Eigen::VectorXd &x) const;
+
+    std::shared_ptr<CholmodSession> session;
+    bool                            with_trailing_block;
 
     SubdomainMatrices         matrices;
     std::vector<unsigned int> touched_unknowns;
     std::vector<unsigned int> fixing_unknowns;
     double                    regularization; // rho [N/mm]
-    Cholesky                  cholesky;
+
+    mutable std::optional<Cholesky> cholesky; // none once compressed, unless single precision does not do
+    std::optional<CompactCholesky>  compact;
   };
 
   /// As many of the @p candidates as R has columns, chosen by pivoting so that the rows of R there are as independent
