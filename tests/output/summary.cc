@@ -40,6 +40,7 @@ TEST(Summary, sections_are_those_of_the_contract)
                   "ranks",
                   "status",
                   "converged",
+                  "warnings",
                   "problem",
                   "solver",
                   "residuals",
@@ -117,17 +118,10 @@ TEST(Summary, results_have_the_keys_of_the_contract)
 
 TEST(Summary, times_and_memory_have_the_keys_of_the_contract)
 {
-  EXPECT_EQ(keys(parsed(Summary())["time_s"]),
-            Keys({"total",
-                  "startup",
-                  "mesh",
-                  "assembly",
-                  "factorization",
-                  "dual_setup",
-                  "solve",
-                  "recovery",
-                  "output",
-                  "other"}));
+  EXPECT_EQ(
+    keys(parsed(Summary())["time_s"]),
+    Keys(
+      {"total", "startup", "mesh", "assembly", "factorization", "dual_setup", "solve", "recovery", "output", "other"}));
   EXPECT_EQ(keys(parsed(Summary())["memory_mb"]), Keys({"peak_rank_max", "peak_total"}));
 }
 
