@@ -90,6 +90,21 @@ namespace slipstick::contact
       return scale > 0 ? value / scale : value;
     }
 
+    /// What displacements are beyond rigid motions of their subdomains, which no force resists: in products with K these
+    /// would leave rounding alone.
+    std::vector<Eigen::VectorXd> deformations(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
+    {
+      std::vector<Eigen::VectorXd> result = u;
+      for (unsigned int p = 0; p < u.size(); ++p)
+        {
+          const Eigen::MatrixXd             &R = dual.subdomains()[p]->kernel();
+          const Eigen::LDLT<Eigen::MatrixXd> gram(R.transpose() * R);
+          for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
+            result[p] -= R * gram.solve(R.transpose() * result[p]);
+        }
+      return result;
+    }
+
     /// Nodal forces K u - f of every subdomain: what supports, contact and neighbours exert.
     std::vector<Eigen::VectorXd> nodal_forces(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
     {
@@ -269,7 +284,8 @@ namespace slipstick::contact
     const MPI_Comm comm        = dual.communicator();
     const auto    &constraints = dual.constraints();
     const auto     jumps       = dual.jumps(u);
-    const auto     forces      = nodal_forces(dual, u);
+    const auto     deformed    = deformations(dual, u);
+    const auto     forces      = nodal_forces(dual, deformed);
     CheckedContact result;
     Checks        &checks = result.checks;
     enum
@@ -291,7 +307,7 @@ namespace slipstick::contact
         checks.max_displacement =
           std::max(checks.max_displacement,
                    Eigen::Map<const Eigen::Matrix2Xd>(u[p].data(), 2, u[p].size() / 2).colwise().norm().maxCoeff());
-        checks.energy += u[p].dot(forces[p] + dual.subdomains()[p]->load());
+        checks.energy += deformed[p].dot(forces[p] + dual.subdomains()[p]->load());
       }
     const auto violation = [&](const unsigned int r) {
       const double compliance = constraints.compliance.empty() ? 0. : constraints.compliance[r];

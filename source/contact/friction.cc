@@ -204,7 +204,7 @@ namespace slipstick::contact
         else
           {
             from = smalbe(feasible, options.newton.start_tolerance, {});
-            if (solution.reference == 0) // neither load nor gap: the start is the solution
+            if (solution.weighted_reference == 0) // neither load nor gap: the start is the solution
               {
                 solution.multipliers = from;
                 return solution.status == qp::Status::converged;
