@@ -17,6 +17,8 @@ namespace slipstick::app
     // tolerance with |Pd|), but never this part of the answer.
     constexpr double check_factor  = 1000;
     constexpr double largest_limit = 0.05;
+    // Residuals below this one are left by the rounding of what the solver works with.
+    constexpr double rounding = 1e-11;
 
     std::string line(const char *stage, const std::string &text)
     {
@@ -197,15 +199,25 @@ namespace slipstick::app
     const std::string where = place(scene, worst.place);
     if (solution.status == qp::Status::converged)
       {
-        const double reachable = rounded_up(worst.value / check_factor);
-        log.warning(
+        const double      reached   = std::max(solution.projected_gradient, solution.equality);
+        const double      reachable = rounded_up(worst.value / check_factor);
+        const std::string what =
           format("the check from the recovered displacement fails: %s is %.2e%s, allowed is %.2e; the solver reached "
-                 "residuals of %.1e, more of it does not help: this is rounding\n  remedy: ",
+                 "residuals of %.1e",
                  worst.name,
                  worst.value,
                  where.c_str(),
                  check_limit(tolerance),
-                 std::max(solution.projected_gradient, solution.equality)) +
+                 reached);
+        if (!worst.is_balance && reached > rounding)
+          {
+            log.warning(what +
+                        format("\n  remedy: set Solver/Tolerance to %.1g, and look at the residuals in convergence.csv",
+                               reached / check_factor));
+            return;
+          }
+        log.warning(
+          what + ", more of it does not help: this is rounding\n  remedy: " +
           (check_factor * reachable <= largest_limit
              ? format(
                  "set Solver/Tolerance to %g or more (now %g), or bring moduli, sizes and thicknesses closer together",

@@ -40,7 +40,7 @@ namespace slipstick::app
     constexpr unsigned int max_tightenings = 4;
     // ... by the factor that the worst check is above its limit, and this one more, ...
     constexpr double margin_of_tightening = 2;
-    // ... by no less (nor is less worth another try) ...
+    // ... by no less ...
     constexpr double least_tightening = 2;
     // ... and no more at a time, ...
     constexpr double largest_tightening = 1e4;
@@ -357,12 +357,14 @@ namespace slipstick::app
         const double limit = check_limit(scene.solver.tolerance);
         for (unsigned int n = 0; n < max_tightenings && solution.status == qp::Status::converged; ++n)
           {
-            const auto worst = contact.checks.worst_entry();
-            if (worst.value <= limit || worst.is_balance || options.tolerance <= least_tolerance)
+            const auto   worst = contact.checks.worst_entry();
+            const double reached =
+              std::min(options.tolerance, std::max(solution.projected_gradient, solution.equality));
+            if (worst.value <= limit || worst.is_balance || reached <= least_tolerance)
               break;
             // an answer that is no number, too
             const double excess = std::min(largest_tightening, std::max(least_tightening, worst.value / limit));
-            options.tolerance   = std::max(options.tolerance / (margin_of_tightening * excess), least_tolerance);
+            options.tolerance   = std::max(reached / (margin_of_tightening * excess), least_tolerance);
             log.line(format("checks       %s is %.1e, allowed is %.1e: solved on to a tolerance of %.1e",
                             worst.name,
                             worst.value,
@@ -372,19 +374,17 @@ namespace slipstick::app
             const auto   u_before = u;
             const double kept     = kept_part;
             auto next = recover_and_check(scene.load_factors[step], solve_step(step, multiplications_before, true));
-            const bool is_better = solution.status == qp::Status::converged && next.checks.worst().second < worst.value;
-            const bool is_enough = is_better && next.checks.worst().second < worst.value / least_tightening;
-            if (is_better || kept_part != kept) // it may have got rows for more contact nodes
-              contact = std::move(next);
-            else // to the tolerance that was asked for it did converge
-              {
+            if (kept_part != kept ||
+                (solution.status == qp::Status::converged && next.checks.worst().second < worst.value))
+              contact = std::move(next); // the first: it got rows for more contact nodes
+            else
+              { // to the tolerance that was asked for it did converge
                 const auto counts = solution.counts;
                 solution          = before;
                 solution.counts   = counts;
                 u                 = u_before;
+                break;
               }
-            if (!is_enough)
-              break;
           }
         return contact;
       }
