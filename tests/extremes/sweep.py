@@ -9,7 +9,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'cases'))
 
 import scenes  # noqa: E402
-from program import new_path, run, shipped, solve  # noqa: E402,F401
+from program import SOURCE, run, shipped, solve  # noqa: E402,F401
 
 QUIET = {'Output/VTU': 'false'}
 RESIDUALS = ('interface_jump', 'penetration', 'complementarity', 'friction_bound', 'tension', 'nodal_equilibrium',
