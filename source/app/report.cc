@@ -239,9 +239,11 @@ namespace slipstick::app
                  solution.bound_change,
                  solution.friction_iterations) +
           largest +
-          "; what was reached is written and is no solution\n"
-          "  remedy: raise Friction/Max iterations or Friction/Tolerance; a large friction coefficient may have no "
-          "or many solutions: split the load into more steps");
+          format(
+            "; what was reached is written and is no solution\n"
+            "  remedy: split the load into more steps (Load steps/Factors), set Friction/Tolerance to %g or more, or raise "
+            "Friction/Max iterations; with a large friction coefficient there may be no or many solutions",
+            rounded_up(solution.bound_change)));
         return;
       }
     const bool        limit   = solution.status == qp::Status::iteration_limit;

@@ -36,6 +36,23 @@ class NotConverged(Extremes):
                 self.assertEqual(result.summary['status'], 'not converged')
                 self.assertEqual(result.stderr.count('remedy: '), 1, result)
 
+    def test_cycling_friction(self):
+        """The cooled bolt of the lap joint: if it does not converge, it does with what the message proposes."""
+        table = Table('bolt tightened by cooling')
+        cooled = {'Output/VTU': 'false', 'Contact nut left/Offset': 0, 'Contact nut right/Offset': 0,
+                  'Temperatures': 'cooling', 'Temperature cooling/Bodies': 'bolt',
+                  'Temperature cooling/Change': '-100*min(t,1)'}
+        result = solve(shipped('lap_joint'), cooled)
+        table.add('as shipped', result)
+        self.assertIn(result.status, (0, 3), result)
+        if result.status == 3:
+            self.assertIn('the slip bounds still change by', result.stderr)
+            proposed = result.stderr.split('set Friction/Tolerance to ')[1].split()[0]
+            self.converges(table, 'Friction/Tolerance = ' + proposed, shipped('lap_joint'),
+                           {**cooled, 'Friction/Tolerance': float(proposed)}, checks=1e-3)
+        self.converges(table, 'in more load steps', shipped('lap_joint'), {**cooled, 'Load steps/Factors': '0.25,0.5,0.75,1,2'},
+                       checks=1e-3)
+
     def test_place_is_that_of_the_scene(self):
         """A point of the outline of the body that is named, in the units of the scene."""
         table = Table('place of the largest error')
