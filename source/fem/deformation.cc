@@ -62,9 +62,31 @@ namespace slipstick::fem
           for (unsigned int i = 0; i < nodes.size(); ++i)
             for (unsigned int c = 0; c < dim; ++c)
               gradient[c] += u[dim * nodes[i] + c] * (*values).shape_grad(i, 0);
-          take(largest.strain, principal_strain(gradient), body, cell->center());
-          take(largest.rotation, std::abs(gradient[1][0] - gradient[0][1]) / 2, body, cell->center());
+          const double strain = principal_strain(gradient), rotation = std::abs(gradient[1][0] - gradient[0][1]) / 2;
+          if (strain > largest.strain.value)
+            largest.strain = {strain, body, cell->center()};
+          if (rotation > largest.rotation.value)
+            largest.rotation = {rotation, body, cell->center()};
         }
+    }
+
+    /// The unknowns of nodes are dim in a row; nodes inside of edges and cells are not looked at for the place.
+    template <int dim>
+    void add_nodes(const dealii::DoFHandler<dim> &dof_handler,
+                   const unsigned int             body,
+                   const double                   size,
+                   const Eigen::VectorXd         &u,
+                   Peak<dim>                     &motion)
+    {
+      const double largest = Eigen::Map<const Eigen::Matrix<double, dim, Eigen::Dynamic>>(u.data(), dim, u.size() / dim)
+                               .colwise()
+                               .norm()
+                               .maxCoeff();
+      if (largest <= motion.value * size)
+        return;
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        for (const unsigned int v : cell->vertex_indices())
+          take(motion, u.template segment<dim>(cell->vertex_dof_index(v, 0)).norm() / size, body, cell->vertex(v));
     }
   } // namespace
 
@@ -81,14 +103,7 @@ namespace slipstick::fem
         const auto        &subdomain = *mesh.subdomains[p];
         const unsigned int body      = subdomain.body;
         add_cells(spaces.of(p), *spaces.dof_handlers[p], body, u[p], largest);
-        for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
-          for (const unsigned int v : cell->vertex_indices())
-            {
-              dealii::Tensor<1, dim> motion;
-              for (unsigned int c = 0; c < dim; ++c)
-                motion[c] = u[p][cell->vertex_dof_index(v, c)];
-              take(largest.motion, motion.norm() / (2 * frames[body].length), body, cell->vertex(v));
-            }
+        add_nodes(*spaces.dof_handlers[p], body, 2 * frames[body].length, u[p], largest.motion);
       }
     for (Peak<dim> *peak : {&largest.strain, &largest.rotation, &largest.motion})
       over_all_ranks(*peak, mesh.comm);
