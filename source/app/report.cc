@@ -17,10 +17,30 @@ namespace slipstick::app
     // tolerance with |Pd|), but never this part of the answer.
     constexpr double check_factor  = 1000;
     constexpr double largest_limit = 0.05;
+    // Residuals below this one are left by the rounding of what the solver works with.
+    constexpr double rounding = 1e-11;
 
     std::string line(const char *stage, const std::string &text)
     {
       return format("%-12s ", stage) + text;
+    }
+
+    /// Two digits, never below.
+    double rounded_up(const double value)
+    {
+      const double unit = std::pow(10., std::floor(std::log10(value)) - 1);
+      return std::ceil(value / unit) * unit;
+    }
+
+    /// " at (1, 2) of body box, contact joint"
+    std::string place(const scene::Scene<2> &scene, const contact::Place &place)
+    {
+      if (!place.is_known)
+        return "";
+      std::string text =
+        place.is_point ? format(" at (%.6g, %.6g) of", place.position[0], place.position[1]) : std::string(" of");
+      text += " body " + scene.bodies[place.body].name;
+      return text + (place.in_pair ? ", contact " + scene.contacts[place.pair].name : "");
     }
 
     const char *name_of(const scene::DecompositionMethod method)
@@ -105,6 +125,19 @@ namespace slipstick::app
       }
   }
 
+  std::vector<std::string> warnings_before(const scene::Scene<2> &scene, const fem::Mesh<2> &mesh)
+  {
+    const std::string        mark = "warning: ";
+    std::vector<std::string> texts;
+    auto                     all = mesh.remarks;
+    for (const auto &warning : scene::warnings(scene))
+      all.push_back(warning);
+    for (const auto &text : all)
+      if (text.compare(0, mark.size(), mark) == 0)
+        texts.push_back(text.substr(mark.size()));
+    return texts;
+  }
+
   void print_constraints(const Log &log, const tfeti::Constraints &constraints)
   {
     const auto &n = constraints.counts;
@@ -134,10 +167,7 @@ namespace slipstick::app
     return std::min(largest_limit, check_factor * tolerance);
   }
 
-  void print_checks(const Log                   &log,
-                    const contact::DualSolution &solution,
-                    const contact::Checks       &checks,
-                    const double                 tolerance)
+  void print_checks(const Log &log, const contact::Checks &checks, const double tolerance)
   {
     log.line(line("checks", format("from the displacement, relative, allowed %.1e:", check_limit(tolerance))));
     log.line(line("",
@@ -152,44 +182,84 @@ namespace slipstick::app
                          checks.nodal_equilibrium,
                          checks.force_balance,
                          checks.moment_balance)));
-    if (solution.status != qp::Status::converged)
+  }
+
+  bool passes(const contact::DualSolution &solution, const contact::Checks &checks, const double tolerance)
+  {
+    return solution.status == qp::Status::converged && checks.worst().second <= check_limit(tolerance);
+  }
+
+  void print_failure(const Log                   &log,
+                     const scene::Scene<2>       &scene,
+                     const contact::DualSolution &solution,
+                     const contact::Checks       &checks,
+                     const double                 tolerance)
+  {
+    const auto        worst = checks.worst_entry();
+    const std::string where = place(scene, worst.place);
+    if (solution.status == qp::Status::converged)
       {
-        const bool limit    = solution.status == qp::Status::iteration_limit;
-        const bool friction = solution.friction_iterations > 0 && solution.projected_gradient <= tolerance &&
-                              solution.equality <= tolerance;
-        if (friction)
+        const double      reached   = std::max(solution.projected_gradient, solution.equality);
+        const double      reachable = rounded_up(worst.value / check_factor);
+        const std::string what =
+          format("the check from the recovered displacement fails: %s is %.2e%s, allowed is %.2e; the solver reached "
+                 "residuals of %.1e",
+                 worst.name,
+                 worst.value,
+                 where.c_str(),
+                 check_limit(tolerance),
+                 reached);
+        if (!worst.is_balance && reached > rounding)
           {
-            log.warning(format(
-              "not converged: the slip bounds still change by %.1e of their norm after %u updates; what was reached is "
-              "written and is no solution\n"
-              "  remedy: raise Friction/Max iterations or Friction/Tolerance; a large friction coefficient may have no "
-              "or many solutions: split the load into more steps",
-              solution.bound_change,
-              solution.friction_iterations));
+            log.warning(what +
+                        format("\n  remedy: set Solver/Tolerance to %.1g, and look at the residuals in convergence.csv",
+                               reached / check_factor));
             return;
           }
         log.warning(
-          format(
-            "not converged: the solver %s at residuals of %.1e and %.1e, asked for is %g; the results are no solution\n"
-            "  remedy: ",
-            limit ? "reached its limit of iterations" : "came to a standstill",
-            solution.projected_gradient,
-            solution.equality,
-            tolerance) +
-          (!limit                        ? "raise Solver/Tolerance, and look at the residuals in convergence.csv"
-           : solution.algorithm == "pcg" ? "raise Solver/PCG/Max iterations"
-                                         : "raise Solver/SMALBE/Max outer iterations or Max inner iterations"));
+          what + ", more of it does not help: this is rounding\n  remedy: " +
+          (check_factor * reachable <= largest_limit
+             ? format(
+                 "set Solver/Tolerance to %g or more (now %g), or bring moduli, sizes and thicknesses closer together",
+                 reachable,
+                 tolerance)
+             : std::string(
+                 "the scene is beyond the arithmetic: bring moduli, sizes and thicknesses closer together, and "
+                 "the edges of its elements")));
         return;
       }
-    const auto [name, value] = checks.worst();
-    if (!(value <= check_limit(tolerance)))
-      log.warning(
-        format("the check from the recovered displacement fails: %s is %.2e, allowed is %.2e\n"
-               "  remedy: lower Solver/Tolerance (now %g); if it stays, look at the residuals in convergence.csv",
-               name.c_str(),
-               value,
-               check_limit(tolerance),
-               tolerance));
+    const std::string largest =
+      format("; largest error of the displacement: %s %.1e%s", worst.name, worst.value, where.c_str());
+    const bool friction =
+      solution.friction_iterations > 0 && solution.projected_gradient <= tolerance && solution.equality <= tolerance;
+    if (friction)
+      {
+        log.warning(
+          format("not converged: the slip bounds still change by %.1e of their norm after %u updates",
+                 solution.bound_change,
+                 solution.friction_iterations) +
+          largest +
+          format(
+            "; what was reached is written and is no solution\n"
+            "  remedy: split the load into more steps (Load steps/Factors), set Friction/Tolerance to %g or more, or raise "
+            "Friction/Max iterations; with a large friction coefficient there may be no or many solutions",
+            rounded_up(solution.bound_change)));
+        return;
+      }
+    const bool        limit   = solution.status == qp::Status::iteration_limit;
+    const double      reached = std::max(solution.projected_gradient, solution.equality);
+    const std::string raise =
+      format("set Solver/Tolerance to %g or more, and look at the residuals in convergence.csv", rounded_up(reached));
+    log.warning(
+      format("not converged: the solver %s: %s is %.1e of |Pd|, asked for is %g",
+             limit ? "reached its limit of iterations" : "came to a standstill",
+             solution.projected_gradient >= solution.equality ? "the projected gradient" : "the violation of G x = e",
+             reached,
+             tolerance) +
+      largest + "; the results are no solution\n  remedy: " +
+      (!limit                        ? raise
+       : solution.algorithm == "pcg" ? "raise Solver/PCG/Max iterations"
+                                     : "raise Solver/SMALBE/Max outer iterations or Max inner iterations"));
   }
 
   void print_result(const Log &log, const output::Summary &summary, const std::string &pvd)
@@ -279,9 +349,8 @@ namespace slipstick::app
   {
     const auto     &n = dual.constraints().counts;
     output::Summary s = empty_summary(scene, mesh.comm);
-    s.status = solution.status == qp::Status::converged && checks.worst().second <= check_limit(scene.solver.tolerance)
-                 ? output::RunStatus::converged
-                 : output::RunStatus::not_converged;
+    s.status          = passes(solution, checks, scene.solver.tolerance) ? output::RunStatus::converged
+                                                                         : output::RunStatus::not_converged;
 
     s.problem.dimension          = 2;
     s.problem.bodies             = scene.bodies.size();

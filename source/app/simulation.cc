@@ -1,3 +1,4 @@
+#include <slipstick/app/doubts.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/contact/refinement.h>
@@ -18,6 +19,7 @@
 #include <boost/serialization/vector.hpp>
 
 #include <limits>
+#include <set>
 
 namespace slipstick::app
 {
@@ -33,6 +35,17 @@ namespace slipstick::app
     constexpr double growth_of_kept_part = 4;
     // ... and all beyond this part.
     constexpr double largest_kept_part = 1;
+
+    // A solution whose checks fail is taken further so often ...
+    constexpr unsigned int max_tightenings = 4;
+    // ... by the factor that the worst check is above its limit, and this one more, ...
+    constexpr double margin_of_tightening = 2;
+    // ... by no less ...
+    constexpr double least_tightening = 2;
+    // ... and no more at a time, ...
+    constexpr double largest_tightening = 1e4;
+    // ... down to what double precision reaches nearly everywhere.
+    constexpr double least_tolerance = 1e-13;
 
     std::vector<std::string> names_of(const std::vector<scene::Body<dim>> &bodies)
     {
@@ -173,6 +186,7 @@ namespace slipstick::app
         clock.leave();
         summary.time_s    = times(clock, factorization);
         summary.memory_mb = memory(comm);
+        summary.warnings  = warnings;
         output::write_summary(directory, summary);
         print_result(log, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
         return summary.status == output::RunStatus::converged ? ExitStatus::converged : ExitStatus::not_converged;
@@ -186,7 +200,19 @@ namespace slipstick::app
         mesh   = std::make_unique<fem::Mesh<dim>>(fem::make_mesh(scene, comm));
         spaces = std::make_unique<fem::Spaces<dim>>(*mesh, scene.discretization.degree);
         print_mesh(log, scene, *mesh, *spaces);
+        warnings = warnings_before(scene, *mesh);
         add_found_contacts(scene, *mesh, *spaces, log);
+      }
+
+      /// What is doubtful about the answer, once a kind and pair.
+      void warn(const std::vector<contact::ContactNode> &nodes)
+      {
+        for (const auto &[about, text] : doubts(scene, *mesh, *spaces, dual->constraints(), nodes, u))
+          if (warned_about.insert(about).second)
+            {
+              log.line("             warning: " + text);
+              warnings.push_back(text);
+            }
       }
 
       /// K_p, B, F at load factor t, without the rows of pruned contact nodes unless a body is held by them.
@@ -260,11 +286,14 @@ namespace slipstick::app
       }
 
       /// Solves the present step; with rows for more contact nodes as long as pruned ones penetrate.
-      tfeti::DualProblem::Recovery solve_step(const unsigned int step, const std::uint64_t multiplications_before)
+      /// @param goes_on from the solution of this step.
+      tfeti::DualProblem::Recovery solve_step(const unsigned int  step,
+                                              const std::uint64_t multiplications_before,
+                                              const bool          goes_on)
       {
         const double t         = scene.load_factors[step];
-        bool         is_warm   = step > 0 && advance(t);
-        qp::Counts   discarded = {};
+        bool         is_warm   = goes_on || (step > 0 && advance(t));
+        qp::Counts   discarded = goes_on ? solution.counts : qp::Counts();
         for (;; is_warm = false)
           {
             std::string reason;
@@ -305,25 +334,76 @@ namespace slipstick::app
           }
       }
 
+      /// Keeps the displacements and the multipliers that balance them.
+      contact::CheckedContact recover_and_check(const double t, tfeti::DualProblem::Recovery recovery)
+      {
+        u                    = std::move(recovery.u);
+        solution.multipliers = std::move(recovery.multipliers);
+        const contact::SlipLaw law(scene, *dual, t);
+        return contact::check(*dual,
+                              solution.multipliers,
+                              u,
+                              law.depends_on_pressure() ? law.bounds(solution.multipliers) : solution.slip_bound,
+                              solution.free,
+                              scene.bodies.size());
+      }
+
+      /// Goes on from a solution whose checks fail, to smaller residuals: those that are asked for are relative to |Pd|,
+      /// which may be far above what is left of it in the displacement (slender parts). Ends where that does not help.
+      contact::CheckedContact tighten(const unsigned int      step,
+                                      const std::uint64_t     multiplications_before,
+                                      contact::CheckedContact contact)
+      {
+        const double limit = check_limit(scene.solver.tolerance);
+        for (unsigned int n = 0; n < max_tightenings && solution.status == qp::Status::converged; ++n)
+          {
+            const auto   worst = contact.checks.worst_entry();
+            const double reached =
+              std::min(options.tolerance, std::max(solution.projected_gradient, solution.equality));
+            if (worst.value <= limit || worst.is_balance || reached <= least_tolerance)
+              break;
+            // an answer that is no number, too
+            const double excess = std::min(largest_tightening, std::max(least_tightening, worst.value / limit));
+            options.tolerance   = std::max(reached / (margin_of_tightening * excess), least_tolerance);
+            log.line(format("checks       %s is %.1e, allowed is %.1e: solved on to a tolerance of %.1e",
+                            worst.name,
+                            worst.value,
+                            limit,
+                            options.tolerance));
+            const auto   before   = solution;
+            const auto   u_before = u;
+            const double kept     = kept_part;
+            auto next = recover_and_check(scene.load_factors[step], solve_step(step, multiplications_before, true));
+            if (kept_part != kept ||
+                (solution.status == qp::Status::converged && next.checks.worst().second < worst.value))
+              contact = std::move(next); // the first: it got rows for more contact nodes
+            else
+              { // to the tolerance that was asked for it did converge
+                const auto counts = solution.counts;
+                solution          = before;
+                solution.counts   = counts;
+                u                 = u_before;
+                break;
+              }
+          }
+        return contact;
+      }
+
       /// @param so_far of the steps before.
       output::Summary load_step(const unsigned int step, const output::Summary &so_far)
       {
         const double t = scene.load_factors[step];
         if (scene.load_factors.size() > 1)
           log.line(format("load step    %u of %zu, t = %g", step + 1, scene.load_factors.size(), t));
-        auto recovery        = solve_step(step, so_far.solver.hessian_multiplications);
-        u                    = std::move(recovery.u);
-        solution.multipliers = std::move(recovery.multipliers);
-        const contact::SlipLaw law(scene, *dual, t);
-        const auto             contact =
-          contact::check(*dual,
-                         solution.multipliers,
-                         u,
-                         law.depends_on_pressure() ? law.bounds(solution.multipliers) : solution.slip_bound,
-                         solution.free,
-                         scene.bodies.size());
+        options.tolerance = scene.solver.tolerance;
+        auto contact      = recover_and_check(t, solve_step(step, so_far.solver.hessian_multiplications, false));
+        contact           = tighten(step, so_far.solver.hessian_multiplications, std::move(contact));
         const auto stress = fem::recover_stress(scene, *mesh, *spaces, dual->constraints(), u, t);
-        print_checks(log, solution, contact.checks, scene.solver.tolerance);
+        print_checks(log, contact.checks, scene.solver.tolerance);
+        if (!passes(solution, contact.checks, scene.solver.tolerance))
+          print_failure(log, scene, solution, contact.checks, scene.solver.tolerance);
+
+        warn(contact.nodes);
 
         clock.enter("output");
         auto summary = make_summary(scene, *mesh, *spaces, *dual, solution, contact.checks, stress);
@@ -367,7 +447,7 @@ namespace slipstick::app
       const output::OutputDirectory &directory;
       const Log                     &log;
       const MPI_Comm                 comm;
-      const scene::SolverOptions     options;
+      scene::SolverOptions           options;
       StageClock                     clock;
 
       std::unique_ptr<fem::Mesh<dim>>     mesh;
@@ -380,6 +460,8 @@ namespace slipstick::app
       std::vector<Eigen::VectorXd>        u;                 // of the last step
       std::vector<output::ConvergenceRow> convergence;
       std::vector<output::ContactStep>    contact_steps;
+      std::vector<std::string>            warnings;
+      std::set<std::string>               warned_about;
     };
   } // namespace
 

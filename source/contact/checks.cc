@@ -2,6 +2,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -13,10 +14,95 @@ namespace slipstick::contact
 
     // Displacements below this part of the largest gap count as none.
     constexpr double negligible_part_of_gap = 1e-3;
+    // Slip bounds above this multiple of the largest contact force say no more than that nodes stick.
+    constexpr double bounds_that_count = 2;
+
+    /// The largest of some numbers (none of them: 0; one that is no number stays) and where it is.
+    struct Largest
+    {
+      double value = 0;
+      Place  place;
+
+      /// @return whether @p other is the largest so far.
+      bool take(const double other, const Place &where)
+      {
+        if (std::isnan(value) || !(std::isnan(other) || other > value))
+          return false;
+        value = other;
+        place = where;
+        return true;
+      }
+
+      /// The first rank of those with the largest tells all. Collective.
+      void over_all_ranks(const MPI_Comm comm)
+      {
+        const std::vector<double> own{value,
+                                      static_cast<double>(place.is_known),
+                                      static_cast<double>(place.body),
+                                      place.position[0],
+                                      place.position[1],
+                                      place.position[2],
+                                      static_cast<double>(place.is_point),
+                                      static_cast<double>(place.in_pair),
+                                      static_cast<double>(place.pair)};
+        Largest                   all;
+        for (const auto &n : dealii::Utilities::MPI::all_gather(comm, own))
+          {
+            const Place where = {n[1] > 0,
+                                 static_cast<unsigned int>(n[2]),
+                                 {{n[3], n[4], n[5]}},
+                                 n[6] > 0,
+                                 n[7] > 0,
+                                 static_cast<unsigned int>(n[8])};
+            if (!all.take(n[0], where) && n[0] == all.value && !all.place.is_known)
+              all.place = where; // a rank that knows the value, not the place, came first
+          }
+        *this = all;
+      }
+    };
+
+    /// Violation of an owned row to that of all ranks, and a node that this row touches, where its subdomain is.
+    /// Collective.
+    void find_place_of_row(const tfeti::DualProblem &dual, const unsigned int owned_row, Largest &violation)
+    {
+      const MPI_Comm     comm    = dual.communicator();
+      const double       largest = dealii::Utilities::MPI::max(violation.value, comm);
+      const unsigned int rank    = dealii::Utilities::MPI::this_mpi_process(comm);
+      const bool         mine    = owned_row != tfeti::invalid_row && violation.value == largest;
+      const unsigned int first =
+        dealii::Utilities::MPI::min(mine ? rank : dealii::Utilities::MPI::n_mpi_processes(comm), comm);
+      DistributedVector one = dual.zero();
+      if (rank == first)
+        one.local_element(owned_row) = 1;
+      const auto touched = dual.forces(one);
+      for (unsigned int p = 0; p < touched.size(); ++p)
+        {
+          Eigen::Index unknown;
+          if (touched[p].size() > 0 && touched[p].cwiseAbs().maxCoeff(&unknown) > 0)
+            violation.place = {true, dual.subdomains()[p]->body(), dual.subdomains()[p]->position(unknown), true};
+        }
+      if (!std::isnan(violation.value))
+        violation.value = largest;
+    }
 
     double relative(const double value, const double scale)
     {
       return scale > 0 ? value / scale : value;
+    }
+
+    /// What displacements are beyond rigid motions of their subdomains, which no force resists: in products with K these
+    /// would leave rounding alone.
+    std::vector<Eigen::VectorXd> deformations(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
+    {
+      std::vector<Eigen::VectorXd> result = u;
+      for (unsigned int p = 0; p < u.size(); ++p)
+        {
+          const Eigen::MatrixXd             &R = dual.subdomains()[p]->kernel();
+          const Eigen::LDLT<Eigen::MatrixXd> gram(R.transpose() * R);
+          for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
+            result[p] -= R * gram.solve(R.transpose() * result[p]);
+        }
+      return result;
     }
 
     /// Nodal forces K u - f of every subdomain: what supports, contact and neighbours exert.
@@ -28,19 +114,20 @@ namespace slipstick::contact
       return forces;
     }
 
-    /// Forces and moments left on the bodies and nodes by K u - f + B'x, and the force scales.
+    /// Forces and moments left on the bodies by K u - f + B'x, and the force scales.
     struct Balance
     {
-      Eigen::MatrixXd left;             // motions x bodies
-      Eigen::VectorXd scale;            // by body: sum of the magnitudes of all outside forces
-      double          largest_left = 0; // nodal
-      double          largest      = 0; // nodal: largest load, contact force or reaction
+      Eigen::MatrixXd left;        // motions x bodies
+      Eigen::VectorXd scale;       // by body: sum of the magnitudes of all outside forces
+      double          largest = 0; // nodal: largest load, contact force or reaction
     };
 
+    /// @param on_node gets what is left at a node of this rank.
     Balance balance(const tfeti::DualProblem           &dual,
                     const std::vector<Eigen::VectorXd> &nodal_forces,
                     const DistributedVector            &multipliers,
-                    const unsigned int                  n_bodies)
+                    const unsigned int                  n_bodies,
+                    Largest                            &on_node)
     {
       DistributedVector outside = multipliers; // what does not act between the subdomains of a body
       for (unsigned int r = 0; r < dual.constraints().kind.size(); ++r)
@@ -62,12 +149,16 @@ namespace slipstick::contact
           result.largest =
             std::max({result.largest, system.load().cwiseAbs().maxCoeff(), of_outside[p].cwiseAbs().maxCoeff()});
           result.left.col(system.body()) += system.body_modes().transpose() * (system.kernel().transpose() * left);
-          result.largest_left = std::max(result.largest_left, left.cwiseAbs().maxCoeff());
+          Eigen::Index unknown = 0;
+          for (Eigen::Index i = 0; i < left.size(); ++i)
+            if (on_node.take(std::abs(left[i]), Place()))
+              unknown = i + 1;
+          if (unknown > 0)
+            on_node.place = {true, system.body(), system.position(unknown - 1), true};
         }
       MPI_Allreduce(MPI_IN_PLACE, result.left.data(), result.left.size(), MPI_DOUBLE, MPI_SUM, dual.communicator());
       MPI_Allreduce(MPI_IN_PLACE, result.scale.data(), result.scale.size(), MPI_DOUBLE, MPI_SUM, dual.communicator());
-      result.largest_left = dealii::Utilities::MPI::max(result.largest_left, dual.communicator());
-      result.largest      = dealii::Utilities::MPI::max(result.largest, dual.communicator());
+      result.largest = dealii::Utilities::MPI::max(result.largest, dual.communicator());
       return result;
     }
 
@@ -157,21 +248,30 @@ namespace slipstick::contact
     }
   } // namespace
 
+  std::array<Checks::Entry, Checks::n_entries> Checks::entries() const
+  {
+    return {{{"interface jump", interface_jump, false, places[0]},
+             {"penetration", penetration, false, places[1]},
+             {"complementarity", complementarity, false, places[2]},
+             {"tension in contact", tension, false, places[3]},
+             {"friction bound", friction_bound, false, places[4]},
+             {"equilibrium of a node", nodal_equilibrium, true, places[5]},
+             {"force balance", force_balance, true, places[6]},
+             {"moment balance", moment_balance, true, places[7]}}};
+  }
+
+  Checks::Entry Checks::worst_entry() const
+  {
+    const auto all = entries();
+    return *std::max_element(all.begin(), all.end(), [](const Entry &a, const Entry &b) {
+      return !std::isnan(a.value) && (std::isnan(b.value) || a.value < b.value);
+    });
+  }
+
   std::pair<std::string, double> Checks::worst() const
   {
-    return std::max<std::pair<std::string, double>>({{"interface jump", interface_jump},
-                                                     {"penetration", penetration},
-                                                     {"complementarity", complementarity},
-                                                     {"tension in contact", tension},
-                                                     {"friction bound", friction_bound},
-                                                     {"equilibrium of a node", nodal_equilibrium},
-                                                     {"force balance", force_balance},
-                                                     {"moment balance", moment_balance}},
-                                                    [](const auto &a, const auto &b) {
-                                                      // a number that is none is the worst of all
-                                                      return !std::isnan(a.second) &&
-                                                             (std::isnan(b.second) || a.second < b.second);
-                                                    });
+    const Entry entry = worst_entry();
+    return {entry.name, entry.value};
   }
 
   CheckedContact check(const tfeti::DualProblem           &dual,
@@ -184,9 +284,22 @@ namespace slipstick::contact
     const MPI_Comm comm        = dual.communicator();
     const auto    &constraints = dual.constraints();
     const auto     jumps       = dual.jumps(u);
-    const auto     forces      = nodal_forces(dual, u);
+    const auto     deformed    = deformations(dual, u);
+    const auto     forces      = nodal_forces(dual, deformed);
     CheckedContact result;
     Checks        &checks = result.checks;
+    enum
+    {
+      jump,
+      penetration,
+      complementarity,
+      tension,
+      friction_bound,
+      nodal_equilibrium,
+      force_balance,
+      moment_balance
+    };
+    std::array<Largest, Checks::n_entries> largest;
 
     for (unsigned int p = 0; p < u.size(); ++p)
       {
@@ -194,81 +307,94 @@ namespace slipstick::contact
         checks.max_displacement =
           std::max(checks.max_displacement,
                    Eigen::Map<const Eigen::Matrix2Xd>(u[p].data(), 2, u[p].size() / 2).colwise().norm().maxCoeff());
-        checks.energy += u[p].dot(forces[p] + dual.subdomains()[p]->load());
+        checks.energy += deformed[p].dot(forces[p] + dual.subdomains()[p]->load());
       }
     const auto violation = [&](const unsigned int r) {
       const double compliance = constraints.compliance.empty() ? 0. : constraints.compliance[r];
       return jumps.local_element(r) - constraints.c[r] - compliance * multipliers.local_element(r);
     };
-    double gap = 0; // between primal and dual objective, as far as equalities make it
+    double       gap         = 0; // between primal and dual objective, as far as equalities make it
+    unsigned int row_of_jump = tfeti::invalid_row;
     for (unsigned int r = 0; r < constraints.kind.size(); ++r)
-      if (is_equality(constraints.kind[r]))
-        checks.interface_jump = std::max(checks.interface_jump, std::abs(violation(r)));
+      if (is_equality(constraints.kind[r]) && largest[jump].take(std::abs(violation(r)), Place()))
+        row_of_jump = r;
     for (unsigned int r = 0; r < constraints.kind.size(); ++r)
       if (free[r])
         gap += multipliers.local_element(r) * violation(r);
 
-    double largest_contact = 0, largest_gap = 0, all_bounds = 0;
+    double largest_contact = 0, largest_gap = 0;
     for (const auto &point : constraints.contact_points)
       {
-        const auto   node = contact_node(dual, point, multipliers, jumps, slip_bound, free);
-        const double N = node.pressure * node.area, T = node.tangential_traction * node.area;
-        const double bound = node.slip_bound * node.area;
-        largest_contact    = std::max({largest_contact, std::abs(N), std::abs(T)});
-        largest_gap        = std::max(largest_gap, std::abs(point.gap));
-        checks.penetration = std::max(checks.penetration, -node.gap);
-        checks.tension     = std::max(checks.tension, -N);
-        if (point.normal_row != tfeti::invalid_row)
-          checks.complementarity += std::abs(N * node.gap);
-        if (point.tangential_row != tfeti::invalid_row)
-          {
-            all_bounds += bound;
-            checks.friction_bound = std::max(checks.friction_bound, std::abs(T) - bound);
-            checks.complementarity += std::abs(bound * std::abs(node.slip) + T * node.slip);
-          }
+        const auto node = contact_node(dual, point, multipliers, jumps, slip_bound, free);
+        largest_contact = std::max(
+          {largest_contact, std::abs(node.pressure * node.area), std::abs(node.tangential_traction * node.area)});
+        largest_gap = std::max(largest_gap, std::abs(point.gap));
         result.nodes.push_back(node);
         result.keys.push_back(point.key);
+      }
+    for (double *maximum : {&checks.max_displacement, &largest_contact, &largest_gap})
+      *maximum = dealii::Utilities::MPI::max(*maximum, comm);
+
+    double all_bounds = 0;
+    for (unsigned int i = 0; i < constraints.contact_points.size(); ++i)
+      {
+        const auto  &point = constraints.contact_points[i];
+        const auto  &node  = result.nodes[i];
+        const Place  place = {true, point.slave_body, point.position, true, true, point.pair};
+        const double N = node.pressure * node.area, T = node.tangential_traction * node.area;
+        largest[penetration].take(-node.gap, place);
+        largest[tension].take(-N, place);
+        double work = 0;
+        if (point.normal_row != tfeti::invalid_row)
+          work += std::abs(N * node.gap);
+        if (point.tangential_row != tfeti::invalid_row)
+          {
+            const double bound = node.slip_bound * node.area;
+            largest[friction_bound].take(std::abs(T) - bound, place);
+            // a bound far above all forces would turn the rounding of what sticks into work
+            const double capped = std::max(std::abs(T), std::min(bound, bounds_that_count * largest_contact));
+            all_bounds += capped;
+            work += std::abs(capped * std::abs(node.slip) + T * node.slip);
+          }
+        checks.complementarity += work;
+        largest[complementarity].take(work, place);
       }
     for (const auto &point : constraints.bonded_points)
       {
         result.nodes.push_back(bonded_node(point, multipliers, jumps));
         result.keys.push_back(point.key);
       }
-    const auto on_bodies = balance(dual, forces, multipliers, n_bodies);
-
-    for (double *maximum : {&checks.max_displacement,
-                            &checks.interface_jump,
-                            &checks.penetration,
-                            &checks.tension,
-                            &checks.friction_bound,
-                            &largest_contact,
-                            &largest_gap})
-      *maximum = dealii::Utilities::MPI::max(*maximum, comm);
     for (double *sum : {&checks.energy, &checks.complementarity, &gap, &all_bounds})
       *sum = dealii::Utilities::MPI::sum(*sum, comm);
     // a scene that hardly moves is measured against its gaps, as the solver's residual |Pd| is
-    const double no_length   = negligible_part_of_gap * largest_gap;
-    const double no_force    = no_length / dual.norm();
-    const double length      = std::max(checks.max_displacement, no_length);
-    const double force       = std::max(largest_contact, no_force);
-    const double energy      = std::max({checks.energy, no_force * no_length, all_bounds * no_length});
-    checks.algebraic_error   = std::sqrt(relative(std::abs(gap), energy));
-    checks.interface_jump    = relative(checks.interface_jump, length);
-    checks.penetration       = relative(checks.penetration, length);
-    checks.tension           = relative(checks.tension, force);
-    checks.friction_bound    = relative(checks.friction_bound, force);
-    checks.complementarity   = relative(checks.complementarity, energy);
-    checks.nodal_equilibrium = relative(on_bodies.largest_left, std::max(on_bodies.largest, no_force));
-    const unsigned int last  = on_bodies.left.rows() - 1; // the rotation
+    const double no_length = negligible_part_of_gap * largest_gap;
+    const double no_force  = no_length / dual.norm();
+    const double length    = std::max(checks.max_displacement, no_length);
+    const double force     = std::max(largest_contact, no_force);
+    const double energy    = std::max({checks.energy, no_force * no_length, all_bounds * no_length});
+    const auto   on_bodies = balance(dual, forces, multipliers, n_bodies, largest[nodal_equilibrium]);
     for (unsigned int b = 0; b < n_bodies; ++b)
       {
-        checks.force_balance =
-          std::max(checks.force_balance,
-                   relative(on_bodies.left.col(b).head(last).norm(), std::max(on_bodies.scale[b], no_force)));
-        checks.moment_balance =
-          std::max(checks.moment_balance,
-                   relative(std::abs(on_bodies.left(last, b)), std::max(on_bodies.scale[b], no_force)));
+        const unsigned int last  = on_bodies.left.rows() - 1; // the rotation
+        const double       scale = std::max(on_bodies.scale[b], no_force);
+        largest[force_balance].take(relative(on_bodies.left.col(b).head(last).norm(), scale), {true, b});
+        largest[moment_balance].take(relative(std::abs(on_bodies.left(last, b)), scale), {true, b});
       }
+    find_place_of_row(dual, row_of_jump, largest[jump]);
+    for (unsigned int i = 0; i < Checks::n_entries; ++i)
+      {
+        largest[i].over_all_ranks(comm);
+        checks.places[i] = largest[i].place;
+      }
+    checks.algebraic_error   = std::sqrt(relative(std::abs(gap), energy));
+    checks.interface_jump    = relative(largest[jump].value, length);
+    checks.penetration       = relative(largest[penetration].value, length);
+    checks.tension           = relative(largest[tension].value, force);
+    checks.friction_bound    = relative(largest[friction_bound].value, force);
+    checks.complementarity   = relative(checks.complementarity, energy);
+    checks.nodal_equilibrium = relative(largest[nodal_equilibrium].value, std::max(on_bodies.largest, no_force));
+    checks.force_balance     = largest[force_balance].value;
+    checks.moment_balance    = largest[moment_balance].value;
     return result;
   }
 

@@ -204,6 +204,11 @@ namespace slipstick::contact
         else
           {
             from = smalbe(feasible, options.newton.start_tolerance, {});
+            if (solution.weighted_reference == 0) // neither load nor gap: the start is the solution
+              {
+                solution.multipliers = from;
+                return solution.status == qp::Status::converged;
+              }
             if (law.depends_on_pressure())
               set_bounds(law.bounds(from));
             solution.counts.outer_iterations = 0;

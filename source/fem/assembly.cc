@@ -207,6 +207,9 @@ namespace slipstick::fem
         system.load          = std::move(loads[p]);
         system.boundary_dofs = boundary_dofs(dof_handler);
         rigid_modes(spaces.of(p), dof_handler, frames[subdomain.body], system.kernel, system.body_modes);
+        for (unsigned int d = 0; d < dim; ++d)
+          system.frame.center[d] = frames[subdomain.body].center[d];
+        system.frame.length = frames[subdomain.body].length;
         systems.push_back(std::move(system));
       }
     return systems;

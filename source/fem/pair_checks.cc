@@ -210,6 +210,8 @@ namespace slipstick::fem
     for (const auto &row : rows)
       if (row.gap > -deep * chords / sides.slave.size())
         return false;
+    if (!rows.empty() && sides.slave.front().body == sides.master.front().body)
+      return true; // their outline is one: all points of both are on it
     return !rows.empty() && !any_inside(sides.slave, ClosedOutline(sides.master_outline)) &&
            !any_inside(sides.master, ClosedOutline(sides.slave_outline));
   }

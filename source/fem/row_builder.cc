@@ -45,6 +45,9 @@ namespace slipstick::fem
       return tangent;
     }
 
+    // Gaps of the geometry below this part of the coordinates are their rounding.
+    constexpr double rounding_of_gaps = 16 * std::numeric_limits<double>::epsilon();
+
     /// Gap of a pair at a node: of the geometry or given, and the offset.
     template <int dim>
     double gap_of(const scene::ContactPair<dim> &pair,
@@ -52,7 +55,11 @@ namespace slipstick::fem
                   const double                   of_geometry,
                   const double                   t)
     {
-      return (pair.gap ? pair.gap->value(x, t) : of_geometry) + pair.offset.value(x, t);
+      double largest = 0;
+      for (unsigned int d = 0; d < dim; ++d)
+        largest = std::max(largest, std::abs(x[d]));
+      const double without_rounding = std::abs(of_geometry) <= rounding_of_gaps * largest ? 0. : of_geometry;
+      return (pair.gap ? pair.gap->value(x, t) : without_rounding) + pair.offset.value(x, t);
     }
   } // namespace
 

@@ -137,6 +137,7 @@ namespace slipstick::output
                        {"ranks", summary.ranks},
                        {"status", to_string(summary.status)},
                        {"converged", summary.status == RunStatus::converged},
+                       {"warnings", summary.warnings},
                        {"problem", json(summary.problem)},
                        {"solver", json(summary.solver)},
                        {"residuals", json(summary.residuals)},

@@ -1,5 +1,6 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/log.h>
 #include <slipstick/qp/box.h>
 #include <slipstick/tfeti/dual_problem.h>
 #include <slipstick/tfeti/operator_choice.h>
@@ -33,9 +34,15 @@ namespace slipstick::tfeti
 
     void require_support(const std::vector<RigidMotion> &motions, const std::vector<std::string> &body_names)
     {
-      if (!motions.empty())
-        throw NoEquilibrium("nothing holds " + describe(motions.front(), body_names),
-                            "add a support or a contact that acts against this motion");
+      if (motions.empty())
+        return;
+      const auto  motion = plainest(motions);
+      std::string text   = "nothing holds " + describe(motion, body_names);
+      text +=
+        motion.work > 0 ? ", where the loads push" : "; no load acts along it, but the position is not determined";
+      if (motions.size() > 1)
+        text += format(" (one of %zu free motions)", motions.size());
+      throw NoEquilibrium(text, "add a support or a contact that acts against this motion");
     }
   } // namespace
 

@@ -5,6 +5,8 @@
 
 #include <boost/serialization/vector.hpp>
 
+#include <limits>
+
 namespace slipstick::tfeti
 {
   namespace
@@ -13,6 +15,40 @@ namespace slipstick::tfeti
     constexpr double singular_tolerance = 1e-12;
     // A component of a motion is named when it is at least this part of the largest.
     constexpr double named_part = 1e-3;
+    // A motion is called a rotation when that moves the rim of the body by this part of the translation or more.
+    constexpr double turning_part = 0.02;
+    // Loads push along a motion when their work is at least this part of what it could be.
+    constexpr double least_work = 1e-9;
+    // Coordinates below this part of a body's size are zero.
+    constexpr double negligible_coordinate = 1e-4;
+
+    std::string number(const double coordinate, const double length)
+    {
+      return format("%.4g", std::abs(coordinate) < negligible_coordinate * length ? 0. : coordinate);
+    }
+
+    /// Frames of all bodies, from the rank that has a subdomain of it.
+    std::vector<BodyFrame> frames_of_bodies(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+                                            const unsigned int                                   n_bodies,
+                                            const MPI_Comm                                       comm)
+    {
+      constexpr unsigned int n = 4; // numbers a frame
+      std::vector<double>    all(n * n_bodies, std::numeric_limits<double>::lowest());
+      for (const auto &subdomain : subdomains)
+        {
+          const BodyFrame &frame = subdomain->body_frame();
+          std::copy(frame.center.begin(), frame.center.end(), all.begin() + n * subdomain->body());
+          all[n * subdomain->body() + n - 1] = frame.length;
+        }
+      MPI_Allreduce(MPI_IN_PLACE, all.data(), all.size(), MPI_DOUBLE, MPI_MAX, comm);
+      std::vector<BodyFrame> frames(n_bodies);
+      for (unsigned int b = 0; b < n_bodies; ++b)
+        {
+          std::copy_n(all.begin() + n * b, n - 1, frames[b].center.begin());
+          frames[b].length = all[n * b + n - 1];
+        }
+      return frames;
+    }
 
     /// Share of one subdomain in what a row sees of its body's motions.
     struct RowPart
@@ -80,6 +116,7 @@ namespace slipstick::tfeti
         dealii::Utilities::MPI::max(subdomains.empty() ? 0u : static_cast<unsigned int>(subdomains[0]->kernel().cols()),
                                     comm))
     , n_motions(motions_of_body * n_bodies)
+    , frames(frames_of_bodies(subdomains, n_bodies, comm))
   {
     for (const auto &part : parts_of_owned_rows(subdomains, gluing, constraints, comm))
       shares.push_back({constraints.rows->global_to_local(part.row),
@@ -114,7 +151,7 @@ namespace slipstick::tfeti
       if (eigen.eigenvalues()[i] <= singular_tolerance * std::max(eigen.eigenvalues()[n_motions - 1], 1.))
         {
           const Eigen::VectorXd mode = eigen.eigenvectors().col(i);
-          motions.push_back({mode, load.norm() > 0 ? mode.dot(load) / load.norm() : 0.});
+          motions.push_back({mode, load.norm() > 0 ? mode.dot(load) / load.norm() : 0., frames});
         }
     return motions;
   }
@@ -148,7 +185,7 @@ namespace slipstick::tfeti
     for (unsigned int p = 0; p < subdomains.size(); ++p)
       sum.segment(subdomains[p]->body() * k, k) += subdomains[p]->body_modes().inverse() * amplitudes.segment(p * k, k);
     MPI_Allreduce(MPI_IN_PLACE, sum.data(), sum.size(), MPI_DOUBLE, MPI_SUM, comm);
-    return {sum.normalized(), 0.};
+    return {sum.normalized(), 0., frames_of_bodies(subdomains, n_bodies, comm)};
   }
 
   std::string describe(const RigidMotion &motion, const std::vector<std::string> &body_names)
@@ -163,15 +200,65 @@ namespace slipstick::tfeti
         if (part.cwiseAbs().maxCoeff() < named_part * largest)
           continue;
         const Eigen::VectorXd translation = part.head(k - 1);
+        const double          rotation    = part[k - 1];
         text += (text.empty() ? "body " : "; body ") + body_names[b] + ": ";
-        if (translation.norm() >= named_part * part.norm())
+        if (std::abs(rotation) < turning_part * translation.norm())
           text += format("translation along (%.3g, %.3g)",
                          translation[0] / translation.norm(),
                          translation[1] / translation.norm());
-        if (std::abs(part[k - 1]) >= named_part * part.norm())
-          text += translation.norm() >= named_part * part.norm() ? " with rotation about its centre"
-                                                                 : "rotation about its centre";
+        else // u = t + rotation (-(y - y_c), x - x_c) / length vanishes there
+          {
+            const BodyFrame &frame = motion.frames[b];
+            text += format("rotation about (%s, %s)",
+                           number(frame.center[0] - translation[1] / rotation * frame.length, frame.length).c_str(),
+                           number(frame.center[1] + translation[0] / rotation * frame.length, frame.length).c_str());
+          }
       }
     return text;
+  }
+
+  RigidMotion plainest(const std::vector<RigidMotion> &motions)
+  {
+    RigidMotion pushed = motions.front();
+    pushed.amplitudes.setZero();
+    for (const auto &motion : motions)
+      pushed.amplitudes += motion.work * motion.amplitudes;
+    pushed.work = pushed.amplitudes.norm();
+    if (pushed.work > least_work)
+      {
+        pushed.amplitudes.normalize();
+        return pushed;
+      }
+    // reduced echelon form: every motion moves one component that no other does
+    Eigen::MatrixXd basis(motions.size(), motions.front().amplitudes.size());
+    for (unsigned int m = 0; m < motions.size(); ++m)
+      basis.row(m) = motions[m].amplitudes;
+    Eigen::Index next = 0;
+    for (Eigen::Index column = 0; column < basis.cols() && next < basis.rows(); ++column)
+      {
+        Eigen::Index pivot;
+        if (basis.col(column).tail(basis.rows() - next).cwiseAbs().maxCoeff(&pivot) < named_part)
+          continue;
+        basis.row(next).swap(basis.row(next + pivot));
+        basis.row(next) /= basis(next, column);
+        for (Eigen::Index row = 0; row < basis.rows(); ++row)
+          if (row != next)
+            basis.row(row) -= basis(row, column) * basis.row(next);
+        ++next;
+      }
+    RigidMotion result = motions.front();
+    result.work        = 0;
+    Eigen::Index least = basis.cols() + 1;
+    for (Eigen::Index row = 0; row < basis.rows(); ++row)
+      {
+        const Eigen::VectorXd motion = basis.row(row).normalized();
+        const Eigen::Index    moved  = (motion.array().abs() >= named_part).count();
+        if (moved < least)
+          {
+            least             = moved;
+            result.amplitudes = motion;
+          }
+      }
+    return result;
   }
 } // namespace slipstick::tfeti

@@ -195,6 +195,16 @@ namespace slipstick::tfeti
       }
   }
 
+  // the rotation of the body is (-(y - y_c), x - x_c) / length at the two unknowns of a node
+  std::array<double, 3> SubdomainSystem::position(const unsigned int unknown) const
+  {
+    const unsigned int    first    = unknown - unknown % 2;
+    const Eigen::VectorXd rotation = matrices.body_modes.col(2);
+    return {{matrices.frame.center[0] + matrices.frame.length * matrices.kernel.row(first + 1).dot(rotation),
+             matrices.frame.center[1] - matrices.frame.length * matrices.kernel.row(first).dot(rotation),
+             0.}};
+  }
+
   std::vector<double> SubdomainSystem::pseudo_inverse_block() const
   {
     return packed_lower(inverse_of_product(cholesky->trailing_block()), touched_in_last_order());

@@ -40,6 +40,7 @@ TEST(Summary, sections_are_those_of_the_contract)
                   "ranks",
                   "status",
                   "converged",
+                  "warnings",
                   "problem",
                   "solver",
                   "residuals",

@@ -108,7 +108,7 @@ TEST(RigidMotions, body_held_at_a_node_turns_about_it)
       const double          expect = 5 / std::sqrt(50.);
       EXPECT_NEAR(a[0], -expect, 1e-9);
       EXPECT_NEAR(a[1], expect, 1e-9);
-      EXPECT_NE(description(scene, found[0]).find("with rotation about its centre"), std::string::npos);
+      EXPECT_EQ(description(scene, found[0]), "body box: rotation about (0, 0)");
     }
 }
 
@@ -161,6 +161,21 @@ TEST(RigidMotions, friction_holds_the_box_on_the_circle)
       Scene scene = box(6);
       touch(scene, 0, "bottom", {4, -20}, 20, "1");
       EXPECT_TRUE(motions(cut(scene, how)).empty());
+    }
+}
+
+TEST(RigidMotions, plainest_motion_is_that_of_one_component_or_that_of_the_loads)
+{
+  for (const Cut &how : cuts)
+    {
+      Scene scene = box(6);
+      EXPECT_EQ(description(scene, tfeti::plainest(motions(cut(scene, how)))), "body box: translation along (1, 0)");
+      load(scene, 0, "top", "3", "-4");
+      const auto pushed = tfeti::plainest(motions(cut(scene, how)));
+      EXPECT_GT(pushed.work, 0.1);
+      // 30 and -40 N at the middle of the top, 5 mm off the centre; unit of length sqrt(50) mm
+      const Eigen::Vector3d along = Eigen::Vector3d(30, -40, -150 / std::sqrt(50.)).normalized();
+      EXPECT_LT((pushed.amplitudes - along).norm(), 1e-9);
     }
 }
 

@@ -18,20 +18,27 @@ namespace slipstick::app
 
   /// Sizes of the problem, one line a stage.
   void print_mesh(const Log &log, const scene::Scene<2> &scene, const fem::Mesh<2> &mesh, const fem::Spaces<2> &spaces);
-  void print_constraints(const Log &log, const tfeti::Constraints &constraints);
-  void print_dual(const Log &log, const tfeti::DualProblem &dual);
+  /// Texts of the warnings that this printed, without "warning: ".
+  std::vector<std::string> warnings_before(const scene::Scene<2> &scene, const fem::Mesh<2> &mesh);
+  void                     print_constraints(const Log &log, const tfeti::Constraints &constraints);
+  void                     print_dual(const Log &log, const tfeti::DualProblem &dual);
 
   /// The checks from the recovered displacement; the limit above which an answer does not count as converged.
   double check_limit(const double tolerance);
-  void   print_checks(const Log                   &log,
-                      const contact::DualSolution &solution,
-                      const contact::Checks       &checks,
-                      const double                 tolerance);
+  void   print_checks(const Log &log, const contact::Checks &checks, const double tolerance);
+
+  /// Did the solver converge, and are all checks within the limit?
+  bool passes(const contact::DualSolution &solution, const contact::Checks &checks, const double tolerance);
+
+  /// Of an answer that does not pass: which test failed, by how much and where, and what to do.
+  void print_failure(const Log                   &log,
+                     const scene::Scene<2>       &scene,
+                     const contact::DualSolution &solution,
+                     const contact::Checks       &checks,
+                     const double                 tolerance);
 
   /// The figures that matter and the file to open.
-  void print_result(const Log             &log,
-                    const output::Summary &summary,
-                    const std::string     &pvd);
+  void print_result(const Log &log, const output::Summary &summary, const std::string &pvd);
 
   /// Case, version, ranks.
   output::Summary empty_summary(const scene::Scene<2> &scene, const MPI_Comm comm);

@@ -6,6 +6,17 @@
 
 namespace slipstick::contact
 {
+  /// Where a check is at its largest.
+  struct Place
+  {
+    bool                  is_known = false;
+    unsigned int          body     = 0;
+    std::array<double, 3> position{{0, 0, 0}}; // reference configuration [mm]
+    bool                  is_point = false;    // else the whole body
+    bool                  in_pair  = false;    // of contact
+    unsigned int          pair     = 0;        // index into Scene::contacts
+  };
+
   /// All relative: lengths to the largest displacement (or a thousandth of the largest gap, in scenes that hardly move), contact forces to the largest nodal contact force, works to twice
   /// the strain energy, forces and moments of a body to the sum of the force magnitudes on it. Gaps and slips come
   /// from u; contact forces are the multipliers, which K u - f + B'x = 0 at every node confirms.
@@ -23,7 +34,25 @@ namespace slipstick::contact
     double max_displacement  = 0; // magnitude [mm]
     double energy            = 0; // u'K u, twice the strain energy [N mm]
 
-    /// Name and value of the worst of the relative ones.
+    /// One of the relative checks.
+    struct Entry
+    {
+      const char *name;
+      double      value;
+      bool        is_balance; // of forces: exact to rounding, whatever the tolerance of the solver
+      Place       place;
+    };
+    static constexpr unsigned int n_entries = 8;
+
+    std::array<Place, n_entries> places; // of the largest values, in the order of entries()
+
+    /// The relative checks with their names and places.
+    std::array<Entry, n_entries> entries() const;
+
+    /// The worst of them; a number that is none is.
+    Entry worst_entry() const;
+
+    /// Its name and value.
     std::pair<std::string, double> worst() const;
   };
 

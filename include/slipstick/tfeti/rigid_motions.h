@@ -8,8 +8,9 @@ namespace slipstick::tfeti
   /// A rigid motion of one or more bodies: amplitudes of translation x, translation y, rotation of every body.
   struct RigidMotion
   {
-    Eigen::VectorXd amplitudes; // 3 a body, of unit length
-    double          work = 0;   // of the loads along it, over |loads| [-]
+    Eigen::VectorXd        amplitudes; // 3 a body, of unit length
+    double                 work = 0;   // of the loads along it, over |loads| [-]
+    std::vector<BodyFrame> frames;     // of the bodies
   };
 
   /// What the rows of B (gluing aside, which moves with its body) see of the rigid motions of whole bodies.
@@ -46,7 +47,8 @@ namespace slipstick::tfeti
     unsigned int                                         n_owned_rows;
     unsigned int                                         motions_of_body; // 3 in the plane
     unsigned int                                         n_motions;       // of all bodies
-    std::vector<Share>                                   shares;          // sorted by row
+    std::vector<BodyFrame>                               frames;
+    std::vector<Share>                                   shares; // sorted by row
   };
 
   /// The motion of whole bodies in amplitudes of the rigid motions of this rank's subdomains (their mean). Collective.
@@ -55,6 +57,10 @@ namespace slipstick::tfeti
                           const unsigned int                                   n_bodies,
                           const MPI_Comm                                       comm);
 
-  /// "body box: translation along (1, 0)", "body a: rotation ..."; names the bodies that move most.
+  /// "body box: translation along (1, 0)", "body a: rotation about (0, 5)"; names the bodies that move most.
   std::string describe(const RigidMotion &motion, const std::vector<std::string> &body_names);
+
+  /// Of the motions that combine some free ones that along which the loads push or, where they push along none, the one
+  /// that moves the fewest components (translations before rotations). @param motions orthonormal, at least one.
+  RigidMotion plainest(const std::vector<RigidMotion> &motions);
 } // namespace slipstick::tfeti

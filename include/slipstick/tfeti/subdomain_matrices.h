@@ -4,10 +4,18 @@
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
 
+#include <array>
 #include <vector>
 
 namespace slipstick::tfeti
 {
+  /// Point about which a body's rotation is measured, and the length that makes it dimensionless.
+  struct BodyFrame
+  {
+    std::array<double, 3> center{{0, 0, 0}}; // [mm]
+    double                length = 1;        // [mm]
+  };
+
   /// K_p, f_p, R_p of one floating subdomain with n unknowns and k rigid motions.
   struct SubdomainMatrices
   {
@@ -17,6 +25,7 @@ namespace slipstick::tfeti
     Eigen::VectorXd             load;          // n [N]
     Eigen::MatrixXd             kernel;        // n x k: motions of unit size about the subdomain's centre
     Eigen::MatrixXd             body_modes;    // k x k: kernel * body_modes = rigid motions of the body, seen here
+    BodyFrame                   frame;         // of the body's motions
     std::vector<unsigned int>   boundary_dofs; // unknowns on the boundary of the subdomain, sorted
   };
 } // namespace slipstick::tfeti

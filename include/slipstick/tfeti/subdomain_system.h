@@ -75,7 +75,13 @@ namespace slipstick::tfeti
     {
       return matrices.body;
     }
-    unsigned int subdomain() const
+    const BodyFrame &body_frame() const
+    {
+      return matrices.frame;
+    }
+    /// Where the node of an unknown lies [mm], as the rotation of the body tells (two dimensions).
+    std::array<double, 3> position(const unsigned int unknown) const;
+    unsigned int          subdomain() const
     {
       return matrices.subdomain;
     }

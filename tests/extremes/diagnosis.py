@@ -1,0 +1,142 @@
+"""What the program says of runs that end without an answer, and of answers that are doubtful; none of the shipped scenes
+is."""
+
+import unittest
+
+from sweep import FLOOR, SOURCE, Extremes, Table, scenes, shipped, solve, stack
+
+BLOCKS = {'Decomposition/Cells per block': 10}
+SQUARE = {'Size': '10, 10', 'Cells': '4, 4', 'Material': 'elastic'}
+
+
+class NotConverged(Extremes):
+    """Status 3: which test failed, by how much, where, and what to try."""
+
+    def test_messages(self):
+        table = Table('not converged')
+        for what, case, words, overrides in (
+                ('SMALBE, two outer steps', shipped('box_on_circle'),
+                 ('reached its limit of iterations', 'of |Pd|, asked for is 0.0001', 'largest error of the displacement: ',
+                  'of body box', 'contact circle', 'Max outer iterations'),
+                 {**BLOCKS, 'Solver/Algorithm': 'smalbe', 'Solver/SMALBE/Max outer iterations': 2}),
+                ('conjugate gradients, three steps', shipped('box_linear'),
+                 ('reached its limit of iterations', 'the projected gradient is', 'interface jump', ' of body box',
+                  'Solver/PCG/Max iterations'), {**BLOCKS, 'Solver/PCG/Max iterations': 3}),
+                ('SMALBE, no update of slip bounds', shipped('raous'),
+                 ('the slip bounds still change by', 'largest error of the displacement', 'Friction/Max iterations'),
+                 {'Solver/Algorithm': 'smalbe', 'Friction/Max iterations': 1, 'Solver/Tolerance': 1e-2}),
+                ('tolerance below rounding', shipped('box_linear'), ('came to a standstill', 'set Solver/Tolerance to '),
+                 {**BLOCKS, 'Solver/Tolerance': 1e-15}),
+                ('check below rounding', stack(box={'Young modulus': '2.1e14'}),
+                 ('the check from the recovered displacement fails: equilibrium of a node is', ' at (', ') of body box',
+                  'allowed is 1.00e-08', 'this is rounding', 'set Solver/Tolerance to '), {'Solver/Tolerance': 1e-11})):
+            for ranks in (1, 2):
+                result = self.ends(3, table, '{}, {} rank(s)'.format(what, ranks), case, *words, overrides=overrides,
+                                   ranks=ranks)
+                self.assertEqual(result.summary['status'], 'not converged')
+                self.assertEqual(result.stderr.count('remedy: '), 1, result)
+
+    def test_cycling_friction(self):
+        """The cooled bolt of the lap joint: if it does not converge, it does with what the message proposes."""
+        table = Table('bolt tightened by cooling')
+        cooled = {'Output/VTU': 'false', 'Contact nut left/Offset': 0, 'Contact nut right/Offset': 0,
+                  'Temperatures': 'cooling', 'Temperature cooling/Bodies': 'bolt',
+                  'Temperature cooling/Change': '-100*min(t,1)'}
+        result = solve(shipped('lap_joint'), cooled)
+        table.add('as shipped', result)
+        self.assertIn(result.status, (0, 3), result)
+        if result.status == 3:
+            self.assertIn('the slip bounds still change by', result.stderr)
+            proposed = result.stderr.split('set Friction/Tolerance to ')[1].split()[0]
+            self.converges(table, 'Friction/Tolerance = ' + proposed, shipped('lap_joint'),
+                           {**cooled, 'Friction/Tolerance': float(proposed)}, checks=1e-3)
+        self.converges(table, 'in more load steps', shipped('lap_joint'), {**cooled, 'Load steps/Factors': '0.25,0.5,0.75,1,2'},
+                       checks=1e-3)
+
+    def test_place_is_that_of_the_scene(self):
+        """A point of the outline of the body that is named, in the units of the scene."""
+        table = Table('place of the largest error')
+        result = self.ends(3, table, 'box on a circle', shipped('box_on_circle'), ' of body box, contact circle',
+                           overrides={**BLOCKS, 'Solver/Algorithm': 'smalbe', 'Solver/SMALBE/Max outer iterations': 2})
+        x, y = (float(word) for word in result.stderr.split(' at (')[1].split(')')[0].split(','))
+        self.assertEqual(y, 0)
+        self.assertTrue(0 <= x <= 10 and abs(x * 2 - round(x * 2)) < 1e-9, result.stderr)  # a node: cells of 0.5 mm
+
+
+class Doubtful(Extremes):
+    """Status 0 with warnings: printed and in summary.json."""
+
+    def warned(self, table, what, case, *words, overrides=None, without=()):
+        result = self.converges(table, what, case, overrides)
+        texts = result.summary['warnings']
+        for word in words:
+            self.assertTrue(any(word in text for text in texts), '{}\n{}\n{}'.format(word, texts, result))
+            self.assertIn(word, result.stdout)
+        for word in without:
+            self.assertFalse(any(word in text for text in texts), '{}\n{}\n{}'.format(word, texts, result))
+        return result
+
+    def test_overlap_beyond_an_element(self):
+        table = Table('overlap, elements of 2.5 mm')
+        held = {'floor': FLOOR, 'side': {**scenes.HELD, 'Boundary': 'box/top'}}
+        for overlap, doubtful in ((0.01, False), (2.4, False), (2.6, True), (4, True)):
+            case = scenes.box(bodies={'base': SQUARE, 'box': {**SQUARE, 'Origin': '0, {!r}'.format(10 - overlap)}},
+                              supports=held, contacts={'joint': {'Slave': 'box/bottom', 'Master': 'base/top',
+                                                                 'Law': 'frictionless'}},
+                              Decomposition={'Method': 'METIS', 'Subdomains': '3'}, Solver={'Tolerance': '1e-8'})
+            text = ('Contact joint: its sides overlap by {:g} mm'.format(overlap),)
+            self.warned(table, '{:g}'.format(overlap), case, *(text if doubtful else ()), without=() if doubtful else text)
+
+    def test_mixed_units(self):
+        table = Table('units of bodies, of loads')
+        self.warned(table, 'modulus of one body in Pa', stack(box={'Young modulus': '2.1e11'}), 'body box is ',
+                    'do their meshes and materials have the same units?')
+        self.warned(table, 'moduli in GPa', stack(base={'Young modulus': '210'}, box={'Young modulus': '210'}),
+                    'the strain of body ', 'linear theory', without=('same units',))
+        self.warned(table, 'load in Pa', stack(load={'Traction y': '-1e7', 'Traction x': '1e6'}),
+                    'Contact joint: the pressure of ', 'is above the Young modulus of 2.1e+05 MPa', 'check the units of loads')
+
+    def test_beyond_small_displacements(self):
+        table = Table('strain, rotation, motion')
+        self.warned(table, 'none of it', stack(), without=('',))
+        self.warned(table, 'rubber', stack(base={'Young modulus': '150'}, box={'Young modulus': '150'}),
+                    'the strain of body ', 'the rotation of body ', without=('size of the body',))
+        lever = scenes.box(bodies={'box': {'Size': '200, 2', 'Cells': '80, 2', 'Material': 'elastic'}},
+                           supports={'held': scenes.HELD}, tractions={'down': {'Boundary': 'box/top', 'Traction y': '-0.02'}},
+                           Decomposition={'Method': 'none'}, Solver={'Tolerance': '1e-8'})
+        self.warned(table, 'slender lever', lever, 'the rotation of body box at (', without=('the strain of',))
+        self.warned(table, 'gap of 100 times the body', stack(contact={'Gap': '1e3'}), 'the displacement of body box at (',
+                    'times the size of the body', without=('the strain of', 'the rotation of'))
+
+    def test_sliding_beyond_an_element(self):
+        """A block driven along another one by 3 mm: 12 mm of top on 10 mm, elements of 1 mm."""
+        table = Table('slide [mm], elements of 2.5 mm')
+        for slide, doubtful in ((1, False), (4, True)):
+            case = scenes.box(bodies={'base': {**SQUARE, 'Size': '30, 10', 'Cells': '12, 4', 'Origin': '-10, 0'},
+                                      'box': {**SQUARE, 'Origin': '0, 10'}},
+                              supports={'floor': FLOOR, 'drive': {'Boundary': 'box/top', 'Displacement x': repr(slide),
+                                                                  'Displacement y': '-0.001'}},
+                              contacts={'joint': {'Slave': 'box/bottom', 'Master': 'base/top', 'Law': 'Coulomb',
+                                                  'Friction coefficient': '0.1'}},
+                              Decomposition={'Method': 'METIS', 'Subdomains': '3'}, Solver={'Tolerance': '1e-8'})
+            text = ('Contact joint: its sides slide by',)
+            self.warned(table, '{:g}'.format(slide), case, *(text if doubtful else ()), without=() if doubtful else text)
+
+    def test_locking(self):
+        table = Table('locking')
+        nearly = {'Poisson ratio': '0.4999'}
+        self.warned(table, 'standard', stack(base=nearly), 'standard elements lock', 'nearly incompressible',
+                    overrides={'Plane state': 'plane strain'})
+        self.warned(table, 'nearly incompressible', stack(base=nearly), without=('lock',),
+                    overrides={'Plane state': 'plane strain', 'Discretization/Element': 'nearly incompressible'})
+
+    def test_shipped_scenes_are_beyond_doubt(self):
+        table = Table('shipped scenes')
+        for path in sorted((SOURCE / 'prm').glob('*.prm')):
+            overrides = BLOCKS if path.stem.startswith('box') else None
+            result = self.converges(table, path.stem, shipped(path.stem), overrides, checks=1e-3)
+            self.assertEqual(result.summary['warnings'], [], path.stem)
+
+
+if __name__ == '__main__':
+    unittest.main()

@@ -1,0 +1,183 @@
+"""Bodies that nothing holds, or hardly anything: an answer where there is one, else what moves, how, and what to add."""
+
+import math
+import unittest
+
+from sweep import FLOOR, Extremes, Table, pair, run, scenes, shipped
+
+SQUARE = {'Size': '10, 10', 'Cells': '4, 4', 'Material': 'elastic'}
+TWO = {'base': SQUARE, 'box': {**SQUARE, 'Origin': '0, 10'}}
+JOINT = {'Slave': 'box/bottom', 'Master': 'base/top', 'Law': 'Coulomb', 'Friction coefficient': '0.3'}
+DOWN = {'Boundary': 'box/top', 'Traction y': '-10'}
+ROLLER = {'Boundary': 'box/left', 'Displacement x': '0'}
+CUT = {'Decomposition': {'Method': 'METIS', 'Subdomains': '5'}, 'Solver': {'Tolerance': '1e-8'}}
+NO_LOAD = 'no load acts along it'
+PUSHED = 'where the loads push'
+
+
+def two(**kinds):
+    return scenes.box(bodies=TWO, contacts=kinds.pop('contacts', {'joint': JOINT}),
+                      supports=kinds.pop('supports', {'floor': FLOOR}), tractions=kinds.pop('tractions', {'down': DOWN}),
+                      **CUT, **kinds)
+
+
+class Supports(Extremes):
+
+    def test_one_body(self):
+        table = Table('one body')
+        down = {'down': DOWN}
+        self.ends(2, table, 'no support at all', scenes.box(tractions=down), "nothing holds body 'box'")
+        for what, supports, tractions, words in (
+                ('roller, pushed along it', {'a': ROLLER}, down, ('translation along (0, -1)', PUSHED)),
+                ('roller, nothing along it', {'a': ROLLER}, {'s': {'Boundary': 'box/right', 'Traction x': '3'}},
+                 ('translation along (0, 1)', NO_LOAD)),
+                ('two rollers in line', {'a': ROLLER, 'b': {**ROLLER, 'Boundary': 'box/right'}}, down,
+                 ('translation along (0, -1)',)),
+                ('pinned in the middle of the foot', {'a': {'Body': 'box', 'Point': '5, 0', 'Displacement x': '0',
+                                                            'Displacement y': '0'}},
+                 {'s': {'Boundary': 'box/right', 'Traction y': '-3'}}, ('rotation about (5, 0)', PUSHED)),
+                ('one point in one direction', {'a': {'Body': 'box', 'Point': '5, 0', 'Displacement y': '0'}},
+                 {'s': {'Boundary': 'box/right', 'Traction x': '3'}}, ('one of 2 free motions',))):
+            for ranks in (1, 2) if 'pinned' in what else (1,):
+                result = self.ends(4, table, '{}, {} rank(s)'.format(what, ranks),
+                                   scenes.box(supports=supports, tractions=tractions), 'nothing holds body box: ', *words,
+                                   ranks=ranks)
+                self.assertEqual(result.summary['status'], 'no equilibrium')
+        enough = scenes.box(supports={'a': ROLLER, 'b': {'Body': 'box', 'Point': '5, 0', 'Displacement y': '0'}},
+                            tractions=down, Solver={'Tolerance': '1e-8'})
+        self.converges(table, 'roller and one point', enough)
+        self.assertEqual(run(enough, '--check').status, 0)
+
+    def test_floating_bodies(self):
+        table = Table('two bodies')
+        squeezed = {'down': DOWN, 'up': {'Boundary': 'base/bottom', 'Traction y': '10'}}
+        self.ends(4, table, 'holding only each other, loads balance', two(supports={}, tractions=squeezed),
+                  'body base: translation along (1, 0); body box: translation along (1, 0)', NO_LOAD,
+                  'one of 3 free motions')
+        self.ends(4, table, 'holding only each other, one load', two(supports={}),
+                  'body base: translation along (0, -1); body box: translation along (0, -1)', PUSHED)
+        held = self.converges(table, 'the same with three supported components', two(
+            supports={'a': {'Body': 'base', 'Point': '0, 0', 'Displacement x': '0', 'Displacement y': '0'},
+                      'b': {'Body': 'base', 'Point': '10, 0', 'Displacement y': '0'}}, tractions=squeezed))
+        self.in_balance(held, 100, 0)
+        result = self.converges(table, 'pressed, no tangential load', two())
+        self.in_balance(result, 100, 0)
+        for law in ({'Law': 'frictionless'}, {'Law': 'Coulomb', 'Friction coefficient': '0'},
+                    {'Law': 'Tresca', 'Slip bound': '0'}):
+            sliding = {'Slave': 'box/bottom', 'Master': 'base/top', **law}
+            self.ends(4, table, 'pressed, {}, pushed'.format(law['Law']),
+                      two(contacts={'joint': sliding}, tractions={'down': {**DOWN, 'Traction x': '1'}}),
+                      'body box: translation along (1, 0)', without=('body base',))
+        self.ends(4, table, 'pressed, frictionless, not pushed',
+                  two(contacts={'joint': {**JOINT, 'Law': 'frictionless'}}), 'body box: translation along (1, 0)', NO_LOAD)
+        self.ends(4, table, 'lifted off', two(tractions={'up': {**DOWN, 'Traction y': '10'}}), 'body box: ')
+        self.ends(4, table, 'tipped over its edge', two(tractions={'tip': {**DOWN, 'Traction x': '6'}},
+                                                        contacts={'joint': {**JOINT, 'Friction coefficient': '5'}}),
+                  'body box: rotation about (10, 10)')
+        elsewhere = {'side': {'Boundary': 'base/right', 'Traction x': '1'}}
+        for law in ({'Law': 'Coulomb', 'Friction coefficient': '0.3'}, {'Law': 'frictionless'},
+                    {'Law': 'Tresca', 'Slip bound': '1'}):
+            self.ends(4, table, 'free and unloaded, ' + law['Law'],
+                      two(contacts={'joint': {**JOINT, **law}}, tractions=elsewhere), 'nothing holds body box: ', NO_LOAD,
+                      without=('body base',))
+        self.ends(2, table, 'free, unloaded, no contact', two(contacts={}, tractions=elsewhere),
+                  "nothing holds body 'box'")
+
+    def test_sliding_mechanism(self):
+        """A ram guided between walls, on a slope: frictionless it is driven out, friction or a stop hold it."""
+        table = Table('a body between a wall and a slope')
+        slope = {'slope': {'Shape': 'half plane', 'Point': '0, 0', 'Normal': '-0.5, 1'},
+                 'wall': {'Shape': 'half plane', 'Point': '10, 0', 'Normal': '-1, 0'}}
+
+        def ram(mu, wall):
+            law = {'Law': 'Coulomb', 'Friction coefficient': mu, 'Gap': '0'}
+            contacts = {'below': {'Slave': 'box/bottom', 'Master': 'slope', **law}}
+            if wall:
+                contacts['beside'] = {'Slave': 'box/right', 'Master': 'wall', **law}
+            return scenes.box(obstacles=slope, bodies={'box': SQUARE}, tractions={'down': DOWN}, contacts=contacts, **CUT)
+
+        self.ends(4, table, 'no wall, no friction', ram('0', False), 'body box: translation along (-0.89')
+        self.ends(4, table, 'no wall, mu = 0.49', ram('0.49', False), 'body box: translation along (-')
+        result = self.converges(table, 'no wall, mu = 0.51', ram('0.51', False))
+        carried = pair(result)
+        self.near(carried['normal_force'], 100 * 2 / math.sqrt(5), 1e-6)
+        self.near(abs(carried['tangential_force']), 100 / math.sqrt(5), 1e-6)
+        # the slope drives it to the left, away from the wall
+        self.ends(4, table, 'wall behind, no friction', ram('0', True), 'body box: translation along (-0.89')
+
+    def test_incline(self):
+        table = Table('incline of 20 degrees, tan 20 = 0.36397')
+        for mu in (0.3641, 0.37):
+            self.converges(table, 'mu = {}'.format(mu), shipped('incline'), {'Contact upper joint/Friction coefficient': mu},
+                           checks=1e-4)
+        for joint, moving, resting in (('upper', 'c', ('body a: ', 'body b: ')), ('lower', 'bc', ('body a: ',))):
+            for mu in (0.3639, 0.36, 0):
+                self.ends(4, table, '{} joint mu = {}'.format(joint, mu), shipped('incline'),
+                          *('body {}: translation along ('.format(body) for body in moving),
+                          overrides={'Contact {} joint/Friction coefficient'.format(joint): mu},
+                          without=resting)
+
+    def test_pairs(self):
+        table = Table('pairs of contact')
+        reference = self.converges(table, 'one pair', two())
+        self.ends(2, table, 'declared twice', two(contacts={'joint': JOINT, 'again': JOINT}),
+                  'Contact joint joins the same two sides')
+        self.ends(2, table, 'declared twice, sides exchanged',
+                  two(contacts={'joint': JOINT, 'again': {**JOINT, 'Slave': 'base/top', 'Master': 'box/bottom'}}),
+                  'Contact joint joins the same two sides')
+        for what, again in (('as the whole outline', {'Slave': 'box/*', 'Master': 'base/*'}),
+                            ('half as the whole outline', {'Slave': 'box/bottom', 'Master': 'base/*'}),
+                            ('exchanged, as the whole outline', {'Slave': 'base/*', 'Master': 'box/*'})):
+            result = self.converges(table, 'declared twice, ' + what, two(contacts={'joint': JOINT, 'again': {**JOINT, **again}}))
+            carried = sum(one['normal_force'] for one in result.summary['results']['contact'])
+            self.near(carried, 100, 1e-6)
+            self.near(result.summary['results']['strain_energy'], reference.summary['results']['strain_energy'], 1e-6)
+
+    def test_contact_of_a_body_with_itself(self):
+        table = Table('one body in contact with itself')
+        held = {'supports': {'held': scenes.HELD}, 'tractions': {'down': DOWN}}
+        law = {'Law': 'frictionless'}
+        self.ends(2, table, 'a side with itself', scenes.box(contacts={'self': {'Slave': 'box/top', 'Master': 'box/top', **law}},
+                                                             **held), 'no boundary can be in contact with itself')
+        self.ends(2, table, 'its outline', scenes.box(contacts={'self': {'Slave': 'box/*', 'Master': 'box/*', **law}}, **held),
+                  'no boundary can be in contact with itself')
+        self.ends(2, table, 'two far sides', scenes.box(contacts={'self': {'Slave': 'box/top', 'Master': 'box/bottom', **law}},
+                                                        **held), 'face away from each other')
+        self.ends(2, table, 'two sides at a corner', scenes.box(contacts={'self': {'Slave': 'box/top', 'Master': 'box/right',
+                                                                                   **law}}, **held), 'do not face each other')
+
+    def test_slit_that_closes(self):
+        """A square ring cut open at one side: its two lips, sides of one body, touch and carry the load."""
+        table = Table('lips of a slit, one body')
+        # U of three strips 10 wide around a slit 0.01 high, mouth on the right
+        xs, ys = (0., 10., 20., 30.), (0., 10., 10.01, 20.01)
+        nodes = {(i, j): 4 * j + i + 1 for j in range(4) for i in range(4)}
+        cells = [(i, j) for j in range(3) for i in range(3) if not (j == 1 and i > 0)]
+        lines = [(1, nodes[i, 1], nodes[i + 1, 1]) for i in (1, 2)] + [(2, nodes[i, 2], nodes[i + 1, 2]) for i in (1, 2)]
+        lines += [(3, nodes[i, 0], nodes[i + 1, 0]) for i in range(3)] + [(4, nodes[i, 3], nodes[i + 1, 3]) for i in range(3)]
+        path = scenes.new_path('slit.msh')
+        elements = ['1 2 {0} {0} {1} {2}'.format(*line) for line in lines]
+        elements += ['3 2 9 9 {} {} {} {}'.format(nodes[i, j], nodes[i + 1, j], nodes[i + 1, j + 1], nodes[i, j + 1])
+                     for i, j in cells]
+        path.write_text('\n'.join(
+            ['$MeshFormat', '2.2 0 8', '$EndMeshFormat', '$PhysicalNames', '5', '1 1 "lower lip"', '1 2 "upper lip"',
+             '1 3 "foot"', '1 4 "head"', '2 9 "all"', '$EndPhysicalNames', '$Nodes', '16'] +
+            ['{} {} {} 0'.format(nodes[i, j], xs[i], ys[j]) for j in range(4) for i in range(4)] +
+            ['$EndNodes', '$Elements', str(len(elements))] +
+            ['{} {}'.format(n + 1, element) for n, element in enumerate(elements)] + ['$EndElements', '']))
+        case = scenes.box(bodies={'box': {'Shape': 'mesh', 'File': str(path), 'Material': 'elastic'}},
+                          supports={'foot': {'Boundary': 'box/foot', 'Displacement x': '0', 'Displacement y': '0'}},
+                          tractions={'down': {'Boundary': 'box/head', 'Traction y': '-100'}},
+                          contacts={'lips': {'Slave': 'box/lower lip', 'Master': 'box/upper lip', 'Law': 'Coulomb',
+                                             'Friction coefficient': '0.2'}},
+                          Discretization={'Refinements': '2'}, **CUT)
+        result = self.converges(table, 'pressed', case)
+        self.assertGreater(pair(result)['contact_nodes'], 0)
+        self.assertGreater(pair(result)['normal_force'], 100)
+        other = self.converges(table, 'pressed, lips exchanged', case, {'Contact lips/Slave': 'box/upper lip',
+                                                                        'Contact lips/Master': 'box/lower lip'})
+        self.near(pair(other)['normal_force'], pair(result)['normal_force'], 1e-6)
+
+
+if __name__ == '__main__':
+    unittest.main()
