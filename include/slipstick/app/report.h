@@ -23,6 +23,9 @@ namespace slipstick::app
 
   /// The checks from the recovered displacement; the limit above which an answer does not count as converged.
   double check_limit(const double tolerance);
+
+  /// The tolerance of a solution: that of the options, or with Tolerance = auto the residual at which it was accepted.
+  double tolerance_of(const scene::SolverOptions &options, const contact::DualSolution &solution);
   void   print_checks(const Log                   &log,
                       const contact::DualSolution &solution,
                       const contact::Checks       &checks,
