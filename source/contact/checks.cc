@@ -221,7 +221,7 @@ namespace slipstick::contact
                     inadmissible_jump(constraints.kind[r], violation(r), multipliers.local_element(r), slip_bound[r]);
         held[r] = is_equality(constraints.kind[r]) || wrong.local_element(r) != 0;
       }
-    const double error_energy = dual.jump_energy(wrong, held);
+    checks.error_energy = dual.jump_energy(wrong, held);
 
     double largest_contact = 0, largest_gap = 0, all_bounds = 0;
     for (const auto &point : constraints.contact_points)
@@ -267,7 +267,7 @@ namespace slipstick::contact
     const double length      = std::max(checks.max_displacement, no_length);
     const double force       = std::max(largest_contact, no_force);
     const double energy      = std::max({checks.energy, no_force * no_length, all_bounds * no_length});
-    checks.algebraic_error   = std::sqrt(relative(error_energy, energy));
+    checks.algebraic_error   = std::sqrt(relative(checks.error_energy, energy));
     checks.interface_jump    = relative(checks.interface_jump, length);
     checks.penetration       = relative(checks.penetration, length);
     checks.tension           = relative(checks.tension, force);

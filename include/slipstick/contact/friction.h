@@ -29,9 +29,11 @@ namespace slipstick::contact
     double                   bound_change        = 0; // their last relative change
   };
 
-  /// Asked about iterates, whose multipliers, slip bounds and free rows are filled, with the energy norm of their
-  /// algebraic error [sqrt(N mm)], estimated from above: is the answer accurate enough? The same on every process.
-  using AccuracyTest = std::function<bool(const DualSolution &iterate, const double algebraic_error)>;
+  /// Asked about iterates, of which multipliers (within their bounds), slip bounds and free rows are filled: is the answer
+  /// accurate enough? @p residual_energy: energy norm of what closes the jumps before the multipliers were moved to their
+  /// bounds [sqrt(N mm)], a first idea of the algebraic error; contact::check tells it from the displacement. The same on
+  /// every process.
+  using AccuracyTest = std::function<bool(const DualSolution &iterate, const double residual_energy)>;
 
   /// The options with `auto` resolved: pcg for linear scenes, semismooth Newton with the Dirichlet preconditioner for
   /// contact; no preconditioner where there is no use for one.
