@@ -19,6 +19,8 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
 
 namespace slipstick::app
 {
@@ -187,6 +189,14 @@ namespace slipstick::app
       }
 
     private:
+      /// A recovered displacement, and what was found from it.
+      struct Answer
+      {
+        tfeti::DualProblem::Recovery           recovery;
+        std::optional<contact::CheckedContact> contact;
+        std::optional<fem::StressResult>       stress;
+      };
+
       void build_mesh()
       {
         print_header(log, scene, comm);
@@ -267,6 +277,17 @@ namespace slipstick::app
         dual->set_right_hand_side(std::move(c));
       }
 
+      /// Checks and stresses of what was recovered from @p from.
+      void look_at(Answer &answer, const contact::DualSolution &from, const double t) const
+      {
+        const contact::SlipLaw law(scene, *dual, t);
+        const auto            &x = answer.recovery.multipliers;
+        const auto            &u = answer.recovery.u;
+        answer.contact           = contact::check(
+          *dual, x, u, law.depends_on_pressure() ? law.bounds(x) : from.slip_bound, from.free, scene.bodies.size());
+        answer.stress = fem::recover_stress(scene, *mesh, *spaces, dual->constraints(), u, t);
+      }
+
       /// Is the algebraic error of an iterate a small part of its discretisation error, and does it pass the checks? A step
       /// looks at its last estimate first, which errors of the iterates so far can only have made too large, and recovers
       /// a displacement only when that does not decide.
@@ -276,17 +297,20 @@ namespace slipstick::app
           return false;
         try
           {
-            const auto recovery  = dual->recover(iterate.multipliers, iterate.free);
-            discretization_error = std::sqrt(
-              fem::recover_stress(scene, *mesh, *spaces, dual->constraints(), recovery.u, t).error_squared);
-            const auto checked = contact::check(
-              *dual, recovery.multipliers, recovery.u, iterate.slip_bound, iterate.free, scene.bodies.size());
-            const double algebraic_error = std::sqrt(checked.checks.error_energy);
+            Answer answer;
+            answer.recovery = dual->recover(iterate.multipliers, iterate.free);
+            look_at(answer, iterate, t);
+            const auto &checks           = answer.contact->checks;
+            discretization_error         = std::sqrt(answer.stress->error_squared);
+            const double algebraic_error = std::sqrt(checks.error_energy);
             log.line(format("accuracy     algebraic error below %.3g, discretisation error about %.3g sqrt(N mm)",
                             algebraic_error,
                             discretization_error));
-            return algebraic_error <= allowed_part * discretization_error &&
-                   checked.checks.worst().second <= check_limit(1);
+            if (algebraic_error > allowed_part * discretization_error ||
+                !(checks.worst().second <= check_limit(1)))
+              return false;
+            accepted = std::make_unique<Answer>(std::move(answer));
+            return true;
           }
         catch (const NoEquilibrium &) // of this iterate, on all ranks alike
           {
@@ -295,7 +319,7 @@ namespace slipstick::app
       }
 
       /// Solves the present step; with rows for more contact nodes as long as pruned ones penetrate.
-      tfeti::DualProblem::Recovery solve_step(const unsigned int step, const std::uint64_t multiplications_before)
+      std::unique_ptr<Answer> solve_step(const unsigned int step, const std::uint64_t multiplications_before)
       {
         const double t         = scene.load_factors[step];
         bool         is_warm   = step > 0 && advance(t);
@@ -312,6 +336,7 @@ namespace slipstick::app
             try
               {
                 clock.enter("solve");
+                accepted.reset();
                 solution = contact::solve_refined(*dual,
                                                   contact::SlipLaw(scene, *dual, t),
                                                   options,
@@ -327,10 +352,15 @@ namespace slipstick::app
                 discarded += solution.counts;
                 solution.counts = discarded;
                 clock.enter("recovery");
-                auto         recovery    = dual->recover(solution.multipliers, solution.free);
-                const double penetration = fem::largest_penetration(pruned, recovery.u, comm);
+                auto answer = std::move(accepted);
+                if (!answer)
+                  {
+                    answer           = std::make_unique<Answer>();
+                    answer->recovery = dual->recover(solution.multipliers, solution.free);
+                  }
+                const double penetration = fem::largest_penetration(pruned, answer->recovery.u, comm);
                 if (!(penetration > 0))
-                  return recovery;
+                  return answer;
                 reason = format("contact nodes without multipliers would penetrate by %.3g mm", penetration);
               }
             catch (const NoEquilibrium &) // on all ranks alike
@@ -353,18 +383,13 @@ namespace slipstick::app
         const double t = scene.load_factors[step];
         if (scene.load_factors.size() > 1)
           log.line(format("load step    %u of %zu, t = %g", step + 1, scene.load_factors.size(), t));
-        auto recovery        = solve_step(step, so_far.solver.hessian_multiplications);
-        u                    = std::move(recovery.u);
-        solution.multipliers = std::move(recovery.multipliers);
-        const contact::SlipLaw law(scene, *dual, t);
-        const auto             contact =
-          contact::check(*dual,
-                         solution.multipliers,
-                         u,
-                         law.depends_on_pressure() ? law.bounds(solution.multipliers) : solution.slip_bound,
-                         solution.free,
-                         scene.bodies.size());
-        const auto stress = fem::recover_stress(scene, *mesh, *spaces, dual->constraints(), u, t);
+        const auto answer = solve_step(step, so_far.solver.hessian_multiplications);
+        if (!answer->stress)
+          look_at(*answer, solution, t);
+        u                    = std::move(answer->recovery.u);
+        solution.multipliers = std::move(answer->recovery.multipliers);
+        const auto &contact  = *answer->contact;
+        const auto &stress   = *answer->stress;
         print_checks(log, solution, contact.checks, tolerance_of(scene.solver, solution));
 
         clock.enter("output");
@@ -420,6 +445,7 @@ namespace slipstick::app
       double                              factorization = 0; // [s]
       double                              discretization_error = infinity; // last estimate in the step [sqrt(N mm)]
       contact::DualSolution               solution;          // of the last step
+      std::unique_ptr<Answer>             accepted; // by the test of accuracy, in the step
       std::vector<Eigen::VectorXd>        u;                 // of the last step
       std::vector<output::ConvergenceRow> convergence;
       std::vector<output::ContactStep>    contact_steps;

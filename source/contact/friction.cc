@@ -442,13 +442,20 @@ namespace slipstick::contact
         Box shifted = box;
         shifted.lower -= from;
         shifted.upper -= from;
+        // entries that reached a shifted bound are put on the bound itself, to the last bit
+        const auto unshifted = [&](const Vector &step) {
+          Vector x = from;
+          x += step;
+          for (unsigned int r = 0; r < x.locally_owned_size(); ++r)
+            if (step.local_element(r) <= shifted.lower.local_element(r))
+              x.local_element(r) = box.lower.local_element(r);
+            else if (step.local_element(r) >= shifted.upper.local_element(r))
+              x.local_element(r) = box.upper.local_element(r);
+          return x;
+        };
         std::function<bool(const Vector &, const Vector &)> asks;
         if (is_accurate && may_end_early)
-          asks = [&](const Vector &step, const Vector &g) {
-            Vector x = from;
-            x += step;
-            return accepts(x, g);
-          };
+          asks = [&](const Vector &step, const Vector &g) { return accepts(unshifted(step), g); };
         const auto result = qp::smalbe(dual,
                                        1.,
                                        load,
@@ -465,15 +472,7 @@ namespace slipstick::contact
         solution.equality           = result.equality_residual;
         solution.reference          = result.reference;
         gradient                    = result.gradient;
-        Vector x                    = from;
-        x += result.x;
-        // entries that reached a shifted bound are put on the bound itself, to the last bit
-        for (unsigned int r = 0; r < x.locally_owned_size(); ++r)
-          if (result.x.local_element(r) <= shifted.lower.local_element(r))
-            x.local_element(r) = box.lower.local_element(r);
-          else if (result.x.local_element(r) >= shifted.upper.local_element(r))
-            x.local_element(r) = box.upper.local_element(r);
-        return x;
+        return unshifted(result.x);
       }
 
       /// Fills which inequality rows are at a bound.

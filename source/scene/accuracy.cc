@@ -16,7 +16,7 @@ namespace slipstick::scene
     // knob. The preconditioner's precision is none of them: no answer depends on it.
     const std::vector<std::pair<std::string, Knobs>> presets = {
       {"draft",
-       {{"Solver/Tolerance", "1e-3"},
+       {{"Solver/Tolerance", "auto"},
         {"Solver/Operator precision", "single"},
         {"Solver/Prune contact", "true"},
         {"Friction/Tolerance", "1e-3"},

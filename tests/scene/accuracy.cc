@@ -46,7 +46,7 @@ TEST(accuracy, presets_set_all_knobs)
 {
   const auto draft = box_without_knobs({"Accuracy=draft"}), reference = box_without_knobs({}, "set Accuracy = reference\n");
   EXPECT_EQ(draft.accuracy, Accuracy::draft);
-  EXPECT_EQ(draft.solver.tolerance, 1e-3);
+  EXPECT_TRUE(draft.solver.stops_at_discretization_error);
   EXPECT_EQ(draft.friction.tolerance, 1e-3);
   EXPECT_EQ(draft.discretization.degree, 1u);
   EXPECT_EQ(draft.solver.dual.operator_precision, tfeti::Precision::single_precision);
@@ -72,7 +72,7 @@ TEST(accuracy, knobs_of_the_file_and_of_overrides_win_in_any_order)
       EXPECT_FALSE(scene.solver.prune_contact);
     }
   const auto file_wins = box_without_knobs({"Accuracy=draft"}, "set Accuracy = reference\n"); // the last preset counts
-  EXPECT_EQ(file_wins.solver.tolerance, 1e-3);
+  EXPECT_TRUE(file_wins.solver.stops_at_discretization_error);
 }
 
 TEST(accuracy, echo_shows_the_values_and_reads_back)

@@ -68,7 +68,7 @@ class Study(unittest.TestCase):
         self.assertEqual([(row['refinements'], row['degree'], row['preset']) for row in without], [('1', '2', 'reference')])
         presets = {(row['refinements'], row['preset']): (row['degree'], row['tolerance']) for row in found}
         for refinements in '01':
-            self.assertEqual(presets[refinements, 'draft'], ('1', '0.001'))
+            self.assertEqual(presets[refinements, 'draft'], ('1', 'auto'))
             self.assertEqual(presets[refinements, 'engineering'], ('1', '0.0001'))
             self.assertEqual(presets[refinements, 'reference'], ('2', '1e-08'))
         reference = float(without[0]['strain_energy'])
