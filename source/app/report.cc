@@ -308,7 +308,7 @@ namespace slipstick::app
                                const contact::Checks       &checks,
                                const fem::StressResult     &stress)
   {
-    const auto     &n = dual.constraints().counts;
+    const auto     &n         = dual.constraints().counts;
     const double    tolerance = tolerance_of(scene.solver, solution);
     output::Summary s         = empty_summary(scene, mesh.comm);
     s.status = solution.status == qp::Status::converged && checks.worst().second <= check_limit(tolerance)

@@ -56,12 +56,13 @@ namespace slipstick::app
                                                    const std::uint64_t                  multiplications_before,
                                                    std::vector<output::ConvergenceRow> &rows)
     {
-      log.line(format("solve        %s until %sprojected gradient gP and violation of G x = e are below %g |Pd|",
-                      name_of(options.algorithm).c_str(),
-                      options.stops_at_discretization_error ?
-                        format("the algebraic error is below %g of the discretisation error, or ", allowed_part).c_str() :
-                        "",
-                      options.tolerance));
+      log.line(
+        format("solve        %s until %sprojected gradient gP and violation of G x = e are below %g |Pd|",
+               name_of(options.algorithm).c_str(),
+               options.stops_at_discretization_error
+                 ? format("the algebraic error is below %g of the discretisation error, or ", allowed_part).c_str()
+                 : "",
+               options.tolerance));
       log.line("              step  F-multiplications  |gP|/|Pd|  |Gx|/|Pd|  at a bound  slip bounds");
       return [&log, &options, step_number, multiplications_before, &rows](const contact::Progress &progress) {
         const auto            &step = progress.step;
@@ -283,9 +284,13 @@ namespace slipstick::app
         const contact::SlipLaw law(scene, *dual, t);
         const auto            &x = answer.recovery.multipliers;
         const auto            &u = answer.recovery.u;
-        answer.contact           = contact::check(
-          *dual, x, u, law.depends_on_pressure() ? law.bounds(x) : from.slip_bound, from.free, scene.bodies.size());
-        answer.stress = fem::recover_stress(scene, *mesh, *spaces, dual->constraints(), u, t);
+        answer.contact           = contact::check(*dual,
+                                        x,
+                                        u,
+                                        law.depends_on_pressure() ? law.bounds(x) : from.slip_bound,
+                                        from.free,
+                                        scene.bodies.size());
+        answer.stress            = fem::recover_stress(scene, *mesh, *spaces, dual->constraints(), u, t);
       }
 
       /// Is the algebraic error of an iterate a small part of its discretisation error, and does it pass the checks? A step
@@ -306,8 +311,7 @@ namespace slipstick::app
             log.line(format("accuracy     algebraic error below %.3g, discretisation error about %.3g sqrt(N mm)",
                             algebraic_error,
                             discretization_error));
-            if (algebraic_error > allowed_part * discretization_error ||
-                !(checks.worst().second <= check_limit(1)))
+            if (algebraic_error > allowed_part * discretization_error || !(checks.worst().second <= check_limit(1)))
               return false;
             accepted = std::make_unique<Answer>(std::move(answer));
             return true;
@@ -441,12 +445,12 @@ namespace slipstick::app
       std::unique_ptr<fem::Spaces<dim>>   spaces;
       std::unique_ptr<tfeti::DualProblem> dual;
       tfeti::Constraints                  pruned; // normal rows of the contact nodes without multipliers
-      double                              kept_part     = first_kept_part;
-      double                              factorization = 0; // [s]
+      double                              kept_part            = first_kept_part;
+      double                              factorization        = 0;        // [s]
       double                              discretization_error = infinity; // last estimate in the step [sqrt(N mm)]
-      contact::DualSolution               solution;          // of the last step
-      std::unique_ptr<Answer>             accepted; // by the test of accuracy, in the step
-      std::vector<Eigen::VectorXd>        u;                 // of the last step
+      contact::DualSolution               solution;                        // of the last step
+      std::unique_ptr<Answer>             accepted;                        // by the test of accuracy, in the step
+      std::vector<Eigen::VectorXd>        u;                               // of the last step
       std::vector<output::ConvergenceRow> convergence;
       std::vector<output::ContactStep>    contact_steps;
     };

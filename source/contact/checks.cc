@@ -217,8 +217,8 @@ namespace slipstick::contact
     for (unsigned int r = 0; r < held.size(); ++r)
       {
         wrong.local_element(r) =
-          free[r] ? violation(r) :
-                    inadmissible_jump(constraints.kind[r], violation(r), multipliers.local_element(r), slip_bound[r]);
+          free[r] ? violation(r)
+                  : inadmissible_jump(constraints.kind[r], violation(r), multipliers.local_element(r), slip_bound[r]);
         held[r] = is_equality(constraints.kind[r]) || wrong.local_element(r) != 0;
       }
     checks.error_energy = dual.jump_energy(wrong, held);

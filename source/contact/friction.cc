@@ -77,14 +77,14 @@ namespace slipstick::contact
     {
       Vector       start = dual.particular();
       DualSolution solution;
-      solution.free                    = std::vector<bool>(start.locally_owned_size(), true);
-      solution.slip_bound              = std::vector<double>(start.locally_owned_size(), 0.);
-      solution.algorithm               = "pcg";
-      const auto                  face = dual.face(solution.free);
-      const auto                  b    = homogenised_load(dual, start);
-      const double                reference    = dual.residual_norm(b);
-      const auto                  precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
-      const qp::Observer          counted      = [&](qp::OuterStep step) {
+      solution.free                   = std::vector<bool>(start.locally_owned_size(), true);
+      solution.slip_bound             = std::vector<double>(start.locally_owned_size(), 0.);
+      solution.algorithm              = "pcg";
+      const auto         face         = dual.face(solution.free);
+      const auto         b            = homogenised_load(dual, start);
+      const double       reference    = dual.residual_norm(b);
+      const auto         precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
+      const qp::Observer counted      = [&](qp::OuterStep step) {
         step.hessian_multiplications += 1 + solution.counts.hessian_multiplications; // F x~ in the homogenised load
         step.outer += solution.counts.cg_steps;
         if (observer)
@@ -277,7 +277,7 @@ namespace slipstick::contact
         for (unsigned int r = 0; r < iterate.free.size(); ++r)
           {
             const double y = iterate.multipliers.local_element(r), l = at.lower.local_element(r),
-                         u = at.upper.local_element(r);
+                         u         = at.upper.local_element(r);
             iterate.free[r]        = y > l && y < u;
             jumps.local_element(r) = dual.norm() * qp::projected_gradient(y, g.local_element(r), l, u);
           }
@@ -520,7 +520,8 @@ namespace slipstick::contact
     if (options.algorithm == scene::Algorithm::automatic)
       options.algorithm = scene.has_contact() ? scene::Algorithm::semismooth_newton : scene::Algorithm::pcg;
     if (options.algorithm == scene::Algorithm::smalbe) // would change the bounds; but it tells energies of errors
-      preconditioner = options.stops_at_discretization_error ? tfeti::Preconditioner::dirichlet : tfeti::Preconditioner::none;
+      preconditioner =
+        options.stops_at_discretization_error ? tfeti::Preconditioner::dirichlet : tfeti::Preconditioner::none;
     else if (preconditioner == tfeti::Preconditioner::automatic)
       preconditioner = tfeti::Preconditioner::dirichlet;
     return options;

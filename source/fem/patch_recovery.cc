@@ -28,10 +28,10 @@ namespace slipstick::fem
     template <int dim>
     std::optional<Polynomial<dim>> fitted(const Eigen::RowVectorXd &sums)
     {
-      constexpr unsigned int           n = PatchRecovery<dim>::n_monomials;
-      Eigen::Matrix<double, n, n>      matrix;
-      Polynomial<dim>                  right;
-      unsigned int                     next = 0;
+      constexpr unsigned int      n = PatchRecovery<dim>::n_monomials;
+      Eigen::Matrix<double, n, n> matrix;
+      Polynomial<dim>             right;
+      unsigned int                next = 0;
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = i; j < n; ++j)
           matrix(i, j) = matrix(j, i) = sums[next++];
@@ -40,7 +40,7 @@ namespace slipstick::fem
           right(i, c) = sums[next++];
       if (!(matrix.diagonal().minCoeff() > 0))
         return {};
-      const Eigen::Matrix<double, n, 1> scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+      const Eigen::Matrix<double, n, 1>              scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
       const Eigen::LDLT<Eigen::Matrix<double, n, n>> factor(scale.asDiagonal() * matrix * scale.asDiagonal());
       if (!(factor.vectorD().minCoeff() > least_pivot))
         return {};
@@ -88,11 +88,11 @@ namespace slipstick::fem
     for (const auto &cell : dof_handler.active_cell_iterators())
       for (const unsigned int l : cell->line_indices())
         {
-          const auto                                    line   = cell->line(l);
-          const unsigned int                            middle = line->dof_index(0) / dim;
-          const dealii::Point<dim>                      x      = line->center(true);
-          Eigen::Matrix<double, 1, n_components>        sum    = Eigen::Matrix<double, 1, n_components>::Zero();
-          unsigned int                                  n      = 0;
+          const auto                             line   = cell->line(l);
+          const unsigned int                     middle = line->dof_index(0) / dim;
+          const dealii::Point<dim>               x      = line->center(true);
+          Eigen::Matrix<double, 1, n_components> sum    = Eigen::Matrix<double, 1, n_components>::Zero();
+          unsigned int                           n      = 0;
           for (unsigned int end = 0; end < 2; ++end)
             {
               const unsigned int node = line->vertex_dof_index(end, 0) / dim;

@@ -14,25 +14,24 @@ namespace slipstick::scene
 
     // What each delivers on cases with known answers is measured: doc/accuracy.md. `engineering` is the default of every
     // knob. The preconditioner's precision is none of them: no answer depends on it.
-    const std::vector<std::pair<std::string, Knobs>> presets = {
-      {"draft",
-       {{"Solver/Tolerance", "auto"},
-        {"Solver/Operator precision", "single"},
-        {"Solver/Prune contact", "true"},
-        {"Friction/Tolerance", "1e-3"},
-        {"Discretization/Degree", "1"}}},
-      {"engineering",
-       {{"Solver/Tolerance", "0.0001"},
-        {"Solver/Operator precision", "double"},
-        {"Solver/Prune contact", "true"},
-        {"Friction/Tolerance", "1e-06"},
-        {"Discretization/Degree", "1"}}},
-      {"reference",
-       {{"Solver/Tolerance", "1e-8"},
-        {"Solver/Operator precision", "double"},
-        {"Solver/Prune contact", "false"},
-        {"Friction/Tolerance", "1e-8"},
-        {"Discretization/Degree", "2"}}}};
+    const std::vector<std::pair<std::string, Knobs>> presets = {{"draft",
+                                                                 {{"Solver/Tolerance", "auto"},
+                                                                  {"Solver/Operator precision", "single"},
+                                                                  {"Solver/Prune contact", "true"},
+                                                                  {"Friction/Tolerance", "1e-3"},
+                                                                  {"Discretization/Degree", "1"}}},
+                                                                {"engineering",
+                                                                 {{"Solver/Tolerance", "0.0001"},
+                                                                  {"Solver/Operator precision", "double"},
+                                                                  {"Solver/Prune contact", "true"},
+                                                                  {"Friction/Tolerance", "1e-06"},
+                                                                  {"Discretization/Degree", "1"}}},
+                                                                {"reference",
+                                                                 {{"Solver/Tolerance", "1e-8"},
+                                                                  {"Solver/Operator precision", "double"},
+                                                                  {"Solver/Prune contact", "false"},
+                                                                  {"Friction/Tolerance", "1e-8"},
+                                                                  {"Discretization/Degree", "2"}}}};
   } // namespace
 
   std::vector<std::string> accuracy_names()

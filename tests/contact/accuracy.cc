@@ -28,9 +28,9 @@ namespace
         scene.contacts[0].law                  = scene::ContactLaw::coulomb;
         scene.contacts[0].friction_coefficient = field("0.3");
       }
-    scene.solver.algorithm                      = algorithm;
-    scene.solver.tolerance                      = 1e-10;
-    scene.solver.stops_at_discretization_error  = true; // SMALBE keeps the preconditioner for the error, too
+    scene.solver.algorithm                     = algorithm;
+    scene.solver.tolerance                     = 1e-10;
+    scene.solver.stops_at_discretization_error = true; // SMALBE keeps the preconditioner for the error, too
     scene.solver.dual.preconditioner_precision = tfeti::Precision::double_precision;
     return scene;
   }
@@ -56,15 +56,21 @@ namespace
 
     contact::DualSolution solve(const contact::AccuracyTest &is_accurate) const
     {
-      return contact::solve(*dual, contact::SlipLaw(scene, *dual, 1.), options, scene.friction, {}, nullptr, is_accurate);
+      return contact::solve(*dual,
+                            contact::SlipLaw(scene, *dual, 1.),
+                            options,
+                            scene.friction,
+                            {},
+                            nullptr,
+                            is_accurate);
     }
 
     /// Estimate of the algebraic error.
     double error(const contact::DualSolution &iterate) const
     {
       const auto recovery = dual->recover(iterate.multipliers, iterate.free);
-      return std::sqrt(
-        contact::check(*dual, recovery.multipliers, recovery.u, iterate.slip_bound, iterate.free, 1).checks.error_energy);
+      return std::sqrt(contact::check(*dual, recovery.multipliers, recovery.u, iterate.slip_bound, iterate.free, 1)
+                         .checks.error_energy);
     }
 
     std::vector<Eigen::VectorXd> recovered(const contact::DualSolution &solution) const
@@ -127,11 +133,11 @@ TEST(AlgebraicError, ends_a_solve_as_soon_as_it_is_small_enough)
     {
       SCOPED_TRACE("kind " + std::to_string(int(kind)) + ", algorithm " + std::to_string(int(algorithm)));
       const Problem problem(pressed_box(kind, algorithm, blocks(3)));
-      const auto    fine  = problem.solve({});
-      const auto    exact = problem.recovered(fine);
-      const double  limit = 0.01 * std::sqrt(energy(*problem.dual, exact));
-      const auto    coarse =
-        problem.solve([&](const contact::DualSolution &iterate, const double) { return problem.error(iterate) <= limit; });
+      const auto    fine   = problem.solve({});
+      const auto    exact  = problem.recovered(fine);
+      const double  limit  = 0.01 * std::sqrt(energy(*problem.dual, exact));
+      const auto    coarse = problem.solve(
+        [&](const contact::DualSolution &iterate, const double) { return problem.error(iterate) <= limit; });
       EXPECT_EQ(coarse.status, qp::Status::converged);
       EXPECT_LE(std::sqrt(energy(*problem.dual, difference(problem.recovered(coarse), exact))), 1.02 * limit);
       EXPECT_LT(coarse.counts.hessian_multiplications, 0.7 * fine.counts.hessian_multiplications);

@@ -44,7 +44,8 @@ TEST(accuracy, engineering_is_the_default_of_every_knob)
 
 TEST(accuracy, presets_set_all_knobs)
 {
-  const auto draft = box_without_knobs({"Accuracy=draft"}), reference = box_without_knobs({}, "set Accuracy = reference\n");
+  const auto draft     = box_without_knobs({"Accuracy=draft"}),
+             reference = box_without_knobs({}, "set Accuracy = reference\n");
   EXPECT_EQ(draft.accuracy, Accuracy::draft);
   EXPECT_TRUE(draft.solver.stops_at_discretization_error);
   EXPECT_EQ(draft.friction.tolerance, 1e-3);
@@ -88,7 +89,9 @@ TEST(accuracy, echo_shows_the_values_and_reads_back)
 
 TEST(accuracy, unknown_preset_is_refused)
 {
-  expect_refused(prm("box_on_circle"), {"Accuracy=drafty"}, {"Accuracy = 'drafty'", "draft, engineering, reference", "did you mean 'draft'"});
+  expect_refused(prm("box_on_circle"),
+                 {"Accuracy=drafty"},
+                 {"Accuracy = 'drafty'", "draft, engineering, reference", "did you mean 'draft'"});
   expect_refused(prm("box_on_circle"), {"Solver/Accuracy=draft"}, {"Solver/Accuracy", "did you mean 'Accuracy'"});
 }
 
@@ -97,7 +100,8 @@ TEST(accuracy, automatic_tolerance)
   const auto scene = box_without_knobs({"Solver/Tolerance=auto"});
   EXPECT_TRUE(scene.solver.stops_at_discretization_error);
   EXPECT_LE(scene.solver.tolerance, 1e-8);
-  EXPECT_FALSE(box_without_knobs({"Solver/Tolerance=auto", "Solver/Tolerance=1e-3"}).solver.stops_at_discretization_error);
+  EXPECT_FALSE(
+    box_without_knobs({"Solver/Tolerance=auto", "Solver/Tolerance=1e-3"}).solver.stops_at_discretization_error);
   TemporaryDirectory directory;
   EXPECT_TRUE(read_scene(directory.write("a.prm", scene.parameters), {}).solver.stops_at_discretization_error);
 }

@@ -32,9 +32,7 @@ namespace slipstick::app
                       const double                 tolerance);
 
   /// The figures that matter and the file to open.
-  void print_result(const Log             &log,
-                    const output::Summary &summary,
-                    const std::string     &pvd);
+  void print_result(const Log &log, const output::Summary &summary, const std::string &pvd);
 
   /// Case, version, ranks.
   output::Summary empty_summary(const scene::Scene<2> &scene, const MPI_Comm comm);

@@ -15,7 +15,7 @@ namespace slipstick::fem
   class PatchRecovery
   {
   public:
-    static constexpr unsigned int n_components = dim * (dim + 1) / 2;   // xx, yy, xy
+    static constexpr unsigned int n_components = dim * (dim + 1) / 2;       // xx, yy, xy
     static constexpr unsigned int n_monomials  = (dim + 1) * (dim + 2) / 2; // 1, x, y, xx, xy, yy
     static constexpr unsigned int n_sums = n_monomials * (n_monomials + 1) / 2 + n_monomials * n_components; // a vertex
 

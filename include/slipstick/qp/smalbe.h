@@ -37,14 +37,14 @@ namespace slipstick::qp
     class Smalbe
     {
     public:
-      Smalbe(const Problem       &problem_,
-             const double         norm_,
-             const Vector        &b,
-             const Box<Vector>   &box_,
-             SmalbeStart<Vector>  start,
-             const Goal          &goal,
-             const SmalbeOptions &options_,
-             const Observer      &observer_,
+      Smalbe(const Problem                                             &problem_,
+             const double                                               norm_,
+             const Vector                                              &b,
+             const Box<Vector>                                         &box_,
+             SmalbeStart<Vector>                                        start,
+             const Goal                                                &goal,
+             const SmalbeOptions                                       &options_,
+             const Observer                                            &observer_,
              const std::function<bool(const Vector &, const Vector &)> &accepts_)
         : problem(problem_)
         , reduction(problem.reduction())
@@ -213,11 +213,11 @@ namespace slipstick::qp
       const Problem                                        &problem;
       decltype(std::declval<const Problem &>().reduction()) reduction;
 
-      const double                       norm;
-      double                             rho;
-      const Box<Vector>                 &box;
-      const SmalbeOptions               &options;
-      const Observer                    &observer;
+      const double         norm;
+      double               rho;
+      const Box<Vector>   &box;
+      const SmalbeOptions &options;
+      const Observer      &observer;
 
       const std::function<bool(const Vector &, const Vector &)> &accepts;
 
@@ -242,15 +242,15 @@ namespace slipstick::qp
   /// status: infeasible if bounds contradict each other (x is then of no use), or them the equalities (provably; if in
   /// doubt the status is stagnated), or if the objective is unbounded from below.
   template <typename Vector, typename Problem>
-  SmalbeResult<Vector> smalbe(const Problem       &problem,
-                              const double         norm,
-                              const Vector        &b,
-                              const Box<Vector>   &box,
-                              SmalbeStart<Vector>  start,
-                              const Goal          &goal,
-                              const SmalbeOptions &options  = {},
-                              const Observer      &observer = {},
-                              const std::function<bool(const Vector &x, const Vector &gradient)> &accepts = {})
+  SmalbeResult<Vector> smalbe(const Problem                                                      &problem,
+                              const double                                                        norm,
+                              const Vector                                                       &b,
+                              const Box<Vector>                                                  &box,
+                              SmalbeStart<Vector>                                                 start,
+                              const Goal                                                         &goal,
+                              const SmalbeOptions                                                &options  = {},
+                              const Observer                                                     &observer = {},
+                              const std::function<bool(const Vector &x, const Vector &gradient)> &accepts  = {})
   {
     return detail::Smalbe<Vector, Problem>(problem, norm, b, box, std::move(start), goal, options, observer, accepts)
       .run();

@@ -274,8 +274,8 @@ namespace slipstick::scene
 
   struct SolverOptions
   {
-    Algorithm          algorithm = Algorithm::automatic;
-    double             tolerance = 1e-4; // relative, of |gP| and |G x| to |P d|; the paper's eps
+    Algorithm          algorithm                     = Algorithm::automatic;
+    double             tolerance                     = 1e-4;  // relative, of |gP| and |G x| to |P d|; the paper's eps
     bool               stops_at_discretization_error = false; // Tolerance = auto; `tolerance` is then the least one
     qp::SmalbeOptions  smalbe;
     qp::NewtonOptions  newton;
