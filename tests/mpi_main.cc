@@ -7,6 +7,10 @@
 
 #include <iostream>
 
+#ifdef __SANITIZE_ADDRESS__
+#  include "keep_libraries.cc"
+#endif
+
 namespace
 {
   class FailurePrinter : public testing::EmptyTestEventListener

@@ -10,7 +10,7 @@ function(add_mpi_tests target)
     set_tests_properties(${name} PROPERTIES
       LABELS ${ARGUMENT_LABEL}
       PROCESSORS ${n_ranks}
-      TIMEOUT 300 # a rank that waits for ever fails
+      TIMEOUT ${SLIPSTICK_TEST_TIMEOUT}
       ENVIRONMENT "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_rmaps_base_oversubscribe=1;OMPI_MCA_hwloc_base_binding_policy=none;OMPI_MCA_mpi_yield_when_idle=1;OMP_NUM_THREADS=1;OPENBLAS_NUM_THREADS=1")
   endforeach()
 endfunction()

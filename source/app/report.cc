@@ -43,6 +43,20 @@ namespace slipstick::app
       return text + (place.in_pair ? ", contact " + scene.contacts[place.pair].name : "");
     }
 
+    const char *name_of(const scene::Accuracy accuracy)
+    {
+      switch (accuracy)
+        {
+          case scene::Accuracy::draft:
+            return "draft";
+          case scene::Accuracy::engineering:
+            return "engineering";
+          case scene::Accuracy::reference:
+            return "reference";
+        }
+      return "";
+    }
+
     const char *name_of(const scene::DecompositionMethod method)
     {
       switch (method)
@@ -100,6 +114,15 @@ namespace slipstick::app
                     TRILINOS_VERSION_STRING,
                     dealii::Utilities::MPI::n_mpi_processes(comm)));
     log.line(scene.name + (scene.title.empty() ? "" : ": " + scene.title));
+    const auto &solver = scene.solver;
+    log.line(line("accuracy",
+                  format("%s: tolerance %s, slip bounds %g, degree %u, operator in %s precision, contact nodes %s",
+                         name_of(scene.accuracy),
+                         solver.stops_at_discretization_error ? "auto" : format("%g", solver.tolerance).c_str(),
+                         scene.friction.tolerance,
+                         scene.discretization.degree,
+                         solver.dual.operator_precision == tfeti::Precision::single_precision ? "single" : "double",
+                         solver.prune_contact ? "pruned" : "all kept")));
   }
 
   void print_mesh(const Log &log, const scene::Scene<2> &scene, const fem::Mesh<2> &mesh, const fem::Spaces<2> &spaces)
@@ -160,6 +183,13 @@ namespace slipstick::app
                          dual.kernel_dimension(),
                          dual.norm(),
                          dual.n_setup_multiplications())));
+  }
+
+  double tolerance_of(const scene::SolverOptions &options, const contact::DualSolution &solution)
+  {
+    return options.stops_at_discretization_error && solution.status == qp::Status::converged
+             ? std::max({options.tolerance, solution.projected_gradient, solution.equality})
+             : options.tolerance;
   }
 
   double check_limit(const double tolerance)
@@ -278,11 +308,12 @@ namespace slipstick::app
         pair.normal_force,
         pair.tangential_force));
     log.line(format(
-      "largest displacement %.6g mm, largest von Mises stress %.6g MPa, strain energy %.6g N mm; discretisation error about %.2g %%",
+      "largest displacement %.6g mm, largest von Mises stress %.6g MPa, strain energy %.6g N mm; errors in the energy norm: discretisation about %.2g %%, algebraic below %.2g %%",
       summary.results.max_displacement,
       summary.results.max_von_mises,
       summary.results.strain_energy,
-      100 * summary.error.estimate_energy_relative));
+      100 * summary.error.estimate_energy_relative,
+      100 * summary.error.algebraic_relative));
     log.line(format("%s after %llu F-multiplications in %u outer steps; equilibrium error %.1e; %.2f s, %.0f MB",
                     output::to_string(summary.status).c_str(),
                     static_cast<unsigned long long>(summary.solver.hessian_multiplications),
@@ -347,10 +378,10 @@ namespace slipstick::app
                                const contact::Checks       &checks,
                                const fem::StressResult     &stress)
   {
-    const auto     &n = dual.constraints().counts;
-    output::Summary s = empty_summary(scene, mesh.comm);
-    s.status          = passes(solution, checks, scene.solver.tolerance) ? output::RunStatus::converged
-                                                                         : output::RunStatus::not_converged;
+    const auto     &n         = dual.constraints().counts;
+    const double    tolerance = tolerance_of(scene.solver, solution);
+    output::Summary s         = empty_summary(scene, mesh.comm);
+    s.status = passes(solution, checks, tolerance) ? output::RunStatus::converged : output::RunStatus::not_converged;
 
     s.problem.dimension          = 2;
     s.problem.bodies             = scene.bodies.size();
@@ -364,7 +395,7 @@ namespace slipstick::app
     s.solver.algorithm                   = solution.algorithm;
     s.solver.preconditioner              = name_of(contact::resolved_options(scene).dual.preconditioner);
     s.solver.dual_operator               = dual.dual_operator().is_explicit() ? "explicit" : "implicit";
-    s.solver.tolerance                   = scene.solver.tolerance;
+    s.solver.tolerance                   = tolerance;
     s.solver.hessian_multiplications     = solution.counts.hessian_multiplications;
     s.solver.dual_setup_multiplications  = dual.n_setup_multiplications();
     s.solver.preconditioner_applications = solution.counts.preconditioner_applications;

@@ -18,7 +18,10 @@
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <set>
 
 namespace slipstick::app
@@ -46,6 +49,9 @@ namespace slipstick::app
     constexpr double largest_tightening = 1e4;
     // ... down to what double precision reaches nearly everywhere.
     constexpr double least_tolerance = 1e-13;
+    // Tolerance = auto: the algebraic error may be this part of the discretisation error. The two are orthogonal, nearly, so
+    // that it adds 4.4 % to the total one at most, less as it is estimated from above.
+    constexpr double allowed_part = 0.3;
 
     std::vector<std::string> names_of(const std::vector<scene::Body<dim>> &bodies)
     {
@@ -62,9 +68,13 @@ namespace slipstick::app
                                                    const std::uint64_t                  multiplications_before,
                                                    std::vector<output::ConvergenceRow> &rows)
     {
-      log.line(format("solve        %s until projected gradient gP and violation of G x = e are below %g |Pd|",
-                      name_of(options.algorithm).c_str(),
-                      options.tolerance));
+      log.line(
+        format("solve        %s until %sprojected gradient gP and violation of G x = e are below %g |Pd|",
+               name_of(options.algorithm).c_str(),
+               options.stops_at_discretization_error
+                 ? format("the algebraic error is below %g of the discretisation error, or ", allowed_part).c_str()
+                 : "",
+               options.tolerance));
       log.line("              step  F-multiplications  |gP|/|Pd|  |Gx|/|Pd|  at a bound  slip bounds");
       return [&log, &options, step_number, multiplications_before, &rows](const contact::Progress &progress) {
         const auto            &step = progress.step;
@@ -193,6 +203,14 @@ namespace slipstick::app
       }
 
     private:
+      /// A recovered displacement, and what was found from it.
+      struct Answer
+      {
+        tfeti::DualProblem::Recovery           recovery;
+        std::optional<contact::CheckedContact> contact;
+        std::optional<fem::StressResult>       stress;
+      };
+
       void build_mesh()
       {
         print_header(log, scene, comm);
@@ -285,21 +303,72 @@ namespace slipstick::app
         dual->set_right_hand_side(std::move(c));
       }
 
+      /// Checks and stresses of what was recovered from @p from.
+      void look_at(Answer &answer, const contact::DualSolution &from, const double t) const
+      {
+        const contact::SlipLaw law(scene, *dual, t);
+        const auto            &x = answer.recovery.multipliers;
+        const auto            &u = answer.recovery.u;
+        answer.contact           = contact::check(*dual,
+                                        x,
+                                        u,
+                                        law.depends_on_pressure() ? law.bounds(x) : from.slip_bound,
+                                        from.free,
+                                        scene.bodies.size());
+        answer.stress            = fem::recover_stress(scene, *mesh, *spaces, dual->constraints(), u, t);
+      }
+
+      /// Is the algebraic error of an iterate a small part of its discretisation error, and does it pass the checks? A step
+      /// looks at its last estimate first, which errors of the iterates so far can only have made too large, and recovers
+      /// a displacement only when that does not decide.
+      bool is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t)
+      {
+        if (residual_energy > allowed_part * discretization_error)
+          return false;
+        try
+          {
+            Answer answer;
+            answer.recovery = dual->recover(iterate.multipliers, iterate.free);
+            look_at(answer, iterate, t);
+            const auto &checks           = answer.contact->checks;
+            discretization_error         = std::sqrt(answer.stress->error_squared);
+            const double algebraic_error = std::sqrt(checks.error_energy);
+            log.line(format("accuracy     algebraic error below %.3g, discretisation error about %.3g sqrt(N mm)",
+                            algebraic_error,
+                            discretization_error));
+            if (algebraic_error > allowed_part * discretization_error || !(checks.worst().second <= check_limit(1)))
+              return false;
+            accepted = std::make_unique<Answer>(std::move(answer));
+            return true;
+          }
+        catch (const NoEquilibrium &) // of this iterate, on all ranks alike
+          {
+            return false;
+          }
+      }
+
       /// Solves the present step; with rows for more contact nodes as long as pruned ones penetrate.
       /// @param goes_on from the solution of this step.
-      tfeti::DualProblem::Recovery solve_step(const unsigned int  step,
-                                              const std::uint64_t multiplications_before,
-                                              const bool          goes_on)
+      std::unique_ptr<Answer> solve_step(const unsigned int  step,
+                                         const std::uint64_t multiplications_before,
+                                         const bool          goes_on)
       {
         const double t         = scene.load_factors[step];
         bool         is_warm   = goes_on || (step > 0 && advance(t));
         qp::Counts   discarded = goes_on ? solution.counts : qp::Counts();
+        discretization_error   = infinity;
+        contact::AccuracyTest test;
+        if (options.stops_at_discretization_error && !goes_on)
+          test = [this, t](const contact::DualSolution &iterate, const double residual_energy) {
+            return is_accurate(iterate, residual_energy, t);
+          };
         for (;; is_warm = false)
           {
             std::string reason;
             try
               {
                 clock.enter("solve");
+                accepted.reset();
                 solution = contact::solve_refined(*dual,
                                                   contact::SlipLaw(scene, *dual, t),
                                                   options,
@@ -310,14 +379,20 @@ namespace slipstick::app
                                                                        multiplications_before +
                                                                          discarded.hessian_multiplications,
                                                                        convergence),
-                                                  is_warm ? &solution : nullptr);
+                                                  is_warm ? &solution : nullptr,
+                                                  test);
                 discarded += solution.counts;
                 solution.counts = discarded;
                 clock.enter("recovery");
-                auto         recovery    = dual->recover(solution.multipliers, solution.free);
-                const double penetration = fem::largest_penetration(pruned, recovery.u, comm);
+                auto answer = std::move(accepted);
+                if (!answer)
+                  {
+                    answer           = std::make_unique<Answer>();
+                    answer->recovery = dual->recover(solution.multipliers, solution.free);
+                  }
+                const double penetration = fem::largest_penetration(pruned, answer->recovery.u, comm);
                 if (!(penetration > 0))
-                  return recovery;
+                  return answer;
                 reason = format("contact nodes without multipliers would penetrate by %.3g mm", penetration);
               }
             catch (const NoEquilibrium &) // on all ranks alike
@@ -334,30 +409,23 @@ namespace slipstick::app
           }
       }
 
-      /// Keeps the displacements and the multipliers that balance them.
-      contact::CheckedContact recover_and_check(const double t, tfeti::DualProblem::Recovery recovery)
+      std::unique_ptr<Answer> checked(std::unique_ptr<Answer> answer, const double t) const
       {
-        u                    = std::move(recovery.u);
-        solution.multipliers = std::move(recovery.multipliers);
-        const contact::SlipLaw law(scene, *dual, t);
-        return contact::check(*dual,
-                              solution.multipliers,
-                              u,
-                              law.depends_on_pressure() ? law.bounds(solution.multipliers) : solution.slip_bound,
-                              solution.free,
-                              scene.bodies.size());
+        if (!answer->stress)
+          look_at(*answer, solution, t);
+        return answer;
       }
 
       /// Goes on from a solution whose checks fail, to smaller residuals: those that are asked for are relative to |Pd|,
       /// which may be far above what is left of it in the displacement (slender parts). Ends where that does not help.
-      contact::CheckedContact tighten(const unsigned int      step,
+      std::unique_ptr<Answer> tighten(const unsigned int      step,
                                       const std::uint64_t     multiplications_before,
-                                      contact::CheckedContact contact)
+                                      std::unique_ptr<Answer> answer)
       {
-        const double limit = check_limit(scene.solver.tolerance);
+        const double limit = check_limit(tolerance_of(scene.solver, solution));
         for (unsigned int n = 0; n < max_tightenings && solution.status == qp::Status::converged; ++n)
           {
-            const auto   worst = contact.checks.worst_entry();
+            const auto   worst = answer->contact->checks.worst_entry();
             const double reached =
               std::min(options.tolerance, std::max(solution.projected_gradient, solution.equality));
             if (worst.value <= limit || worst.is_balance || reached <= least_tolerance)
@@ -370,23 +438,22 @@ namespace slipstick::app
                             worst.value,
                             limit,
                             options.tolerance));
-            const auto   before   = solution;
-            const auto   u_before = u;
-            const double kept     = kept_part;
-            auto next = recover_and_check(scene.load_factors[step], solve_step(step, multiplications_before, true));
+            const auto   before  = solution;
+            const double kept    = kept_part;
+            solution.multipliers = answer->recovery.multipliers;
+            auto next            = checked(solve_step(step, multiplications_before, true), scene.load_factors[step]);
             if (kept_part != kept ||
-                (solution.status == qp::Status::converged && next.checks.worst().second < worst.value))
-              contact = std::move(next); // the first: it got rows for more contact nodes
+                (solution.status == qp::Status::converged && next->contact->checks.worst().second < worst.value))
+              answer = std::move(next); // the first: it got rows for more contact nodes
             else
               { // to the tolerance that was asked for it did converge
                 const auto counts = solution.counts;
                 solution          = before;
                 solution.counts   = counts;
-                u                 = u_before;
                 break;
               }
           }
-        return contact;
+        return answer;
       }
 
       /// @param so_far of the steps before.
@@ -395,14 +462,18 @@ namespace slipstick::app
         const double t = scene.load_factors[step];
         if (scene.load_factors.size() > 1)
           log.line(format("load step    %u of %zu, t = %g", step + 1, scene.load_factors.size(), t));
-        options.tolerance = scene.solver.tolerance;
-        auto contact      = recover_and_check(t, solve_step(step, so_far.solver.hessian_multiplications, false));
-        contact           = tighten(step, so_far.solver.hessian_multiplications, std::move(contact));
-        const auto stress = fem::recover_stress(scene, *mesh, *spaces, dual->constraints(), u, t);
-        print_checks(log, contact.checks, scene.solver.tolerance);
-        if (!passes(solution, contact.checks, scene.solver.tolerance))
-          print_failure(log, scene, solution, contact.checks, scene.solver.tolerance);
-
+        options.tolerance      = scene.solver.tolerance;
+        const auto answer      = tighten(step,
+                                    so_far.solver.hessian_multiplications,
+                                    checked(solve_step(step, so_far.solver.hessian_multiplications, false), t));
+        u                      = std::move(answer->recovery.u);
+        solution.multipliers   = std::move(answer->recovery.multipliers);
+        const auto  &contact   = *answer->contact;
+        const auto  &stress    = *answer->stress;
+        const double tolerance = tolerance_of(scene.solver, solution);
+        print_checks(log, contact.checks, tolerance);
+        if (!passes(solution, contact.checks, tolerance))
+          print_failure(log, scene, solution, contact.checks, tolerance);
         warn(contact.nodes);
 
         clock.enter("output");
@@ -454,10 +525,12 @@ namespace slipstick::app
       std::unique_ptr<fem::Spaces<dim>>   spaces;
       std::unique_ptr<tfeti::DualProblem> dual;
       tfeti::Constraints                  pruned; // normal rows of the contact nodes without multipliers
-      double                              kept_part     = first_kept_part;
-      double                              factorization = 0; // [s]
-      contact::DualSolution               solution;          // of the last step
-      std::vector<Eigen::VectorXd>        u;                 // of the last step
+      double                              kept_part            = first_kept_part;
+      double                              factorization        = 0;        // [s]
+      double                              discretization_error = infinity; // last estimate in the step [sqrt(N mm)]
+      contact::DualSolution               solution;                        // of the last step
+      std::unique_ptr<Answer>             accepted;                        // by the test of accuracy, in the step
+      std::vector<Eigen::VectorXd>        u;                               // of the last step
       std::vector<output::ConvergenceRow> convergence;
       std::vector<output::ContactStep>    contact_steps;
       std::vector<std::string>            warnings;

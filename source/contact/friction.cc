@@ -34,6 +34,10 @@ namespace slipstick::contact
     constexpr unsigned int max_restarts = 4;
     // ... each time from a residual smaller by this factor.
     constexpr double restart_accuracy = 0.1;
+    // Linear problems are solved in parts, each to this part of the residual before, when their accuracy is asked for ...
+    constexpr double part_of_residual = 0.3;
+    // ... from this residual on.
+    constexpr double first_asked = 0.1;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
 
@@ -57,33 +61,59 @@ namespace slipstick::contact
         "contact");
     }
 
+    /// Energy norm of closing the jumps r of displacements [mm].
+    double residual_energy(const tfeti::DualProblem &dual, const Vector &r)
+    {
+      std::vector<bool> held(r.locally_owned_size());
+      for (unsigned int i = 0; i < held.size(); ++i)
+        held[i] = tfeti::is_equality(dual.constraints().kind[i]) || r.local_element(i) != 0;
+      return std::sqrt(dual.jump_energy(r, held));
+    }
+
     DualSolution solve_linear(const tfeti::DualProblem   &dual,
                               const scene::SolverOptions &options,
-                              const ProgressObserver     &observer)
+                              const ProgressObserver     &observer,
+                              const AccuracyTest         &is_accurate)
     {
       Vector       start = dual.particular();
       DualSolution solution;
-      solution.free                    = std::vector<bool>(start.locally_owned_size(), true);
-      solution.slip_bound              = std::vector<double>(start.locally_owned_size(), 0.);
-      solution.algorithm               = "pcg";
-      const auto                  face = dual.face(solution.free);
-      const auto                  b    = homogenised_load(dual, start);
-      const qp::PcpgStart<Vector> from_zero{dual.zero()};
-      const auto                  precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
-      const qp::Observer          counted      = [&observer](qp::OuterStep step) {
-        ++step.hessian_multiplications; // F x~ in the homogenised load
+      solution.free                   = std::vector<bool>(start.locally_owned_size(), true);
+      solution.slip_bound             = std::vector<double>(start.locally_owned_size(), 0.);
+      solution.algorithm              = "pcg";
+      const auto         face         = dual.face(solution.free);
+      const auto         b            = homogenised_load(dual, start);
+      const double       reference    = dual.residual_norm(b);
+      const auto         precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
+      const qp::Observer counted      = [&](qp::OuterStep step) {
+        step.hessian_multiplications += 1 + solution.counts.hessian_multiplications; // F x~ in the homogenised load
+        step.outer += solution.counts.cg_steps;
         if (observer)
           observer({step, 0});
       };
-      const qp::Goal goal(options.tolerance, dual.residual_norm(b));
-      const auto     result = dual.is_preconditioned()
-                                ? qp::pcpg(face, b, from_zero, goal, options.pcpg, precondition, counted)
-                                : qp::pcpg(face, b, from_zero, goal, options.pcpg, qp::NoPreconditioner(), counted);
-      start += result.x;
-      solution.status             = result.status;
-      solution.multipliers        = start;
-      solution.counts             = result.counts;
-      solution.projected_gradient = result.relative_residual;
+      qp::PcpgStart<Vector> from{dual.zero()};
+      if (is_accurate) // parts go on with the directions of those before
+        from.history = std::make_shared<qp::DirectionHistory<Vector>>(dual.is_preconditioned());
+      double tolerance = is_accurate ? std::max(first_asked, options.tolerance) : options.tolerance;
+      for (;; tolerance = std::max(options.tolerance, part_of_residual * tolerance))
+        {
+          const qp::Goal goal(tolerance, reference);
+          auto           result = dual.is_preconditioned()
+                                    ? qp::pcpg(face, b, from, goal, options.pcpg, precondition, counted)
+                                    : qp::pcpg(face, b, from, goal, options.pcpg, qp::NoPreconditioner(), counted);
+          solution.counts += result.counts;
+          solution.status             = result.status;
+          solution.projected_gradient = result.relative_residual;
+          solution.multipliers        = start;
+          solution.multipliers += result.x;
+          if (result.status != qp::Status::converged || tolerance <= options.tolerance)
+            break;
+          Vector jumps = std::move(result.residual);
+          jumps *= dual.norm();
+          if (is_accurate(solution, residual_energy(dual, jumps)))
+            break;
+          from.x       = std::move(result.x);
+          from.product = std::move(result.product);
+        }
       ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
       solution.counts.outer_iterations = 1;
       return solution;
@@ -97,12 +127,14 @@ namespace slipstick::contact
                     const SlipLaw                &law_,
                     const scene::SolverOptions   &options_,
                     const scene::FrictionOptions &friction_,
-                    const ProgressObserver       &observer_)
+                    const ProgressObserver       &observer_,
+                    const AccuracyTest           &is_accurate_)
         : dual(dual_)
         , law(law_)
         , options(options_)
         , friction(friction_)
         , observer(observer_)
+        , is_accurate(is_accurate_)
       {}
 
       DualSolution run(const DualSolution *start)
@@ -237,6 +269,33 @@ namespace slipstick::contact
           }
       }
 
+      /// Asks whether x, moved to its bounds, is accurate enough. @p g: gradient F x - d + G'a (scaled).
+      bool accepts(const Vector &x, const Vector &g)
+      {
+        DualSolution iterate;
+        iterate.multipliers = x;
+        iterate.slip_bound  = law.depends_on_pressure() ? law.bounds(x) : solution.slip_bound;
+        iterate.free.resize(x.locally_owned_size());
+        const Box at    = multiplier_box(dual, iterate.slip_bound);
+        Vector    jumps = g;
+        qp::project(at, iterate.multipliers);
+        for (unsigned int r = 0; r < iterate.free.size(); ++r)
+          {
+            const double y = iterate.multipliers.local_element(r), l = at.lower.local_element(r),
+                         u         = at.upper.local_element(r);
+            iterate.free[r]        = y > l && y < u;
+            jumps.local_element(r) = dual.norm() * qp::projected_gradient(y, g.local_element(r), l, u);
+          }
+        return is_accurate(iterate, residual_energy(dual, jumps));
+      }
+
+      qp::Acceptance<Vector> acceptance()
+      {
+        if (!is_accurate)
+          return {};
+        return [this](const Vector &x, const Vector &g) { return accepts(x, g); };
+      }
+
       /// Bounds differentiated with the rest.
       bool coupled_newton_from(const Vector &from)
       {
@@ -252,7 +311,8 @@ namespace slipstick::contact
                                             options.pcpg,
                                             counted(),
                                             {},
-                                            qp::CoupledBounds{law.pressure_bounds(), true});
+                                            qp::CoupledBounds{law.pressure_bounds(), true},
+                                            acceptance());
         solution.counts += result.counts;
         solution.status              = result.status;
         solution.projected_gradient  = result.projected_gradient;
@@ -284,7 +344,9 @@ namespace slipstick::contact
                                             options.newton,
                                             options.pcpg,
                                             counted(),
-                                            bounds);
+                                            bounds,
+                                            {},
+                                            acceptance());
         solution.counts += result.counts;
         solution.status             = result.status;
         solution.projected_gradient = result.projected_gradient;
@@ -313,7 +375,7 @@ namespace slipstick::contact
       {
         if (!law.depends_on_pressure())
           {
-            solution.multipliers = smalbe(from, options.tolerance, counted());
+            solution.multipliers = smalbe(from, options.tolerance, counted(), true);
             return;
           }
         double accuracy              = std::max(options.tolerance, first_accuracy);
@@ -369,7 +431,10 @@ namespace slipstick::contact
       }
 
       /// SMALBE-M from a point that balances the loads within the present bounds; fills status and residuals.
-      Vector smalbe(const Vector &from, const double tolerance, const qp::Observer &progress)
+      Vector smalbe(const Vector       &from,
+                    const double        tolerance,
+                    const qp::Observer &progress,
+                    const bool          may_end_early = false)
       {
         const auto with_start = [&progress](qp::OuterStep step) {
           ++step.hessian_multiplications; // F x~ in the homogenised load
@@ -382,6 +447,20 @@ namespace slipstick::contact
         Box shifted = box;
         shifted.lower -= from;
         shifted.upper -= from;
+        // entries that reached a shifted bound are put on the bound itself, to the last bit
+        const auto unshifted = [&](const Vector &step) {
+          Vector x = from;
+          x += step;
+          for (unsigned int r = 0; r < x.locally_owned_size(); ++r)
+            if (step.local_element(r) <= shifted.lower.local_element(r))
+              x.local_element(r) = box.lower.local_element(r);
+            else if (step.local_element(r) >= shifted.upper.local_element(r))
+              x.local_element(r) = box.upper.local_element(r);
+          return x;
+        };
+        std::function<bool(const Vector &, const Vector &)> asks;
+        if (is_accurate && may_end_early)
+          asks = [&](const Vector &step, const Vector &g) { return accepts(unshifted(step), g); };
         const auto result = qp::smalbe(dual,
                                        1.,
                                        load,
@@ -389,7 +468,8 @@ namespace slipstick::contact
                                        qp::SmalbeStart<Vector>{dual.zero()},
                                        qp::Goal(tolerance, solution.reference),
                                        options.smalbe,
-                                       with_start);
+                                       with_start,
+                                       asks);
         solution.status   = result.status;
         solution.counts += result.counts;
         ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
@@ -397,15 +477,7 @@ namespace slipstick::contact
         solution.equality           = result.equality_residual;
         solution.reference          = result.reference;
         gradient                    = result.gradient;
-        Vector x                    = from;
-        x += result.x;
-        // entries that reached a shifted bound are put on the bound itself, to the last bit
-        for (unsigned int r = 0; r < x.locally_owned_size(); ++r)
-          if (result.x.local_element(r) <= shifted.lower.local_element(r))
-            x.local_element(r) = box.lower.local_element(r);
-          else if (result.x.local_element(r) >= shifted.upper.local_element(r))
-            x.local_element(r) = box.upper.local_element(r);
-        return x;
+        return unshifted(result.x);
       }
 
       /// Fills which inequality rows are at a bound.
@@ -428,6 +500,7 @@ namespace slipstick::contact
       const scene::SolverOptions   &options;
       const scene::FrictionOptions &friction;
       const ProgressObserver       &observer;
+      const AccuracyTest           &is_accurate;
 
       Box                   box;
       std::optional<Vector> gradient; // where SMALBE-M ended
@@ -451,8 +524,9 @@ namespace slipstick::contact
     auto                &preconditioner = options.dual.preconditioner;
     if (options.algorithm == scene::Algorithm::automatic)
       options.algorithm = scene.has_contact() ? scene::Algorithm::semismooth_newton : scene::Algorithm::pcg;
-    if (options.algorithm == scene::Algorithm::smalbe)
-      preconditioner = tfeti::Preconditioner::none; // it would change the bounds
+    if (options.algorithm == scene::Algorithm::smalbe) // would change the bounds; but it tells energies of errors
+      preconditioner =
+        options.stops_at_discretization_error ? tfeti::Preconditioner::dirichlet : tfeti::Preconditioner::none;
     else if (preconditioner == tfeti::Preconditioner::automatic)
       preconditioner = tfeti::Preconditioner::dirichlet;
     return options;
@@ -463,12 +537,13 @@ namespace slipstick::contact
                      const scene::SolverOptions   &options,
                      const scene::FrictionOptions &friction,
                      const ProgressObserver       &observer,
-                     const DualSolution           *start)
+                     const DualSolution           *start,
+                     const AccuracyTest           &is_accurate)
   {
     const auto &counts = dual.constraints().counts;
     if (counts.normal + counts.tangential == 0)
-      return solve_linear(dual, options, observer);
-    return ContactSolver(dual, law, options, friction, observer).run(start);
+      return solve_linear(dual, options, observer, is_accurate);
+    return ContactSolver(dual, law, options, friction, observer, is_accurate).run(start);
   }
 
   DualSolution solve(const tfeti::DualProblem   &dual,

@@ -15,9 +15,10 @@ namespace slipstick::contact
                              const scene::SolverOptions   &options,
                              const scene::FrictionOptions &friction,
                              const ProgressObserver       &observer,
-                             const DualSolution           *start)
+                             const DualSolution           *start,
+                             const AccuracyTest           &is_accurate)
   {
-    auto       solution  = solve(dual, law, options, friction, observer, start);
+    auto       solution  = solve(dual, law, options, friction, observer, start, is_accurate);
     const auto reference = [&dual] { // |P (d - F x~)|, as the solvers see it
       auto x = dual.particular(), b = dual.zero(), q = dual.zero();
       dual.multiply(x, b);
@@ -26,7 +27,7 @@ namespace slipstick::contact
       b -= q;
       return b.l2_norm();
     };
-    if (!dual.is_approximate() || solution.status != qp::Status::converged)
+    if (!dual.is_approximate() || is_accurate || solution.status != qp::Status::converged)
       return solution;
     const double norm = solution.reference > 0 ? solution.reference : reference();
     for (unsigned int correction = 0;; ++correction)

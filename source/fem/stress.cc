@@ -2,6 +2,7 @@
 #include <slipstick/fem/cell_values.h>
 #include <slipstick/fem/dilatation.h>
 #include <slipstick/fem/elasticity.h>
+#include <slipstick/fem/patch_recovery.h>
 #include <slipstick/fem/stress.h>
 
 #include <deal.II/base/mpi.h>
@@ -149,9 +150,9 @@ namespace slipstick::fem
       return at_nodes * at_points.inverse();
     }
 
-    /// Sums over cells around every node: area times stress, area (last column).
+    /// Sums over cells around every node: area times stress, area (last column). @p patches, if any, gets the stresses too.
     template <int dim>
-    Eigen::MatrixXd weighted_stress(const Subdomain<dim> &on, const Eigen::VectorXd &u)
+    Eigen::MatrixXd weighted_stress(const Subdomain<dim> &on, const Eigen::VectorXd &u, PatchRecovery<dim> *patches)
     {
       const auto                                  &element       = on.element;
       const auto                                  &points        = element.stress;
@@ -160,11 +161,18 @@ namespace slipstick::fem
       Eigen::MatrixXd                              sums = Eigen::MatrixXd::Zero(u.size() / dim, n_components + 1);
       std::vector<dealii::types::global_dof_index> dofs;
       std::vector<unsigned int>                    nodes;
+      std::vector<dealii::Point<dim>>              positions(points.size());
       for (const auto &cell : on.dof_handler.active_cell_iterators())
         {
           element.nodes_of(cell, dofs, nodes);
           const auto &at_points = stress.reinit(cell, displacement_at<dim>(nodes, u));
-          double      area      = 0;
+          if (patches)
+            {
+              for (unsigned int q = 0; q < points.size(); ++q)
+                positions[q] = element.mapping->transform_unit_to_real_cell(cell, points.point(q));
+              patches->add(cell, positions, at_points);
+            }
+          double area = 0;
           for (unsigned int q = 0; q < points.size(); ++q)
             area += stress.JxW(q);
           const Eigen::MatrixXd at_nodes = area * extrapolation * at_points;
@@ -177,23 +185,38 @@ namespace slipstick::fem
       return sums;
     }
 
-    /// Adds the sums of all copies of shared nodes, two columns in one exchange (an interface node has dim unknowns).
+    /// Adds the sums of all copies of shared nodes, two columns in one exchange (an interface node has dim unknowns). Subdomains
+    /// without sums have none.
     template <int dim>
-    void add_copies(const tfeti::Constraints &constraints, std::vector<Eigen::MatrixXd> &sums)
+    void add_copies(const tfeti::Constraints             &constraints,
+                    const std::vector<Eigen::MatrixXd *> &sums,
+                    const unsigned int                    n_columns)
     {
       static_assert(dim == 2, "columns travel in pairs");
-      for (unsigned int first = 0; first <= n_components; first += dim)
+      for (unsigned int first = 0; first < n_columns; first += dim)
         {
           tfeti::DistributedVector shared(constraints.interface_dofs);
+          const auto               has = [&](const unsigned int p, const unsigned int column) {
+            return sums[p] && column < n_columns;
+          };
           for (unsigned int p = 0; p < sums.size(); ++p)
             for (const auto &entry : constraints.interface_blocks[p])
-              shared.local_element(entry.interface_dof) += sums[p](entry.dof / dim, first + entry.dof % dim);
+              if (has(p, first + entry.dof % dim))
+                shared.local_element(entry.interface_dof) += (*sums[p])(entry.dof / dim, first + entry.dof % dim);
           shared.compress(dealii::VectorOperation::add);
           shared.update_ghost_values();
           for (unsigned int p = 0; p < sums.size(); ++p)
             for (const auto &entry : constraints.interface_blocks[p])
-              sums[p](entry.dof / dim, first + entry.dof % dim) = shared.local_element(entry.interface_dof);
+              if (has(p, first + entry.dof % dim))
+                (*sums[p])(entry.dof / dim, first + entry.dof % dim) = shared.local_element(entry.interface_dof);
         }
+    }
+
+    /// Means are superconvergent but on triangles of degree 2.
+    template <int dim>
+    bool needs_patches(const Element<dim> &element)
+    {
+      return element.degree == 2 && element.cell.is_simplex();
     }
 
     /// Squared energy norms of the computed stress and of its difference to the recovered one.
@@ -232,12 +255,17 @@ namespace slipstick::fem
       return squares;
     }
 
-    /// Mean stress of the cells around every node, with zz; @p sums as weighted_stress() gives them.
+    /// Mean stress of the cells around every node, or what patches recover, with zz; @p sums as weighted_stress() gives
+    /// them.
     template <int dim>
-    Eigen::MatrixXd nodal_stress(const Subdomain<dim> &on, const Eigen::MatrixXd &sums)
+    Eigen::MatrixXd nodal_stress(const Subdomain<dim>     &on,
+                                 const Eigen::MatrixXd    &sums,
+                                 const PatchRecovery<dim> *patches)
     {
       Eigen::MatrixXd nodal(sums.rows(), n_components + 1);
       nodal.leftCols(n_components) = sums.leftCols(n_components).array().colwise() / sums.col(n_components).array();
+      if (patches)
+        patches->recover(nodal);
       std::vector<dealii::Point<dim>> positions;
       if (!on.temperature.is_zero())
         {
@@ -259,12 +287,27 @@ namespace slipstick::fem
                               const std::vector<Eigen::VectorXd> &u,
                               const double                        t)
   {
-    std::vector<Eigen::MatrixXd> sums;
+    std::vector<Eigen::MatrixXd>                     sums;
+    std::vector<std::unique_ptr<PatchRecovery<dim>>> patches(u.size());
     collectively(mesh.comm, [&] { // a formula of the temperature may give no number on one rank alone
       for (unsigned int p = 0; p < u.size(); ++p)
-        sums.push_back(weighted_stress(Subdomain<dim>(scene, mesh, spaces, p, t), u[p]));
+        {
+          if (needs_patches(spaces.of(p)))
+            patches[p] = std::make_unique<PatchRecovery<dim>>(*spaces.dof_handlers[p]);
+          sums.push_back(weighted_stress(Subdomain<dim>(scene, mesh, spaces, p, t), u[p], patches[p].get()));
+        }
     });
-    add_copies<dim>(constraints, sums);
+    std::vector<Eigen::MatrixXd *> of_means, of_patches;
+    for (unsigned int p = 0; p < u.size(); ++p)
+      {
+        of_means.push_back(&sums[p]);
+        of_patches.push_back(patches[p] ? &patches[p]->sums : nullptr);
+      }
+    add_copies<dim>(constraints, of_means, n_components + 1);
+    const bool any_patches =
+      std::any_of(patches.begin(), patches.end(), [](const auto &patch) { return patch != nullptr; });
+    if (dealii::Utilities::MPI::max(any_patches ? 1 : 0, mesh.comm) > 0)
+      add_copies<dim>(constraints, of_patches, PatchRecovery<dim>::n_sums);
 
     StressResult result;
     collectively(mesh.comm, [&] {
@@ -272,8 +315,9 @@ namespace slipstick::fem
         {
           const Subdomain<dim> on(scene, mesh, spaces, p, t);
           SubdomainStress      stress;
-          stress.nodal = nodal_stress(on, sums[p]);
+          stress.nodal = nodal_stress(on, sums[p], patches[p].get());
           sums[p].resize(0, 0);
+          patches[p].reset();
           for (unsigned int i = 0; i < stress.nodal.rows(); ++i)
             {
               const auto s         = stress.nodal.row(i);

@@ -12,6 +12,10 @@ namespace slipstick::scene
   {
     const unsigned int max_iterations = 1000000000;
 
+    // Tolerance = auto goes on to here where no estimate of the discretisation error ends it before, as in scenes whose
+    // solution lies in the space of the elements.
+    constexpr double least_automatic_tolerance = 1e-8;
+
     void declare_smalbe(dealii::ParameterHandler &prm, qp::SmalbeOptions &smalbe)
     {
       using qp::Expansion;
@@ -66,6 +70,27 @@ namespace slipstick::scene
                 max_iterations,
                 "MPGP steps per outer iteration");
       prm.leave_subsection();
+    }
+
+    void declare_tolerance(dealii::ParameterHandler &prm, SolverOptions &solver)
+    {
+      const Interval interval = Interval::inside(0, 1);
+      add_entry(
+        prm,
+        "Tolerance",
+        number_text(solver.tolerance),
+        "-",
+        "eps: projected gradient and G x relative to P d; auto: ends when the algebraic error is a small part of the "
+        "estimated discretisation error, both in the energy norm",
+        "auto, or a number" + interval.text(),
+        [interval](const std::string &text) {
+          const auto number = parse_number(text);
+          return text == "auto" || (number && interval.contains(*number));
+        },
+        [&solver](const std::string &text) {
+          solver.stops_at_discretization_error = text == "auto";
+          solver.tolerance                     = text == "auto" ? least_automatic_tolerance : *parse_number(text);
+        });
     }
 
     void declare_dual(dealii::ParameterHandler &prm, tfeti::DualOptions &dual)
@@ -175,12 +200,7 @@ namespace slipstick::scene
                          {"semismooth newton", Algorithm::semismooth_newton},
                          {"pcg", Algorithm::pcg}},
       "smalbe, semismooth newton: scenes with contact; pcg: linear scenes; auto: semismooth newton or pcg, as fits");
-    add_number(prm,
-               "Tolerance",
-               solver.tolerance,
-               "-",
-               Interval::inside(0, 1),
-               "eps: projected gradient and G x relative to P d");
+    declare_tolerance(prm, solver);
     add_flag(prm,
              "Prune contact",
              solver.prune_contact,

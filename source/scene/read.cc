@@ -1,4 +1,5 @@
 #include <slipstick/base/nearest_name.h>
+#include <slipstick/scene/accuracy.h>
 #include <slipstick/scene/checks.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/listing.h>
@@ -116,6 +117,14 @@ namespace slipstick::scene
                  Choices<PlaneState>{{"plane stress", PlaneState::plane_stress},
                                      {"plane strain", PlaneState::plane_strain}},
                  "state of every body");
+      add_choice(prm,
+                 "Accuracy",
+                 options.accuracy,
+                 Choices<Accuracy>{{"draft", Accuracy::draft},
+                                   {"engineering", Accuracy::engineering},
+                                   {"reference", Accuracy::reference}},
+                 "preset of Tolerance, Operator precision and Prune contact of the solver, Friction/Tolerance and "
+                 "Discretization/Degree; each of them that the scene sets itself wins");
       for (const NamedKind &kind : named_kinds)
         add_entry(
           prm,
@@ -184,6 +193,7 @@ namespace slipstick::scene
       names[kind.list] = parameters.names(kind);
 
     SceneParameters<2> declared(names);
+    apply_accuracy(parameters, declared.prm);
     parameters.apply(declared.prm);
     Scene<2> scene = declared.read(parameters);
     scene.name     = std::filesystem::path(file).stem().string();

@@ -9,6 +9,34 @@ namespace slipstick::tfeti
     return Face(*this, free, ties);
   }
 
+  double DualProblem::jump_energy(const DistributedVector &r, const std::vector<bool> &held) const
+  {
+    const std::unique_ptr<RowWeights> own_weights =
+      weights ? nullptr : std::make_unique<RowWeights>(systems, gluing, rows.rows, comm);
+    const RowWeights::Inverse inverse(weights ? *weights : *own_weights, held);
+    DistributedVector         weighted = zero(), source = F->ghosted();
+    inverse.apply(r, weighted);
+    F->import(weighted, source);
+    double          energy = 0;
+    Eigen::VectorXd force;
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        const Eigen::VectorXd move = F->scatter(p, source).cwiseQuotient(systems[p]->touched_diagonal());
+        if (preconditioner)
+          {
+            preconditioner->apply(p, move, force);
+            energy += move.dot(force);
+            continue;
+          }
+        const auto     &touched = systems[p]->touched();
+        Eigen::VectorXd u       = Eigen::VectorXd::Zero(systems[p]->n_unknowns());
+        for (unsigned int k = 0; k < touched.size(); ++k)
+          u[touched[k]] = move[k];
+        energy += u.dot(systems[p]->apply_stiffness(u));
+      }
+    return reduce.sum(std::array<double, 1>{{energy}})[0];
+  }
+
   DualProblem::Face::Face(const DualProblem          &problem_,
                           const std::vector<bool>    &free_,
                           const std::vector<qp::Tie> &ties_)

@@ -17,7 +17,8 @@ import tempfile
 SOURCE = pathlib.Path(os.environ.get('SLIPSTICK_SOURCE_DIR', pathlib.Path(__file__).resolve().parents[2]))
 PROGRAM = os.environ.get('SLIPSTICK', str(SOURCE / 'build' / 'slipstick'))
 MPIEXEC = os.environ.get('MPIEXEC', 'mpirun')
-TIME_LIMIT = 60  # seconds for one run: all of them end within a few, also on a busy machine; a hang is a failure
+# Seconds for one run: all of them end within a few, also on a busy machine; a hang is a failure. Sanitizers take longer.
+TIME_LIMIT = float(os.environ.get('SLIPSTICK_TIME_LIMIT', 60))
 
 WORK = pathlib.Path(tempfile.mkdtemp(prefix='slipstick-cases-'))
 atexit.register(shutil.rmtree, WORK, ignore_errors=True)

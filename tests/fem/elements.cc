@@ -443,8 +443,7 @@ TEST(Elements, energy_norm_converges_at_the_rate_of_the_degree)
       double       estimate;
       const double coarse = energy_error(kind, 8, estimate), fine = energy_error(kind, 16, estimate);
       EXPECT_NEAR(std::log2(coarse / fine), kind.degree, 0.1) << name(kind);
-      // averages are not superconvergent on triangles of degree 2: the estimate stays a third too low there
-      EXPECT_NEAR(estimate / fine, kind.cells == Cells::triangles && kind.degree == 2 ? 0.66 : 1, 0.2) << name(kind);
+      EXPECT_NEAR(estimate / fine, 1, 0.2) << name(kind);
     }
 }
 

@@ -322,6 +322,43 @@ TEST(SemismoothNewton, differentiated_bounds_lead_where_followed_ones_do)
   EXPECT_GT(n_compared, 40u);
 }
 
+TEST(SemismoothNewton, ends_where_the_caller_accepts_and_returns_what_it_saw)
+{
+  unsigned int n_ended = 0;
+  for (unsigned int seed = 0; seed < 20; ++seed)
+    {
+      const Contact        p(seed, 6, 0.3, 0.);
+      unsigned int         n_asked = 0;
+      std::vector<Vector>  asked;
+      NewtonOptions        options;
+      Acceptance<Vector>   accepts = [&](const Vector &x, const Vector &) {
+        asked.push_back(x);
+        return ++n_asked == 2;
+      };
+      const auto found = semismooth_newton(p.problem,
+                                           1.,
+                                           p.d,
+                                           p.box,
+                                           NewtonStart<Vector>{Vector(p.d.size(), 0.)},
+                                           Goal(1e-14, 1.),
+                                           options,
+                                           {},
+                                           {},
+                                           {},
+                                           p.coupled,
+                                           accepts);
+      if (found.status != Status::converged || n_asked < 2)
+        continue;
+      ++n_ended;
+      EXPECT_EQ(n_asked, 2u) << seed;
+      EXPECT_EQ(found.counts.outer_iterations, 2u) << seed;
+      for (std::size_t i = 0; i < found.x.size(); ++i)
+        if (found.free[i] && i % 3 == 0) // entries with bounds are moved to them
+          EXPECT_EQ(found.x[i], asked.back()[i]) << seed;
+    }
+  EXPECT_GT(n_ended, 10u);
+}
+
 TEST(SemismoothNewton, the_gradient_of_the_solution_saves_the_search_for_its_set)
 {
   const Contact p(3, 6, 0.3, 0.);

@@ -72,7 +72,7 @@ TEST(bad_input, unknown_words_are_refused_with_what_is_available)
   refused({"Contact circle/Discretization=dual"}, {"'dual'", "auto, node to node, mortar"});
   refused({"Contact circle/Slip bound acts on=open"}, {"'open'", "boundary, contact"});
   refused({"Contact search/Mode=on"}, {"'on'", "declared, automatic"});
-  refused({"Solver/Tolerance=auto"}, {"'auto'", "a number in (0, 1)"});
+  refused({"Solver/Tolerance=automatic"}, {"'automatic'", "auto, or a number in (0, 1)"});
   refused({"Body box/Shape=dics"}, {"'dics'", "available: rectangle, disc, half disc, ring, quarter ring, mesh", "did you mean 'disc'"});
   refused({"Obstacle disc/Shape=halfplane"}, {"'halfplane'", "circle, hole, half plane, polyline, function"});
 }

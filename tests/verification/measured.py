@@ -21,8 +21,14 @@ CHECKS = {'interface_jump': 1e-6, 'penetration': 1e-5, 'complementarity': 1e-5, 
           'force_balance': 1e-6, 'moment_balance': 1e-6}
 
 
+# Settings of every run, the last word; with them answers need not meet CHECKS (presets of Accuracy: doc/accuracy.md).
+OVERRIDES = {}
+
+
 def checked(case, overrides=None, ranks=2, vtu=False):
-    result = converged(case, {**({} if vtu else QUIET), **(overrides or {})}, ranks=ranks)
+    result = converged(case, {**({} if vtu else QUIET), **(overrides or {}), **OVERRIDES}, ranks=ranks)
+    if OVERRIDES:
+        return result
     for name, limit in CHECKS.items():
         value = result.summary['residuals'][name]
         if value is None or not value < limit:
@@ -33,7 +39,7 @@ def checked(case, overrides=None, ranks=2, vtu=False):
 def cost(result):
     summary = result.summary
     return {'unknowns': summary['problem']['primal_dofs'], 'products': summary['solver']['hessian_multiplications'],
-            'time': summary['time_s']['total']}
+            'time': summary['time_s']['total'], 'memory': summary['memory_mb']['peak_total']}
 
 
 def integral(f, nodes):

@@ -1,6 +1,8 @@
 """scripts/study on a small scene: its table, the sentence, going on after an interruption, closed forms, wrong input."""
 
 import csv
+import importlib.machinery
+import importlib.util
 import signal
 import subprocess
 import sys
@@ -9,10 +11,10 @@ import unittest
 
 import measured  # noqa: F401  the path of tests/cases
 import scenes
-from program import ENVIRONMENT, PROGRAM, SOURCE, WORK, new_path
+from program import ENVIRONMENT, PROGRAM, SOURCE, WORK, converged, new_path
 
 LADDER = ('--refinements', '0,1', '--degrees', '1,2', '--tolerances', '1e-2,1e-4', '--subdomains', 'auto,4', '--ranks', '1')
-RUNS = 2 * 2 * (2 + 1 + 1)  # and one more number of subdomains and algorithm for each mesh and degree
+RUNS = 2 * 2 * (2 + 1 + 1) + 2 * 3  # one more number of subdomains and algorithm for each mesh and degree; presets
 
 
 def case():
@@ -63,7 +65,12 @@ class Study(unittest.TestCase):
         self.assertEqual([row['time_s'] for row in found[:len(kept)]], [row['time_s'] for row in kept], 'solved again')
         self.assertEqual({row['status'] for row in found}, {'converged'})
         without = [row for row in found if not row['error']]
-        self.assertEqual([(row['refinements'], row['degree'], row['tolerance']) for row in without], [('1', '2', '0.0001')])
+        self.assertEqual([(row['refinements'], row['degree'], row['preset']) for row in without], [('1', '2', 'reference')])
+        presets = {(row['refinements'], row['preset']): (row['degree'], row['tolerance']) for row in found}
+        for refinements in '01':
+            self.assertEqual(presets[refinements, 'draft'], ('1', 'auto'))
+            self.assertEqual(presets[refinements, 'engineering'], ('1', '0.0001'))
+            self.assertEqual(presets[refinements, 'reference'], ('2', '1e-08'))
         reference = float(without[0]['strain_energy'])
         for row in found:
             if row['error']:
@@ -89,10 +96,28 @@ class Study(unittest.TestCase):
         self.assertIn('is of another scene', result.stderr)
         self.assertEqual(len(rows(directory)), RUNS)
 
+    def test_knobs_of_the_presets_are_those_of_the_program(self):
+        loader = importlib.machinery.SourceFileLoader('study_script', str(SOURCE / 'scripts' / 'study'))
+        script = importlib.util.module_from_spec(importlib.util.spec_from_loader('study_script', loader))
+        loader.exec_module(script)
+        for preset, knobs in script.PRESETS.items():
+            lines = converged(case(), {'Accuracy': preset}).directory.joinpath('parameters.prm').read_text().splitlines()
+            section, found = [], {}
+            for words in (line.split() for line in lines):
+                if words[:1] == ['subsection']:
+                    section.append(' '.join(words[1:]))
+                elif words == ['end']:
+                    section.pop()
+                elif words[:1] == ['set']:
+                    name, _, value = ' '.join(words[1:]).partition('=')
+                    found['/'.join([*section, name.strip()])] = value.strip()
+            self.assertEqual({name: found[name] for name in knobs}, knobs)
+            self.assertEqual(found['Accuracy'], preset)
+
     def test_closed_form_out_of_reach(self):
         directory = new_path('study')
         result = study(case(), '--refinements', '0', '--degrees', '1', '--tolerances', '1e-4', '--subdomains', 'auto',
-                       '--algorithms', 'auto', '--ranks', '1', '--reference', 'circle.max_pressure=1', '--output', directory)
+                       '--algorithms', 'auto', '--presets', '', '--ranks', '1', '--reference', 'circle.max_pressure=1', '--output', directory)
         self.assertEqual(result.returncode, 0, result.stderr)
         row, = rows(directory)
         self.assertAlmostEqual(float(row['error']) / abs(float(row['circle.max_pressure']) - 1), 1, delta=1e-3)
@@ -101,6 +126,7 @@ class Study(unittest.TestCase):
     def test_wrong_input(self):
         for arguments, message in ((('missing.prm',), 'is no file'), ((case(), '--degrees', '3'), 'out of range'),
                                    ((case(), '--reference', 'x'), 'KEY=VALUE'),
+                                   ((case(), '--presets', 'best'), 'draft, engineering, reference'),
                                    ((case(), '--quantity', 'nothing', '--ranks', '1', '--output', new_path('s')), 'unknown'),
                                    ((case(), '--set', 'Sover/Tolerance=1', '--ranks', '1', '--output', new_path('s')),
                                     'was refused')):

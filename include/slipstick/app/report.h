@@ -27,6 +27,9 @@ namespace slipstick::app
   double check_limit(const double tolerance);
   void   print_checks(const Log &log, const contact::Checks &checks, const double tolerance);
 
+  /// The tolerance of a solution: that of the options, or with Tolerance = auto the residual at which it was accepted.
+  double tolerance_of(const scene::SolverOptions &options, const contact::DualSolution &solution);
+
   /// Did the solver converge, and are all checks within the limit?
   bool passes(const contact::DualSolution &solution, const contact::Checks &checks, const double tolerance);
 

@@ -30,7 +30,8 @@ namespace slipstick::contact
     double nodal_equilibrium = 0; // largest K u - f + B'x, over the largest load, contact force or reaction of a node
     double force_balance     = 0; // worst body: loads + supports + contact
     double moment_balance    = 0;
-    double algebraic_error   = 0; // energy norm: root of |multipliers times violated constraints| over u'K u
+    double algebraic_error   = 0; // energy norm, from above: root of error_energy over u'K u
+    double error_energy      = 0; // DualProblem::jump_energy of all that u violates [N mm]
     double max_displacement  = 0; // magnitude [mm]
     double energy            = 0; // u'K u, twice the strain energy [N mm]
 

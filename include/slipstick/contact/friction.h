@@ -29,6 +29,12 @@ namespace slipstick::contact
     double                   bound_change        = 0; // their last relative change
   };
 
+  /// Asked about iterates, of which multipliers (within their bounds), slip bounds and free rows are filled: is the answer
+  /// accurate enough? @p residual_energy: energy norm of what closes the jumps before the multipliers were moved to their
+  /// bounds [sqrt(N mm)], a first idea of the algebraic error; contact::check tells it from the displacement. The same on
+  /// every process.
+  using AccuracyTest = std::function<bool(const DualSolution &iterate, const double residual_energy)>;
+
   /// The options with `auto` resolved: pcg for linear scenes, semismooth Newton with the Dirichlet preconditioner for
   /// contact; no preconditioner where there is no use for one.
   template <int dim>
@@ -46,13 +52,16 @@ namespace slipstick::contact
   /// Bounds that depend on the pressure are followed until their relative change is at most that of @p friction, damped
   /// when they cycle. Non-convergence is in the status. Collective.
   /// @param start of the load step before (multipliers and reference), if any.
+  /// @param is_accurate ends the solve before the tolerance is reached; not asked while bounds that depend on the pressure
+  /// are followed in an outer loop.
   /// @throws NoEquilibrium naming body and motion when no multipliers that the law admits balance the loads.
   DualSolution solve(const tfeti::DualProblem     &dual,
                      const SlipLaw                &law,
                      const scene::SolverOptions   &options,
                      const scene::FrictionOptions &friction,
                      const ProgressObserver       &observer,
-                     const DualSolution           *start = nullptr);
+                     const DualSolution           *start       = nullptr,
+                     const AccuracyTest           &is_accurate = {});
 
   /// The same with given slip bounds.
   DualSolution solve(const tfeti::DualProblem   &dual,

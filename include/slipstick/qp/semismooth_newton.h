@@ -55,6 +55,11 @@ namespace slipstick::qp
     std::optional<Vector> gradient = std::nullopt;
   };
 
+  /// Ends the method before its goal is reached: called with x and its gradient F x - d + G'a after every solve of a set,
+  /// on every process with the same result.
+  template <typename Vector>
+  using Acceptance = std::function<bool(const Vector &x, const Vector &gradient)>;
+
   template <typename Vector>
   struct NewtonResult
   {
@@ -81,7 +86,8 @@ namespace slipstick::qp
                        const PcpgOptions         &pcpg_options_,
                        const Observer            &observer_,
                        const BoundUpdate<Vector> &bounds_,
-                       const CoupledBounds       &coupled_)
+                       const CoupledBounds       &coupled_,
+                       const Acceptance<Vector>  &accepts_)
         : problem(problem_)
         , norm(norm_)
         , d(d_)
@@ -91,6 +97,7 @@ namespace slipstick::qp
         , observer(observer_)
         , bounds(bounds_)
         , coupled(coupled_)
+        , accepts(accepts_)
         , moving_box(coupled_.are_coupled ? std::make_optional(box_) : std::nullopt)
         , x(std::move(start.x))
         , Fx(zero_like(d))
@@ -131,6 +138,8 @@ namespace slipstick::qp
             if (!(residual < HUGE_VAL))
               return Status::stagnated;
             if (!bounds.update && residual + violation <= eps)
+              return Status::converged;
+            if (accepts && !bounds.update && is_accepted())
               return Status::converged;
             if (changed == 0 &&
                 residual <= std::max(eps, std::min(options.first_forcing, options.bound_accuracy * bound_change)))
@@ -335,6 +344,17 @@ namespace slipstick::qp
             xi[i] = u[i];
       }
 
+      // Asks with entries on their bounds to the last bit.
+      bool is_accepted()
+      {
+        Vector before = x;
+        put_on_bounds();
+        if (accepts(x, g))
+          return true;
+        x = std::move(before);
+        return false;
+      }
+
       // |gP|, and how far x is out of its bounds: as much, at most, does |gP| rise when x is moved there.
       void measure()
       {
@@ -442,6 +462,7 @@ namespace slipstick::qp
       const Observer            &observer;
       const BoundUpdate<Vector> &bounds;
       const CoupledBounds       &coupled;
+      const Acceptance<Vector>  &accepts;
 
       std::optional<Box<Vector>> moving_box; // with coupled bounds
 
@@ -466,7 +487,8 @@ namespace slipstick::qp
 
   /// Minimise 1/2 x'Fx - x'd over the box and G x = e.
   /// `norm` is |PFP|; goal.reference must be given (|P(d - F x~)|). Converged: x is within its bounds, |gP| and |PFP| |G x - e| are
-  /// at most goal.tolerance times goal.reference (with bounds followed in an outer loop the active set stands besides).
+  /// at most goal.tolerance times goal.reference (with bounds followed in an outer loop the active set stands besides),
+  /// or @p accepts said so (it is not asked while bounds are followed).
   /// status: infeasible if the free entries of some set leave the equalities singular, stagnated if neither residual nor
   /// changes of the set fall any more; MPGP with SMALBE goes on from there.
   template <typename Vector, typename Problem>
@@ -480,7 +502,8 @@ namespace slipstick::qp
                                          const PcpgOptions         &pcpg_options = {},
                                          const Observer            &observer     = {},
                                          const BoundUpdate<Vector> &bounds       = {},
-                                         const CoupledBounds       &coupled      = {})
+                                         const CoupledBounds       &coupled      = {},
+                                         const Acceptance<Vector>  &accepts      = {})
   {
     return detail::SemismoothNewton<Vector, Problem>(problem,
                                                      norm,
@@ -492,7 +515,8 @@ namespace slipstick::qp
                                                      pcpg_options,
                                                      observer,
                                                      bounds,
-                                                     coupled)
+                                                     coupled,
+                                                     accepts)
       .run();
   }
 } // namespace slipstick::qp

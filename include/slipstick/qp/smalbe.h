@@ -5,6 +5,8 @@
 #include <slipstick/qp/augmented_operator.h>
 #include <slipstick/qp/mpgp.h>
 
+#include <functional>
+
 namespace slipstick::qp
 {
   /// Where SMALBE starts. shift = G'mu, the multiplier of the equalities in the range of G', if known.
@@ -35,14 +37,15 @@ namespace slipstick::qp
     class Smalbe
     {
     public:
-      Smalbe(const Problem       &problem_,
-             const double         norm_,
-             const Vector        &b,
-             const Box<Vector>   &box_,
-             SmalbeStart<Vector>  start,
-             const Goal          &goal,
-             const SmalbeOptions &options_,
-             const Observer      &observer_)
+      Smalbe(const Problem                                             &problem_,
+             const double                                               norm_,
+             const Vector                                              &b,
+             const Box<Vector>                                         &box_,
+             SmalbeStart<Vector>                                        start,
+             const Goal                                                &goal,
+             const SmalbeOptions                                       &options_,
+             const Observer                                            &observer_,
+             const std::function<bool(const Vector &, const Vector &)> &accepts_)
         : problem(problem_)
         , reduction(problem.reduction())
         , norm(norm_)
@@ -50,6 +53,7 @@ namespace slipstick::qp
         , box(box_)
         , options(options_)
         , observer(observer_)
+        , accepts(accepts_)
         , A(problem, rho, b)
         , x(std::move(start.x))
         , shift(start.shift ? std::move(*start.shift) : zero_like(b))
@@ -92,6 +96,8 @@ namespace slipstick::qp
             if (inner == Status::infeasible)
               return inner;
             if (gP <= target && feasibility <= target)
+              return Status::converged;
+            if (accepts && accepts(x, *g))
               return Status::converged;
             if (inner == Status::iteration_limit || counts.outer_iterations >= options.max_outer_iterations)
               return Status::iteration_limit;
@@ -207,11 +213,14 @@ namespace slipstick::qp
       const Problem                                        &problem;
       decltype(std::declval<const Problem &>().reduction()) reduction;
 
-      const double                       norm;
-      double                             rho;
-      const Box<Vector>                 &box;
-      const SmalbeOptions               &options;
-      const Observer                    &observer;
+      const double         norm;
+      double               rho;
+      const Box<Vector>   &box;
+      const SmalbeOptions &options;
+      const Observer      &observer;
+
+      const std::function<bool(const Vector &, const Vector &)> &accepts;
+
       AugmentedOperator<Vector, Problem> A;
 
       Vector                x;
@@ -228,19 +237,22 @@ namespace slipstick::qp
   /// Minimise 1/2 x'PFPx - x'b, b in the range of P, over the box and Q x = 0, until |gP| and |PFP| |Gx| are at most
   /// goal.tolerance times goal.reference (default |b|; if that is 0, |PFP| times |start|). `norm` is |PFP|. A start
   /// outside of the box is projected on it; from 0 nothing is multiplied before the first step. The observer is called
-  /// after every outer step, on every process.
+  /// after every outer step, on every process; so is @p accepts, with x and the gradient, which may end the solve
+  /// before its goal (with the same answer on every process).
   /// status: infeasible if bounds contradict each other (x is then of no use), or them the equalities (provably; if in
   /// doubt the status is stagnated), or if the objective is unbounded from below.
   template <typename Vector, typename Problem>
-  SmalbeResult<Vector> smalbe(const Problem       &problem,
-                              const double         norm,
-                              const Vector        &b,
-                              const Box<Vector>   &box,
-                              SmalbeStart<Vector>  start,
-                              const Goal          &goal,
-                              const SmalbeOptions &options  = {},
-                              const Observer      &observer = {})
+  SmalbeResult<Vector> smalbe(const Problem                                                      &problem,
+                              const double                                                        norm,
+                              const Vector                                                       &b,
+                              const Box<Vector>                                                  &box,
+                              SmalbeStart<Vector>                                                 start,
+                              const Goal                                                         &goal,
+                              const SmalbeOptions                                                &options  = {},
+                              const Observer                                                     &observer = {},
+                              const std::function<bool(const Vector &x, const Vector &gradient)> &accepts  = {})
   {
-    return detail::Smalbe<Vector, Problem>(problem, norm, b, box, std::move(start), goal, options, observer).run();
+    return detail::Smalbe<Vector, Problem>(problem, norm, b, box, std::move(start), goal, options, observer, accepts)
+      .run();
   }
 } // namespace slipstick::qp

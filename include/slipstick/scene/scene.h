@@ -256,6 +256,14 @@ namespace slipstick::scene
     unsigned int refinements = 0; // extra uniform refinements
   };
 
+  /// Presets over the single knobs of accuracy, see source/scene/accuracy.cc.
+  enum class Accuracy
+  {
+    draft,
+    engineering,
+    reference
+  };
+
   enum class Algorithm
   {
     automatic,
@@ -266,8 +274,9 @@ namespace slipstick::scene
 
   struct SolverOptions
   {
-    Algorithm          algorithm = Algorithm::automatic;
-    double             tolerance = 1e-4; // relative, of |gP| and |G x| to |P d|; the paper's eps
+    Algorithm          algorithm                     = Algorithm::automatic;
+    double             tolerance                     = 1e-4;  // relative, of |gP| and |G x| to |P d|; the paper's eps
+    bool               stops_at_discretization_error = false; // Tolerance = auto; `tolerance` is then the least one
     qp::SmalbeOptions  smalbe;
     qp::NewtonOptions  newton;
     qp::PcpgOptions    pcpg;
@@ -286,6 +295,7 @@ namespace slipstick::scene
     std::string                              name;  // file name of the .prm without ending
     std::string                              title; // one line for people
     PlaneState                               plane_state = PlaneState::plane_stress;
+    Accuracy                                 accuracy    = Accuracy::engineering;
     std::vector<Material>                    materials;
     std::vector<Body<dim>>                   bodies;
     std::vector<PrescribedDisplacement<dim>> supports;

@@ -66,6 +66,12 @@ namespace slipstick::tfeti
     /// Norm of the part of a residual (such as d - F x over norm()) that multipliers can change, with its weights.
     double residual_norm(const DistributedVector &r) const;
 
+    /// Squared energy norm of the least displacements, nearly, that close jumps r (owned rows) [mm], those of rows without
+    /// a jump held where @p held says so: r'M r [N mm], M the preconditioner, without one the lumped preconditioner (which
+    /// gives more). With r = B u - c of displacements u = K+(f - B'x) + R a it bounds the squared energy norm of their
+    /// error from above, up to what the scaling of M is worth. Collective.
+    double jump_energy(const DistributedVector &r, const std::vector<bool> &held) const;
+
     /// The problem on the free rows (owned ones), the others held, or tied to free ones. Collective.
     Face face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties = {}) const;
 

@@ -1,0 +1,60 @@
+#include <slipstick/base/nearest_name.h>
+#include <slipstick/base/text.h>
+#include <slipstick/scene/accuracy.h>
+
+#include <algorithm>
+
+namespace slipstick::scene
+{
+  namespace
+  {
+    using Knobs = std::vector<std::pair<std::string, std::string>>;
+
+    const std::string name = "Accuracy";
+
+    // What each delivers on cases with known answers is measured: doc/accuracy.md. `engineering` is the default of every
+    // knob. The preconditioner's precision is none of them: no answer depends on it.
+    const std::vector<std::pair<std::string, Knobs>> presets = {{"draft",
+                                                                 {{"Solver/Tolerance", "auto"},
+                                                                  {"Solver/Operator precision", "single"},
+                                                                  {"Solver/Prune contact", "true"},
+                                                                  {"Friction/Tolerance", "1e-3"},
+                                                                  {"Discretization/Degree", "1"}}},
+                                                                {"engineering",
+                                                                 {{"Solver/Tolerance", "0.0001"},
+                                                                  {"Solver/Operator precision", "double"},
+                                                                  {"Solver/Prune contact", "true"},
+                                                                  {"Friction/Tolerance", "1e-06"},
+                                                                  {"Discretization/Degree", "1"}}},
+                                                                {"reference",
+                                                                 {{"Solver/Tolerance", "1e-8"},
+                                                                  {"Solver/Operator precision", "double"},
+                                                                  {"Solver/Prune contact", "false"},
+                                                                  {"Friction/Tolerance", "1e-8"},
+                                                                  {"Discretization/Degree", "2"}}}};
+  } // namespace
+
+  std::vector<std::string> accuracy_names()
+  {
+    std::vector<std::string> names;
+    for (const auto &preset : presets)
+      names.push_back(preset.first);
+    return names;
+  }
+
+  Knobs knobs_of_accuracy(const std::string &preset)
+  {
+    for (const auto &[word, knobs] : presets)
+      if (word == preset)
+        return knobs;
+    return {};
+  }
+
+  void apply_accuracy(const Parameters &parameters, dealii::ParameterHandler &prm)
+  {
+    const auto preset = parameters.value(name);
+    if (preset) // a word that is none is refused by apply()
+      for (const auto &[path, value] : knobs_of_accuracy(*preset))
+        set_value(prm, path, value);
+  }
+} // namespace slipstick::scene

@@ -1,0 +1,146 @@
+// The algebraic error of iterates in the energy norm, and solves that end when it is small enough.
+#include "solved.h"
+
+#include <slipstick/contact/checks.h>
+
+using namespace slipstick;
+using namespace slipstick::test;
+
+namespace
+{
+  enum class Kind
+  {
+    linear,
+    tresca,
+    coulomb
+  };
+
+  Scene pressed_box(const Kind kind, const scene::Algorithm algorithm, const Cut &how)
+  {
+    Scene scene = cut(kind == Kind::linear ? box(12) : box_on_circle(12, kind == Kind::tresca ? "60" : ""), how);
+    if (kind == Kind::linear)
+      {
+        support(scene, 0, "left", "0", "0");
+        load(scene, 0, "right", "40", "-30");
+      }
+    if (kind == Kind::coulomb)
+      {
+        scene.contacts[0].law                  = scene::ContactLaw::coulomb;
+        scene.contacts[0].friction_coefficient = field("0.3");
+      }
+    scene.solver.algorithm                     = algorithm;
+    scene.solver.tolerance                     = 1e-10;
+    scene.solver.stops_at_discretization_error = true; // SMALBE keeps the preconditioner for the error, too
+    scene.solver.dual.preconditioner_precision = tfeti::Precision::double_precision;
+    return scene;
+  }
+
+  double energy(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
+  {
+    double sum = 0;
+    for (unsigned int p = 0; p < u.size(); ++p)
+      sum += u[p].dot(dual.subdomains()[p]->apply_stiffness(u[p]));
+    return dealii::Utilities::MPI::sum(sum, dual.communicator());
+  }
+
+  struct Problem
+  {
+    explicit Problem(const Scene &scene_)
+      : scene(scene_)
+      , options(contact::resolved_options(scene))
+    {
+      scene.solver = options;
+      torn         = std::make_unique<Torn>(scene, MPI_COMM_WORLD);
+      dual         = torn->dual();
+    }
+
+    contact::DualSolution solve(const contact::AccuracyTest &is_accurate) const
+    {
+      return contact::solve(*dual,
+                            contact::SlipLaw(scene, *dual, 1.),
+                            options,
+                            scene.friction,
+                            {},
+                            nullptr,
+                            is_accurate);
+    }
+
+    /// Estimate of the algebraic error.
+    double error(const contact::DualSolution &iterate) const
+    {
+      const auto recovery = dual->recover(iterate.multipliers, iterate.free);
+      return std::sqrt(contact::check(*dual, recovery.multipliers, recovery.u, iterate.slip_bound, iterate.free, 1)
+                         .checks.error_energy);
+    }
+
+    std::vector<Eigen::VectorXd> recovered(const contact::DualSolution &solution) const
+    {
+      return dual->recover(solution.multipliers, solution.free).u;
+    }
+
+    Scene                               scene;
+    scene::SolverOptions                options;
+    std::unique_ptr<Torn>               torn;
+    std::unique_ptr<tfeti::DualProblem> dual;
+  };
+
+  std::vector<Eigen::VectorXd> difference(const std::vector<Eigen::VectorXd> &a, const std::vector<Eigen::VectorXd> &b)
+  {
+    std::vector<Eigen::VectorXd> result;
+    for (unsigned int p = 0; p < a.size(); ++p)
+      result.push_back(a[p] - b[p]);
+    return result;
+  }
+
+  const std::vector<std::pair<Kind, scene::Algorithm>> solvers = {{Kind::linear, scene::Algorithm::pcg},
+                                                                  {Kind::tresca, scene::Algorithm::semismooth_newton},
+                                                                  {Kind::tresca, scene::Algorithm::smalbe},
+                                                                  {Kind::coulomb, scene::Algorithm::semismooth_newton}};
+} // namespace
+
+TEST(AlgebraicError, is_estimated_from_above_and_not_by_far)
+{
+  for (const auto &[kind, algorithm] : solvers)
+    for (const Cut &how : {blocks(3), metis(5)})
+      {
+        SCOPED_TRACE("kind " + std::to_string(int(kind)) + ", algorithm " + std::to_string(int(algorithm)) + ", cut " +
+                     std::to_string(how.n));
+        const Problem problem(pressed_box(kind, algorithm, how));
+        const auto    exact = problem.recovered(problem.solve({}));
+        const double  total = energy(*problem.dual, exact);
+        unsigned int  n     = 0;
+        double        sum   = 0;
+        problem.solve([&](const contact::DualSolution &iterate, const double) {
+          const double true_error = std::sqrt(energy(*problem.dual, difference(problem.recovered(iterate), exact)));
+          const double estimate   = problem.error(iterate);
+          if (true_error > 1e-6 * std::sqrt(total))
+            {
+              EXPECT_LT(true_error, 1.02 * estimate);
+              EXPECT_LT(estimate, 20 * true_error);
+              sum += std::log(estimate / true_error);
+              ++n;
+            }
+          return false;
+        });
+        EXPECT_GT(n, 2u);
+        EXPECT_LT(std::exp(sum / n), 4) << "mean effectivity";
+      }
+}
+
+TEST(AlgebraicError, ends_a_solve_as_soon_as_it_is_small_enough)
+{
+  for (const auto &[kind, algorithm] : solvers)
+    {
+      SCOPED_TRACE("kind " + std::to_string(int(kind)) + ", algorithm " + std::to_string(int(algorithm)));
+      const Problem problem(pressed_box(kind, algorithm, blocks(3)));
+      const auto    fine   = problem.solve({});
+      const auto    exact  = problem.recovered(fine);
+      const double  limit  = 0.01 * std::sqrt(energy(*problem.dual, exact));
+      const auto    coarse = problem.solve(
+        [&](const contact::DualSolution &iterate, const double) { return problem.error(iterate) <= limit; });
+      EXPECT_EQ(coarse.status, qp::Status::converged);
+      EXPECT_LE(std::sqrt(energy(*problem.dual, difference(problem.recovered(coarse), exact))), 1.02 * limit);
+      EXPECT_LT(coarse.counts.hessian_multiplications, 0.7 * fine.counts.hessian_multiplications);
+      EXPECT_EQ(coarse.fallbacks, 0u);
+    }
+}
