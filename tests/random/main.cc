@@ -1,0 +1,388 @@
+// Random scenes against an independent dense solver.
+//
+//   test_random [--scenes N] [--first SEED] [--verbose] [--keep DIRECTORY]
+//
+// Scenes SEED ... SEED + N - 1 (default: 0 ... 299) are made (scenes.h), each is solved by slipstick in this process with two
+// decompositions and both algorithms, files and all, and by DenseSolver on the matrices of the untorn bodies. Every run
+// must agree with it: displacement and contact forces to 1e-6 (where forces are not unique: their sums at every
+// node), or end with the diagnosis that the dense solver comes to by itself. Where the dense solver found another solution
+// (Coulomb) or none, slipstick's answer must keep all conditions of the law, checked by the dense solver's matrices.
+// --verbose: a line a run; --keep: writes the scenes (.prm, .msh) there, to run them with slipstick.
+// Ends with status 1 when a run disagrees.
+#include "assembled.h"
+#include "dense_solver.h"
+#include "run.h"
+#include "scenes.h"
+
+#include <slipstick/scene/read.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <Tpetra_Core.hpp>
+
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
+
+namespace
+{
+  using namespace slipstick;
+  using namespace slipstick::random;
+
+  // Displacements and forces agree to this, relative to the largest.
+  constexpr double agreement = 1e-6;
+
+  struct Options
+  {
+    unsigned int scenes = 300, first = 0;
+    bool         verbose = false;
+    std::string  directory;
+  };
+
+  /// What all runs of the scenes of one class came to.
+  struct Tally
+  {
+    unsigned int       scenes = 0, agreed = 0, diagnosed = 0, another_solution = 0, not_unique = 0, undetermined = 0, failed = 0;
+    unsigned long long multiplications[2] = {0, 0}; // by algorithm
+    double             displacement = 0, force = 0;  // largest differences of those that agreed
+  };
+
+  enum class Verdict
+  {
+    agreed,
+    diagnosed,        // alike
+    another_solution, // Coulomb: another than the dense solver's, or it found none; conditions hold
+    undetermined,     // several positions: slipstick says so, or gives one that keeps all conditions
+    wrong,            // converged with a wrong answer
+    failed            // another diagnosis
+  };
+
+  const char *name_of(const Verdict verdict)
+  {
+    switch (verdict)
+      {
+        case Verdict::agreed:
+          return "agreed";
+        case Verdict::diagnosed:
+          return "diagnosed alike";
+        case Verdict::another_solution:
+          return "another solution";
+        case Verdict::undetermined:
+          return "undetermined";
+        case Verdict::wrong:
+          return "WRONG ANSWER";
+        default:
+          return "FAILED";
+      }
+  }
+
+  const char *name_of(const Outcome outcome)
+  {
+    switch (outcome)
+      {
+        case Outcome::solved:
+          return "solved";
+        case Outcome::infeasible:
+          return "infeasible";
+        case Outcome::loose:
+          return "loose";
+        default:
+          return "unsolved";
+      }
+  }
+
+  struct Comparison
+  {
+    Verdict   verdict      = Verdict::failed;
+    double    displacement = 0, force = 0;
+    Violation violation;
+  };
+
+  double largest(const Eigen::VectorXd &v)
+  {
+    return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.;
+  }
+
+  Comparison compare(const Problem &problem, const DenseSolver &dense, const DenseSolution &expected, const RunResult &found)
+  {
+    Comparison result;
+    if (found.status == ExitStatus::no_equilibrium)
+      {
+        if (expected.outcome == Outcome::infeasible || expected.outcome == Outcome::loose)
+          result.verdict = Verdict::diagnosed;
+        else if (expected.outcome == Outcome::solved && !expected.position_unique)
+          result.verdict = Verdict::undetermined;
+        return result;
+      }
+    if (found.status != ExitStatus::converged)
+      {
+        if (found.status == ExitStatus::not_converged)
+          result.violation = dense.check(found.x, found.u);
+        return result;
+      }
+    result.violation   = dense.check(found.x, found.u);
+    const bool is_one = result.violation.worst() < agreement && found.copies_differ < agreement;
+    if (expected.outcome != Outcome::solved)
+      {
+        result.verdict = !is_one                                ? Verdict::wrong :
+                         expected.outcome == Outcome::unsolved ? Verdict::another_solution :
+                         expected.outcome == Outcome::loose    ? Verdict::undetermined :
+                                                                 Verdict::wrong;
+        return result;
+      }
+    Eigen::VectorXd difference = found.u - expected.u;
+    if (!expected.position_unique)
+      difference -= expected.free_motions * expected.free_motions.householderQr().solve(difference);
+    const double least_length = 1e-13 * problem.size;
+    result.displacement       = largest(difference) / std::max(largest(expected.u), least_length);
+    const auto nodal          = [&](const Eigen::VectorXd &x) { return dense.nodal_forces(x); };
+    const double size         = std::max(largest(expected.x), 1e-13 * largest(problem.bodies[0].K.diagonal()) * problem.size);
+    result.force = expected.forces_unique ? largest(found.x - expected.x) / size :
+                                            largest(nodal(found.x) - nodal(expected.x)) / size;
+    const bool is_same = result.displacement < agreement && result.force < agreement;
+    result.verdict     = is_same && is_one                              ? Verdict::agreed :
+                         is_one && dense.has_coulomb()                  ? Verdict::another_solution :
+                                                                          Verdict::wrong;
+    return result;
+  }
+
+  class Test
+  {
+  public:
+    explicit Test(const Options &options_)
+      : options(options_)
+      , directory(options.directory.empty() ?
+                    (std::filesystem::temp_directory_path() / ("slipstick_random_" + std::to_string(::getpid()))).string() :
+                    options.directory)
+    {
+      std::filesystem::create_directories(directory);
+    }
+
+    ~Test()
+    {
+      std::error_code ignored;
+      if (options.directory.empty())
+        std::filesystem::remove_all(directory, ignored);
+    }
+
+    int run()
+    {
+      for (unsigned int seed = options.first; seed < options.first + options.scenes; ++seed)
+        one(seed);
+      return report();
+    }
+
+  private:
+    void one(const unsigned int seed)
+    {
+      const auto        generated = generate(seed);
+      const std::string file      = directory + "/scene_" + std::to_string(seed) + ".prm";
+      std::ofstream(file) << generated.prm;
+      for (const auto &[name, content] : generated.meshes)
+        std::ofstream(directory + "/" + name) << content;
+      std::vector<Tally *> tallies = {&by_family[generated.family], &by_law[generated.law], &all};
+      for (Tally *tally : tallies)
+        ++tally->scenes;
+      try
+        {
+          const auto        start   = std::chrono::steady_clock::now();
+          const auto        problem = assembled(scene::read_scene(file), MPI_COMM_SELF);
+          const DenseSolver dense(problem);
+          const auto        expected = dense.solve();
+          const double      seconds  = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+          seconds_dense += seconds;
+          if (options.verbose)
+            std::printf("%4u %-8s %-12s %zu bodies %4td unknowns %3u rows: %s%s%s, residual %.1e, bounds %u, margin %.1e, %.2f s\n",
+                        seed,
+                        generated.family.c_str(),
+                        generated.law.c_str(),
+                        problem.bodies.size(),
+                        problem.f.size(),
+                        dense.n_rows(),
+                        name_of(expected.outcome),
+                        expected.position_unique ? "" : ", several positions",
+                        expected.forces_unique ? "" : ", several forces",
+                        expected.residual,
+                        expected.bound_iterations,
+                        expected.margin,
+                        seconds);
+          Verdict worst = Verdict::agreed;
+          for (unsigned int k = 0; k < 4; ++k)
+            {
+              auto overrides = generated.decompositions[k % 2];
+              overrides.push_back(std::string("Solver/Algorithm=") + (k < 2 ? "semismooth newton" : "smalbe"));
+              const auto begin  = std::chrono::steady_clock::now();
+              const auto found  = random::run(scene::read_scene(file, overrides), problem, directory + "/output", MPI_COMM_SELF);
+              const auto result = compare(problem, dense, expected, found);
+              const double time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+              seconds_slipstick += time;
+              const bool is_bad = result.verdict == Verdict::wrong || result.verdict == Verdict::failed;
+              if (options.verbose || is_bad)
+                {
+                  std::string how;
+                  for (const auto &override : overrides)
+                    how += " --set " + override;
+                  std::printf("%4u   %s: dense %s, status %d, u %.1e, x %.1e; equilibrium %.1e, law %.1e, K u %.1e, copies %.1e; %s; %llu "
+                              "multiplications, %u fallbacks, %.2f s;%s\n%s",
+                              seed,
+                              name_of(result.verdict),
+                              name_of(expected.outcome),
+                              static_cast<int>(found.status),
+                              result.displacement,
+                              result.force,
+                              result.violation.equilibrium,
+                              result.violation.law,
+                              result.violation.displacement,
+                              found.copies_differ,
+                              found.worst_check.c_str(),
+                              found.multiplications,
+                              found.fallbacks,
+                              time,
+                              how.c_str(),
+                              found.message.empty() ? "" : ("       " + found.message.substr(0, found.message.find('\n')) + "\n").c_str());
+                  std::fflush(stdout);
+                }
+              worst = std::max(worst, result.verdict);
+              for (Tally *tally : tallies)
+                {
+                  tally->multiplications[k / 2] += found.multiplications;
+                  if (result.verdict == Verdict::agreed)
+                    {
+                      tally->displacement = std::max(tally->displacement, result.displacement);
+                      tally->force        = std::max(tally->force, result.force);
+                    }
+                }
+            }
+          for (Tally *tally : tallies)
+            {
+              ++(worst == Verdict::agreed           ? tally->agreed :
+                 worst == Verdict::diagnosed        ? tally->diagnosed :
+                 worst == Verdict::another_solution ? tally->another_solution :
+                 worst == Verdict::undetermined     ? tally->undetermined :
+                                                      tally->failed);
+              tally->not_unique += worst == Verdict::agreed && !expected.forces_unique;
+            }
+        }
+      catch (const std::exception &error)
+        {
+          std::printf("%4u %s %s: FAILED: %s\n", seed, generated.family.c_str(), generated.law.c_str(), error.what());
+          for (Tally *tally : tallies)
+            ++tally->failed;
+        }
+    }
+
+    static void line(const std::string &name, const Tally &tally)
+    {
+      std::printf("%-13s %6u %7u %10u %8u %8u %12u %6u   %8.1e %8.1e %9llu %9llu\n",
+                  name.c_str(),
+                  tally.scenes,
+                  tally.agreed,
+                  tally.diagnosed,
+                  tally.another_solution,
+                  tally.undetermined,
+                  tally.not_unique,
+                  tally.failed,
+                  tally.displacement,
+                  tally.force,
+                  tally.multiplications[0],
+                  tally.multiplications[1]);
+    }
+
+    int report() const
+    {
+      std::printf("\n%-13s %6s %7s %10s %8s %8s %12s %6s   %8s %8s %9s %9s\n",
+                  "class",
+                  "scenes",
+                  "agreed",
+                  "diagnosed",
+                  "another",
+                  "several",
+                  "forces not",
+                  "failed",
+                  "largest",
+                  "diff.",
+                  "F-mult.",
+                  "F-mult.");
+      std::printf("%-13s %6s %7s %10s %8s %8s %12s %6s   %8s %8s %9s %9s\n",
+                  "",
+                  "",
+                  "",
+                  "alike",
+                  "solution",
+                  "places",
+                  "unique",
+                  "",
+                  "u",
+                  "x",
+                  "newton",
+                  "smalbe");
+      for (const auto &[name, tally] : by_family)
+        line(name, tally);
+      for (const auto &[name, tally] : by_law)
+        line(name, tally);
+      line("all", all);
+      std::printf("dense solver %.1f s, slipstick %.1f s\n", seconds_dense, seconds_slipstick);
+      return all.failed > 0 ? 1 : 0;
+    }
+
+    const Options                options;
+    const std::string            directory;
+    std::map<std::string, Tally> by_family, by_law;
+    Tally                        all;
+    double                       seconds_dense = 0, seconds_slipstick = 0;
+  };
+
+  Options parsed(const int argc, char **argv)
+  {
+    Options options;
+    for (int i = 1; i < argc; ++i)
+      {
+        const std::string word  = argv[i];
+        const auto        value = [&]() -> std::string {
+          if (++i == argc)
+            throw std::runtime_error(word + " needs a value");
+          return argv[i];
+        };
+        if (word == "--scenes")
+          options.scenes = std::stoul(value());
+        else if (word == "--first")
+          options.first = std::stoul(value());
+        else if (word == "--verbose")
+          options.verbose = true;
+        else if (word == "--keep")
+          options.directory = value();
+        else
+          throw std::runtime_error("unknown option " + word + ": --scenes N, --first SEED, --verbose, --keep DIRECTORY");
+      }
+    return options;
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  if (openblas_set_num_threads)
+    openblas_set_num_threads(1);
+  if (omp_set_max_active_levels)
+    omp_set_max_active_levels(0);
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  int                                      n_arguments = 1;
+  char                                    *arguments[] = {argv[0], nullptr};
+  char                                   **program     = arguments;
+  Tpetra::ScopeGuard                       tpetra(&n_arguments, &program);
+  try
+    {
+      return Test(parsed(argc, argv)).run();
+    }
+  catch (const std::exception &error)
+    {
+      std::cerr << error.what() << std::endl;
+      return 1;
+    }
+}
