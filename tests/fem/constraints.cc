@@ -290,6 +290,23 @@ TEST(Constraints, tributary_areas_sum_to_the_boundary)
       EXPECT_NEAR(total_area(cut(hanging_box(8, degree), how), 0), 10 * 3, 1e-12) << how.n << ", degree " << degree;
 }
 
+TEST(Constraints, tributary_areas_of_a_boundary_with_two_obstacles_sum_to_it_for_each)
+{
+  for (const unsigned int degree : {1, 2})
+    {
+      Scene scene = hanging_box(8, degree);
+      touch(scene, 0, "bottom", {9, -15}, 12, "100");
+      for (const Cut &how : cuts)
+        {
+          double sum[2] = {0, 0};
+          for (const auto &point : contact_points(cut(scene, how)))
+            sum[point.pair] += point.area;
+          for (const double one : sum)
+            EXPECT_NEAR(one, 10 * 3, 1e-10) << degree << ", cut " << how.n;
+        }
+    }
+}
+
 TEST(Constraints, tributary_areas_are_integrals_of_the_shape_functions)
 {
   for (const Cut &how : cuts)
