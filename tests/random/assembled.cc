@@ -136,10 +136,11 @@ namespace slipstick::random
     }
   } // namespace
 
-  Problem assembled(scene::Scene<2> scene, const MPI_Comm comm)
+  Problem assembled(scene::Scene<2> scene, const MPI_Comm comm, const bool untorn)
   {
     constexpr double t         = 1;
-    scene.decomposition.method = scene::DecompositionMethod::none;
+    if (untorn)
+      scene.decomposition.method = scene::DecompositionMethod::none;
     const auto           mesh  = fem::make_mesh(scene, comm);
     const fem::Spaces<2> spaces(mesh, scene.discretization.degree);
     fem::check_overlap(scene, mesh, spaces);

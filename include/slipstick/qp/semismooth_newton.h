@@ -202,7 +202,15 @@ namespace slipstick::qp
             free_two_sided(free);
             face.emplace(problem.face(free, {}));
             if (!face->is_regular())
-              return false;
+              {
+                // then all of them: the set that follows keeps those that press
+                if (++n_freed > options.max_freed)
+                  return false;
+                free_all(free);
+                face.emplace(problem.face(free, {}));
+                if (!face->is_regular())
+                  return false;
+              }
           }
         if (!set_stands)
           {
@@ -295,6 +303,18 @@ namespace slipstick::qp
         const auto l = box().lower.begin(), u = box().upper.begin();
         for (std::size_t i = 0; i < active.size(); ++i)
           if (l[i] < u[i] && l[i] > -HUGE_VAL && u[i] < HUGE_VAL)
+            {
+              active[i] = 0;
+              free[i]   = true;
+            }
+      }
+
+      // Also in the coupled law: nothing is tied while all entries are free.
+      void free_all(std::vector<bool> &free)
+      {
+        const auto l = box().lower.begin(), u = box().upper.begin();
+        for (std::size_t i = 0; i < active.size(); ++i)
+          if (l[i] < u[i])
             {
               active[i] = 0;
               free[i]   = true;
@@ -433,6 +453,7 @@ namespace slipstick::qp
       double       bound_change = 0;     // the last one
       bool         set_changed  = true;  // x is not on its bounds, or does not balance: F x is not known
       bool         set_stands   = false; // the free entries are those of the last solve
+      unsigned int n_freed = 0;          // sets that left some motion open, so that all entries were freed
       std::shared_ptr<DirectionHistory<Vector>> history;
       std::optional<ResidualHistory<Vector>>    residual_history;
       std::vector<signed char>                  active;
