@@ -13,6 +13,8 @@ namespace slipstick::random
 
     // Directions, ranks: relative to the largest.
     constexpr double rank_tolerance = 1e-9;
+    // A motion that the rows resist less than this (relative) counts as free, as of a round body in a round hole.
+    constexpr double least_hold = 1e-6;
     // A solution is one when all conditions hold to this.
     constexpr double solved_tolerance = 1e-11;
     // Strictly inside, strictly pressed: above this.
@@ -21,7 +23,7 @@ namespace slipstick::random
     constexpr double infeasible_tolerance = 1e-6;
 
     /// Orthonormal basis of the kernel of A.
-    Eigen::MatrixXd kernel_of(const Eigen::MatrixXd &A)
+    Eigen::MatrixXd kernel_of(const Eigen::MatrixXd &A, const double tolerance = rank_tolerance)
     {
       const int n = A.cols();
       if (A.rows() == 0 || n == 0)
@@ -29,7 +31,7 @@ namespace slipstick::random
       const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullV);
       int                                     rank = 0;
       while (rank < svd.singularValues().size() &&
-             svd.singularValues()[rank] > rank_tolerance * std::max(svd.singularValues()[0], 1e-300))
+             svd.singularValues()[rank] > tolerance * std::max(svd.singularValues()[0], 1e-300))
         ++rank;
       return svd.matrixV().rightCols(n - rank);
     }
@@ -568,7 +570,7 @@ namespace slipstick::random
   {
     DenseSolution   solution;
     Eigen::VectorXd x;
-    if (T.cols() > 0 && kernel_of(T).cols() > 0)
+    if (T.cols() > 0 && kernel_of(T, least_hold).cols() > 0)
       {
         solution.outcome = Outcome::loose;
         return solution;

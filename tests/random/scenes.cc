@@ -349,8 +349,7 @@ namespace slipstick::random
             top(list, all);
           }
         section("Discretization", {{"Degree", std::to_string(degree)}});
-        section("Solver", {{"Tolerance", "1e-10"}});
-        section("Friction", {{"Tolerance", "1e-10"}, {"Max iterations", "500"}});
+        section("Friction", {{"Max iterations", "500"}});
         scene.prm = head.str() + sections.str();
         const auto metis = [&](const int n) {
           return std::vector<std::string>{"Decomposition/Method=METIS",
