@@ -220,6 +220,28 @@ TEST(Constraints, prescribed_rows_have_the_formulas_values)
       }
 }
 
+TEST(Constraints, round_boundary_on_springs_along_its_normal_has_none_along_its_tangent)
+{
+  for (const unsigned int degree : {1, 2})
+    for (const Cut &how : {whole(), metis(3)})
+      {
+        Scene scene                 = cut({}, how);
+        scene.discretization.degree = degree;
+        add_body(scene, "disc", {0, 0}, {1, 1}, {{1, 1}});
+        scene.bodies[0].shape           = scene::Shape::disc;
+        scene.bodies[0].radius          = 5;
+        scene.bodies[0].cells_along_arc = 16;
+        scene::Foundation<2> foundation;
+        foundation.where            = {0, "arc"};
+        foundation.normal_stiffness = 100;
+        scene.foundations.push_back(foundation);
+        const auto all = constraints(scene);
+        EXPECT_EQ(all.counts.prescribed, 16 * degree);
+        for (const double compliance : all.compliance)
+          EXPECT_LT(compliance, 0.1); // 1 / (100 times a third of an edge, at least)
+      }
+}
+
 TEST(Constraints, prescribed_values_follow_the_load_factor)
 {
   Scene scene = box(2);

@@ -3,8 +3,8 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/contact_constraints.h>
-#include <slipstick/fem/decomposition.h>
 #include <slipstick/fem/contact_search.h>
+#include <slipstick/fem/decomposition.h>
 #include <slipstick/fem/pair_checks.h>
 
 #include <deal.II/base/exceptions.h>
@@ -45,7 +45,7 @@ namespace slipstick::random
         for (const auto &entry : constraints.blocks[p])
           if (constraints.kind[entry.row] == tfeti::RowKind::gluing)
             {
-              const int  node = first[p] + entry.dof / 2;
+              const int node          = first[p] + entry.dof / 2;
               const auto [at, is_new] = seen.emplace(entry.row, node);
               if (!is_new)
                 parent[root(node)] = root(at->second);
@@ -81,7 +81,7 @@ namespace slipstick::random
         }
       for (unsigned int p = 0; p < matrices.size(); ++p)
         {
-          Body                          &body = problem.bodies[mesh.subdomains[p]->body];
+          Body                         &body = problem.bodies[mesh.subdomains[p]->body];
           std::vector<dealii::Point<2>> x(spaces.dof_handlers[p]->n_dofs());
           dealii::DoFTools::map_dofs_to_support_points(*spaces.of(p).mapping, *spaces.dof_handlers[p], x);
           const auto unknown = [&](const int dof) { return 2 * numbering.of[p][dof / 2] + dof % 2; };
@@ -138,10 +138,10 @@ namespace slipstick::random
 
   Problem assembled(scene::Scene<2> scene, const MPI_Comm comm, const bool untorn)
   {
-    constexpr double t         = 1;
+    constexpr double t = 1;
     if (untorn)
       scene.decomposition.method = scene::DecompositionMethod::none;
-    const auto           mesh  = fem::make_mesh(scene, comm);
+    const auto           mesh = fem::make_mesh(scene, comm);
     const fem::Spaces<2> spaces(mesh, scene.discretization.degree);
     fem::check_overlap(scene, mesh, spaces);
     fem::check_obstacle_pairs(scene, mesh, spaces);
@@ -166,9 +166,9 @@ namespace slipstick::random
           }
         number[r] = problem.rows.size();
         Row row;
-        row.kind = kind == tfeti::RowKind::bonded ? RowKind::bond :
-                   kind == tfeti::RowKind::normal ? RowKind::normal :
-                                                    RowKind::tangential;
+        row.kind = kind == tfeti::RowKind::bonded   ? RowKind::bond
+                   : kind == tfeti::RowKind::normal ? RowKind::normal
+                                                    : RowKind::tangential;
         row.b    = b[r];
         row.c    = constraints.c[r];
         problem.rows.push_back(row);

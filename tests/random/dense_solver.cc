@@ -22,7 +22,7 @@ namespace slipstick::random
     // Loads that no admissible forces balance, relative: above this there are none.
     constexpr double infeasible_tolerance = 1e-6;
 
-    /// Orthonormal basis of the kernel of A.
+    /// Orthonormal basis of the kernel of A, whose entries are 1 in size unless all of them are rounding.
     Eigen::MatrixXd kernel_of(const Eigen::MatrixXd &A, const double tolerance = rank_tolerance)
     {
       const int n = A.cols();
@@ -31,7 +31,7 @@ namespace slipstick::random
       const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullV);
       int                                     rank = 0;
       while (rank < svd.singularValues().size() &&
-             svd.singularValues()[rank] > tolerance * std::max(svd.singularValues()[0], 1e-300))
+             svd.singularValues()[rank] > tolerance * std::max(svd.singularValues()[0], 1.))
         ++rank;
       return svd.matrixV().rightCols(n - rank);
     }
@@ -48,7 +48,8 @@ namespace slipstick::random
                                Eigen::VectorXd       &a)
     {
       const int    m = W.rows(), k = T.cols();
-      const double size = std::max({m > 0 ? q.cwiseAbs().maxCoeff() : 0., k > 0 ? e.cwiseAbs().maxCoeff() : 0., 1e-300});
+      const double size =
+        std::max({m > 0 ? q.cwiseAbs().maxCoeff() : 0., k > 0 ? e.cwiseAbs().maxCoeff() : 0., 1e-300});
       std::vector<char> has_l(m), has_u(m), is_fixed(m);
       Eigen::VectorXd   zl = Eigen::VectorXd::Zero(m), zu = zl;
       x = zl;
@@ -67,7 +68,7 @@ namespace slipstick::random
           zl[i] = has_l[i] ? size : 0.;
           zu[i] = has_u[i] ? size : 0.;
         }
-      double best = infinity;
+      double          best   = infinity;
       Eigen::VectorXd best_x = x, best_a = a;
       for (unsigned int iteration = 0; iteration < 100; ++iteration)
         {
@@ -76,8 +77,8 @@ namespace slipstick::random
             if (is_fixed[i])
               dual[i] = 0;
           const Eigen::VectorXd primal = e - T.transpose() * x;
-          double                gap    = 0, worst_pair = 0;
-          int                   n      = 0;
+          double                gap = 0, worst_pair = 0;
+          int                   n = 0;
           for (int i = 0; i < m; ++i)
             {
               if (has_l[i])
@@ -117,7 +118,7 @@ namespace slipstick::random
             }
           const Eigen::PartialPivLU<Eigen::MatrixXd> lu(M);
           Eigen::VectorXd                            dx, da, dzl(m), dzu(m), cl = Eigen::VectorXd::Zero(m), cu = cl;
-          const auto step = [&](const double centre) {
+          const auto                                 step = [&](const double centre) {
             Eigen::VectorXd right(m + k);
             for (int i = 0; i < m; ++i)
               {
@@ -128,8 +129,8 @@ namespace slipstick::random
                   value -= -zu[i] + (centre - cu[i]) / (u[i] - x[i]);
                 right[i] = is_fixed[i] ? 0. : value;
               }
-            right.tail(k)           = primal;
-            Eigen::VectorXd     sol = lu.solve(right);
+            right.tail(k)       = primal;
+            Eigen::VectorXd sol = lu.solve(right);
             sol += lu.solve(right - M * sol);
             dx = sol.head(m);
             da = sol.tail(k);
@@ -197,9 +198,9 @@ namespace slipstick::random
     for (const auto &one : problem.held)
       (one.stiffness > 0 ? springs : held)[one.node].push_back(&one);
 
-    d                  = Eigen::VectorXd::Zero(m);
-    W                  = Eigen::MatrixXd::Zero(m, m);
-    first_motion       = {0};
+    d            = Eigen::VectorXd::Zero(m);
+    W            = Eigen::MatrixXd::Zero(m, m);
+    first_motion = {0};
     std::vector<Eigen::MatrixXd> all_T;
     std::vector<Eigen::VectorXd> all_e;
     for (const Body &body : problem.bodies)
@@ -223,14 +224,15 @@ namespace slipstick::random
               {
                 Eigen::Matrix2d D;
                 D << directions[0]->direction.transpose(), directions[1]->direction.transpose();
-                prescribed.segment<2>(2 * i) = D.inverse() * Eigen::Vector2d(directions[0]->value, directions[1]->value);
+                prescribed.segment<2>(2 * i) =
+                  D.inverse() * Eigen::Vector2d(directions[0]->value, directions[1]->value);
               }
             else if (directions.size() == 1)
               {
-                const Eigen::Vector2d along      = directions[0]->direction;
-                prescribed.segment<2>(2 * i)     = along * directions[0]->value / along.squaredNorm();
-                basis(2 * i, n_free)             = -along[1] / along.norm();
-                basis(2 * i + 1, n_free++)       = along[0] / along.norm();
+                const Eigen::Vector2d along  = directions[0]->direction;
+                prescribed.segment<2>(2 * i) = along * directions[0]->value / along.squaredNorm();
+                basis(2 * i, n_free)         = -along[1] / along.norm();
+                basis(2 * i + 1, n_free++)   = along[0] / along.norm();
               }
             else
               {
@@ -256,7 +258,7 @@ namespace slipstick::random
         Eigen::MatrixXd resists(resisted.size(), 3);
         for (unsigned int i = 0; i < resisted.size(); ++i)
           resists.row(i) = resisted[i];
-        Eigen::MatrixXd motions = Z.back().transpose() * (R * kernel_of(resists));
+        Eigen::MatrixXd motions = Z.back().transpose() * (R * kernel_of(resists, least_hold));
         if (motions.cols() > 0)
           motions = Eigen::HouseholderQR<Eigen::MatrixXd>(motions).householderQ() *
                     Eigen::MatrixXd::Identity(motions.rows(), motions.cols());
@@ -316,11 +318,14 @@ namespace slipstick::random
     W = row_scale.asDiagonal() * W * row_scale.asDiagonal();
     T = row_scale.asDiagonal() * T;
     d = d.cwiseProduct(row_scale);
-    motion_scale.resize(T.cols());
-    for (int k = 0; k < T.cols(); ++k)
+    motion_scale.setOnes(T.cols());
+    for (unsigned int b = 0; b < N.size();
+         ++b) // of a body, whose motions are of one size: one that nothing resists keeps 0
       {
-        const double norm = T.col(k).norm();
-        motion_scale[k]   = norm > 0 ? 1 / norm : 1.;
+        const auto   of_body = T.middleCols(first_motion[b], N[b].cols());
+        const double norm    = N[b].cols() > 0 ? of_body.colwise().norm().maxCoeff() : 0.;
+        if (norm > 0)
+          motion_scale.segment(first_motion[b], N[b].cols()).setConstant(1 / norm);
       }
     T = T * motion_scale.asDiagonal();
     e = e.cwiseProduct(motion_scale);
@@ -377,11 +382,11 @@ namespace slipstick::random
   // Forces are sums of rays and bounded ones; least squares of what they leave of the loads.
   bool DenseSolver::feasible(Eigen::VectorXd &x, double &missing) const
   {
-    const int                           m = W.rows();
-    std::vector<Eigen::VectorXd>        columns;
-    std::vector<double>                 lower, upper;
-    std::vector<std::array<double, 2>>  ray; // part of tangential row
-    std::vector<std::array<int, 2>>     rows;
+    const int                          m = W.rows();
+    std::vector<Eigen::VectorXd>       columns;
+    std::vector<double>                lower, upper;
+    std::vector<std::array<double, 2>> ray; // part of tangential row
+    std::vector<std::array<int, 2>>    rows;
     const auto add = [&](const int r, const int t, const double part, const double l, const double u) {
       Eigen::VectorXd column = T.row(r).transpose();
       if (t >= 0)
@@ -516,7 +521,7 @@ namespace slipstick::random
         M.row(i).tail(k) = -T.row(free[i]);
         right[i]         = Wh[free[i]];
       }
-    right.tail(k) = e - T.transpose() * h;
+    right.tail(k)        = e - T.transpose() * h;
     const double    size = std::max({right.size() > 0 ? right.cwiseAbs().maxCoeff() : 0., scale(at.x)});
     Eigen::VectorXd solution;
     if (n + k > 0)
@@ -580,8 +585,8 @@ namespace slipstick::random
         solution.outcome = Outcome::infeasible;
         return solution;
       }
-    Point           at{x, Eigen::VectorXd::Zero(T.cols())};
-    Eigen::VectorXd bound = bounds(x);
+    Point              at{x, Eigen::VectorXd::Zero(T.cols())};
+    Eigen::VectorXd    bound   = bounds(x);
     const unsigned int n_tries = is_coulomb ? 60 : 1;
     double             damping = 1;
     for (unsigned int k = 0; k < n_tries; ++k)
@@ -631,8 +636,8 @@ namespace slipstick::random
     std::vector<int>      strictly, movable;
     for (int r = 0; r < j.size(); ++r)
       {
-        const auto   kind   = problem.rows[r].kind;
-        const bool   inside = kind == RowKind::bond || (kind == RowKind::normal && at.x[r] > strict * size) ||
+        const auto kind   = problem.rows[r].kind;
+        const bool inside = kind == RowKind::bond || (kind == RowKind::normal && at.x[r] > strict * size) ||
                             (kind == RowKind::tangential && std::abs(at.x[r]) < bound[r] - strict * size);
         const bool is_still = std::abs(j[r]) < strict * size;
         if (inside)
@@ -667,17 +672,17 @@ namespace slipstick::random
         const Body           &body = problem.bodies[b];
         const int             n    = body.K.rows();
         const Eigen::VectorXd load =
-          Z[b].transpose() * (problem.f.segment(body.first, n) - body.K * u0.segment(body.first, n)) - C[b].transpose() * x;
+          Z[b].transpose() * (problem.f.segment(body.first, n) - body.K * u0.segment(body.first, n)) -
+          C[b].transpose() * x;
         if (Z[b].cols() > 0)
-          u.segment(body.first, n) +=
-            Z[b] * (factor[b].solve(load) + N[b] * a.segment(first_motion[b], N[b].cols()));
+          u.segment(body.first, n) += Z[b] * (factor[b].solve(load) + N[b] * a.segment(first_motion[b], N[b].cols()));
       }
     return u;
   }
 
   Violation DenseSolver::check(const Eigen::VectorXd &x, const Eigen::VectorXd &u) const
   {
-    Point at{x.cwiseQuotient(row_scale), Eigen::VectorXd::Zero(T.cols())};
+    Point      at{x.cwiseQuotient(row_scale), Eigen::VectorXd::Zero(T.cols())};
     const auto project = [&](const Eigen::VectorXd &difference) {
       Eigen::VectorXd a = Eigen::VectorXd::Zero(T.cols());
       for (unsigned int b = 0; b < problem.bodies.size(); ++b)
@@ -691,9 +696,11 @@ namespace slipstick::random
     const double          size  = scale(at.x);
     std::vector<int>      held;
     for (int r = 0; r < at.x.size(); ++r)
-      if (problem.rows[r].kind == RowKind::bond || (problem.rows[r].kind == RowKind::normal && at.x[r] > strict * size) ||
+      if (problem.rows[r].kind == RowKind::bond ||
+          (problem.rows[r].kind == RowKind::normal && at.x[r] > strict * size) ||
           (problem.rows[r].kind == RowKind::tangential && std::abs(at.x[r]) < bound[r] - strict * size))
-        held.push_back(r);
+        if (T.row(r).norm() > least_hold)
+          held.push_back(r);
     if (!held.empty() && T.cols() > 0)
       {
         const Eigen::VectorXd j = jumps(at);
@@ -710,9 +717,9 @@ namespace slipstick::random
         at.a += cod.solve(b);
       }
     Violation violation;
-    violation.equilibrium = e.size() > 0 ? (T.transpose() * at.x - e).cwiseAbs().maxCoeff() / size : 0.;
-    violation.law         = residual(at);
-    const double largest  = std::max(u.cwiseAbs().maxCoeff(), 1e-13 * problem.size);
+    violation.equilibrium  = e.size() > 0 ? (T.transpose() * at.x - e).cwiseAbs().maxCoeff() / size : 0.;
+    violation.law          = residual(at);
+    const double largest   = std::max(u.cwiseAbs().maxCoeff(), 1e-13 * problem.size);
     violation.displacement = (u - displacements(at)).cwiseAbs().maxCoeff() / largest;
     return violation;
   }

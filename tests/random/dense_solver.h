@@ -26,11 +26,11 @@ namespace slipstick::random
   struct DenseSolution
   {
     Outcome         outcome = Outcome::unsolved;
-    Eigen::VectorXd x; // force of every row
-    Eigen::VectorXd u; // unknowns
-    double          residual         = 0; // of all conditions, relative
-    bool            position_unique  = true;
-    bool            forces_unique    = true;
+    Eigen::VectorXd x;                   // force of every row
+    Eigen::VectorXd u;                   // unknowns
+    double          residual        = 0; // of all conditions, relative
+    bool            position_unique = true;
+    bool            forces_unique   = true;
     Eigen::MatrixXd free_motions;         // unknowns x motions that the solution leaves undetermined
     unsigned int    bound_iterations = 0; // Coulomb
     double          margin           = 0; // infeasible: loads that nothing balances, relative
@@ -103,19 +103,19 @@ namespace slipstick::random
     void            examine(const Point &at, DenseSolution &solution) const;
     Eigen::VectorXd displacements(const Point &at) const;
 
-    const Problem                &problem;
-    std::vector<Eigen::MatrixXd>  Z;       // per body: unknowns x free ones
+    const Problem                           &problem;
+    std::vector<Eigen::MatrixXd>             Z; // per body: unknowns x free ones
     std::vector<Eigen::LLT<Eigen::MatrixXd>> factor;
-    std::vector<Eigen::MatrixXd>  C;       // per body: rows x free unknowns, scaled
-    std::vector<Eigen::MatrixXd>  N;       // per body: free unknowns x motions
-    std::vector<int>              first_motion;
-    Eigen::VectorXd               u0;      // prescribed
-    Eigen::VectorXd               row_scale, motion_scale; // x = row_scale x^, a = motion_scale a^
-    Eigen::MatrixXd               W, T;    // scaled: unit diagonal
-    Eigen::VectorXd               d, e;    // scaled; d less c
-    Eigen::VectorXd               fixed_bound, mu; // scaled, by row
-    std::vector<int>              normal_of;
-    double                        size_of_e = 0;
-    bool                          is_coulomb = false;
+    std::vector<Eigen::MatrixXd>             C; // per body: rows x free unknowns, scaled
+    std::vector<Eigen::MatrixXd>             N; // per body: free unknowns x motions
+    std::vector<int>                         first_motion;
+    Eigen::VectorXd                          u0;                      // prescribed
+    Eigen::VectorXd                          row_scale, motion_scale; // x = row_scale x^, a = motion_scale a^
+    Eigen::MatrixXd                          W, T;                    // scaled: unit diagonal
+    Eigen::VectorXd                          d, e;                    // scaled; d less c
+    Eigen::VectorXd                          fixed_bound, mu;         // scaled, by row
+    std::vector<int>                         normal_of;
+    double                                   size_of_e  = 0;
+    bool                                     is_coulomb = false;
   };
 } // namespace slipstick::random

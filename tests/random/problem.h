@@ -22,12 +22,12 @@ namespace slipstick::random
 
   struct Row
   {
-    RowKind                            kind = RowKind::normal;
-    std::vector<std::pair<int, double>> b;           // unknown, coefficient
-    double                             c      = 0;
-    double                             bound  = 0;  // tangential: Tresca bound [force]
-    double                             mu     = -1; // tangential: Coulomb coefficient, else negative
-    int                                normal = -1; // tangential, Coulomb: the normal row of the node
+    RowKind                             kind = RowKind::normal;
+    std::vector<std::pair<int, double>> b; // unknown, coefficient
+    double                              c      = 0;
+    double                              bound  = 0;  // tangential: Tresca bound [force]
+    double                              mu     = -1; // tangential: Coulomb coefficient, else negative
+    int                                 normal = -1; // tangential, Coulomb: the normal row of the node
   };
 
   /// A node with contact rows, as results name it.

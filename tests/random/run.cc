@@ -46,8 +46,8 @@ namespace slipstick::random
       const auto at    = vtu.find(tag);
       const auto begin = vtu.find(">\n", at + tag.size()) + 2, end = vtu.find("\n</DataArray>", begin);
       AssertThrow(at != std::string::npos && end != std::string::npos, dealii::ExcMessage("no " + tag + " in .vtu"));
-      constexpr unsigned int header = 24; // 16 bytes in base64
-      const auto             bytes  = decoded(vtu.substr(begin + header, end - begin - header));
+      constexpr unsigned int header  = 24; // 16 bytes in base64
+      const auto             bytes   = decoded(vtu.substr(begin + header, end - begin - header));
       const auto             numbers = decoded(vtu.substr(begin, header));
       std::uint32_t          size;
       std::memcpy(&size, numbers.data() + 4, 4);
@@ -71,7 +71,8 @@ namespace slipstick::random
           const std::string vtu = content(directory + name);
           if (vtu.empty())
             break;
-          const auto points = array(vtu, "<Points>"), u = array(vtu, "\"displacement\""), bodies = array(vtu, "\"body\"");
+          const auto points = array(vtu, "<Points>"), u = array(vtu, "\"displacement\""),
+                     bodies = array(vtu, "\"body\"");
           const auto &body  = problem.bodies[std::lround(bodies.at(0))];
           for (unsigned int i = 0; 3 * i < points.size(); ++i)
             {
@@ -110,7 +111,10 @@ namespace slipstick::random
     }
 
     /// Nodes of a pair at the same place (corners) come in the same order in every run.
-    void read_forces(const scene::Scene<2> &scene, const Problem &problem, const std::string &directory, RunResult &result)
+    void read_forces(const scene::Scene<2> &scene,
+                     const Problem         &problem,
+                     const std::string     &directory,
+                     RunResult             &result)
     {
       result.x = Eigen::VectorXd::Zero(problem.rows.size());
       std::vector<char> is_taken(problem.nodes.size(), 0);
@@ -135,7 +139,8 @@ namespace slipstick::random
                   found   = i;
                 }
             }
-          AssertThrow(found >= 0, dealii::ExcMessage("a contact node of pair " + words[0] + " is not in the untorn problem"));
+          AssertThrow(found >= 0,
+                      dealii::ExcMessage("a contact node of pair " + words[0] + " is not in the untorn problem"));
           is_taken[found]  = 1;
           const auto &node = problem.nodes[found];
           if (node.normal >= 0)

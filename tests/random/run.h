@@ -15,7 +15,7 @@ namespace slipstick::random
     ExitStatus         status = ExitStatus::internal_error;
     std::string        message;             // of an error
     Eigen::VectorXd    x, u;                // forces of the rows, displacements, of the untorn problem
-    double             copies_differ = 0;   // largest difference of displacement of the copies of a node, relative
+    double             copies_differ   = 0; // largest difference of displacement of the copies of a node, relative
     unsigned long long multiplications = 0; // with F
     unsigned int       fallbacks       = 0;
     std::string        worst_check;

@@ -75,22 +75,22 @@ namespace slipstick::random
         for (int i = 0; i <= nx; ++i)
           {
             const bool   is_inside = i > 0 && i < nx && j > 0 && j < ny;
-            const double dx        = is_inside ? random.uniform(-.2, .2) : 0, dy = is_inside ? random.uniform(-.2, .2) : 0;
+            const double dx = is_inside ? random.uniform(-.2, .2) : 0, dy = is_inside ? random.uniform(-.2, .2) : 0;
             out << node(i, j) << " " << text(x0 + w * (i + dx) / nx) << " " << text(y0 + h * (j + dy) / ny) << " 0\n";
           }
       std::vector<std::string> elements;
       for (int i = 0; i < nx; ++i)
         for (const auto &[tag, j] : {std::pair<int, int>{3, 0}, std::pair<int, int>{4, ny}})
-          elements.push_back("1 2 " + std::to_string(tag) + " " + std::to_string(tag) + " " + std::to_string(node(i, j)) +
-                             " " + std::to_string(node(i + 1, j)));
+          elements.push_back("1 2 " + std::to_string(tag) + " " + std::to_string(tag) + " " +
+                             std::to_string(node(i, j)) + " " + std::to_string(node(i + 1, j)));
       for (int j = 0; j < ny; ++j)
         for (const auto &[tag, i] : {std::pair<int, int>{1, 0}, std::pair<int, int>{2, nx}})
-          elements.push_back("1 2 " + std::to_string(tag) + " " + std::to_string(tag) + " " + std::to_string(node(i, j)) +
-                             " " + std::to_string(node(i, j + 1)));
+          elements.push_back("1 2 " + std::to_string(tag) + " " + std::to_string(tag) + " " +
+                             std::to_string(node(i, j)) + " " + std::to_string(node(i, j + 1)));
       for (int j = 0; j < ny; ++j)
         for (int i = 0; i < nx; ++i)
           {
-            const std::array<int, 4> c = {{node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)}};
+            const std::array<int, 4> c    = {{node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)}};
             const auto               cell = [&](const int type, const std::vector<int> &corners) {
               std::string element = std::to_string(type) + " 2 5 5";
               for (const int k : corners)
@@ -125,18 +125,21 @@ namespace slipstick::random
         : random(seed)
         , seed_number(seed)
       {
-        static const std::vector<std::array<double, 2>> units = {{{1, 1}}, {{1e-3, 1e6}}, {{1e3, 1e-6}}, {{1 / 25.4, 145.}}};
-        const auto unit   = random.chance(.7) ? units[0] : random.pick(units);
-        length_unit       = unit[0];
-        stress_unit       = unit[1];
-        degree            = random.chance(.3) ? 2 : 1;
-        young             = random.power(4, 5.5);
-        has_ratio         = random.chance(.3);
-        cell_size         = random.uniform(.8, 1.6) * (degree == 2 ? 1.6 : 1.);
-        thickness         = random.chance(.7) ? 1. : random.uniform(.3, 30);
-        pressure          = young * random.power(-4.5, -2.5);
-        is_blocks         = false;
-        law               = random.pick<std::string>({"frictionless", "Tresca", "Coulomb", "Coulomb", "bonded", "mixed", "mixed"});
+        static const std::vector<std::array<double, 2>> units = {{{1, 1}},
+                                                                 {{1e-3, 1e6}},
+                                                                 {{1e3, 1e-6}},
+                                                                 {{1 / 25.4, 145.}}};
+        const auto                                      unit  = random.chance(.7) ? units[0] : random.pick(units);
+        length_unit                                           = unit[0];
+        stress_unit                                           = unit[1];
+        degree                                                = random.chance(.3) ? 2 : 1;
+        young                                                 = random.power(4, 5.5);
+        has_ratio                                             = random.chance(.3);
+        cell_size                                             = random.uniform(.8, 1.6) * (degree == 2 ? 1.6 : 1.);
+        thickness                                             = random.chance(.7) ? 1. : random.uniform(.3, 30);
+        pressure                                              = young * random.power(-4.5, -2.5);
+        is_blocks                                             = false;
+        law = random.pick<std::string>({"frictionless", "Tresca", "Coulomb", "Coulomb", "bonded", "mixed", "mixed"});
         top("Plane state", random.chance(.5) ? "plane stress" : "plane strain");
       }
 
@@ -159,9 +162,9 @@ namespace slipstick::random
       }
 
       /// A named subsection and its list.
-      void add(const std::string                                       &list,
-               const std::string                                       &kind,
-               const std::string                                       &name,
+      void add(const std::string                                      &list,
+               const std::string                                      &kind,
+               const std::string                                      &name,
                const std::vector<std::pair<std::string, std::string>> &values)
       {
         lists[list].push_back(name);
@@ -204,10 +207,17 @@ namespace slipstick::random
         n_cells += nx * ny;
         if (random.chance(.25))
           {
-            const std::string file = "mesh_" + std::to_string(seed_number) + "_" + name + ".msh";
+            const std::string file     = "mesh_" + std::to_string(seed_number) + "_" + name + ".msh";
             const bool        is_mixed = nx > 1 && random.chance(.25);
-            scene.meshes.emplace_back(
-              file, mesh_of_rectangle(random, x0 * length_unit, y0 * length_unit, w * length_unit, h * length_unit, nx, ny, is_mixed));
+            scene.meshes.emplace_back(file,
+                                      mesh_of_rectangle(random,
+                                                        x0 * length_unit,
+                                                        y0 * length_unit,
+                                                        w * length_unit,
+                                                        h * length_unit,
+                                                        nx,
+                                                        ny,
+                                                        is_mixed));
             add("Bodies",
                 "Body",
                 name,
@@ -226,7 +236,12 @@ namespace slipstick::random
         return name;
       }
 
-      std::string round(const std::string &shape, const double x, const double y, const double radius, const double inner, const int n)
+      std::string round(const std::string &shape,
+                        const double       x,
+                        const double       y,
+                        const double       radius,
+                        const double       inner,
+                        const int          n)
       {
         const std::string name = "b" + std::to_string(lists["Bodies"].size());
         n_cells += 2 * n;
@@ -265,7 +280,11 @@ namespace slipstick::random
       }
 
       /// A load that grows along x, in the middle of size p.
-      void uneven_traction(const std::string &boundary, const double x, const double y, const double slope, const double middle)
+      void uneven_traction(const std::string &boundary,
+                           const double       x,
+                           const double       y,
+                           const double       slope,
+                           const double       middle)
       {
         const std::string form = "*(1+" + text(slope / length_unit) + "*(x-" + length(middle) + "))";
         add("Tractions",
@@ -279,7 +298,9 @@ namespace slipstick::random
         add("Body forces",
             "Body force",
             "weight",
-            {{"Bodies", "all"}, {"Force x", text(x * stress_unit / length_unit)}, {"Force y", text(y * stress_unit / length_unit)}});
+            {{"Bodies", "all"},
+             {"Force x", text(x * stress_unit / length_unit)},
+             {"Force y", text(y * stress_unit / length_unit)}});
       }
 
       std::string half_plane(const double x, const double y, const double nx, const double ny)
@@ -327,10 +348,15 @@ namespace slipstick::random
         laws.insert(one);
         std::vector<std::pair<std::string, std::string>> values = {{"Slave", slave}, {"Master", master}, {"Law", one}};
         if (one == "Tresca")
-          values.emplace_back("Slip bound", stress(random.chance(.1) ? 0. : random.chance(.1) ? 1e3 * pressure : pressure * random.uniform(0, .8)));
+          values.emplace_back("Slip bound",
+                              stress(random.chance(.1)   ? 0.
+                                     : random.chance(.1) ? 1e3 * pressure
+                                                         : pressure * random.uniform(0, .8)));
         if (one == "Coulomb")
           values.emplace_back("Friction coefficient",
-                              text(random.chance(.08) ? 0. : random.chance(.5) ? random.uniform(.05, .6) : random.uniform(.3, 2)));
+                              text(random.chance(.08)  ? 0.
+                                   : random.chance(.5) ? random.uniform(.05, .6)
+                                                       : random.uniform(.3, 2)));
         if (one != "bonded" && gap != 0)
           values.emplace_back("Offset", length(gap));
         if (random.chance(.15))
@@ -350,7 +376,7 @@ namespace slipstick::random
           }
         section("Discretization", {{"Degree", std::to_string(degree)}});
         section("Friction", {{"Max iterations", "500"}});
-        scene.prm = head.str() + sections.str();
+        scene.prm        = head.str() + sections.str();
         const auto metis = [&](const int n) {
           return std::vector<std::string>{"Decomposition/Method=METIS",
                                           "Decomposition/Subdomains=" + std::to_string(std::min(n, n_cells)),
@@ -446,7 +472,11 @@ namespace slipstick::random
             }
           case 2:
             obstacle = "o0";
-            b.add("Obstacles", "Obstacle", obstacle, {{"Shape", "function"}, {"Height", b.length(-.003 * w) + "*(1-cos(" + text(3 / w / b.length_unit) + "*x))"}});
+            b.add("Obstacles",
+                  "Obstacle",
+                  obstacle,
+                  {{"Shape", "function"},
+                   {"Height", b.length(-.003 * w) + "*(1-cos(" + text(3 / w / b.length_unit) + "*x))"}});
             break;
           default:
             obstacle = "o0";
@@ -454,10 +484,12 @@ namespace slipstick::random
                   "Obstacle",
                   obstacle,
                   {{"Shape", "polyline"},
-                   {"Points", b.length(-2 * w) + " " + b.length(r.uniform(-.5, .5)) + "; " + b.length(w * r.uniform(.2, .8)) + " 0; " + b.length(3 * w) + " " + b.length(r.uniform(-.5, .5))}});
+                   {"Points",
+                    b.length(-2 * w) + " " + b.length(r.uniform(-.5, .5)) + "; " + b.length(w * r.uniform(.2, .8)) +
+                      " 0; " + b.length(3 * w) + " " + b.length(r.uniform(-.5, .5))}});
         }
       b.contact(slave, obstacle, b.offset(h), false);
-      const int hold = r.integer(0, 4); // 0, 1: floating
+      const int         hold   = r.integer(0, 4); // 0, 1: floating
       const std::string loaded = shape <= 2 ? body + "/top" : shape == 3 ? body + "/flat" : "";
       if (hold >= 2 && shape <= 2)
         {
@@ -466,7 +498,9 @@ namespace slipstick::random
           else if (hold == 3)
             b.support(body + "/left", "0", "");
           else
-            b.support(body + "/top", r.chance(.5) ? "0" : b.length(r.uniform(-.01, .01)), b.length(-r.uniform(0, 2e-3) * h));
+            b.support(body + "/top",
+                      r.chance(.5) ? "0" : b.length(r.uniform(-.01, .01)),
+                      b.length(-r.uniform(0, 2e-3) * h));
         }
       else if (hold >= 3 && shape == 3)
         b.support(loaded, "0", r.chance(.5) ? "" : b.length(-r.uniform(0, 2e-3) * w));
@@ -485,7 +519,8 @@ namespace slipstick::random
     void two_bodies(Builder &b)
     {
       Random      &r  = b.random;
-      const double w1 = r.uniform(4, 9), h1 = r.uniform(2, 4), w2 = r.chance(.3) ? w1 : r.uniform(2, 9), h2 = r.uniform(2, 4);
+      const double w1 = r.uniform(4, 9), h1 = r.uniform(2, 4), w2 = r.chance(.3) ? w1 : r.uniform(2, 9),
+                   h2      = r.uniform(2, 4);
       const double x2      = w1 == w2 ? 0. : r.uniform(-.3 * w2, w1 - .7 * w2);
       const bool   matches = w1 == w2 && r.chance(.7);
       const int    n       = matches ? b.cells(w1) : 0;
@@ -524,7 +559,9 @@ namespace slipstick::random
               b.support(loaded, "0", "");
             break;
           case 1:
-            b.support(loaded, r.chance(.5) ? "0" : b.length(r.uniform(-5e-3, 5e-3)), b.length(-r.uniform(0, 4e-3) * h2));
+            b.support(loaded,
+                      r.chance(.5) ? "0" : b.length(r.uniform(-5e-3, 5e-3)),
+                      b.length(-r.uniform(0, 4e-3) * h2));
             break;
           default:;
         }
@@ -541,8 +578,8 @@ namespace slipstick::random
       double      y = 0, middle = 0, width = r.uniform(4, 7);
       std::string below;
       b.cell_size *= 1.2;
-      const bool   matches = r.chance(.3);
-      const int    nx      = matches ? b.cells(width) : 0;
+      const bool matches = r.chance(.3);
+      const int  nx      = matches ? b.cells(width) : 0;
       for (int k = 0; k < n; ++k)
         {
           const double h    = r.uniform(1, 2.5);
@@ -614,12 +651,12 @@ namespace slipstick::random
 
     void fit(Builder &b)
     {
-      Random      &r       = b.random;
-      const double radius  = r.uniform(2, 4), outer = radius * r.uniform(1.4, 2);
+      Random      &r      = b.random;
+      const double radius = r.uniform(2, 4), outer = radius * r.uniform(1.4, 2);
       const int    n       = 4 * r.integer(3, 4);
       const bool   is_disc = r.chance(.5);
       const auto   ring    = b.round("ring", 0, 0, outer, radius, r.chance(.4) ? n : 4 * r.integer(3, 5));
-      const auto   core    = b.round(is_disc ? "disc" : "ring", 0, 0, radius, is_disc ? 0. : radius * r.uniform(.3, .6), n);
+      const auto core = b.round(is_disc ? "disc" : "ring", 0, 0, radius, is_disc ? 0. : radius * r.uniform(.3, .6), n);
       const double overlap = -std::min(b.pressure / b.least_young, 1e-2) * radius * r.uniform(-.1, 1);
       b.contact(core + (is_disc ? "/arc" : "/outer"), ring + "/inner", overlap);
       if (r.chance(.6))
@@ -633,14 +670,19 @@ namespace slipstick::random
     {
       Random      &r      = b.random;
       const double radius = r.uniform(1, 2), w = r.uniform(3, 6), h = r.uniform(1.5, 3);
-      const auto   lower  = b.block(-w / 2, -h, w, h);
-      const auto   upper  = b.block(-w / 2, 2 * radius, w, h);
+      const auto   lower = b.block(-w / 2, -h, w, h);
+      const auto   upper = b.block(-w / 2, 2 * radius, w, h);
       b.support(lower + "/bottom", "0", "0");
       const int    n     = r.integer(1, 2); // rollers
       const double apart = n == 1 ? 0. : 1.2 * radius;
       for (int k = 0; k < n; ++k)
         {
-          const auto disc = b.round("disc", n == 1 ? r.uniform(-.2, .2) * w : (2 * k - 1) * apart, radius, radius, 0, 4 * r.integer(3, 4));
+          const auto disc = b.round("disc",
+                                    n == 1 ? r.uniform(-.2, .2) * w : (2 * k - 1) * apart,
+                                    radius,
+                                    radius,
+                                    0,
+                                    4 * r.integer(3, 4));
           b.contact(disc + "/arc", lower + "/top", b.offset(radius));
           if (r.chance(.7))
             b.contact(disc + "/arc", upper + "/bottom", b.offset(radius));
@@ -672,8 +714,9 @@ namespace slipstick::random
       if (r.chance(.5))
         {
           const bool is_disc = r.chance(.5);
-          const auto body    = is_disc ? b.round("disc", 0, w / std::cos(slope), w, 0, 4 * r.integer(3, 5)) :
-                                         b.round("ring", 0, w / std::cos(slope), w, w * r.uniform(.4, .7), 4 * r.integer(3, 5));
+          const auto body    = is_disc
+                                 ? b.round("disc", 0, w / std::cos(slope), w, 0, 4 * r.integer(3, 5))
+                                 : b.round("ring", 0, w / std::cos(slope), w, w * r.uniform(.4, .7), 4 * r.integer(3, 5));
           const auto arc     = body + (is_disc ? "/arc" : "/outer");
           b.contact(arc, b.half_plane(0, 0, -std::sin(slope), std::cos(slope)), b.offset(w), false);
           const double other = r.chance(.5) ? slope : r.uniform(.8, 1.) * slope;
@@ -691,8 +734,9 @@ namespace slipstick::random
       else
         {
           const bool is_disc = r.chance(.5);
-          const auto body    = b.round(is_disc ? "disc" : "half disc", 0, 0, w, 0, is_disc ? 4 * r.integer(3, 5) : 2 * r.integer(4, 7));
-          const double hole  = w * r.uniform(1.02, 1.3);
+          const auto body =
+            b.round(is_disc ? "disc" : "half disc", 0, 0, w, 0, is_disc ? 4 * r.integer(3, 5) : 2 * r.integer(4, 7));
+          const double hole = w * r.uniform(1.02, 1.3);
           b.contact(body + "/arc", b.circle("hole", 0, hole - w, hole), b.offset(w), false);
           b.weight(r.uniform(-.3, .3) * b.pressure / w, -b.pressure / w);
           if (!is_disc && r.chance(.7))
@@ -704,13 +748,13 @@ namespace slipstick::random
   GeneratedScene generate(const unsigned int seed)
   {
     static const std::vector<std::pair<std::string, void (*)(Builder &)>> families = {{"obstacle", one_on_obstacle},
-                                                                                       {"two", two_bodies},
-                                                                                       {"stack", stack},
-                                                                                       {"wall", wall},
-                                                                                       {"fit", fit},
-                                                                                       {"roller", roller},
-                                                                                       {"groove", groove}};
-    static const std::vector<unsigned int> order = {0, 1, 2, 3, 1, 4, 5, 0, 2, 6}; // how often each comes
+                                                                                      {"two", two_bodies},
+                                                                                      {"stack", stack},
+                                                                                      {"wall", wall},
+                                                                                      {"fit", fit},
+                                                                                      {"roller", roller},
+                                                                                      {"groove", groove}};
+    static const std::vector<unsigned int> order  = {0, 1, 2, 3, 1, 4, 5, 0, 2, 6}; // how often each comes
     const auto                            &family = families[order[seed % order.size()]];
     Builder                                builder(seed);
     family.second(builder);

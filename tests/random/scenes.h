@@ -11,7 +11,7 @@ namespace slipstick::random
     std::string                                      family; // obstacle, two, stack, wall, fit, roller, groove
     std::string                                      law;    // frictionless, Tresca, Coulomb, bonded, mixed
     std::string                                      prm;
-    std::vector<std::pair<std::string, std::string>> meshes; // file name, content
+    std::vector<std::pair<std::string, std::string>> meshes;         // file name, content
     std::vector<std::vector<std::string>>            decompositions; // overrides of two runs
   };
 
