@@ -26,6 +26,18 @@ namespace slipstick::fem
       return e;
     }
 
+    /// Adds to the tributary area of a node in the pair.
+    template <int dim>
+    void add_area(InterfaceNode<dim> &node, const unsigned int pair, const double area)
+    {
+      const auto found =
+        std::find_if(node.areas.begin(), node.areas.end(), [pair](const auto &a) { return a.first == pair; });
+      if (found == node.areas.end())
+        node.areas.emplace_back(pair, area);
+      else
+        found->second += area;
+    }
+
     /// What supports, foundations and obstacles say about the nodes of one boundary face.
     template <int dim>
     void add_face(const scene::Scene<dim>                                      &scene,
@@ -97,12 +109,7 @@ namespace slipstick::fem
       for (unsigned int k = 0; k < scene.contacts.size(); ++k)
         if (const auto &pair = scene.contacts[k]; !pair.master && here(pair.slave))
           for (unsigned int i = 0; i < on_face.size(); ++i)
-            {
-              auto &of_node = on_face[i]->areas;
-              if (of_node.empty() || of_node.back().first != k)
-                of_node.emplace_back(k, 0.);
-              of_node.back().second += areas[i];
-            }
+            add_area(*on_face[i], k, areas[i]);
     }
 
     /// A copy of the node of every support, those of boundaries unused. Collective.
@@ -186,14 +193,7 @@ namespace slipstick::fem
         }
       node.sides.insert(node.sides.end(), other.sides.begin(), other.sides.end());
       for (const auto &[pair, area] : other.areas)
-        {
-          auto found =
-            std::find_if(node.areas.begin(), node.areas.end(), [p = pair](const auto &a) { return a.first == p; });
-          if (found == node.areas.end())
-            node.areas.emplace_back(pair, area);
-          else
-            found->second += area;
-        }
+        add_area(node, pair, area);
       std::sort(node.areas.begin(), node.areas.end());
     }
 

@@ -52,20 +52,30 @@ namespace slipstick::fem
         }
     }
 
+    /// Normals of the edges are averaged where there is no corner, as for supports: else a curved boundary on springs along
+    /// its normal would hold its nodes along the tangent too, by springs so soft that they spoil the scale of F.
     template <int dim>
     void add_springs(InterfaceNode<dim> &node, const scene::Scene<dim> &scene)
     {
-      Eigen::Matrix<double, dim, dim> stiffness = Eigen::Matrix<double, dim, dim>::Zero();
+      std::vector<typename InterfaceNode<dim>::Side> sides;
+      std::vector<dealii::Tensor<1, dim>>            normals, means;
       for (const auto &side : node.sides)
         if (side.condition >= scene.supports.size())
           {
-            const auto &foundation = scene.foundations[side.condition - scene.supports.size()];
-            const Eigen::Map<const Eigen::Matrix<double, dim, 1>> n(side.normal.data());
-            const Eigen::Matrix<double, dim, dim>                 nn = n * n.transpose();
-            stiffness +=
-              side.area * (foundation.normal_stiffness * nn +
-                           foundation.tangential_stiffness * (Eigen::Matrix<double, dim, dim>::Identity() - nn));
+            sides.push_back(side);
+            normals.push_back(tensor<dim>(side.normal));
           }
+      const auto                      group     = smooth_normals(normals, means);
+      Eigen::Matrix<double, dim, dim> stiffness = Eigen::Matrix<double, dim, dim>::Zero();
+      for (unsigned int i = 0; i < sides.size(); ++i)
+        {
+          const auto &foundation = scene.foundations[sides[i].condition - scene.supports.size()];
+          const Eigen::Map<const Eigen::Matrix<double, dim, 1>> n(means[group[i]].begin_raw());
+          const Eigen::Matrix<double, dim, dim>                 nn = n * n.transpose();
+          stiffness +=
+            sides[i].area * (foundation.normal_stiffness * nn +
+                             foundation.tangential_stiffness * (Eigen::Matrix<double, dim, dim>::Identity() - nn));
+        }
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>> principal(stiffness);
       for (unsigned int k = 0; k < dim; ++k)
         if (principal.eigenvalues()[k] > smallest_stiffness * principal.eigenvalues()[dim - 1])

@@ -292,7 +292,8 @@ namespace slipstick::tfeti
     for (const auto &candidate : all)
       shares.col(column++) = Eigen::Map<const Eigen::VectorXd>(candidate.second.data(), loose.size());
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted(shares);
-    pivoted.setThreshold(least_hold);
+    // of unit motions: shares that are all rounding hold nothing
+    pivoted.setThreshold(least_hold * std::max(1., 1 / std::max(pivoted.maxPivot(), least_hold)));
     if (pivoted.rank() < static_cast<Eigen::Index>(loose.size()))
       require_support(loose, names_of_bodies);
     std::set<std::uint64_t> chosen;

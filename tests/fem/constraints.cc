@@ -220,6 +220,28 @@ TEST(Constraints, prescribed_rows_have_the_formulas_values)
       }
 }
 
+TEST(Constraints, round_boundary_on_springs_along_its_normal_has_none_along_its_tangent)
+{
+  for (const unsigned int degree : {1, 2})
+    for (const Cut &how : {whole(), metis(3)})
+      {
+        Scene scene                 = cut({}, how);
+        scene.discretization.degree = degree;
+        add_body(scene, "disc", {0, 0}, {1, 1}, {{1, 1}});
+        scene.bodies[0].shape           = scene::Shape::disc;
+        scene.bodies[0].radius          = 5;
+        scene.bodies[0].cells_along_arc = 16;
+        scene::Foundation<2> foundation;
+        foundation.where            = {0, "arc"};
+        foundation.normal_stiffness = 100;
+        scene.foundations.push_back(foundation);
+        const auto all = constraints(scene);
+        EXPECT_EQ(all.counts.prescribed, 16 * degree);
+        for (const double compliance : all.compliance)
+          EXPECT_LT(compliance, 0.1); // 1 / (100 times a third of an edge, at least)
+      }
+}
+
 TEST(Constraints, prescribed_values_follow_the_load_factor)
 {
   Scene scene = box(2);
@@ -288,6 +310,23 @@ TEST(Constraints, tributary_areas_sum_to_the_boundary)
   for (const unsigned int degree : {1, 2})
     for (const Cut &how : cuts)
       EXPECT_NEAR(total_area(cut(hanging_box(8, degree), how), 0), 10 * 3, 1e-12) << how.n << ", degree " << degree;
+}
+
+TEST(Constraints, tributary_areas_of_a_boundary_with_two_obstacles_sum_to_it_for_each)
+{
+  for (const unsigned int degree : {1, 2})
+    {
+      Scene scene = hanging_box(8, degree);
+      touch(scene, 0, "bottom", {9, -15}, 12, "100");
+      for (const Cut &how : cuts)
+        {
+          double sum[2] = {0, 0};
+          for (const auto &point : contact_points(cut(scene, how)))
+            sum[point.pair] += point.area;
+          for (const double one : sum)
+            EXPECT_NEAR(one, 10 * 3, 1e-10) << degree << ", cut " << how.n;
+        }
+    }
 }
 
 TEST(Constraints, tributary_areas_are_integrals_of_the_shape_functions)

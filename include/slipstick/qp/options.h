@@ -90,6 +90,7 @@ namespace slipstick::qp
     double       bound_reduction   = 0.5;  // of the residual of the solves with every update of such bounds, at least
     double       bound_accuracy    = 0.1;  // bounds that depend on x are updated at residuals below this times their
                                            // last relative change
+    unsigned int max_freed            = 5; // sets that do not hold the bodies, in whose place all entries are freed
     unsigned int max_outer_iterations = 300;
     GcrOptions   gcr;
   };

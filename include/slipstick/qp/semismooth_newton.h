@@ -72,6 +72,15 @@ namespace slipstick::qp
 
   namespace detail
   {
+    // Outer steps without progress, after which the set counts as cycling and changes by single entries ...
+    constexpr unsigned int cycling = 6;
+    // ... so often at most.
+    constexpr unsigned int most_single_changes = 60;
+    // Entries as far beyond their bounds as the farthest, up to rounding, change with it.
+    constexpr double same_distance = 1 - 1e-9;
+    // Residual reduction by the linear solves of such sets.
+    constexpr double cautious_reduction = 1e-2;
+
     template <typename Vector, typename Problem>
     class SemismoothNewton
     {
@@ -141,7 +150,9 @@ namespace slipstick::qp
               return Status::converged;
             if (accepts && !bounds.update && is_accepted())
               return Status::converged;
-            if (changed == 0 &&
+            // ties that were left out (a set that does not hold the bodies) leave entries off the bounds that follow x
+            const bool off_bounds = coupled.are_coupled && violation > eps;
+            if (changed == 0 && !off_bounds &&
                 residual <= std::max(eps, std::min(options.first_forcing, options.bound_accuracy * bound_change)))
               {
                 if (bounds.update)
@@ -172,14 +183,17 @@ namespace slipstick::qp
             const double merit = residual + changed;
             stuck              = merit < options.progress * best ? 0 : stuck + 1;
             best               = std::min(best, merit);
-            if (stuck >= options.patience)
+            if (stuck >= options.patience + most_single_changes)
               return Status::stagnated;
+            is_cautious = stuck >= cycling;
+            if (is_cautious)
+              keep_largest_changes(next);
             if (counts.outer_iterations >= options.max_outer_iterations)
               return Status::iteration_limit;
             if (changed <= options.settled_part * n_inequalities)
               tighten();
-            set_changed = changed > 0;
-            set_stands  = coupled.are_coupled ? changed == 0 : same_free(next);
+            set_changed = changed > 0 || off_bounds;
+            set_stands  = coupled.are_coupled ? changed == 0 && !off_bounds : same_free(next);
             active      = std::move(next);
           }
       }
@@ -212,7 +226,15 @@ namespace slipstick::qp
             free_two_sided(free);
             face.emplace(problem.face(free, {}));
             if (!face->is_regular())
-              return false;
+              {
+                // then all of them: the set that follows keeps those that press
+                if (++n_freed > options.max_freed)
+                  return false;
+                free_all(free);
+                face.emplace(problem.face(free, {}));
+                if (!face->is_regular())
+                  return false;
+              }
           }
         if (!set_stands)
           {
@@ -229,8 +251,10 @@ namespace slipstick::qp
             problem.multiply(x, Fx);
             ++counts.hessian_multiplications;
           }
-        wanted = std::max(options.last_forcing * eps,
-                          std::min(set_changed ? 1. : forcing, options.face_reduction * residual_on(*face)));
+        const double reduction =
+          is_cautious ? std::min(options.face_reduction, cautious_reduction) : options.face_reduction;
+        wanted =
+          std::max(options.last_forcing * eps, std::min(set_changed ? 1. : forcing, reduction * residual_on(*face)));
         if (coupled.are_coupled && !all_stick())
           solve_unsymmetric(*face);
         else
@@ -332,6 +356,18 @@ namespace slipstick::qp
             }
       }
 
+      // Also in the coupled law: nothing is tied while all entries are free.
+      void free_all(std::vector<bool> &free)
+      {
+        const auto l = box().lower.begin(), u = box().upper.begin();
+        for (std::size_t i = 0; i < active.size(); ++i)
+          if (l[i] < u[i])
+            {
+              active[i] = 0;
+              free[i]   = true;
+            }
+      }
+
       void put_on_bounds()
       {
         move_bounds(active, 0.);
@@ -365,11 +401,12 @@ namespace slipstick::qp
         std::array<double, 2> sum{{0, 0}};
         for (std::size_t i = 0; i < active.size(); ++i)
           {
-            const double gp     = active[i] == 0   ? gi[i]
-                                  : !(l[i] < u[i]) ? 0.0
-                                  : active[i] < 0  ? std::min(gi[i], 0.0)
-                                                   : std::max(gi[i], 0.0);
-            const double out    = xi[i] - clip(xi[i], l[i], u[i]);
+            const double gp = active[i] == 0   ? gi[i]
+                              : !(l[i] < u[i]) ? 0.0
+                              : active[i] < 0  ? std::min(gi[i], 0.0)
+                                               : std::max(gi[i], 0.0);
+            // entries at a bound must be there: bounds that follow x may have left them
+            const double out    = xi[i] - (active[i] < 0 ? l[i] : active[i] > 0 ? u[i] : clip(xi[i], l[i], u[i]));
             const double weight = weights ? weights[i] : 1.;
             sum[0] += weight * weight * gp * gp;
             sum[1] += out * out; // F out is as much smaller as the weight is larger
@@ -414,6 +451,30 @@ namespace slipstick::qp
         for (const PressureBound &bound : coupled.bounds)
           place(bound.tangential);
         return set;
+      }
+
+      // Of the changes to the next set that which is farthest beyond its bound alone (and what rounding takes for as far).
+      // Sets that change as a whole may cycle; one by one they do not for a given face's strictly convex problem but for
+      // ties (Murty 1988; Judice, Pires 1994), and the cycles seen end.
+      void keep_largest_changes(std::vector<signed char> &next)
+      {
+        const auto          l = box().lower.begin(), u = box().upper.begin();
+        const auto          xi = x.begin(), gi = g.begin();
+        const double       *weights = residual_weights(problem, 0);
+        std::vector<double> beyond(next.size(), 0.);
+        double              largest = 0;
+        for (std::size_t i = 0; i < next.size(); ++i)
+          if (next[i] != active[i])
+            {
+              const double t     = xi[i] - options.set_step * (weights ? weights[i] : 1.) * gi[i] / norm;
+              const double bound = (active[i] == 0 ? next[i] : active[i]) < 0 ? l[i] : u[i];
+              beyond[i]          = std::abs(t - bound);
+              largest            = std::max(largest, beyond[i]);
+            }
+        largest = -problem.reduction().min(-largest);
+        for (std::size_t i = 0; i < next.size(); ++i)
+          if (beyond[i] < same_distance * largest)
+            next[i] = active[i];
       }
 
       bool same_free(const std::vector<signed char> &next) const
@@ -476,8 +537,10 @@ namespace slipstick::qp
       double       bound_change = 0;     // the last one
       double       last_step = HUGE_VAL; // the first one of the last solve of a face, along its preconditioned residual
       bool         has_gradient;         // g is that of x
+      bool         is_cautious = false;  // the set changes by one entry at a time
       bool         set_changed = true;   // x is not on its bounds, or does not balance: F x is not known
       bool         set_stands  = false;  // the free entries are those of the last solve
+      unsigned int n_freed     = 0;      // sets that left some motion open, so that all entries were freed
       std::shared_ptr<DirectionHistory<Vector>> history;
       std::optional<ResidualHistory<Vector>>    residual_history;
       std::vector<signed char>                  active;
