@@ -65,14 +65,16 @@ namespace
     const auto                                           session = std::make_shared<tfeti::CholmodSession>();
     std::vector<std::unique_ptr<tfeti::SubdomainSystem>> systems;
     std::vector<tfeti::LocalGluing>                      gluing;
+    std::vector<tfeti::PackedSymmetric>                  blocks;
     for (unsigned int p = 0; p < matrices.size(); ++p)
       {
         auto [local, touched] = tfeti::LocalGluing::make(constraints.blocks[p]);
         gluing.push_back(std::move(local));
         systems.push_back(
           std::make_unique<tfeti::SubdomainSystem>(session, std::move(matrices[p]), std::move(touched), true));
+        blocks.emplace_back(systems.back()->pseudo_inverse_block(), tfeti::Precision::double_precision);
       }
-    const tfeti::DualOperator F(systems, gluing, constraints.rows, true);
+    const tfeti::DualOperator F(systems, gluing, constraints.rows, std::move(blocks));
     const std::size_t         own_bytes = F.block_bytes();
     std::vector<double>       buffer(own_bytes / sizeof(double), 1.);
 

@@ -4,9 +4,9 @@
 // --only takes the beginning of a table's name. Prints Markdown on rank 0.
 #include <slipstick/contact/friction.h>
 #include <slipstick/fem/assembly.h>
+#include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/decomposition.h>
 #include <slipstick/scene/read.h>
-#include <slipstick/fem/contact_constraints.h>
 
 #include <deal.II/base/mpi.h>
 
