@@ -19,6 +19,8 @@ namespace slipstick::app
     constexpr double largest_limit = 0.05;
     // Residuals below this one are left by the rounding of what the solver works with.
     constexpr double rounding = 1e-11;
+    // What rounding leaves differs by about this factor from one way to compute it to another.
+    constexpr double margin_of_rounding = 2;
 
     std::string line(const char *stage, const std::string &text)
     {
@@ -230,7 +232,7 @@ namespace slipstick::app
     if (solution.status == qp::Status::converged)
       {
         const double      reached   = std::max(solution.projected_gradient, solution.equality);
-        const double      reachable = rounded_up(worst.value / check_factor);
+        const double      reachable = rounded_up(margin_of_rounding * worst.value / check_factor);
         const std::string what =
           format("the check from the recovered displacement fails: %s is %.2e%s, allowed is %.2e; the solver reached "
                  "residuals of %.1e",

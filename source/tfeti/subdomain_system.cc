@@ -22,8 +22,8 @@ namespace slipstick::tfeti
     // Residual of solves with the compact factor over that of their start, as the steps tell it, and how many those may be.
     constexpr double       compact_tolerance = 1e-15;
     constexpr unsigned int max_compact_steps = 12;
-    // A residual below this part of the right-hand side is left as it is.
-    constexpr double visible_residual = 1e-12;
+    // A residual below this part of |K| |x| is rounding.
+    constexpr double rounding = 1e-15;
 
     std::string name_of(const SubdomainMatrices &matrices)
     {
@@ -162,7 +162,8 @@ namespace slipstick::tfeti
       return product;
     };
     Eigen::VectorXd solution = Eigen::VectorXd::Zero(x.size()), r = x, z, p;
-    double          left = x.norm();
+    double          left      = x.norm();
+    const double    stiffness = matrices.stiffness.diagonal().maxCoeff();
     for (;;)
       {
         Eigen::VectorXd step = Eigen::VectorXd::Zero(x.size());
@@ -187,7 +188,7 @@ namespace slipstick::tfeti
         left                       = r.norm();
         if (left < before)
           solution = next;
-        if (left <= visible_residual * x.norm() || left > before / 2)
+        if (left <= rounding * stiffness * solution.norm() || left > before / 2)
           {
             x = solution;
             return true;

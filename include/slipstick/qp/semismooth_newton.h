@@ -136,7 +136,7 @@ namespace slipstick::qp
       Status iterate()
       {
         double       best  = HUGE_VAL;
-        unsigned int stuck = 0;
+        unsigned int stuck = 0, alone = 0; // outer steps without progress, those with one change of the set or none
         for (;;)
           {
             if (!solve_on_face())
@@ -175,7 +175,7 @@ namespace slipstick::qp
                     set_changed = true;
                     active      = std::move(next);
                     best        = HUGE_VAL;
-                    stuck       = 0;
+                    stuck = alone = 0;
                     continue;
                   }
               }
@@ -183,7 +183,9 @@ namespace slipstick::qp
             const double merit = residual + changed;
             stuck              = merit < options.progress * best ? 0 : stuck + 1;
             best               = std::min(best, merit);
-            if (stuck >= options.patience + most_single_changes)
+            // single changes are of no help when they are all that there is
+            alone = stuck == 0 ? 0 : alone + (changed <= 1);
+            if (alone >= options.patience || stuck >= options.patience + most_single_changes)
               return Status::stagnated;
             is_cautious = stuck >= cycling;
             if (is_cautious)

@@ -29,10 +29,9 @@ namespace slipstick::tfeti
     /// x := K+ x; n entries [N] to [mm].
     void apply_pseudo_inverse(Eigen::VectorXd &x) const;
 
-    /// Keeps no more of the factor than its compact form, with which K+ is applied by conjugate gradients to rounding
-    /// (residuals of at most 1e-12 unless rounding leaves more): a
-    /// quarter of the memory. Where most unknowns are touched it would be more, and
-    /// nothing is done. The dense blocks may not be asked for afterwards.
+    /// Keeps no more of the factor than its compact form, with which K+ is applied by conjugate gradients to rounding: a
+    /// quarter of the memory. Where most unknowns are touched it would be more, and nothing is done. The dense blocks may
+    /// not be asked for afterwards.
     void compress();
 
     /// K x; n entries [mm] to [N].
