@@ -6,6 +6,7 @@
 
 #include <Tpetra_Core.hpp>
 
+#include <cstdlib>
 #include <iostream>
 
 // Present when the BLAS is OpenBLAS: its threads would fight with the ranks for the cores.
@@ -70,6 +71,7 @@ int main(int argc, char **argv)
     openblas_set_num_threads(1);
   if (omp_set_max_active_levels)
     omp_set_max_active_levels(0);
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0); // Open MPI 4 starts a daemon where mpirun has not: 0.1 s
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   // Kokkos, below Tpetra, has options of its own (and a --help): it gets to see the program's name only
   int                n_arguments = 1;

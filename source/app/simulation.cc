@@ -176,7 +176,11 @@ namespace slipstick::app
         , log(log_)
         , comm(comm_)
         , options(contact::resolved_options(scene_))
-      {}
+      {
+        // what applies K+ more often than the one recovery
+        options.dual.keeps_factors = scene.load_factors.size() > 1 || options.stops_at_discretization_error ||
+                                     options.dual.operator_precision == tfeti::Precision::single_precision;
+      }
 
       ExitStatus solve_and_write()
       {

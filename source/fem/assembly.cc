@@ -195,7 +195,7 @@ namespace slipstick::fem
     const auto                            frames = body_frames(scene, mesh);
     auto                                  loads  = assemble_loads(scene, mesh, spaces, t);
     std::vector<tfeti::SubdomainMatrices> systems;
-    systems.reserve(mesh.subdomains.size()); // growing copies the matrices
+    systems.reserve(mesh.subdomains.size());
     for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
       {
         const auto              &subdomain   = *mesh.subdomains[p];

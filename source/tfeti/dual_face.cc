@@ -9,42 +9,12 @@ namespace slipstick::tfeti
     return Face(*this, free, ties);
   }
 
-  double DualProblem::jump_energy(const DistributedVector &r, const std::vector<bool> &held) const
-  {
-    const std::unique_ptr<RowWeights> own_weights =
-      weights ? nullptr : std::make_unique<RowWeights>(systems, gluing, rows.rows, comm);
-    const RowWeights::Inverse inverse(weights ? *weights : *own_weights, held);
-    DistributedVector         weighted = zero(), source = F->ghosted();
-    inverse.apply(r, weighted);
-    F->import(weighted, source);
-    double          energy = 0;
-    Eigen::VectorXd force;
-    for (unsigned int p = 0; p < systems.size(); ++p)
-      {
-        const Eigen::VectorXd move = F->scatter(p, source).cwiseQuotient(systems[p]->touched_diagonal());
-        if (preconditioner)
-          {
-            preconditioner->apply(p, move, force);
-            energy += move.dot(force);
-            continue;
-          }
-        const auto     &touched = systems[p]->touched();
-        Eigen::VectorXd u       = Eigen::VectorXd::Zero(systems[p]->n_unknowns());
-        for (unsigned int k = 0; k < touched.size(); ++k)
-          u[touched[k]] = move[k];
-        energy += u.dot(systems[p]->apply_stiffness(u));
-      }
-    return reduce.sum(std::array<double, 1>{{energy}})[0];
-  }
-
   DualProblem::Face::Face(const DualProblem          &problem_,
                           const std::vector<bool>    &free_,
                           const std::vector<qp::Tie> &ties_)
     : problem(problem_)
     , free(free_)
     , ties(ties_)
-    , source(problem.rows.rows)
-    , target(problem.rows.rows)
   {
     if (!problem.bodies->free(free).empty())
       return;
@@ -57,12 +27,8 @@ namespace slipstick::tfeti
           moving[tie.tied] = true;
         tied = std::make_unique<Projector>(*problem.projector, moving, problem.comm, ties, problem.metric);
       }
-    if (problem.weights)
-      {
-        weights = std::make_unique<RowWeights::Inverse>(*problem.weights, free);
-        for (const auto &system : problem.systems)
-          inverse_diagonals.push_back(system->touched_diagonal().cwiseInverse());
-      }
+    if (problem.preconditioner)
+      weights = std::make_unique<RowWeights::Inverse>(problem.preconditioner->weights(), free);
   }
 
   void DualProblem::Face::multiply(const DistributedVector &x, DistributedVector &y) const
@@ -80,16 +46,21 @@ namespace slipstick::tfeti
     return problem.reduce;
   }
 
+  // Twice where the rounding of the first shows.
+  void DualProblem::Face::projected(const Projection project, const DistributedVector &x, DistributedVector &y) const
+  {
+    (*projector.*project)(x, y);
+    if (!problem.projects_twice)
+      return;
+    DistributedVector left(x), rest = problem.zero();
+    left -= y;
+    (*projector.*project)(left, rest);
+    y += rest;
+  }
+
   void DualProblem::Face::project_range(const DistributedVector &x, DistributedVector &y) const
   {
-    projector->project_range(x, y);
-    if (problem.projects_twice)
-      {
-        DistributedVector left(x), rest = problem.zero();
-        left -= y;
-        projector->project_range(left, rest);
-        y += rest;
-      }
+    projected(&Projector::project_range, x, y);
     for (unsigned int r = 0; r < free.size(); ++r)
       if (!free[r])
         y.local_element(r) = x.local_element(r);
@@ -116,14 +87,7 @@ namespace slipstick::tfeti
 
   void DualProblem::Face::multiplier_shift(const DistributedVector &v, DistributedVector &y) const
   {
-    projector->extend_range(v, y);
-    if (problem.projects_twice)
-      {
-        DistributedVector left(v), rest = problem.zero();
-        left -= y;
-        projector->extend_range(left, rest);
-        y += rest;
-      }
+    projected(&Projector::extend_range, v, y);
   }
 
   void DualProblem::Face::precondition(const DistributedVector &r, DistributedVector &z) const
@@ -133,21 +97,7 @@ namespace slipstick::tfeti
         z.copy_locally_owned_data_from(r);
         return;
       }
-    DistributedVector weighted = problem.zero();
-    weights->apply(r, weighted);
-    problem.F->import(weighted, source);
-    target.zero_out_ghost_values();
-    target = 0;
-    Eigen::VectorXd force;
-    for (unsigned int p = 0; p < problem.systems.size(); ++p)
-      {
-        const Eigen::VectorXd jump = inverse_diagonals[p].cwiseProduct(problem.F->scatter(p, source));
-        problem.preconditioner->apply(p, jump, force);
-        problem.F->gather(p, inverse_diagonals[p].cwiseProduct(force), target);
-      }
-    target.compress(dealii::VectorOperation::add);
-    weighted.copy_locally_owned_data_from(target);
-    weights->apply(weighted, z);
+    problem.preconditioner->apply(*weights, r, z);
     z *= problem.norm();
   }
 } // namespace slipstick::tfeti

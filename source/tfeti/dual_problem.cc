@@ -60,7 +60,7 @@ namespace slipstick::tfeti
     const bool explicit_blocks     = is_explicit(options, matrices, rows, comm);
     const bool with_trailing_block = explicit_blocks || options.preconditioner == Preconditioner::dirichlet;
     const auto session             = std::make_shared<CholmodSession>();
-    std::vector<PackedSymmetric> inverses, stiffnesses;
+    std::vector<PackedSymmetric> inverses, schur_complements;
     std::vector<Eigen::VectorXd> u; // K+ f
     collectively(comm, [&] {
       for (unsigned int p = 0; p < matrices.size(); ++p)
@@ -77,13 +77,11 @@ namespace slipstick::tfeti
           if (explicit_blocks)
             inverses.emplace_back(system.pseudo_inverse_block(), options.operator_precision);
           if (options.preconditioner == Preconditioner::dirichlet)
-            stiffnesses.emplace_back(system.schur_complement(), options.preconditioner_precision);
-          else if (options.preconditioner == Preconditioner::lumped)
-            stiffnesses.emplace_back(system.touched_stiffness(), options.preconditioner_precision);
+            schur_complements.emplace_back(system.schur_complement(), options.preconditioner_precision);
           u.push_back(system.load());
           system.apply_pseudo_inverse(u.back());
-          if (explicit_blocks)
-            system.compress(); // one whole factor at a time
+          if (explicit_blocks && !options.keeps_factors)
+            system.release(); // one factor at a time
         }
       session->forget_analyses();
     });
@@ -92,18 +90,17 @@ namespace slipstick::tfeti
     require_support(bodies->free({}), body_names);
     if (options.preconditioner == Preconditioner::lumped || options.preconditioner == Preconditioner::dirichlet)
       {
-        weights = std::make_unique<RowWeights>(systems, gluing, rows.rows, comm);
-        metric  = weights->stiffnesses();
+        preconditioner =
+          std::make_unique<RowPreconditioner>(systems, gluing, *F, rows.rows, comm, std::move(schur_complements));
+        metric = preconditioner->weights().stiffnesses();
         const double least =
           dealii::Utilities::MPI::min(metric.empty() ? qp::infinity : *std::min_element(metric.begin(), metric.end()),
                                       comm);
         for (double &stiffness : metric)
           stiffness /= least;
-        weights_of_residuals = metric;
         projects_twice =
           dealii::Utilities::MPI::max(metric.empty() ? 1. : *std::max_element(metric.begin(), metric.end()), comm) >
           large_stiffness_ratio;
-        preconditioner = std::make_unique<PreconditionerBlocks>(std::move(stiffnesses));
       }
     projector = std::make_unique<Projector>(systems, gluing, *F, rows.rows, std::vector<bool>(), comm);
 
@@ -219,6 +216,17 @@ namespace slipstick::tfeti
     part -= range;
     return std::sqrt(
       reduce.sum(std::array<double, 1>{{qp::local_weighted_dot(qp::residual_weights(*this, 0), part, part)}})[0]);
+  }
+
+  double DualProblem::jump_energy(const DistributedVector &r, const std::vector<bool> &held) const
+  {
+    std::optional<RowPreconditioner> lumped;
+    if (!preconditioner)
+      lumped.emplace(systems, gluing, *F, rows.rows, comm, std::vector<PackedSymmetric>());
+    const RowPreconditioner &M      = preconditioner ? *preconditioner : *lumped;
+    DistributedVector        forces = zero();
+    M.apply(RowWeights::Inverse(M.weights(), held), r, forces);
+    return r * forces;
   }
 
   DistributedVector DualProblem::zero() const

@@ -19,12 +19,6 @@ namespace slipstick::tfeti
     // more than 1e-15 without one up to a slenderness of 4000.
     constexpr double smallest_stiffness = 2e-16;
 
-    // Residual of solves with the compact factor over that of their start, as the steps tell it, and how many those may be.
-    constexpr double       compact_tolerance = 1e-15;
-    constexpr unsigned int max_compact_steps = 12;
-    // A residual below this part of |K| |x| is rounding.
-    constexpr double rounding = 1e-15;
-
     std::string name_of(const SubdomainMatrices &matrices)
     {
       return "subdomain " + std::to_string(matrices.subdomain);
@@ -115,85 +109,27 @@ namespace slipstick::tfeti
                                    std::vector<unsigned int>              touched,
                                    const bool                             with_trailing_block)
     : session(session)
-    , with_trailing_block(with_trailing_block)
     , matrices((check_kernel(given), std::move(given)))
     , touched_unknowns(std::move(touched))
     , fixing_unknowns(choose_fixing(matrices, touched_unknowns))
     , regularization(matrices.stiffness.diagonal().mean())
-    , cholesky(factorised())
+    , cholesky(
+        factorised(with_trailing_block ? merged(touched_unknowns, fixing_unknowns) : std::vector<unsigned int>()))
   {
     check_no_larger_kernel(matrices, *cholesky);
   }
 
-  Cholesky SubdomainSystem::factorised() const
+  Cholesky SubdomainSystem::factorised(const std::vector<unsigned int> &last) const
   {
-    return {session,
-            regularised(matrices.stiffness, fixing_unknowns, regularization),
-            with_trailing_block ? merged(touched_unknowns, fixing_unknowns) : std::vector<unsigned int>(),
-            name_of(matrices)};
-  }
-
-  void SubdomainSystem::compress()
-  {
-    compact.emplace(cholesky->compact());
-    if (compact->bytes() < cholesky->n_nonzeros() * sizeof(double))
-      cholesky.reset();
-    else
-      compact.reset();
+    return {session, regularised(matrices.stiffness, fixing_unknowns, regularization), last, name_of(matrices)};
   }
 
   void SubdomainSystem::apply_pseudo_inverse(Eigen::VectorXd &x) const
   {
-    if (!cholesky && solve_with_compact(x))
-      return;
-    if (!cholesky)
-      cholesky.emplace(factorised());
-    cholesky->solve(x);
-  }
-
-  // Conjugate gradients preconditioned by the compact factor, anew from the residual that rounding has left as long as
-  // that falls. x stays what it was when they do not converge.
-  bool SubdomainSystem::solve_with_compact(Eigen::VectorXd &x) const
-  {
-    const auto multiply = [this](const Eigen::VectorXd &v) {
-      Eigen::VectorXd product = apply_stiffness(v);
-      for (const unsigned int i : fixing_unknowns)
-        product[i] += regularization * v[i];
-      return product;
-    };
-    Eigen::VectorXd solution = Eigen::VectorXd::Zero(x.size()), r = x, z, p;
-    double          left      = x.norm();
-    const double    stiffness = matrices.stiffness.diagonal().maxCoeff();
-    for (;;)
-      {
-        Eigen::VectorXd step = Eigen::VectorXd::Zero(x.size());
-        const double    goal = compact_tolerance * left;
-        double          rz   = 0;
-        for (unsigned int k = 0; !(r.norm() <= goal); ++k)
-          {
-            compact->apply(matrices.stiffness, r, z);
-            const double rz_before = rz;
-            rz                     = r.dot(z);
-            if (k == max_compact_steps || !(rz > 0) || !std::isfinite(rz))
-              return false;
-            p                        = k == 0 ? z : Eigen::VectorXd(z + rz / rz_before * p);
-            const Eigen::VectorXd Kp = multiply(p);
-            const double          t  = rz / p.dot(Kp);
-            step += t * p;
-            r -= t * Kp;
-          }
-        const Eigen::VectorXd next = solution + step;
-        r                          = x - multiply(next);
-        const double before        = left;
-        left                       = r.norm();
-        if (left < before)
-          solution = next;
-        if (left <= rounding * stiffness * solution.norm() || left > before / 2)
-          {
-            x = solution;
-            return true;
-          }
-      }
+    if (cholesky)
+      cholesky->solve(x);
+    else
+      factorised({}).solve(x);
   }
 
   // the rotation of the body is (-(y - y_c), x - x_c) / length at the two unknowns of a node
@@ -204,6 +140,13 @@ namespace slipstick::tfeti
     return {{matrices.frame.center[0] + matrices.frame.length * matrices.kernel.row(first + 1).dot(rotation),
              matrices.frame.center[1] - matrices.frame.length * matrices.kernel.row(first).dot(rotation),
              0.}};
+  }
+
+  Eigen::VectorXd SubdomainSystem::apply_touched_stiffness(const Eigen::VectorXd &x) const
+  {
+    Eigen::VectorXd u   = Eigen::VectorXd::Zero(n_unknowns());
+    u(touched_unknowns) = x;
+    return apply_stiffness(u)(touched_unknowns);
   }
 
   std::vector<double> SubdomainSystem::pseudo_inverse_block() const
@@ -219,20 +162,6 @@ namespace slipstick::tfeti
       if (std::find(fixing_unknowns.begin(), fixing_unknowns.end(), order[k]) != fixing_unknowns.end())
         schur(k, k) -= regularization;
     return packed_lower(schur, touched_in_last_order());
-  }
-
-  std::vector<double> SubdomainSystem::touched_stiffness() const
-  {
-    std::vector<int> position(n_unknowns(), -1);
-    for (unsigned int k = 0; k < touched_unknowns.size(); ++k)
-      position[touched_unknowns[k]] = static_cast<int>(k);
-    Eigen::MatrixXd block = Eigen::MatrixXd::Zero(touched_unknowns.size(), touched_unknowns.size());
-    for (const unsigned int column : touched_unknowns)
-      for (Eigen::SparseMatrix<double>::InnerIterator entry(matrices.stiffness, column); entry; ++entry)
-        if (position[entry.row()] >= 0)
-          block(position[entry.row()], position[column]) = block(position[column], position[entry.row()]) =
-            entry.value();
-    return packed_lower(block);
   }
 
   Eigen::VectorXd SubdomainSystem::touched_diagonal() const

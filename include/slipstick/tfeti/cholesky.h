@@ -1,8 +1,6 @@
 // Sparse Cholesky factorisation (SuiteSparse CHOLMOD, supernodal), whole or ending in a dense trailing block.
 #pragma once
 
-#include <slipstick/tfeti/compact_cholesky.h>
-
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
 
@@ -73,12 +71,6 @@ namespace slipstick::tfeti
 
     /// Nonzeros of L as stored.
     std::size_t n_nonzeros() const;
-
-    /// L in a quarter of the memory.
-    CompactCholesky compact() const
-    {
-      return CompactCholesky(*factor, trailing.size());
-    }
 
   private:
     struct FactorDeleter

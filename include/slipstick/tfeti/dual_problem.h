@@ -60,7 +60,7 @@ namespace slipstick::tfeti
     /// residuals count as forces and all bodies are solved alike. Empty without a preconditioner.
     const std::vector<double> &residual_weights() const
     {
-      return weights_of_residuals;
+      return metric;
     }
 
     /// Norm of the part of a residual (such as d - F x over norm()) that multipliers can change, with its weights.
@@ -172,10 +172,9 @@ namespace slipstick::tfeti
     std::unique_ptr<DualOperator>                 F;
     std::unique_ptr<BodyMotions>                  bodies;
     std::unique_ptr<Projector>                    projector;
-    std::unique_ptr<RowWeights>                   weights; // with a preconditioner
-    std::unique_ptr<PreconditionerBlocks>         preconditioner;
-    std::vector<double>                           metric, weights_of_residuals; // of the owned rows
-    bool               projects_twice = false; // rounding of one projection would show in the stiffest rows
+    std::unique_ptr<RowPreconditioner>            preconditioner;
+    std::vector<double>                           metric; // stiffnesses of the owned rows
+    bool               projects_twice = false;            // rounding of one projection would show in the stiffest rows
     DistributedVector  dual_load;
     DistributedVector  correction; // (F - F~) x, taken off the dual load
     bool               is_single             = false;
@@ -216,6 +215,9 @@ namespace slipstick::tfeti
     }
 
   private:
+    using Projection = void (Projector::*)(const DistributedVector &, DistributedVector &) const;
+    void projected(const Projection project, const DistributedVector &x, DistributedVector &y) const;
+
     const Projector &balancing() const
     {
       return tied ? *tied : *projector;
@@ -227,7 +229,5 @@ namespace slipstick::tfeti
     std::unique_ptr<Projector>           projector; // none if the free rows do not hold the bodies
     std::unique_ptr<Projector>           tied;      // of free and tied rows, if some rank has ties
     std::unique_ptr<RowWeights::Inverse> weights;
-    std::vector<Eigen::VectorXd>         inverse_diagonals; // of K at the touched unknowns
-    mutable DistributedVector            source, target;
   };
 } // namespace slipstick::tfeti

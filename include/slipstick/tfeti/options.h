@@ -31,7 +31,9 @@ namespace slipstick::tfeti
     Preconditioner   preconditioner           = Preconditioner::automatic;
     Precision        operator_precision       = Precision::double_precision; // single: see DualProblem::refine
     Precision        preconditioner_precision = Precision::single_precision;
-    unsigned int     max_norm_iterations      = 40;   // of the power method for |PFP|
-    double           norm_tolerance           = 1e-3; // relative change at which it stops
+    bool             keeps_factors = true;   // of an explicit operator, whose K+ is applied several times all the
+                                             // same; else factorised anew for every recovery
+    unsigned int max_norm_iterations = 40;   // of the power method for |PFP|
+    double       norm_tolerance      = 1e-3; // relative change at which it stops
   };
 } // namespace slipstick::tfeti

@@ -1,70 +1,38 @@
-// Preconditioners of the dual problem on the free rows.
+// Preconditioners of the dual problem: Dirichlet and lumped, scaled by stiffness.
 #pragma once
 
 #include <slipstick/tfeti/dual_operator.h>
-#include <slipstick/tfeti/semidefinite_factor.h>
-
-#include <memory>
+#include <slipstick/tfeti/row_weights.h>
 
 namespace slipstick::tfeti
 {
-  /// W = B D^-1 B', D = diag K: couples rows that share nodes, so it consists of blocks, each on one rank: small ones of
-  /// single nodes, large sparse ones where mortar rows hang together. Rows may depend on each other.
-  class RowWeights
+  /// M = W^-1 B D^-1 S D^-1 B' W^-1 on rows to be chosen. S: Schur complement of K on the touched unknowns (Dirichlet;
+  /// Farhat, Mandel, Roux 1994), or K itself there (lumped). D weighs stiff against soft neighbours (Rixen, Farhat 1999).
+  class RowPreconditioner
   {
   public:
-    /// Collective. @throws NumericalError when rows of one node are owned by different ranks.
-    RowWeights(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
-               const std::vector<LocalGluing>                      &gluing,
-               const Partitioner                                   &rows,
-               const MPI_Comm                                       comm);
+    /// @param blocks S of this rank's subdomains at their touched unknowns; none: lumped, by products with K.
+    RowPreconditioner(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
+                      const std::vector<LocalGluing>                      &gluing,
+                      const DualOperator                                  &F,
+                      const Partitioner                                   &rows,
+                      const MPI_Comm                                       comm,
+                      std::vector<PackedSymmetric>                         blocks);
 
-    /// 1 / W_rr of the owned rows [N/mm]: the force that opens a row, its other rows held, over what it opens by.
-    std::vector<double> stiffnesses() const;
-
-    /// Inverse of W restricted to the active rows; of rows that depend on others, a generalised inverse.
-    class Inverse
+    const RowWeights &weights() const
     {
-    public:
-      Inverse(const RowWeights &weights, const std::vector<bool> &active);
+      return row_weights;
+    }
 
-      /// y = W^-1 x on the active rows, 0 on the others; owned entries.
-      void apply(const DistributedVector &x, DistributedVector &y) const;
-
-    private:
-      friend class RowWeights;
-      struct Block
-      {
-        std::vector<unsigned int>           rows;
-        Eigen::MatrixXd                     inverse; // of a small block
-        std::unique_ptr<SemidefiniteFactor> factor;  // of a large one
-      };
-      std::vector<std::shared_ptr<const Block>> blocks;
-    };
+    /// z = M r [N] of r [mm] on the rows of @p inverse, 0 on the others; owned entries. Collective.
+    void apply(const RowWeights::Inverse &inverse, const DistributedVector &r, DistributedVector &z) const;
 
   private:
-    struct Block
-    {
-      std::vector<unsigned int>             rows; // owned
-      Eigen::SparseMatrix<double>           matrix;
-      std::shared_ptr<const Inverse::Block> inverse; // with all rows active
-    };
-    std::shared_ptr<const Inverse::Block> inverse(const Block &full, const std::vector<bool> &active) const;
-
-    std::vector<Block> blocks;
-  };
-
-  /// W^-1 B D^-1 S D^-1 B' W^-1 on the active rows. S: Schur complement of K on the touched unknowns (Dirichlet; Farhat,
-  /// Mandel, Roux 1994) or K itself there (lumped). D weighs stiff against soft neighbours (Rixen, Farhat 1999).
-  class PreconditionerBlocks
-  {
-  public:
-    explicit PreconditionerBlocks(std::vector<PackedSymmetric> blocks);
-
-    /// y = S x at the touched unknowns of subdomain p.
-    void apply(const unsigned int p, const Eigen::VectorXd &x, Eigen::VectorXd &y) const;
-
-  private:
-    std::vector<PackedSymmetric> blocks;
+    const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
+    const DualOperator                                  &scatter_gather;
+    RowWeights                                           row_weights;
+    std::vector<PackedSymmetric>                         blocks;
+    std::vector<Eigen::VectorXd>                         inverse_diagonals; // of K at the touched unknowns
+    mutable DistributedVector                            source, target;    // with ghosts
   };
 } // namespace slipstick::tfeti

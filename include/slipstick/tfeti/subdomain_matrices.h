@@ -16,12 +16,33 @@ namespace slipstick::tfeti
     double                length = 1;        // [mm]
   };
 
+  /// Eigen 3.4 copies a sparse matrix where a move is meant: K_p would be there three times.
+  class MovableSparseMatrix : public Eigen::SparseMatrix<double>
+  {
+  public:
+    MovableSparseMatrix() = default;
+    MovableSparseMatrix(const MovableSparseMatrix &) = default;
+    MovableSparseMatrix(MovableSparseMatrix &&other) noexcept
+    {
+      swap(other);
+    }
+    MovableSparseMatrix(Eigen::SparseMatrix<double> &&other) noexcept
+    {
+      swap(other);
+    }
+    MovableSparseMatrix &operator=(MovableSparseMatrix other) noexcept
+    {
+      swap(other);
+      return *this;
+    }
+  };
+
   /// K_p, f_p, R_p of one floating subdomain with n unknowns and k rigid motions.
   struct SubdomainMatrices
   {
     unsigned int                subdomain = 0; // global number
     unsigned int                body      = 0;
-    Eigen::SparseMatrix<double> stiffness;     // n x n [N/mm], lower triangle only, columns compressed and sorted
+    MovableSparseMatrix         stiffness;     // n x n [N/mm], lower triangle only, columns compressed and sorted
     Eigen::VectorXd             load;          // n [N]
     Eigen::MatrixXd             kernel;        // n x k: motions of unit size about the subdomain's centre
     Eigen::MatrixXd             body_modes;    // k x k: kernel * body_modes = rigid motions of the body, seen here

@@ -29,10 +29,12 @@ namespace slipstick::tfeti
     /// x := K+ x; n entries [N] to [mm].
     void apply_pseudo_inverse(Eigen::VectorXd &x) const;
 
-    /// Keeps no more of the factor than its compact form, with which K+ is applied by conjugate gradients to rounding: a
-    /// quarter of the memory. Where most unknowns are touched it would be more, and nothing is done. The dense blocks may
-    /// not be asked for afterwards.
-    void compress();
+    /// Frees the factor. K+ is then applied by factorising anew, every time, in an order with less fill; the dense blocks
+    /// may not be asked for any more.
+    void release()
+    {
+      cholesky.reset();
+    }
 
     /// K x; n entries [mm] to [N].
     Eigen::VectorXd apply_stiffness(const Eigen::VectorXd &x) const
@@ -40,15 +42,15 @@ namespace slipstick::tfeti
       return matrices.stiffness.selfadjointView<Eigen::Lower>() * x;
     }
 
+    /// Forces at the touched unknowns [N] when they move by @p x [mm] and the others do not.
+    Eigen::VectorXd apply_touched_stiffness(const Eigen::VectorXd &x) const;
+
     /// Rows and columns of K+ at the touched unknowns, in their order; packed lower triangle. Needs the trailing block.
     std::vector<double> pseudo_inverse_block() const;
 
     /// Schur complement of K on the touched unknowns (the fixing ones among them or held together with them), in their
     /// order; packed lower triangle. Needs the trailing block.
     std::vector<double> schur_complement() const;
-
-    /// Rows and columns of K at the touched unknowns, in their order; packed lower triangle.
-    std::vector<double> touched_stiffness() const;
 
     /// Diagonal of K at the touched unknowns.
     Eigen::VectorXd touched_diagonal() const;
@@ -95,24 +97,19 @@ namespace slipstick::tfeti
     /// Memory of the factor [bytes].
     std::size_t factor_bytes() const
     {
-      return (compact ? compact->bytes() : 0) + (cholesky ? cholesky->n_nonzeros() * sizeof(double) : 0);
+      return cholesky ? cholesky->n_nonzeros() * sizeof(double) : 0;
     }
 
   private:
     std::vector<unsigned int> touched_in_last_order() const;
-    Cholesky                  factorised() const;
-    bool                      solve_with_compact(Eigen::VectorXd &x) const;
+    Cholesky                  factorised(const std::vector<unsigned int> &last) const;
 
     std::shared_ptr<CholmodSession> session;
-    bool                            with_trailing_block;
-
-    SubdomainMatrices         matrices;
-    std::vector<unsigned int> touched_unknowns;
-    std::vector<unsigned int> fixing_unknowns;
-    double                    regularization; // rho [N/mm]
-
-    mutable std::optional<Cholesky> cholesky; // none once compressed, unless single precision does not do
-    std::optional<CompactCholesky>  compact;
+    SubdomainMatrices               matrices;
+    std::vector<unsigned int>       touched_unknowns;
+    std::vector<unsigned int>       fixing_unknowns;
+    double                          regularization; // rho [N/mm]
+    std::optional<Cholesky>         cholesky;       // none once released
   };
 
   /// As many of the @p candidates as R has columns, chosen by pivoting so that the rows of R there are as independent
