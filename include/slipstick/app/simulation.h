@@ -8,7 +8,7 @@
 namespace slipstick::app
 {
   /// Builds and checks everything that the solver needs, prints the scene's table, solves nothing. Collective.
-  void check_scene(scene::Scene<2> scene, const Log &log, const MPI_Comm comm);
+  void check_scene(const scene::Scene<2> &scene, const Log &log, const MPI_Comm comm);
 
   /// Solves @p scene and writes the results to @p output_directory. Collective.
   /// @return converged or not_converged; outputs are written in both cases.

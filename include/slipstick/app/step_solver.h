@@ -1,0 +1,129 @@
+// A scene made discrete, and the checked solutions of its load steps.
+#pragma once
+
+#include <slipstick/base/log.h>
+#include <slipstick/contact/checks.h>
+#include <slipstick/contact/friction.h>
+#include <slipstick/fem/spaces.h>
+#include <slipstick/fem/stress.h>
+#include <slipstick/output/convergence.h>
+#include <slipstick/scene/scene.h>
+#include <slipstick/tfeti/dual_problem.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace slipstick::app
+{
+  /// Mesh, dual problem and solver of a scene. Members are collective unless they only tell what is known.
+  class StepSolver
+  {
+  public:
+    static constexpr int dim = 2;
+
+    /// A recovered displacement, and what was found from it.
+    struct Answer
+    {
+      tfeti::DualProblem::Recovery           recovery;
+      std::optional<contact::CheckedContact> contact;
+      std::optional<fem::StressResult>       stress;
+    };
+
+    /// Makes the mesh, and finds the contact pairs that the scene leaves to a search.
+    /// @throws InputError for meshes and pairs that do not fit.
+    StepSolver(const scene::Scene<dim> &scene, const Log &log, StageClock &clock, const MPI_Comm comm);
+
+    /// The dual problem of the first load step. @throws InputError, NoEquilibrium.
+    void build();
+
+    /// Solves a load step, the one after that solved before, until the checks of its answer pass or that is hopeless.
+    /// @param multiplications_before by F in the steps before.
+    std::unique_ptr<Answer> solve(const unsigned int step, const std::uint64_t multiplications_before);
+
+    /// With the contact pairs that were found.
+    const scene::Scene<dim> &discrete_scene() const
+    {
+      return scene;
+    }
+    const fem::Mesh<dim> &mesh() const
+    {
+      return *the_mesh;
+    }
+    const fem::Spaces<dim> &spaces() const
+    {
+      return *the_spaces;
+    }
+    const tfeti::DualProblem &dual() const
+    {
+      return *the_dual;
+    }
+    /// Of the step solved last.
+    const contact::DualSolution &solution() const
+    {
+      return the_solution;
+    }
+    /// All steps so far.
+    const std::vector<output::ConvergenceRow> &convergence() const
+    {
+      return rows;
+    }
+    /// Time of all factorisations [s].
+    double factorization_seconds() const
+    {
+      return factorization;
+    }
+
+  private:
+    /// K_p, B, F at load factor t, without the rows of pruned contact nodes unless a body is held by them.
+    void build_dual(const double t);
+    void make_dual(const double t);
+
+    /// Loads and right-hand sides of a later step; slip starts from where the step before ended.
+    /// @return whether the multipliers of the step before fit the rows.
+    bool advance(const double t);
+
+    /// Slip counts from the displacement at the end of the step before.
+    void start_slip_from_here();
+
+    /// Checks and stresses of what was recovered from @p from.
+    void look_at(Answer &answer, const contact::DualSolution &from, const double t) const;
+
+    /// Is the algebraic error of an iterate a small part of its discretisation error, and does it pass the checks? A step
+    /// looks at its last estimate first, which errors of the iterates so far can only have made too large, and recovers
+    /// a displacement only when that does not decide.
+    bool is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t);
+
+    /// Solves the present step; with rows for more contact nodes as long as pruned ones penetrate.
+    /// @param goes_on from the solution of this step.
+    std::unique_ptr<Answer> solve_step(const unsigned int  step,
+                                       const std::uint64_t multiplications_before,
+                                       const bool          goes_on);
+
+    std::unique_ptr<Answer> checked(std::unique_ptr<Answer> answer, const double t) const;
+
+    /// Goes on from a solution whose checks fail, to smaller residuals: those that are asked for are relative to |Pd|,
+    /// which may be far above what is left of it in the displacement (slender parts). Ends where that does not help.
+    std::unique_ptr<Answer> tighten(const unsigned int      step,
+                                    const std::uint64_t     multiplications_before,
+                                    std::unique_ptr<Answer> answer);
+
+    scene::Scene<dim>    scene;
+    const Log           &log;
+    StageClock          &clock;
+    const MPI_Comm       comm;
+    scene::SolverOptions options;
+
+    std::unique_ptr<fem::Mesh<dim>>     the_mesh;
+    std::unique_ptr<fem::Spaces<dim>>   the_spaces;
+    std::unique_ptr<tfeti::DualProblem> the_dual;
+    tfeti::Constraints                  pruned; // normal rows of the contact nodes without multipliers
+    double                              kept_part;
+    double                              factorization = 0;    // [s]
+    double                              discretization_error; // last estimate in the step [sqrt(N mm)]
+    contact::DualSolution               the_solution;
+    std::unique_ptr<Answer>             accepted; // by the test of accuracy, in the step
+    std::vector<Eigen::VectorXd>        u;        // of the last step
+    std::vector<output::ConvergenceRow> rows;
+  };
+} // namespace slipstick::app

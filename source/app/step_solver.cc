@@ -1,0 +1,348 @@
+#include <slipstick/app/report.h>
+#include <slipstick/app/step_solver.h>
+#include <slipstick/base/exceptions.h>
+#include <slipstick/contact/refinement.h>
+#include <slipstick/fem/assembly.h>
+#include <slipstick/fem/contact_constraints.h>
+#include <slipstick/fem/contact_search.h>
+#include <slipstick/fem/decomposition.h>
+#include <slipstick/fem/loads.h>
+#include <slipstick/fem/pair_checks.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <cmath>
+#include <limits>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+
+    // Contact nodes get multipliers at first when their gap exceeds the smallest of the pair by less than this part of the
+    // slave boundary's length ...
+    constexpr double first_kept_part = 0.1;
+    // ... more of them, by this factor, when others would penetrate ...
+    constexpr double growth_of_kept_part = 4;
+    // ... and all beyond this part.
+    constexpr double largest_kept_part = 1;
+
+    // A solution whose checks fail is taken further so often ...
+    constexpr unsigned int max_tightenings = 4;
+    // ... by the factor that the worst check is above its limit, and this one more, ...
+    constexpr double margin_of_tightening = 2;
+    // ... by no less ...
+    constexpr double least_tightening = 2;
+    // ... and no more at a time, ...
+    constexpr double largest_tightening = 1e4;
+    // ... down to what double precision reaches nearly everywhere.
+    constexpr double least_tolerance = 1e-13;
+    // Tolerance = auto: the algebraic error may be this part of the discretisation error. The two are orthogonal, nearly, so
+    // that it adds 4.4 % to the total one at most, less as it is estimated from above.
+    constexpr double allowed_part = 0.3;
+
+    std::vector<std::string> names_of(const std::vector<scene::Body<StepSolver::dim>> &bodies)
+    {
+      std::vector<std::string> names;
+      for (const auto &body : bodies)
+        names.push_back(body.name);
+      return names;
+    }
+
+    /// Observer of the solver: a line on the console and a row of convergence.csv.
+    contact::ProgressObserver convergence_observer(const Log                           &log,
+                                                   const scene::SolverOptions          &options,
+                                                   const unsigned int                   step_number,
+                                                   const std::uint64_t                  multiplications_before,
+                                                   std::vector<output::ConvergenceRow> &rows)
+    {
+      log.line(
+        format("solve        %s until %sprojected gradient gP and violation of G x = e are below %g |Pd|",
+               name_of(options.algorithm).c_str(),
+               options.stops_at_discretization_error
+                 ? format("the algebraic error is below %g of the discretisation error, or ", allowed_part).c_str()
+                 : "",
+               options.tolerance));
+      log.line("              step  F-multiplications  |gP|/|Pd|  |Gx|/|Pd|  at a bound  slip bounds");
+      return [&log, &options, step_number, multiplications_before, &rows](const contact::Progress &progress) {
+        const auto            &step = progress.step;
+        output::ConvergenceRow row;
+        row.step                    = step_number;
+        row.algorithm               = name_of(options.algorithm);
+        row.friction_step           = progress.friction_iteration;
+        row.outer_step              = step.outer;
+        row.hessian_multiplications = multiplications_before + step.hessian_multiplications;
+        row.projected_gradient      = step.projected_gradient;
+        row.equality                = step.equality_residual;
+        row.at_lower_bound          = step.active_lower;
+        row.at_upper_bound          = step.active_upper;
+        rows.push_back(row);
+        log.line(format("             %5u  %17u  %9.2e  %9.2e  %10zu  %11u",
+                        step.outer,
+                        step.hessian_multiplications,
+                        step.projected_gradient,
+                        step.equality_residual,
+                        step.active_lower + step.active_upper,
+                        progress.friction_iteration));
+      };
+    }
+  } // namespace
+
+  StepSolver::StepSolver(const scene::Scene<dim> &scene_, const Log &log_, StageClock &clock_, const MPI_Comm comm_)
+    : scene(scene_)
+    , log(log_)
+    , clock(clock_)
+    , comm(comm_)
+    , options(contact::resolved_options(scene_))
+    , kept_part(first_kept_part)
+    , discretization_error(infinity)
+  {
+    // what applies K+ more often than the one recovery
+    options.dual.keeps_factors = scene.load_factors.size() > 1 || options.stops_at_discretization_error ||
+                                 options.dual.operator_precision == tfeti::Precision::single_precision;
+    print_header(log, scene, comm);
+    clock.enter("mesh");
+    the_mesh   = std::make_unique<fem::Mesh<dim>>(fem::make_mesh(scene, comm));
+    the_spaces = std::make_unique<fem::Spaces<dim>>(*the_mesh, scene.discretization.degree);
+    print_mesh(log, scene, *the_mesh, *the_spaces);
+    for (auto &pair : fem::find_contacts(scene, *the_mesh, *the_spaces))
+      {
+        log.line("contact      found between " + pair.name);
+        scene.contacts.push_back(std::move(pair));
+      }
+    fem::check_overlap(scene, *the_mesh, *the_spaces);
+    fem::check_obstacle_pairs(scene, *the_mesh, *the_spaces);
+  }
+
+  void StepSolver::build()
+  {
+    const double t = scene.load_factors.front();
+    build_dual(t);
+    contact::SlipLaw(scene, *the_dual, t); // refuses bounds
+  }
+
+  std::unique_ptr<StepSolver::Answer> StepSolver::solve(const unsigned int  step,
+                                                        const std::uint64_t multiplications_before)
+  {
+    options.tolerance = scene.solver.tolerance;
+    auto answer       = tighten(step,
+                          multiplications_before,
+                          checked(solve_step(step, multiplications_before, false), scene.load_factors[step]));
+    if (step + 1 < scene.load_factors.size())
+      u = answer->recovery.u;
+    the_solution.multipliers = answer->recovery.multipliers;
+    return answer;
+  }
+
+  void StepSolver::build_dual(const double t)
+  {
+    if (options.prune_contact && kept_part < infinity)
+      try
+        {
+          make_dual(t);
+          return;
+        }
+      catch (const NoEquilibrium &) // on all ranks alike
+        {
+          if (pruned.rows->size() == 0)
+            throw;
+          kept_part = infinity;
+        }
+    kept_part = infinity;
+    make_dual(t);
+  }
+
+  void StepSolver::make_dual(const double t)
+  {
+    clock.enter("assembly");
+    auto matrices = fem::assemble(scene, *the_mesh, *the_spaces, t);
+    auto rows     = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
+    pruned        = std::move(rows.pruned);
+    print_constraints(log, rows.active);
+
+    clock.enter("dual setup");
+    the_dual.reset();
+    the_dual = std::make_unique<tfeti::DualProblem>(std::move(matrices),
+                                                    std::move(rows.active),
+                                                    options.dual,
+                                                    names_of(scene.bodies),
+                                                    comm);
+    factorization += the_dual->factorization_seconds();
+    print_dual(log, *the_dual);
+  }
+
+  bool StepSolver::advance(const double t)
+  {
+    clock.enter("assembly");
+    std::vector<Eigen::VectorXd> loads = fem::assemble_loads(scene, *the_mesh, *the_spaces, t);
+    auto                         rows  = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
+    const bool                   is_same =
+      dealii::Utilities::MPI::min(rows.active.label == the_dual->constraints().label ? 1 : 0, comm) > 0;
+    if (is_same) // gaps that follow the load factor may prune other nodes
+      {
+        pruned = std::move(rows.pruned);
+        clock.enter("dual setup");
+        the_dual->set_step(std::move(loads), std::move(rows.active.c));
+      }
+    else
+      make_dual(t);
+    start_slip_from_here();
+    return is_same;
+  }
+
+  void StepSolver::start_slip_from_here()
+  {
+    auto       c     = the_dual->constraints().c;
+    const auto jumps = the_dual->jumps(u);
+    for (unsigned int r = 0; r < c.size(); ++r)
+      if (the_dual->constraints().kind[r] == tfeti::RowKind::tangential)
+        c[r] = jumps.local_element(r);
+    the_dual->set_right_hand_side(std::move(c));
+  }
+
+  void StepSolver::look_at(Answer &answer, const contact::DualSolution &from, const double t) const
+  {
+    const contact::SlipLaw law(scene, *the_dual, t);
+    const auto            &x = answer.recovery.multipliers;
+    const auto            &u = answer.recovery.u;
+    answer.contact           = contact::check(*the_dual,
+                                    x,
+                                    u,
+                                    law.depends_on_pressure() ? law.bounds(x) : from.slip_bound,
+                                    from.free,
+                                    scene.bodies.size());
+    answer.stress            = fem::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), u, t);
+  }
+
+  bool StepSolver::is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t)
+  {
+    if (residual_energy > allowed_part * discretization_error)
+      return false;
+    try
+      {
+        Answer answer;
+        answer.recovery = the_dual->recover(iterate.multipliers, iterate.free);
+        look_at(answer, iterate, t);
+        const auto &checks           = answer.contact->checks;
+        discretization_error         = std::sqrt(answer.stress->error_squared);
+        const double algebraic_error = std::sqrt(checks.error_energy);
+        log.line(format("accuracy     algebraic error below %.3g, discretisation error about %.3g sqrt(N mm)",
+                        algebraic_error,
+                        discretization_error));
+        if (algebraic_error > allowed_part * discretization_error || !(checks.worst().second <= check_limit(1)))
+          return false;
+        accepted = std::make_unique<Answer>(std::move(answer));
+        return true;
+      }
+    catch (const NoEquilibrium &) // of this iterate, on all ranks alike
+      {
+        return false;
+      }
+  }
+
+  std::unique_ptr<StepSolver::Answer> StepSolver::solve_step(const unsigned int  step,
+                                                             const std::uint64_t multiplications_before,
+                                                             const bool          goes_on)
+  {
+    const double t         = scene.load_factors[step];
+    bool         is_warm   = goes_on || (step > 0 && advance(t));
+    qp::Counts   discarded = goes_on ? the_solution.counts : qp::Counts();
+    discretization_error   = infinity;
+    contact::AccuracyTest test;
+    if (options.stops_at_discretization_error && !goes_on)
+      test = [this, t](const contact::DualSolution &iterate, const double residual_energy) {
+        return is_accurate(iterate, residual_energy, t);
+      };
+    for (;; is_warm = false)
+      {
+        std::string reason;
+        try
+          {
+            clock.enter("solve");
+            accepted.reset();
+            the_solution =
+              contact::solve_refined(*the_dual,
+                                     contact::SlipLaw(scene, *the_dual, t),
+                                     options,
+                                     scene.friction,
+                                     convergence_observer(log,
+                                                          options,
+                                                          step,
+                                                          multiplications_before + discarded.hessian_multiplications,
+                                                          rows),
+                                     is_warm ? &the_solution : nullptr,
+                                     test);
+            discarded += the_solution.counts;
+            the_solution.counts = discarded;
+            clock.enter("recovery");
+            auto answer = std::move(accepted);
+            if (!answer)
+              {
+                answer           = std::make_unique<Answer>();
+                answer->recovery = the_dual->recover(the_solution.multipliers, the_solution.free);
+              }
+            const double penetration = fem::largest_penetration(pruned, answer->recovery.u, comm);
+            if (!(penetration > 0))
+              return answer;
+            reason = format("contact nodes without multipliers would penetrate by %.3g mm", penetration);
+          }
+        catch (const NoEquilibrium &) // on all ranks alike
+          {
+            if (pruned.rows->size() == 0)
+              throw;
+            reason = "no equilibrium without the contact nodes that are far apart";
+          }
+        kept_part = kept_part < largest_kept_part ? growth_of_kept_part * kept_part : infinity;
+        log.line("pruning      " + reason + ": solved again with more of them");
+        make_dual(t);
+        if (step > 0)
+          start_slip_from_here();
+      }
+  }
+
+  std::unique_ptr<StepSolver::Answer> StepSolver::checked(std::unique_ptr<Answer> answer, const double t) const
+  {
+    if (!answer->stress)
+      look_at(*answer, the_solution, t);
+    return answer;
+  }
+
+  std::unique_ptr<StepSolver::Answer> StepSolver::tighten(const unsigned int      step,
+                                                          const std::uint64_t     multiplications_before,
+                                                          std::unique_ptr<Answer> answer)
+  {
+    const double limit = check_limit(tolerance_of(scene.solver, the_solution));
+    for (unsigned int n = 0; n < max_tightenings && the_solution.status == qp::Status::converged; ++n)
+      {
+        const auto   worst = answer->contact->checks.worst_entry();
+        const double reached =
+          std::min(options.tolerance, std::max(the_solution.projected_gradient, the_solution.equality));
+        if (worst.value <= limit || worst.is_balance || reached <= least_tolerance)
+          break;
+        // an answer that is no number, too
+        const double excess = std::min(largest_tightening, std::max(least_tightening, worst.value / limit));
+        options.tolerance   = std::max(reached / (margin_of_tightening * excess), least_tolerance);
+        log.line(format("checks       %s is %.1e, allowed is %.1e: solved on to a tolerance of %.1e",
+                        worst.name,
+                        worst.value,
+                        limit,
+                        options.tolerance));
+        const auto   before      = the_solution;
+        const double kept        = kept_part;
+        the_solution.multipliers = answer->recovery.multipliers;
+        auto next                = checked(solve_step(step, multiplications_before, true), scene.load_factors[step]);
+        if (kept_part != kept ||
+            (the_solution.status == qp::Status::converged && next->contact->checks.worst().second < worst.value))
+          answer = std::move(next); // the first: it got rows for more contact nodes
+        else
+          { // to the tolerance that was asked for it did converge
+            const auto counts   = the_solution.counts;
+            the_solution        = before;
+            the_solution.counts = counts;
+            break;
+          }
+      }
+    return answer;
+  }
+} // namespace slipstick::app
