@@ -2,6 +2,8 @@
 // the time to read its blocks once. All ranks at the same time; in every repetition the product, then a plain sum over a
 // buffer as large as the rank's blocks, so that both see the same machine. Ratio of the medians and of the least times;
 // prints Markdown. Status 1 when the ratio of the medians is above the limit.
+#include "common.h"
+
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/decomposition.h>
@@ -17,28 +19,13 @@
 #include <functional>
 #include <iostream>
 
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
-
 namespace
 {
   using namespace slipstick;
+  using benchmark::median;
+  using benchmark::seconds;
 
   constexpr double limit = 1.5; // of one multiplication over reading its data
-
-  /// Wall time of the slowest rank [s].
-  double seconds(const MPI_Comm comm, const std::function<void()> &work)
-  {
-    MPI_Barrier(comm);
-    const double start = MPI_Wtime();
-    work();
-    return dealii::Utilities::MPI::max(MPI_Wtime() - start, comm);
-  }
-
-  double median(std::vector<double> values)
-  {
-    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-    return values[values.size() / 2];
-  }
 
   /// Reads all of it once; independent sums, so that memory and not the latency of the addition is the limit.
   double sum(const std::vector<double> &buffer)
@@ -134,28 +121,7 @@ namespace
 
 int main(int argc, char **argv)
 {
-  if (openblas_set_num_threads)
-    openblas_set_num_threads(1);
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  std::string                              file;
-  unsigned int                             repetitions = 51;
-  std::vector<std::string>                 overrides;
-  for (int i = 1; i < argc; ++i)
-    if (std::string(argv[i]) == "--set" && i + 1 < argc)
-      overrides.push_back(argv[++i]);
-    else if (file.empty())
-      file = argv[i];
-    else
-      repetitions = std::stoul(argv[i]);
-  try
-    {
-      if (file.empty() || repetitions == 0)
-        throw std::runtime_error("usage: benchmark_bandwidth CASE.prm [REPETITIONS] [--set Section/Name=value]...");
-      return run(file, overrides, repetitions);
-    }
-  catch (const std::exception &error)
-    {
-      std::cerr << "benchmark_bandwidth: " << error.what() << std::endl;
-      MPI_Abort(MPI_COMM_WORLD, 2);
-    }
+  return benchmark::main_of("benchmark_bandwidth", argc, argv, 51, [](const benchmark::Case &given) {
+    return run(given.file, given.overrides, given.repetitions);
+  });
 }

@@ -9,6 +9,8 @@
 //                 preconditioner
 // assembly        adding the same 8 x 8 matrix of a cell into the values of K_p at known places
 // recovery        one forward and backward solve with every factor
+#include "common.h"
+
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/decomposition.h>
@@ -17,7 +19,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <cholmod.h>
+#include <Eigen/CholmodSupport>
 
 #include <algorithm>
 #include <array>
@@ -26,43 +28,14 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 extern "C" void dpotri_(const char *, const int *, double *, const int *, int *);
 extern "C" void dlauum_(const char *, const int *, double *, const int *, int *);
 
 namespace
 {
   using namespace slipstick;
-
-  double seconds(const MPI_Comm comm, const std::function<void()> &work)
-  {
-    MPI_Barrier(comm);
-    const double start = MPI_Wtime();
-    work();
-    return dealii::Utilities::MPI::max(MPI_Wtime() - start, comm);
-  }
-
-  double median(std::vector<double> values)
-  {
-    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-    return values[values.size() / 2];
-  }
-
-  cholmod_sparse view(Eigen::SparseMatrix<double> &lower)
-  {
-    cholmod_sparse A{};
-    A.nrow = A.ncol = lower.rows();
-    A.nzmax         = lower.nonZeros();
-    A.p             = lower.outerIndexPtr();
-    A.i             = lower.innerIndexPtr();
-    A.x             = lower.valuePtr();
-    A.stype         = -1;
-    A.itype         = CHOLMOD_INT;
-    A.xtype         = CHOLMOD_REAL;
-    A.dtype         = CHOLMOD_DOUBLE;
-    A.sorted = A.packed = 1;
-    return A;
-  }
+  using benchmark::median;
+  using benchmark::seconds;
 
   /// Factorisations that share an analysis where patterns agree.
   class Factors
@@ -91,7 +64,7 @@ namespace
 
     void add(Eigen::SparseMatrix<double> &lower)
     {
-      cholmod_sparse         A = view(lower);
+      cholmod_sparse         A = Eigen::viewAsCholmod(std::as_const(lower).selfadjointView<Eigen::Lower>());
       const std::vector<int> pattern(lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros());
       auto                  &analysis = analysed[pattern];
       if (!analysis)
@@ -229,31 +202,10 @@ namespace
 
 int main(int argc, char **argv)
 {
-  if (openblas_set_num_threads)
-    openblas_set_num_threads(1);
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  std::string                              file;
-  unsigned int                             repetitions = 3;
-  std::vector<std::string>                 overrides;
-  for (int i = 1; i < argc; ++i)
-    if (std::string(argv[i]) == "--set" && i + 1 < argc)
-      overrides.push_back(argv[++i]);
-    else if (file.empty())
-      file = argv[i];
-    else
-      repetitions = std::stoul(argv[i]);
-  try
-    {
-      if (file.empty() || repetitions == 0)
-        throw std::runtime_error("usage: benchmark_bounds CASE.prm [REPETITIONS] [--set Section/Name=value]...");
-      const auto out = run(file, overrides, repetitions);
-      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-        std::cout << out.dump() << std::endl;
-    }
-  catch (const std::exception &error)
-    {
-      std::cerr << "benchmark_bounds: " << error.what() << std::endl;
-      MPI_Abort(MPI_COMM_WORLD, 2);
-    }
-  return 0;
+  return benchmark::main_of("benchmark_bounds", argc, argv, 3, [](const benchmark::Case &given) {
+    const auto out = run(given.file, given.overrides, given.repetitions);
+    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      std::cout << out.dump() << std::endl;
+    return 0;
+  });
 }

@@ -1,6 +1,8 @@
 // benchmark_cholesky CASE.prm [REPETITIONS] [--set Section/Name=value]...: one subdomain of the scene under several
 // sparse Cholesky factorisations, and its dual operator explicit against implicit. One thread, processor time. Medians over
 // the repetitions, all variants in turn in each of them; prints Markdown.
+#include "common.h"
+
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/decomposition.h>
@@ -18,11 +20,10 @@
 #include <functional>
 #include <iostream>
 
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
-
 namespace
 {
   using namespace slipstick;
+  using benchmark::median;
   using Matrix = Eigen::SparseMatrix<double>;
   using Vector = Eigen::VectorXd;
 
@@ -41,12 +42,6 @@ namespace
     const double start = cpu_seconds();
     work();
     return cpu_seconds() - start;
-  }
-
-  double median(std::vector<double> values)
-  {
-    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-    return values[values.size() / 2];
   }
 
   double milliseconds(const std::vector<double> &values)
@@ -253,44 +248,23 @@ namespace
 
 int main(int argc, char **argv)
 {
-  if (openblas_set_num_threads)
-    openblas_set_num_threads(1);
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  std::string                              file;
-  unsigned int                             repetitions = 21;
-  std::vector<std::string>                 overrides;
-  for (int i = 1; i < argc; ++i)
-    if (std::string(argv[i]) == "--set" && i + 1 < argc)
-      overrides.push_back(argv[++i]);
-    else if (file.empty())
-      file = argv[i];
-    else
-      repetitions = std::stoul(argv[i]);
-  try
-    {
-      if (file.empty() || repetitions == 0)
-        throw std::runtime_error("usage: benchmark_cholesky CASE.prm [REPETITIONS] [--set Section/Name=value]...");
-      const auto           scene = scene::read_scene(file, overrides);
-      const auto           mesh  = fem::make_mesh(scene, MPI_COMM_WORLD);
-      const fem::Spaces<2> spaces(mesh, scene.discretization.degree);
+  return benchmark::main_of("benchmark_cholesky", argc, argv, 21, [](const benchmark::Case &given) {
+    const auto           scene = scene::read_scene(given.file, given.overrides);
+    const auto           mesh  = fem::make_mesh(scene, MPI_COMM_WORLD);
+    const fem::Spaces<2> spaces(mesh, scene.discretization.degree);
 
-      // The matrix of the first subdomain, held at unknowns chosen as SubdomainSystem does.
-      const auto   constraints = fem::contact_constraints(scene, mesh, spaces, 1.);
-      auto         matrices    = fem::assemble(scene, mesh, spaces, 1.);
-      auto         last        = tfeti::LocalGluing::make(constraints.blocks[0]).second;
-      const auto   fixing      = tfeti::fixing_unknowns(matrices[0].kernel, last).first;
-      Matrix       A           = matrices[0].stiffness;
-      const double rho         = A.diagonal().mean();
-      for (const unsigned int i : fixing)
-        A.coeffRef(i, i) += rho;
-      compare_factorisations(A, last, repetitions);
-      matrices.clear();
-      compare_operators(scene, mesh, spaces, repetitions);
-    }
-  catch (const std::exception &error)
-    {
-      std::cerr << "benchmark_cholesky: " << error.what() << std::endl;
-      return 1;
-    }
-  return 0;
+    // The matrix of the first subdomain, held at unknowns chosen as SubdomainSystem does.
+    const auto   constraints = fem::contact_constraints(scene, mesh, spaces, 1.);
+    auto         matrices    = fem::assemble(scene, mesh, spaces, 1.);
+    auto         last        = tfeti::LocalGluing::make(constraints.blocks[0]).second;
+    const auto   fixing      = tfeti::fixing_unknowns(matrices[0].kernel, last).first;
+    Matrix       A           = matrices[0].stiffness;
+    const double rho         = A.diagonal().mean();
+    for (const unsigned int i : fixing)
+      A.coeffRef(i, i) += rho;
+    compare_factorisations(A, last, given.repetitions);
+    matrices.clear();
+    compare_operators(scene, mesh, spaces, given.repetitions);
+    return 0;
+  });
 }

@@ -22,7 +22,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <cholmod.h>
+#include <Eigen/CholmodSupport>
 
 #include <chrono>
 #include <cmath>
@@ -283,7 +283,7 @@ namespace
       common.nmethods   = 1;
       common.method[0].ordering =
         ordering == "metis" ? CHOLMOD_METIS : (ordering == "nesdis" ? CHOLMOD_NESDIS : CHOLMOD_AMD);
-      view_of(lower);
+      A      = Eigen::viewAsCholmod(std::as_const(lower).selfadjointView<Eigen::Lower>());
       factor = cholmod_analyze(&A, &common);
       check();
     }
@@ -297,7 +297,7 @@ namespace
       common.nmethods           = 1;
       common.method[0].ordering = CHOLMOD_GIVEN;
       common.postorder          = 0;
-      view_of(lower);
+      A                         = Eigen::viewAsCholmod(std::as_const(lower).selfadjointView<Eigen::Lower>());
       std::vector<bool> is_last(lower.cols(), false);
       for (const int i : last)
         is_last[i] = true;
@@ -378,20 +378,6 @@ namespace
     }
 
   private:
-    void view_of(Eigen::SparseMatrix<double> &lower)
-    {
-      A.nrow = A.ncol = lower.rows();
-      A.nzmax         = lower.nonZeros();
-      A.p             = lower.outerIndexPtr();
-      A.i             = lower.innerIndexPtr();
-      A.x             = lower.valuePtr();
-      A.stype         = -1;
-      A.itype         = CHOLMOD_INT;
-      A.xtype         = CHOLMOD_REAL;
-      A.dtype         = CHOLMOD_DOUBLE;
-      A.sorted = A.packed = 1;
-    }
-
     void check() const
     {
       if (common.status != CHOLMOD_OK)

@@ -3,6 +3,8 @@
 
 #include <deal.II/base/exceptions.h>
 
+#include <Eigen/CholmodSupport>
+
 #include <algorithm>
 #include <camd.h>
 
@@ -14,23 +16,6 @@ namespace slipstick::tfeti
     constexpr double smallest_reciprocal_condition = 1e-15;
     // Analyses that are kept: blocks of a rectangle have some ten patterns, METIS parts one each.
     constexpr std::size_t max_analyses = 32;
-
-    /// View of Eigen's lower triangle for CHOLMOD; nothing is copied.
-    cholmod_sparse view(const Eigen::SparseMatrix<double> &lower)
-    {
-      cholmod_sparse A{};
-      A.nrow = A.ncol = lower.rows();
-      A.nzmax         = lower.nonZeros();
-      A.p             = const_cast<int *>(lower.outerIndexPtr());
-      A.i             = const_cast<int *>(lower.innerIndexPtr());
-      A.x             = const_cast<double *>(lower.valuePtr());
-      A.stype         = -1;
-      A.itype         = CHOLMOD_INT;
-      A.xtype         = CHOLMOD_REAL;
-      A.dtype         = CHOLMOD_DOUBLE;
-      A.sorted = A.packed = 1;
-      return A;
-    }
 
     /// Fill-reducing permutation (CAMD) that keeps the given unknowns last.
     std::vector<int> constrained_ordering(cholmod_sparse                  &A,
@@ -134,7 +119,7 @@ namespace slipstick::tfeti
     , factor(nullptr, FactorDeleter{session})
   {
     cholmod_common &common = session->common;
-    cholmod_sparse  A      = view(lower);
+    cholmod_sparse  A      = Eigen::viewAsCholmod(lower.selfadjointView<Eigen::Lower>());
     factor.reset(cholmod_copy_factor(session->analysis(A, last), &common));
     const auto *permutation = static_cast<const int *>(factor->Perm);
     trailing.assign(permutation + factor->n - last.size(), permutation + factor->n);
