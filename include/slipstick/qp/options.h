@@ -83,7 +83,7 @@ namespace slipstick::qp
     double       face_reduction    = 0.5;  // of the residual by the linear solve of a new set
     double       first_forcing     = 1e-2; // residual over the reference, at first, of solves of a set that stands
     double       forcing_reduction = 0.1;  // of it, whenever the set hardly changed
-    double       last_forcing      = 0.3;  // times the tolerance: never below
+    double       last_forcing      = 0.6;  // times the tolerance: never below
     double       settled_part      = 0.05; // of the inequalities may change for the set to have hardly changed
     double       progress          = 0.99; // residual + changes must fall below this times their best ...
     unsigned int patience          = 15;   // ... within so many outer steps
