@@ -14,6 +14,8 @@ namespace slipstick::contact
 
     // Lengths below this part of the largest gap or displacement count as none: rounding leaves 1e-14 of these.
     constexpr double negligible_part = 1e-8;
+    // Deformations below this part of these count as none: what rounding leaves shows in the stiffest of them.
+    constexpr double negligible_deformation = 1e-5;
     // Slip bounds above this multiple of the largest contact force say no more than that nodes stick.
     constexpr double bounds_that_count = 2;
 
@@ -386,11 +388,13 @@ namespace slipstick::contact
       }
     for (double *sum : {&checks.energy, &checks.complementarity, &all_bounds})
       *sum = dealii::Utilities::MPI::sum(*sum, comm);
-    const double no_length = negligible_part * std::max(largest_gap, checks.max_displacement);
-    const double no_force  = no_length / dual.norm();
+    const double way       = std::max(largest_gap, checks.max_displacement);
+    const double no_length = negligible_part * way;
+    const double no_strain = negligible_deformation * way;
+    const double no_force  = no_strain / dual.norm();
     const double length    = std::max(checks.max_displacement, no_length);
     const double force     = std::max(largest_contact, no_force);
-    const double energy    = std::max({checks.energy, no_force * no_length, all_bounds * no_length});
+    const double energy    = std::max({checks.energy, no_force * no_strain, all_bounds * no_strain});
     const auto   on_bodies = balance(dual, forces, multipliers, n_bodies, largest[nodal_equilibrium]);
     for (unsigned int b = 0; b < n_bodies; ++b)
       {

@@ -90,6 +90,8 @@ namespace slipstick::contact
         if (observer)
           observer({step, 0});
       };
+      qp::PcpgOptions       pcpg             = options.pcpg;
+      bool                  reorthogonalizes = dual.is_preconditioned();
       qp::PcpgStart<Vector> from{dual.zero()};
       if (is_accurate) // parts go on with the directions of those before
         from.history = std::make_shared<qp::DirectionHistory<Vector>>(dual.is_preconditioned());
@@ -98,13 +100,21 @@ namespace slipstick::contact
         {
           const qp::Goal goal(tolerance, reference);
           auto           result = dual.is_preconditioned()
-                                    ? qp::pcpg(face, b, from, goal, options.pcpg, precondition, counted)
-                                    : qp::pcpg(face, b, from, goal, options.pcpg, qp::NoPreconditioner(), counted);
+                                    ? qp::pcpg(face, b, from, goal, pcpg, precondition, counted)
+                                    : qp::pcpg(face, b, from, goal, pcpg, qp::NoPreconditioner(), counted);
           solution.counts += result.counts;
           solution.status             = result.status;
           solution.projected_gradient = result.relative_residual;
           solution.multipliers        = start;
           solution.multipliers += result.x;
+          if (result.status == qp::Status::stagnated && !reorthogonalizes)
+            { // rounding has spoilt the conjugacy of the directions
+              reorthogonalizes         = true;
+              pcpg.reorthogonalization = qp::Reorthogonalization::full;
+              from                     = {std::move(result.x)};
+              tolerance /= part_of_residual; // the same once more
+              continue;
+            }
           if (result.status != qp::Status::converged || tolerance <= options.tolerance)
             break;
           Vector jumps = std::move(result.residual);
@@ -151,6 +161,8 @@ namespace slipstick::contact
             set_bounds(law.bounds(feasible));
           }
         follow_bounds(feasible);
+        if (solution.status != qp::Status::converged)
+          finish_by_newton(feasible);
         return finished();
       }
 
@@ -368,6 +380,24 @@ namespace slipstick::contact
         ++solution.friction_iterations;
         set_bounds(blend(next, damping(change)));
         return change;
+      }
+
+      /// Where SMALBE-M ends without convergence its set may be near the right one, on which Newton's method solves.
+      void finish_by_newton(const Vector &feasible)
+      {
+        ++solution.fallbacks;
+        if (solution.weighted_reference == 0)
+          {
+            solution.weighted_reference = dual.residual_norm(homogenised_load(dual, feasible));
+            ++solution.counts.hessian_multiplications;
+          }
+        const auto before = solution;
+        if (law.depends_on_pressure() ? coupled_newton_from(before.multipliers) : newton_from(before.multipliers))
+          return;
+        const auto counts = solution.counts;
+        solution          = before;
+        solution.counts   = counts;
+        set_bounds(before.slip_bound);
       }
 
       /// Fixed point of the bounds by SMALBE-M.
