@@ -70,9 +70,11 @@ namespace slipstick::contact
       return std::sqrt(dual.jump_energy(r, held));
     }
 
+    /// @param goes_on from there, moved to where G x = e, or null.
     DualSolution solve_linear(const tfeti::DualProblem   &dual,
                               const scene::SolverOptions &options,
                               const ProgressObserver     &observer,
+                              const DualSolution         *goes_on,
                               const AccuracyTest         &is_accurate)
     {
       Vector       start = dual.particular();
@@ -81,9 +83,16 @@ namespace slipstick::contact
       solution.slip_bound             = std::vector<double>(start.locally_owned_size(), 0.);
       solution.algorithm              = "pcg";
       const auto         face         = dual.face(solution.free);
-      const auto         b            = homogenised_load(dual, start);
+      auto               b            = homogenised_load(dual, start);
       const double       reference    = dual.residual_norm(b);
       const auto         precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
+      if (goes_on) // from what is left in truth, not in the sums of an earlier solve
+        {
+          start = goes_on->multipliers;
+          face.balance(start);
+          b = homogenised_load(dual, start);
+          ++solution.counts.hessian_multiplications;
+        }
       const qp::Observer counted      = [&](qp::OuterStep step) {
         step.hessian_multiplications += 1 + solution.counts.hessian_multiplications; // F x~ in the homogenised load
         step.outer += solution.counts.cg_steps;
@@ -572,7 +581,7 @@ namespace slipstick::contact
   {
     const auto &counts = dual.constraints().counts;
     if (counts.normal + counts.tangential == 0)
-      return solve_linear(dual, options, observer, is_accurate);
+      return solve_linear(dual, options, observer, start, is_accurate);
     return ContactSolver(dual, law, options, friction, observer, is_accurate).run(start);
   }
 
