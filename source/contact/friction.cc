@@ -79,13 +79,13 @@ namespace slipstick::contact
     {
       Vector       start = dual.particular();
       DualSolution solution;
-      solution.free                   = std::vector<bool>(start.locally_owned_size(), true);
-      solution.slip_bound             = std::vector<double>(start.locally_owned_size(), 0.);
-      solution.algorithm              = "pcg";
-      const auto         face         = dual.face(solution.free);
-      auto               b            = homogenised_load(dual, start);
-      const double       reference    = dual.residual_norm(b);
-      const auto         precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
+      solution.free             = std::vector<bool>(start.locally_owned_size(), true);
+      solution.slip_bound       = std::vector<double>(start.locally_owned_size(), 0.);
+      solution.algorithm        = "pcg";
+      const auto   face         = dual.face(solution.free);
+      auto         b            = homogenised_load(dual, start);
+      const double reference    = dual.residual_norm(b);
+      const auto   precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
       if (goes_on) // from what is left in truth, not in the sums of an earlier solve
         {
           start = goes_on->multipliers;
@@ -93,7 +93,7 @@ namespace slipstick::contact
           b = homogenised_load(dual, start);
           ++solution.counts.hessian_multiplications;
         }
-      const qp::Observer counted      = [&](qp::OuterStep step) {
+      const qp::Observer counted = [&](qp::OuterStep step) {
         step.hessian_multiplications += 1 + solution.counts.hessian_multiplications; // F x~ in the homogenised load
         step.outer += solution.counts.cg_steps;
         if (observer)
@@ -108,9 +108,8 @@ namespace slipstick::contact
       for (;; tolerance = std::max(options.tolerance, part_of_residual * tolerance))
         {
           const qp::Goal goal(tolerance, reference);
-          auto           result = dual.is_preconditioned()
-                                    ? qp::pcpg(face, b, from, goal, pcpg, precondition, counted)
-                                    : qp::pcpg(face, b, from, goal, pcpg, qp::NoPreconditioner(), counted);
+          auto           result = dual.is_preconditioned() ? qp::pcpg(face, b, from, goal, pcpg, precondition, counted)
+                                                           : qp::pcpg(face, b, from, goal, pcpg, qp::NoPreconditioner(), counted);
           solution.counts += result.counts;
           solution.status             = result.status;
           solution.projected_gradient = result.relative_residual;
