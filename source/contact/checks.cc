@@ -12,8 +12,10 @@ namespace slipstick::contact
   {
     using tfeti::DistributedVector;
 
-    // Displacements below this part of the largest gap count as none.
-    constexpr double negligible_part_of_gap = 1e-3;
+    // Lengths below this part of the largest gap or displacement count as none: rounding leaves 1e-14 of these.
+    constexpr double negligible_part = 1e-8;
+    // Deformations below this part of these count as none: what rounding leaves shows in the stiffest of them.
+    constexpr double negligible_deformation = 1e-5;
     // Slip bounds above this multiple of the largest contact force say no more than that nodes stick.
     constexpr double bounds_that_count = 2;
 
@@ -266,7 +268,8 @@ namespace slipstick::contact
              {"friction bound", friction_bound, false, places[4]},
              {"equilibrium of a node", nodal_equilibrium, true, places[5]},
              {"force balance", force_balance, true, places[6]},
-             {"moment balance", moment_balance, true, places[7]}}};
+             {"moment balance", moment_balance, true, places[7]},
+             {"error in the energy norm", algebraic_error, false, places[8]}}};
   }
 
   Checks::Entry Checks::worst_entry() const
@@ -306,7 +309,8 @@ namespace slipstick::contact
       friction_bound,
       nodal_equilibrium,
       force_balance,
-      moment_balance
+      moment_balance,
+      energy_norm
     };
     std::array<Largest, Checks::n_entries> largest;
 
@@ -326,7 +330,8 @@ namespace slipstick::contact
     for (unsigned int r = 0; r < constraints.kind.size(); ++r)
       if (is_equality(constraints.kind[r]) && largest[jump].take(std::abs(violation(r)), Place()))
         row_of_jump = r;
-    DistributedVector wrong = jumps;
+    DistributedVector wrong        = jumps;
+    unsigned int      row_of_wrong = tfeti::invalid_row;
     std::vector<bool> held(constraints.kind.size());
     for (unsigned int r = 0; r < held.size(); ++r)
       {
@@ -334,6 +339,8 @@ namespace slipstick::contact
           free[r] ? violation(r)
                   : inadmissible_jump(constraints.kind[r], violation(r), multipliers.local_element(r), slip_bound[r]);
         held[r] = is_equality(constraints.kind[r]) || wrong.local_element(r) != 0;
+        if (largest[energy_norm].take(std::abs(wrong.local_element(r)), Place()))
+          row_of_wrong = r;
       }
     checks.error_energy = dual.jump_energy(wrong, held);
 
@@ -381,12 +388,13 @@ namespace slipstick::contact
       }
     for (double *sum : {&checks.energy, &checks.complementarity, &all_bounds})
       *sum = dealii::Utilities::MPI::sum(*sum, comm);
-    // a scene that hardly moves is measured against its gaps, as the solver's residual |Pd| is
-    const double no_length = negligible_part_of_gap * largest_gap;
-    const double no_force  = no_length / dual.norm();
+    const double way       = std::max(largest_gap, checks.max_displacement);
+    const double no_length = negligible_part * way;
+    const double no_strain = negligible_deformation * way;
+    const double no_force  = no_strain / dual.norm();
     const double length    = std::max(checks.max_displacement, no_length);
     const double force     = std::max(largest_contact, no_force);
-    const double energy    = std::max({checks.energy, no_force * no_length, all_bounds * no_length});
+    const double energy    = std::max({checks.energy, no_force * no_strain, all_bounds * no_strain});
     const auto   on_bodies = balance(dual, forces, multipliers, n_bodies, largest[nodal_equilibrium]);
     for (unsigned int b = 0; b < n_bodies; ++b)
       {
@@ -396,6 +404,7 @@ namespace slipstick::contact
         largest[moment_balance].take(relative(std::abs(on_bodies.left(last, b)), scale), {true, b});
       }
     find_place_of_row(dual, row_of_jump, largest[jump]);
+    find_place_of_row(dual, row_of_wrong, largest[energy_norm]);
     for (unsigned int i = 0; i < Checks::n_entries; ++i)
       {
         largest[i].over_all_ranks(comm);

@@ -70,26 +70,37 @@ namespace slipstick::contact
       return std::sqrt(dual.jump_energy(r, held));
     }
 
+    /// @param goes_on from there, moved to where G x = e, or null.
     DualSolution solve_linear(const tfeti::DualProblem   &dual,
                               const scene::SolverOptions &options,
                               const ProgressObserver     &observer,
+                              const DualSolution         *goes_on,
                               const AccuracyTest         &is_accurate)
     {
       Vector       start = dual.particular();
       DualSolution solution;
-      solution.free                   = std::vector<bool>(start.locally_owned_size(), true);
-      solution.slip_bound             = std::vector<double>(start.locally_owned_size(), 0.);
-      solution.algorithm              = "pcg";
-      const auto         face         = dual.face(solution.free);
-      const auto         b            = homogenised_load(dual, start);
-      const double       reference    = dual.residual_norm(b);
-      const auto         precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
-      const qp::Observer counted      = [&](qp::OuterStep step) {
+      solution.free             = std::vector<bool>(start.locally_owned_size(), true);
+      solution.slip_bound       = std::vector<double>(start.locally_owned_size(), 0.);
+      solution.algorithm        = "pcg";
+      const auto   face         = dual.face(solution.free);
+      auto         b            = homogenised_load(dual, start);
+      const double reference    = dual.residual_norm(b);
+      const auto   precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
+      if (goes_on) // from what is left in truth, not in the sums of an earlier solve
+        {
+          start = goes_on->multipliers;
+          face.balance(start);
+          b = homogenised_load(dual, start);
+          ++solution.counts.hessian_multiplications;
+        }
+      const qp::Observer counted = [&](qp::OuterStep step) {
         step.hessian_multiplications += 1 + solution.counts.hessian_multiplications; // F x~ in the homogenised load
         step.outer += solution.counts.cg_steps;
         if (observer)
           observer({step, 0});
       };
+      qp::PcpgOptions       pcpg             = options.pcpg;
+      bool                  reorthogonalizes = dual.is_preconditioned();
       qp::PcpgStart<Vector> from{dual.zero()};
       if (is_accurate) // parts go on with the directions of those before
         from.history = std::make_shared<qp::DirectionHistory<Vector>>(dual.is_preconditioned());
@@ -97,14 +108,21 @@ namespace slipstick::contact
       for (;; tolerance = std::max(options.tolerance, part_of_residual * tolerance))
         {
           const qp::Goal goal(tolerance, reference);
-          auto           result = dual.is_preconditioned()
-                                    ? qp::pcpg(face, b, from, goal, options.pcpg, precondition, counted)
-                                    : qp::pcpg(face, b, from, goal, options.pcpg, qp::NoPreconditioner(), counted);
+          auto           result = dual.is_preconditioned() ? qp::pcpg(face, b, from, goal, pcpg, precondition, counted)
+                                                           : qp::pcpg(face, b, from, goal, pcpg, qp::NoPreconditioner(), counted);
           solution.counts += result.counts;
           solution.status             = result.status;
           solution.projected_gradient = result.relative_residual;
           solution.multipliers        = start;
           solution.multipliers += result.x;
+          if (result.status == qp::Status::stagnated && !reorthogonalizes)
+            { // rounding has spoilt the conjugacy of the directions
+              reorthogonalizes         = true;
+              pcpg.reorthogonalization = qp::Reorthogonalization::full;
+              from                     = {std::move(result.x)};
+              tolerance /= part_of_residual; // the same once more
+              continue;
+            }
           if (result.status != qp::Status::converged || tolerance <= options.tolerance)
             break;
           Vector jumps = std::move(result.residual);
@@ -151,6 +169,10 @@ namespace slipstick::contact
             set_bounds(law.bounds(feasible));
           }
         follow_bounds(feasible);
+        const bool follows =
+          law.depends_on_pressure() && solution.friction_iterations > 0; // not a limit of SMALBE alone
+        if (solution.status == qp::Status::stagnated || (solution.status == qp::Status::iteration_limit && follows))
+          finish_by_newton(feasible);
         return finished();
       }
 
@@ -370,6 +392,24 @@ namespace slipstick::contact
         return change;
       }
 
+      /// Where SMALBE-M ends without convergence its set may be near the right one, on which Newton's method solves.
+      void finish_by_newton(const Vector &feasible)
+      {
+        ++solution.fallbacks;
+        if (solution.weighted_reference == 0)
+          {
+            solution.weighted_reference = dual.residual_norm(homogenised_load(dual, feasible));
+            ++solution.counts.hessian_multiplications;
+          }
+        const auto before = solution;
+        if (law.depends_on_pressure() ? coupled_newton_from(before.multipliers) : newton_from(before.multipliers))
+          return;
+        const auto counts = solution.counts;
+        solution          = before;
+        solution.counts   = counts;
+        set_bounds(before.slip_bound);
+      }
+
       /// Fixed point of the bounds by SMALBE-M.
       void follow_bounds(Vector from)
       {
@@ -542,7 +582,7 @@ namespace slipstick::contact
   {
     const auto &counts = dual.constraints().counts;
     if (counts.normal + counts.tangential == 0)
-      return solve_linear(dual, options, observer, is_accurate);
+      return solve_linear(dual, options, observer, start, is_accurate);
     return ContactSolver(dual, law, options, friction, observer, is_accurate).run(start);
   }
 

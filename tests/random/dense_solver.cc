@@ -13,8 +13,9 @@ namespace slipstick::random
 
     // Directions, ranks: relative to the largest.
     constexpr double rank_tolerance = 1e-9;
-    // A motion that the rows resist less than this (relative) counts as free, as of a round body in a round hole.
-    constexpr double least_hold = 1e-6;
+    // A motion that the rows resist less than this (relative) counts as free, as of a round body in a round hole: only how
+    // far chords are from the arc resists it.
+    constexpr double least_hold = 1e-5;
     // A solution is one when all conditions hold to this.
     constexpr double solved_tolerance = 1e-11;
     // Strictly inside, strictly pressed: above this.
@@ -653,7 +654,7 @@ namespace slipstick::random
         M.col(i).head(W.rows()) = W.col(movable[i]);
         M.col(i).tail(T.cols()) = T.row(movable[i]).transpose();
       }
-    const Eigen::MatrixXd open = kernel_of(holds);
+    const Eigen::MatrixXd open = kernel_of(holds, least_hold);
     solution.position_unique   = T.cols() == 0 || open.cols() == 0;
     solution.forces_unique     = movable.empty() || kernel_of(M).cols() == 0;
     solution.free_motions      = Eigen::MatrixXd::Zero(problem.f.size(), solution.position_unique ? 0 : open.cols());

@@ -8,8 +8,8 @@
 // node), or end with the diagnosis that the dense solver comes to by itself. Where the dense solver found another solution
 // (Coulomb) or none, slipstick's answer must keep all conditions of the law, checked by the dense solver's matrices.
 // --verbose: a line a run; --keep: writes the scenes (.prm, .msh) there, to run them with slipstick.
-// Ends with status 1 when a run disagrees that is not known to (list `known` below).
-// Where 1e-10 is not reached 1e-8 is asked for, where it is reached without agreement 1e-12; both are counted.
+// Ends with status 1 when a run disagrees that is not known to (list `known` below), or one agrees that is known not to.
+// Where 1e-10 is not reached 1e-8 is asked for, and counted.
 #include "assembled.h"
 #include "dense_solver.h"
 #include "run.h"
@@ -42,26 +42,10 @@ namespace
   constexpr double agreement = 1e-6;
   // What rounding makes of no displacement, over the size of the bodies.
   constexpr double no_displacement = 1e-12;
-  // Solver/Tolerance and Friction/Tolerance; where it is not reached; where the answer is not as close as wanted.
-  constexpr const char *tolerance = "1e-10", *looser = "1e-8", *tighter = "1e-12";
-
-  // Scenes on which a run does not end as it should today, and how. They are run and counted (`failed`), but do not fail
-  // the test; one that no longer fails is reported, to be taken off.
-  const std::map<unsigned int, const char *> known = {
-    {15, "smalbe, one cut: neither 1e-10 nor 1e-8 reached; conditions kept to 9e-9"},
-    {39,
-     "Coulomb, floating body on two nodes: semismooth Newton's sets cycle, smalbe not converged; conditions kept to 2e-8"},
-    {41, "largest displacement 2e-13 mm: what is compared is rounding"},
-    {130, "smalbe, one cut: not converged after 134000 multiplications; conditions kept to 2e-11"},
-    {139, "smalbe, one cut: not converged; conditions kept to 3e-9"},
-    {142, "smalbe: not converged; conditions kept to 6e-9"},
-    {209, "one cut, both algorithms: not converged; conditions kept to 2e-11"},
-    {219, "smalbe: not converged; conditions kept to 4e-9"},
-    {235, "smalbe, one cut: forces differ by 1.1e-6"},
-    {245, "slipstick: nothing holds the rotation of both round bodies together; dense: solved. Not understood"},
-    {259, "one cut, both algorithms: not converged; conditions kept to 9e-10"},
-    {280, "no equilibrium (margin 6e-4): with one subdomain not diagnosed, ends as not converged"},
-    {296, "several positions; one cut, semismooth Newton: check of the jumps fails at rounding, not converged"}};
+  // Solver/Tolerance and Friction/Tolerance; where it is not reached.
+  constexpr const char *tolerance = "1e-10", *looser = "1e-8";
+  // Another solution of a Coulomb problem is told from an inaccurate one by forces or displacements that differ by more.
+  constexpr double another = 1e-3;
 
   struct Options
   {
@@ -75,7 +59,7 @@ namespace
   {
     unsigned int scenes = 0, agreed = 0, diagnosed = 0, another_solution = 0, not_unique = 0, undetermined = 0,
                  unsolved = 0, failed = 0;
-    unsigned int       looser = 0, tighter = 0;     // runs that agree with another tolerance only
+    unsigned int       looser             = 0;      // runs that agree with another tolerance only
     unsigned long long multiplications[2] = {0, 0}; // by algorithm
     double             displacement = 0, force = 0; // largest differences of those that agreed
   };
@@ -90,6 +74,23 @@ namespace
     wrong,            // converged with a wrong answer
     failed            // another diagnosis
   };
+
+  // Scenes on which a run does not end as it should today, how, and why. They are run and counted (`failed`), but fail the
+  // test only if they end worse than that, or no longer so.
+  struct Known
+  {
+    Verdict     worst;
+    const char *reason;
+  };
+  const std::map<unsigned int, Known> known = {
+    {142,
+     {Verdict::wrong,
+      "stack with moduli from 1e3 to 1.2e8: the error in the energy norm is 2e-8, but in the stiffest body "
+      "its forces are up to 8e-6 of the largest (Friction/Tolerance and Solver/Tolerance 1e-10)"}},
+    {280,
+     {Verdict::failed,
+      "no equilibrium (margin 6e-4): with one subdomain the point of least violation is not found to the accuracy "
+      "of a certificate in 10000 steps, so the run ends as not converged"}}};
 
   const char *name_of(const Verdict verdict)
   {
@@ -185,9 +186,10 @@ namespace
     result.force        = expected.forces_unique ? largest(found.x - expected.x) / size
                                                  : largest(nodal(found.x) - nodal(expected.x)) / size;
     const bool is_same  = result.displacement < agreement && result.force < agreement;
-    result.verdict      = is_same && is_one               ? Verdict::agreed
-                          : is_one && dense.has_coulomb() ? Verdict::another_solution
-                                                          : Verdict::wrong;
+    const bool is_other = result.displacement > another || result.force > another;
+    result.verdict      = is_same && is_one                           ? Verdict::agreed
+                          : is_one && is_other && dense.has_coulomb() ? Verdict::another_solution
+                                                                      : Verdict::wrong;
     return result;
   }
 
@@ -269,7 +271,7 @@ namespace
                 result = compare(problem, dense, expected, found);
               };
               solve(tolerance);
-              bool needs_looser = false, needs_tighter = false;
+              bool needs_looser = false;
               if (result.verdict == Verdict::failed && found.status == ExitStatus::not_converged)
                 {
                   const auto first = std::make_pair(found, result);
@@ -277,16 +279,6 @@ namespace
                   needs_looser = result.verdict != Verdict::failed && result.verdict != Verdict::wrong;
                   if (!needs_looser)
                     std::tie(found, result) = first;
-                }
-              else if (result.verdict == Verdict::wrong && found.status == ExitStatus::converged)
-                {
-                  const auto first = std::make_pair(found, result);
-                  solve(tighter);
-                  needs_tighter = result.verdict != Verdict::failed && result.verdict != Verdict::wrong;
-                  if (!needs_tighter)
-                    std::tie(found, result) = first;
-                  else
-                    imprecise.push_back({seed, std::max({first.second.displacement, first.second.force})});
                 }
               const double time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
               seconds_slipstick += time;
@@ -296,9 +288,7 @@ namespace
                   std::string how;
                   for (const auto &override : overrides)
                     how += " --set " + override;
-                  how += needs_looser    ? std::string(" at ") + looser
-                         : needs_tighter ? std::string(" at ") + tighter
-                                         : "";
+                  how += needs_looser ? std::string(" at ") + looser : "";
                   std::printf(
                     "%4u   %s: dense %s, status %d, u %.1e, x %.1e; equilibrium %.1e, law %.1e, K u %.1e, copies %.1e; %s; %llu "
                     "multiplications, %u fallbacks, %.2f s;%s\n%s",
@@ -327,7 +317,6 @@ namespace
                 {
                   tally->multiplications[k / 2] += found.multiplications;
                   tally->looser += needs_looser;
-                  tally->tighter += needs_tighter;
                   if (result.verdict == Verdict::agreed)
                     {
                       tally->displacement = std::max(tally->displacement, result.displacement);
@@ -345,30 +334,36 @@ namespace
                                                       : tally->failed);
               tally->not_unique += worst == Verdict::agreed && !expected.forces_unique;
             }
-          note(seed, worst == Verdict::wrong || worst == Verdict::failed);
+          note(seed, worst);
         }
       catch (const std::exception &error)
         {
           std::printf("%4u %s %s: FAILED: %s\n", seed, generated.family.c_str(), generated.law.c_str(), error.what());
           for (Tally *tally : tallies)
             ++tally->failed;
-          note(seed, true);
+          note(seed, Verdict::failed);
         }
     }
 
-    void note(const unsigned int seed, const bool has_failed)
+    void note(const unsigned int seed, const Verdict worst)
     {
-      if (has_failed && known.count(seed) == 0)
-        unexpected.push_back(seed);
-      if (has_failed && known.count(seed) > 0)
-        std::printf("seed %u is known: %s\n", seed, known.at(seed));
-      if (!has_failed && known.count(seed) > 0)
-        std::printf("seed %u does not fail any more: take it off the list in main.cc\n", seed);
+      const bool has_failed = worst == Verdict::wrong || worst == Verdict::failed;
+      const auto entry      = known.find(seed);
+      if (entry == known.end())
+        {
+          if (has_failed)
+            unexpected.push_back(seed);
+          return;
+        }
+      if (worst == entry->second.worst)
+        std::printf("seed %u is known: %s\n", seed, entry->second.reason);
+      else
+        (has_failed ? unexpected : stale).push_back(seed);
     }
 
     static void line(const std::string &name, const Tally &tally)
     {
-      std::printf("%-12s %6u %7u %10u %9u %8u %9u %11u %7u   %8.1e %8.1e %7u %7u %9llu %9llu\n",
+      std::printf("%-12s %6u %7u %10u %9u %8u %9u %11u %7u   %8.1e %8.1e %7u %9llu %9llu\n",
                   name.c_str(),
                   tally.scenes,
                   tally.agreed,
@@ -381,7 +376,6 @@ namespace
                   tally.displacement,
                   tally.force,
                   tally.looser,
-                  tally.tighter,
                   tally.multiplications[0],
                   tally.multiplications[1]);
     }
@@ -391,11 +385,10 @@ namespace
       std::printf(
         "\nEvery scene is in one of the columns agreed to failed but for `forces`: of those that agreed, how many have\n"
         "contact forces that are not unique (compared by node). u, x: largest differences of those that agreed.\n"
-        "Runs (4 a scene) that agree only when asked for %s, because %s is not reached, or for %s.\n\n",
+        "Runs (4 a scene) that agree only when asked for %s, because %s is not reached.\n\n",
         looser,
-        tolerance,
-        tighter);
-      std::printf("%-12s %6s %7s %10s %9s %8s %9s %11s %7s   %8s %8s %7s %7s %9s %9s\n",
+        tolerance);
+      std::printf("%-12s %6s %7s %10s %9s %8s %9s %11s %7s   %8s %8s %7s %9s %9s\n",
                   "class",
                   "scenes",
                   "agreed",
@@ -408,10 +401,9 @@ namespace
                   "u",
                   "x",
                   "at",
-                  "at",
                   "F-mult.",
                   "F-mult.");
-      std::printf("%-12s %6s %7s %10s %9s %8s %9s %11s %7s   %8s %8s %7s %7s %9s %9s\n",
+      std::printf("%-12s %6s %7s %10s %9s %8s %9s %11s %7s   %8s %8s %7s %9s %9s\n",
                   "",
                   "",
                   "",
@@ -424,7 +416,6 @@ namespace
                   "",
                   "",
                   looser,
-                  tighter,
                   "newton",
                   "smalbe");
       for (const auto &[name, tally] : by_family)
@@ -432,25 +423,21 @@ namespace
       for (const auto &[name, tally] : by_law)
         line(name, tally);
       line("all", all);
-      for (const auto &[seed, difference] : imprecise)
-        std::printf("seed %u: converged at %s with a difference of %.1e, agrees at %s\n",
-                    seed,
-                    tolerance,
-                    difference,
-                    tighter);
       std::printf("dense solver %.1f s, slipstick %.1f s\n", seconds_dense, seconds_slipstick);
       for (const unsigned int seed : unexpected)
-        std::printf("seed %u FAILED and is not among the known ones\n", seed);
-      return unexpected.empty() ? 0 : 1;
+        std::printf("seed %u FAILED and is not known to end like that\n", seed);
+      for (const unsigned int seed : stale)
+        std::printf("seed %u does not fail as it is known to: take it off the list in main.cc\n", seed);
+      return unexpected.empty() && stale.empty() ? 0 : 1;
     }
 
-    const Options                                options;
-    const std::string                            directory;
-    std::map<std::string, Tally>                 by_family, by_law;
-    Tally                                        all;
-    std::vector<unsigned int>                    unexpected; // seeds that fail and are not known to
-    std::vector<std::pair<unsigned int, double>> imprecise;  // seed, difference
-    double                                       seconds_dense = 0, seconds_slipstick = 0;
+    const Options                options;
+    const std::string            directory;
+    std::map<std::string, Tally> by_family, by_law;
+    Tally                        all;
+    std::vector<unsigned int>    unexpected; // seeds that fail and are not known to, or not so
+    std::vector<unsigned int>    stale;      // seeds that do not fail though they are known to
+    double                       seconds_dense = 0, seconds_slipstick = 0;
   };
 
   Options parsed(const int argc, char **argv)
