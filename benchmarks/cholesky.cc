@@ -203,7 +203,7 @@ namespace
             std::vector<tfeti::PackedSymmetric> blocks;
             if (is_explicit)
               for (const auto &system : systems)
-                blocks.emplace_back(system->pseudo_inverse_block(), tfeti::Precision::double_precision);
+                blocks.push_back(system->pseudo_inverse_block(tfeti::Precision::double_precision));
             F = std::make_unique<tfeti::DualOperator>(systems, gluing, constraints.rows, std::move(blocks));
           }));
           tfeti::DistributedVector x(constraints.rows), &y = results[is_explicit];

@@ -75,9 +75,9 @@ namespace slipstick::tfeti
           factorization_time += MPI_Wtime() - start;
           SubdomainSystem &system = *systems.back();
           if (explicit_blocks)
-            inverses.emplace_back(system.pseudo_inverse_block(), options.operator_precision);
+            inverses.push_back(system.pseudo_inverse_block(options.operator_precision));
           if (options.preconditioner == Preconditioner::dirichlet)
-            schur_complements.emplace_back(system.schur_complement(), options.preconditioner_precision);
+            schur_complements.push_back(system.schur_complement(options.preconditioner_precision));
           u.push_back(system.load());
           system.apply_pseudo_inverse(u.back());
           if (explicit_blocks && !options.keeps_factors)
@@ -102,7 +102,10 @@ namespace slipstick::tfeti
           dealii::Utilities::MPI::max(metric.empty() ? 1. : *std::max_element(metric.begin(), metric.end()), comm) >
           large_stiffness_ratio;
       }
-    projector = std::make_unique<Projector>(systems, gluing, *F, rows.rows, std::vector<bool>(), comm);
+    std::vector<bool> has_no_bounds;
+    for (const RowKind kind : rows.kind)
+      has_no_bounds.push_back(is_equality(kind));
+    projector = std::make_unique<Projector>(systems, gluing, *F, rows.rows, has_no_bounds, comm);
 
     is_single = explicit_blocks && options.operator_precision == Precision::single_precision;
     set_dual_load(u);

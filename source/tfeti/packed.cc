@@ -3,18 +3,7 @@
 #include <deal.II/base/exceptions.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-
-extern "C" void dspmv_(const char   *uplo,
-                       const int    *n,
-                       const double *alpha,
-                       const double *ap,
-                       const double *x,
-                       const int    *incx,
-                       const double *beta,
-                       double       *y,
-                       const int    *incy);
 
 extern "C" void dsyrk_(const char   *uplo,
                        const char   *trans,
@@ -38,6 +27,9 @@ extern "C" void dpotri_(const char *uplo, const int *n, double *a, const int *ld
 #  define SLIPSTICK_VECTOR_CLONES
 #endif
 
+// What a clone consists of is compiled for its processor only within it.
+#define SLIPSTICK_INLINE __attribute__((always_inline)) inline
+
 namespace slipstick::tfeti
 {
   namespace
@@ -57,96 +49,107 @@ namespace slipstick::tfeti
               matrix(j, i) = matrix(i, j);
     }
 
-    constexpr int n_lanes = 8;
-    using Doubles         = double __attribute__((vector_size(n_lanes * sizeof(double))));
-    using Floats          = float __attribute__((vector_size(n_lanes * sizeof(float))));
+    constexpr unsigned int n_lanes   = 8; // rows of a panel that are stored together
+    constexpr unsigned int n_columns = 4; // of a panel
+    using Doubles                    = double __attribute__((vector_size(n_lanes * sizeof(double))));
+    using Floats                     = float __attribute__((vector_size(n_lanes * sizeof(float))));
 
-    /// y += A x, y and x in double. Two columns at a time, so that y and x are passed through half as often.
-    SLIPSTICK_VECTOR_CLONES void add_product(const float *a, const int n, const double *x, double *y)
+    unsigned int padded(const unsigned int n)
     {
-      int j = 0;
-      for (; j + 1 < n; j += 2)
-        {
-          const float *b  = a + (n - j); // column j + 1 from its diagonal; a: column j
-          const double x0 = x[j], x1 = x[j + 1];
-          double       s0 = a[0] * x0 + a[1] * x1, s1 = a[1] * x0 + b[0] * x1;
-          Doubles      sums0 = {}, sums1 = {};
-          int          i = j + 2;
-          a += 2;
-          b += 1;
-          for (; i + n_lanes <= n; i += n_lanes, a += n_lanes, b += n_lanes)
-            {
-              Floats  fa, fb;
-              Doubles xi, yi;
-              std::memcpy(&fa, a, sizeof(fa));
-              std::memcpy(&fb, b, sizeof(fb));
-              std::memcpy(&xi, x + i, sizeof(xi));
-              std::memcpy(&yi, y + i, sizeof(yi));
-              const Doubles da = __builtin_convertvector(fa, Doubles), db = __builtin_convertvector(fb, Doubles);
-              yi += da * x0 + db * x1;
-              sums0 += da * xi;
-              sums1 += db * xi;
-              std::memcpy(y + i, &yi, sizeof(yi));
-            }
-          for (; i < n; ++i, ++a, ++b)
-            {
-              y[i] += *a * x0 + *b * x1;
-              s0 += *a * x[i];
-              s1 += *b * x[i];
-            }
-          for (int l = 0; l < n_lanes; ++l)
-            {
-              s0 += sums0[l];
-              s1 += sums1[l];
-            }
-          y[j] += s0;
-          y[j + 1] += s1;
-          a = b;
-        }
-      if (j < n)
-        y[j] += a[0] * x[j];
+      return (n + n_lanes - 1) / n_lanes * n_lanes;
     }
 
-    unsigned int rows_of(const std::size_t n_packed)
+    /// First row that is stored of the panel that begins with a column.
+    unsigned int first_row(const unsigned int column)
     {
-      const auto n = static_cast<unsigned int>(std::lround((std::sqrt(8. * n_packed + 1) - 1) / 2));
-      AssertThrow(static_cast<std::size_t>(n) * (n + 1) / 2 == n_packed, dealii::ExcInternalError());
-      return n;
+      return column / n_lanes * n_lanes;
+    }
+
+    /// Calls f(row, column, position) for all entries on and below the diagonal.
+    template <class F>
+    void for_each_entry(const unsigned int n, const F &f)
+    {
+      std::size_t begin = 0;
+      for (unsigned int panel = 0; panel < n; panel += n_columns)
+        {
+          const unsigned int first = first_row(panel);
+          for (unsigned int column = panel; column < std::min(panel + n_columns, n); ++column)
+            for (unsigned int row = column; row < n; ++row)
+              f(row,
+                column,
+                begin + (row - first) / n_lanes * n_lanes * n_columns + (column - panel) * n_lanes + row % n_lanes);
+          begin += static_cast<std::size_t>(padded(n) - first) * n_columns;
+        }
+    }
+
+    std::size_t n_stored(const unsigned int n)
+    {
+      std::size_t sum = 0;
+      for (unsigned int panel = 0; panel < n; panel += n_columns)
+        sum += static_cast<std::size_t>(padded(n) - first_row(panel)) * n_columns;
+      return sum;
+    }
+
+    SLIPSTICK_INLINE Doubles load(const double *a)
+    {
+      Doubles values;
+      std::memcpy(&values, a, sizeof(values));
+      return values;
+    }
+
+    SLIPSTICK_INLINE Doubles load(const float *a)
+    {
+      Floats values;
+      std::memcpy(&values, a, sizeof(values));
+      return __builtin_convertvector(values, Doubles);
+    }
+
+    SLIPSTICK_INLINE double sum(const Doubles &values)
+    {
+      double result = 0;
+      for (unsigned int l = 0; l < n_lanes; ++l)
+        result += values[l];
+      return result;
+    }
+
+    /// y += A x; x and y padded to m entries. The diagonal is stored halved: it is met as a part of its column and of its row.
+    template <class Number>
+    SLIPSTICK_INLINE void add_product_of(const Number *a, const unsigned int n, const double *x, double *y)
+    {
+      const unsigned int m = padded(n);
+      for (unsigned int panel = 0; panel < n; panel += n_columns)
+        {
+          const double x0 = x[panel], x1 = x[panel + 1], x2 = x[panel + 2], x3 = x[panel + 3];
+          Doubles      sum0 = {}, sum1 = {}, sum2 = {}, sum3 = {};
+          for (unsigned int i = first_row(panel); i < m; i += n_lanes, a += n_lanes * n_columns)
+            {
+              const Doubles a0 = load(a), a1 = load(a + n_lanes), a2 = load(a + 2 * n_lanes),
+                            a3 = load(a + 3 * n_lanes);
+              const Doubles xi = load(x + i);
+              const Doubles yi = load(y + i) + ((a0 * x0 + a1 * x1) + (a2 * x2 + a3 * x3));
+              std::memcpy(y + i, &yi, sizeof(yi));
+              sum0 += a0 * xi;
+              sum1 += a1 * xi;
+              sum2 += a2 * xi;
+              sum3 += a3 * xi;
+            }
+          y[panel] += sum(sum0);
+          y[panel + 1] += sum(sum1);
+          y[panel + 2] += sum(sum2);
+          y[panel + 3] += sum(sum3);
+        }
+    }
+
+    SLIPSTICK_VECTOR_CLONES void add_product(const double *a, const unsigned int n, const double *x, double *y)
+    {
+      add_product_of(a, n, x, y);
+    }
+
+    SLIPSTICK_VECTOR_CLONES void add_product(const float *a, const unsigned int n, const double *x, double *y)
+    {
+      add_product_of(a, n, x, y);
     }
   } // namespace
-
-  std::vector<double> packed_lower(const Eigen::MatrixXd &matrix)
-  {
-    std::vector<double> packed;
-    packed.reserve(matrix.rows() * (matrix.rows() + 1) / 2);
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j)
-      packed.insert(packed.end(), matrix.col(j).data() + j, matrix.col(j).data() + matrix.rows());
-    return packed;
-  }
-
-  std::vector<double> packed_lower(const Eigen::MatrixXd &matrix, const std::vector<unsigned int> &order)
-  {
-    std::vector<double> packed(order.size() * (order.size() + 1) / 2);
-    double             *next = packed.data();
-    for (unsigned int j = 0; j < order.size(); ++j)
-      {
-        const double *column = matrix.col(order[j]).data();
-        for (unsigned int i = j; i < order.size(); ++i)
-          *next++ = column[order[i]];
-      }
-    return packed;
-  }
-
-  Eigen::MatrixXd unpacked(const std::vector<double> &lower)
-  {
-    const unsigned int n = rows_of(lower.size());
-    Eigen::MatrixXd    matrix(n, n);
-    const double      *next = lower.data();
-    for (unsigned int j = 0; j < n; ++j)
-      for (unsigned int i = j; i < n; ++i)
-        matrix(i, j) = matrix(j, i) = *next++;
-    return matrix;
-  }
 
   Eigen::MatrixXd product_of_factor(const Eigen::MatrixXd &L)
   {
@@ -173,26 +176,43 @@ namespace slipstick::tfeti
     return L;
   }
 
-  PackedSymmetric::PackedSymmetric(std::vector<double> lower, const Precision precision)
+  PackedSymmetric::PackedSymmetric(const Eigen::MatrixXd           &matrix,
+                                   const std::vector<unsigned int> &order,
+                                   const Precision                  precision)
+    : n(order.size())
   {
+    const auto fill = [&](auto &stored) {
+      stored.resize(n_stored(n)); // zeros
+      for_each_entry(n, [&](const unsigned int row, const unsigned int column, const std::size_t position) {
+        stored[position] = matrix(order[row], order[column]) * (row == column ? 0.5 : 1.);
+      });
+    };
     if (precision == Precision::double_precision)
-      in_double = std::move(lower);
+      fill(in_double);
     else
-      in_single.assign(lower.begin(), lower.end());
+      fill(in_single);
   }
 
   void PackedSymmetric::multiply(const Eigen::VectorXd &x, Eigen::VectorXd &y) const
   {
-    const int    n = x.size(), one = 1;
-    const double alpha = 1, beta = 0;
-    AssertDimension(in_double.size() + in_single.size(), static_cast<std::size_t>(n) * (n + 1) / 2);
-    y.resize(n);
+    AssertDimension(x.size(), n);
+    const unsigned int            m = padded(n);
+    dealii::AlignedVector<double> both(2 * m); // x and y, zeros beyond n
+    std::copy_n(x.data(), n, both.data());
     if (!in_double.empty())
-      dspmv_("L", &n, &alpha, in_double.data(), x.data(), &one, &beta, y.data(), &one);
+      add_product(in_double.data(), n, both.data(), both.data() + m);
     else
-      {
-        y.setZero();
-        add_product(in_single.data(), n, x.data(), y.data());
-      }
+      add_product(in_single.data(), n, both.data(), both.data() + m);
+    y = Eigen::Map<const Eigen::VectorXd>(both.data() + m, n);
+  }
+
+  Eigen::MatrixXd PackedSymmetric::full() const
+  {
+    Eigen::MatrixXd matrix(n, n);
+    for_each_entry(n, [&](const unsigned int row, const unsigned int column, const std::size_t position) {
+      const double stored = in_double.empty() ? in_single[position] : in_double[position];
+      matrix(row, column) = matrix(column, row) = stored * (row == column ? 2. : 1.);
+    });
+    return matrix;
   }
 } // namespace slipstick::tfeti

@@ -32,6 +32,12 @@ namespace slipstick::tfeti
     class Gram
     {
     public:
+      Gram() = default;
+      Gram(const Gram &other)
+        : blocks(other.blocks)
+      {}
+      Gram &operator=(const Gram &) = delete;
+
       /// Adds the column that parts (of different subdomains, in ascending order) make up.
       void add(const ColumnPart *begin, const ColumnPart *end, const double weight)
       {
@@ -125,11 +131,51 @@ namespace slipstick::tfeti
       unsigned int              first; // of its rigid motions among those of this rank
       std::vector<unsigned int> rows;
       Eigen::MatrixXd           values; // motions x rows
+
+      /// a += G x, x of all rows of the rank and their ghosts.
+      void add_product(const double *x, double *a) const
+      {
+        if (values.rows() == in_the_plane)
+          add_product_of<in_the_plane>(x, a);
+        else
+          add_product_of<Eigen::Dynamic>(x, a);
+      }
+
+      /// y += G'a.
+      void add_transposed_product(const double *a, double *y) const
+      {
+        if (values.rows() == in_the_plane)
+          add_transposed_product_of<in_the_plane>(a, y);
+        else
+          add_transposed_product_of<Eigen::Dynamic>(a, y);
+      }
+
+    private:
+      static constexpr int in_the_plane = 3; // motions, known to the compiler: three times as fast
+
+      template <int n>
+      void add_product_of(const double *x, double *a) const
+      {
+        Eigen::Matrix<double, n, 1> sum = Eigen::Matrix<double, n, 1>::Zero(values.rows());
+        for (unsigned int k = 0; k < rows.size(); ++k)
+          sum += Eigen::Map<const Eigen::Matrix<double, n, 1>>(values.col(k).data(), values.rows()) * x[rows[k]];
+        Eigen::Map<Eigen::Matrix<double, n, 1>>(a, values.rows()) += sum;
+      }
+
+      template <int n>
+      void add_transposed_product_of(const double *a, double *y) const
+      {
+        const Eigen::Matrix<double, n, 1> amplitudes = Eigen::Map<const Eigen::Matrix<double, n, 1>>(a, values.rows());
+        for (unsigned int k = 0; k < rows.size(); ++k)
+          y[rows[k]] +=
+            Eigen::Map<const Eigen::Matrix<double, n, 1>>(values.col(k).data(), values.rows()).dot(amplitudes);
+      }
     };
 
     Motions(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
             const std::vector<LocalGluing>                      &gluing,
             const Partitioner                                   &rows,
+            const std::vector<bool>                             &stays,
             const MPI_Comm                                       comm)
     {
       for (const auto &subdomain : subdomains)
@@ -171,6 +217,26 @@ namespace slipstick::tfeti
       for (const ColumnPart &part : parts)
         ++first_part[rows->global_to_local(part.row) + 1];
       std::partial_sum(first_part.begin(), first_part.end(), first_part.begin());
+      for (unsigned int r = 0; r < rows->locally_owned_size(); ++r)
+        (stays[r] ? staying : changing).push_back(r);
+    }
+
+    void add(const unsigned int row, const std::vector<double> &metric, Gram &gram) const
+    {
+      gram.add(parts.data() + first_part[row], parts.data() + first_part[row + 1], metric.empty() ? 1. : metric[row]);
+    }
+
+    /// The staying rows' part of G M G'; that of one metric at a time is kept.
+    const Gram &staying_part(const std::vector<double> &metric) const
+    {
+      if (!of_staying || metric_of_staying != metric)
+        {
+          of_staying        = std::make_unique<Gram>();
+          metric_of_staying = metric;
+          for (const unsigned int r : staying)
+            add(r, metric, *of_staying);
+        }
+      return *of_staying;
     }
 
     std::vector<ColumnPart> column(const unsigned int row) const
@@ -182,22 +248,25 @@ namespace slipstick::tfeti
     unsigned int              n_motions = 0; // of this rank
     std::vector<ColumnPart>   parts;         // of the owned rows, row by row
     std::vector<unsigned int> first_part;    // of every owned row
+    std::vector<unsigned int> staying, changing;
+
+  private:
+    mutable std::unique_ptr<Gram> of_staying;
+    mutable std::vector<double>   metric_of_staying;
   };
 
   Projector::Projector(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                        const std::vector<LocalGluing>                      &gluing,
                        const DualOperator                                  &scatter_gather,
                        const Partitioner                                   &rows,
-                       const std::vector<bool>                             &active,
-                       const MPI_Comm                                       comm,
-                       const std::vector<qp::Tie>                          &ties)
+                       const std::vector<bool>                             &stays,
+                       const MPI_Comm                                       comm)
     : scatter_gather(scatter_gather)
-    , G(std::make_shared<Motions>(subdomains, gluing, rows, comm))
-    , ties(ties)
+    , G(std::make_shared<Motions>(subdomains, gluing, rows, stays, comm))
     , source(rows)
     , target(rows)
   {
-    make_coarse(active, comm);
+    make_coarse({}, comm);
   }
 
   Projector::Projector(const Projector            &all,
@@ -232,15 +301,16 @@ namespace slipstick::tfeti
         column->second    = sum_of(std::move(column->second), G->column(tie.tied), tie.factor);
         tied.insert(tie.tied);
       }
-    Gram gram;
-    for (unsigned int r = 0; r < n; ++r)
+    Gram gram = G->staying_part(metric);
+    for (const unsigned int r : G->changing)
       if (indicator.local_element(r) != 0 && tied.count(r) == 0)
         {
-          const double weight = metric.empty() ? 1. : metric[r];
           if (const auto column = with_ties.find(r); column != with_ties.end())
-            gram.add(column->second.data(), column->second.data() + column->second.size(), weight);
+            gram.add(column->second.data(),
+                     column->second.data() + column->second.size(),
+                     metric.empty() ? 1. : metric[r]);
           else
-            gram.add(G->parts.data() + G->first_part[r], G->parts.data() + G->first_part[r + 1], weight);
+            G->add(r, metric, gram);
         }
     coarse = std::make_unique<CoarseSolver>(G->n_motions, gram.entries(), comm);
   }
@@ -250,11 +320,12 @@ namespace slipstick::tfeti
   Eigen::VectorXd Projector::multiply(const DistributedVector &x) const
   {
     scatter_gather.import(x, source);
+    const unsigned int n_present = source.locally_owned_size() + source.get_partitioner()->n_ghost_indices();
+    for (unsigned int r = 0; r < n_present; ++r)
+      source.begin()[r] *= indicator.begin()[r];
     Eigen::VectorXd a = Eigen::VectorXd::Zero(G->n_motions);
     for (const auto &block : G->blocks)
-      for (unsigned int k = 0; k < block.rows.size(); ++k)
-        a.segment(block.first, block.values.rows()) +=
-          block.values.col(k) * (indicator.local_element(block.rows[k]) * source.local_element(block.rows[k]));
+      block.add_product(source.begin(), a.data() + block.first);
     return a;
   }
 
@@ -263,8 +334,7 @@ namespace slipstick::tfeti
     target.zero_out_ghost_values();
     target = 0;
     for (const auto &block : G->blocks)
-      for (unsigned int k = 0; k < block.rows.size(); ++k)
-        target.local_element(block.rows[k]) += block.values.col(k).dot(a.segment(block.first, block.values.rows()));
+      block.add_transposed_product(a.data() + block.first, target.begin());
     target.compress(dealii::VectorOperation::add);
     y.copy_locally_owned_data_from(target);
   }

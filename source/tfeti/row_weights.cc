@@ -103,7 +103,7 @@ namespace slipstick::tfeti
       {
         blocks[b].matrix.resize(blocks[b].rows.size(), blocks[b].rows.size());
         blocks[b].matrix.setFromTriplets(entries[b].begin(), entries[b].end());
-        blocks[b].inverse = inverse(blocks[b], {});
+        inverse.add(blocks[b].rows, blocks[b].matrix);
       }
   }
 
@@ -119,79 +119,100 @@ namespace slipstick::tfeti
     return result;
   }
 
-  // of the active rows of a block; nothing if there are none
-  std::shared_ptr<const RowWeights::Inverse::Block> RowWeights::inverse(const Block             &full,
-                                                                        const std::vector<bool> &active) const
+  void RowWeights::InverseBlocks::add(const std::vector<unsigned int> &rows, const Eigen::SparseMatrix<double> &matrix)
   {
-    const auto is_active = [&active](const unsigned int row) { return active.empty() || active[row]; };
-    if (full.inverse && std::all_of(full.rows.begin(), full.rows.end(), is_active))
-      return full.inverse;
-    std::vector<int> kept(full.rows.size(), -1); // position among the active rows
-    auto             block = std::make_shared<Inverse::Block>();
-    for (unsigned int k = 0; k < full.rows.size(); ++k)
-      if (is_active(full.rows[k]))
-        {
-          kept[k] = block->rows.size();
-          block->rows.push_back(full.rows[k]);
-        }
-    const unsigned int n = block->rows.size();
-    if (n == 0)
-      return nullptr;
-    std::vector<Eigen::Triplet<double>> entries;
-    for (unsigned int k = 0; k < full.rows.size(); ++k)
-      if (kept[k] >= 0)
-        for (Eigen::SparseMatrix<double>::InnerIterator entry(full.matrix, k); entry; ++entry)
-          if (kept[entry.row()] >= 0)
-            entries.emplace_back(kept[entry.row()], kept[k], entry.value());
+    const unsigned int n = rows.size();
+    SemidefiniteFactor factor(matrix);
+    if (n > largest_dense_block)
+      {
+        sparse.push_back({rows, std::move(factor)});
+        return;
+      }
+    Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(n, n);
     if (n == 1)
-      {
-        block->inverse = Eigen::MatrixXd::Constant(1, 1, 1 / entries[0].value());
-        return block;
-      }
-    Eigen::SparseMatrix<double> matrix(n, n);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    block->factor = std::make_unique<SemidefiniteFactor>(matrix);
-    if (n <= largest_dense_block)
-      {
-        block->inverse = Eigen::MatrixXd::Identity(n, n);
-        if (block->factor->n_left_out() == 0)
-          block->inverse = Eigen::MatrixXd(matrix).llt().solve(block->inverse).eval();
-        else
-          for (unsigned int k = 0; k < n; ++k)
-            block->inverse.col(k) = block->factor->solve(block->inverse.col(k).eval());
-        block->factor.reset();
-      }
-    return block;
+      inverse(0, 0) = 1 / matrix.coeff(0, 0);
+    else if (factor.n_left_out() == 0)
+      inverse = Eigen::MatrixXd(matrix).llt().solve(inverse).eval();
+    else
+      for (unsigned int k = 0; k < n; ++k)
+        inverse.col(k) = factor.solve(inverse.col(k).eval());
+    sizes.push_back(n);
+    dense_rows.insert(dense_rows.end(), rows.begin(), rows.end());
+    values.insert(values.end(), inverse.data(), inverse.data() + n * n);
   }
 
-  RowWeights::Inverse::Inverse(const RowWeights &weights, const std::vector<bool> &active)
+  void RowWeights::InverseBlocks::apply(const double *x, double *y) const
   {
+    const unsigned int *rows  = dense_rows.data();
+    const double       *value = values.data();
+    for (const unsigned int n : sizes)
+      {
+        if (n == 2) // the two directions of a node
+          {
+            const double x0 = x[rows[0]], x1 = x[rows[1]];
+            y[rows[0]] = value[0] * x0 + value[2] * x1;
+            y[rows[1]] = value[1] * x0 + value[3] * x1;
+          }
+        else
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              double sum = 0;
+              for (unsigned int j = 0; j < n; ++j)
+                sum += value[i + j * n] * x[rows[j]];
+              y[rows[i]] = sum;
+            }
+        rows += n;
+        value += n * n;
+      }
+    Eigen::VectorXd of_block;
+    for (const auto &block : sparse)
+      {
+        of_block.resize(block.rows.size());
+        for (unsigned int a = 0; a < block.rows.size(); ++a)
+          of_block[a] = x[block.rows[a]];
+        of_block = block.factor.solve(of_block);
+        for (unsigned int a = 0; a < block.rows.size(); ++a)
+          y[block.rows[a]] = of_block[a];
+      }
+  }
+
+  RowWeights::Inverse::Inverse(const RowWeights &weights_, const std::vector<bool> &active)
+    : weights(weights_)
+  {
+    const auto is_active = [&active](const unsigned int row) { return active.empty() || active[row]; };
     for (const auto &full : weights.blocks)
-      if (auto block = weights.inverse(full, active))
-        blocks.push_back(std::move(block));
+      {
+        if (std::all_of(full.rows.begin(), full.rows.end(), is_active))
+          continue;
+        std::vector<unsigned int> rows;
+        std::vector<int>          place(full.rows.size(), -1); // among the active rows
+        for (unsigned int k = 0; k < full.rows.size(); ++k)
+          if (is_active(full.rows[k]))
+            {
+              place[k] = rows.size();
+              rows.push_back(full.rows[k]);
+            }
+          else
+            inactive.push_back(full.rows[k]);
+        if (rows.empty())
+          continue;
+        std::vector<Eigen::Triplet<double>> entries;
+        for (unsigned int k = 0; k < full.rows.size(); ++k)
+          if (place[k] >= 0)
+            for (Eigen::SparseMatrix<double>::InnerIterator entry(full.matrix, k); entry; ++entry)
+              if (place[entry.row()] >= 0)
+                entries.emplace_back(place[entry.row()], place[k], entry.value());
+        Eigen::SparseMatrix<double> matrix(rows.size(), rows.size());
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        changed.add(rows, matrix);
+      }
   }
 
   void RowWeights::Inverse::apply(const DistributedVector &x, DistributedVector &y) const
   {
-    y = 0;
-    Eigen::VectorXd of_block, result;
-    for (const auto &block : blocks)
-      {
-        const auto &rows = block->rows;
-        if (rows.size() == 1)
-          {
-            y.local_element(rows[0]) = block->inverse(0, 0) * x.local_element(rows[0]);
-            continue;
-          }
-        of_block.resize(rows.size());
-        for (unsigned int a = 0; a < rows.size(); ++a)
-          of_block[a] = x.local_element(rows[a]);
-        if (block->factor)
-          result = block->factor->solve(of_block);
-        else
-          result.noalias() = block->inverse * of_block;
-        for (unsigned int a = 0; a < rows.size(); ++a)
-          y.local_element(rows[a]) = result[a];
-      }
+    weights.inverse.apply(x.begin(), y.begin());
+    for (const unsigned int row : inactive)
+      y.local_element(row) = 0;
+    changed.apply(x.begin(), y.begin());
   }
 } // namespace slipstick::tfeti

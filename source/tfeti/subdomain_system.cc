@@ -1,6 +1,5 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
-#include <slipstick/tfeti/packed.h>
 #include <slipstick/tfeti/subdomain_system.h>
 
 #include <random>
@@ -151,19 +150,19 @@ namespace slipstick::tfeti
     return apply_stiffness(u)(touched_unknowns);
   }
 
-  std::vector<double> SubdomainSystem::pseudo_inverse_block() const
+  PackedSymmetric SubdomainSystem::pseudo_inverse_block(const Precision precision) const
   {
-    return packed_lower(inverse_of_product(cholesky->trailing_block()), touched_in_last_order());
+    return {inverse_of_product(cholesky->trailing_block()), touched_in_last_order(), precision};
   }
 
-  std::vector<double> SubdomainSystem::schur_complement() const
+  PackedSymmetric SubdomainSystem::schur_complement(const Precision precision) const
   {
     Eigen::MatrixXd schur = product_of_factor(cholesky->trailing_block());
     const auto     &order = cholesky->last_order();
     for (unsigned int k = 0; k < order.size(); ++k)
       if (std::find(fixing_unknowns.begin(), fixing_unknowns.end(), order[k]) != fixing_unknowns.end())
         schur(k, k) -= regularization;
-    return packed_lower(schur, touched_in_last_order());
+    return {schur, touched_in_last_order(), precision};
   }
 
   Eigen::VectorXd SubdomainSystem::touched_diagonal() const

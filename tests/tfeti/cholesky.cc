@@ -31,7 +31,7 @@ namespace
 
 TEST(Cholesky, solves)
 {
-  const auto      A = shifted_stiffness(6);
+  const auto A = shifted_stiffness(6);
   for (const auto &last : {std::vector<unsigned int>(), every(5, A.rows()), every(1, A.rows())})
     {
       const Cholesky        factor(session(), A, last, "box");
@@ -47,10 +47,10 @@ TEST(Cholesky, trailing_block_is_the_factor_of_the_schur_complement)
   const auto A = shifted_stiffness(7);
   for (const unsigned int step : {1, 2, 3, 7, 50, 1000})
     {
-      const auto            last = every(step, A.rows());
-      const Cholesky        factor(session(), A, last, "box");
-      const auto           &order = factor.last_order();
-      Eigen::MatrixXd       inverse = full(A).inverse(), of_last(order.size(), order.size());
+      const auto      last = every(step, A.rows());
+      const Cholesky  factor(session(), A, last, "box");
+      const auto     &order   = factor.last_order();
+      Eigen::MatrixXd inverse = full(A).inverse(), of_last(order.size(), order.size());
       for (unsigned int i = 0; i < order.size(); ++i)
         for (unsigned int j = 0; j < order.size(); ++j)
           of_last(i, j) = inverse(order[i], order[j]);
@@ -77,9 +77,10 @@ TEST(Cholesky, last_order_is_a_permutation_of_the_last_unknowns)
 
 TEST(Cholesky, session_may_change_between_orderings)
 {
-  const auto            A      = shifted_stiffness(5);
-  const auto            common = session();
-  const Cholesky        first(common, A, every(4, A.rows()), "a"), second(common, A, {}, "b"), third(common, A, every(2, A.rows()), "c");
+  const auto     A      = shifted_stiffness(5);
+  const auto     common = session();
+  const Cholesky first(common, A, every(4, A.rows()), "a"), second(common, A, {}, "b"),
+    third(common, A, every(2, A.rows()), "c");
   const Eigen::VectorXd x = random_vector(A.rows(), 2);
   for (const Cholesky *factor : {&first, &second, &third})
     {

@@ -48,8 +48,8 @@ namespace
 
   void expect_solves(const unsigned int n_owned)
   {
-    const auto                owned = dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, n_owned);
-    unsigned int              n = 0, first = 0;
+    const auto   owned = dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, n_owned);
+    unsigned int n = 0, first = 0;
     for (unsigned int r = 0; r < owned.size(); ++r)
       {
         first += r < rank() ? owned[r] : 0;
@@ -93,7 +93,7 @@ TEST(CoarseSolver, matrix_without_rows_is_no_error)
 
 TEST(CoarseSolver, singular_matrix_is_an_error_on_all_ranks)
 {
-  const Eigen::VectorXd v = random_vector(6, 3);
+  const Eigen::VectorXd v        = random_vector(6, 3);
   const bool            is_owner = rank() == 0;
   message_on_all_ranks<NumericalError>([&] {
     Eigen::MatrixXd A = Eigen::MatrixXd::Identity(6, 6);

@@ -76,8 +76,10 @@ TEST(RigidMotions, edge_held_in_one_component_leaves_the_translation_along_the_o
       const auto found = motions(cut(scene, how));
       ASSERT_EQ(found.size(), 1u);
       const std::string text = description(scene, found[0]);
-      EXPECT_TRUE(text.find("body box: translation along (0, 1)") == 0 || text.find("body box: translation along (-0, -1)") == 0 ||
-                  text.find("body box: translation along (0, -1)") == 0 || text.find("body box: translation along (-0, 1)") == 0)
+      EXPECT_TRUE(text.find("body box: translation along (0, 1)") == 0 ||
+                  text.find("body box: translation along (-0, -1)") == 0 ||
+                  text.find("body box: translation along (0, -1)") == 0 ||
+                  text.find("body box: translation along (-0, 1)") == 0)
         << text;
       EXPECT_EQ(text.find("rotation"), std::string::npos) << text;
       EXPECT_LT(std::abs(found[0].amplitudes[0]) + std::abs(found[0].amplitudes[2]), 1e-9);
@@ -148,7 +150,8 @@ TEST(RigidMotions, box_without_friction_on_a_circle_turns_about_its_centre)
       touch(scene, 0, "bottom", {4, -20}, 20, "");
       const auto found = motions(cut(scene, how));
       ASSERT_EQ(found.size(), 1u);
-      const Eigen::Vector3d a = found[0].amplitudes / found[0].amplitudes[2] * std::sqrt(50.); // motion of the point (5, 5)
+      const Eigen::Vector3d a =
+        found[0].amplitudes / found[0].amplitudes[2] * std::sqrt(50.); // motion of the point (5, 5)
       EXPECT_NEAR(a[0], -25, 1e-6);
       EXPECT_NEAR(a[1], 1, 1e-6);
     }

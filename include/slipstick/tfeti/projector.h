@@ -18,19 +18,22 @@ namespace slipstick::tfeti
   class Projector
   {
   public:
-    /// @param active true for the rows (owned by this rank) that take part; the others count as zero columns of G.
-    ///        Empty: all rows. G G' must be nonsingular (see rigid_motions.h). Collective.
-    /// @param ties owned rows, active too, whose entries are factor times those of another active one: with x = T y of the
-    ///        untied entries y, Q is T (G T)'(G T (G T)')^-1 G then (a projector on vectors that obey the ties).
+    /// On all rows.
+    /// @param stays true for the owned rows that every restriction has; their part of G G' is summed once.
+    ///        G G' must be nonsingular (see rigid_motions.h). Collective.
     Projector(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
               const std::vector<LocalGluing>                      &gluing,
               const DualOperator                                  &scatter_gather,
               const Partitioner                                   &rows,
-              const std::vector<bool>                             &active,
-              const MPI_Comm                                       comm,
-              const std::vector<qp::Tie>                          &ties = {});
+              const std::vector<bool>                             &stays,
+              const MPI_Comm                                       comm);
 
-    /// The same with the G of another one, which is not kept but shared; @p all must be of all rows, without ties.
+    /// A restriction; G is not kept but shared.
+    /// @param all without restriction.
+    /// @param active true for the owned rows that take part; the others count as zero columns of G.
+    /// @param ties owned rows, active too, whose entries are factor times those of another active one: with x = T y of the
+    ///        untied entries y, Q is T (G T)'(G T (G T)')^-1 G then (a projector on vectors that obey the ties).
+    /// @param metric of the owned rows; empty: 1. Collective.
     Projector(const Projector            &all,
               const std::vector<bool>    &active,
               const MPI_Comm              comm,

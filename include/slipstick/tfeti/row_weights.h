@@ -12,6 +12,28 @@ namespace slipstick::tfeti
   /// single nodes, large sparse ones where mortar rows hang together. Rows may depend on each other.
   class RowWeights
   {
+    /// Inverses of blocks of W.
+    class InverseBlocks
+    {
+    public:
+      /// @param matrix W of some rows.
+      void add(const std::vector<unsigned int> &rows, const Eigen::SparseMatrix<double> &matrix);
+
+      /// y = W^-1 x on the rows added; the others of y are left alone.
+      void apply(const double *x, double *y) const;
+
+    private:
+      struct Sparse
+      {
+        std::vector<unsigned int> rows;
+        SemidefiniteFactor        factor;
+      };
+      // dense ones, one after another: numbers of rows, the rows, n x n numbers
+      std::vector<unsigned int> sizes, dense_rows;
+      std::vector<double>       values;
+      std::vector<Sparse>       sparse;
+    };
+
   public:
     /// Collective. @throws NumericalError when rows of one node are owned by different ranks.
     RowWeights(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
@@ -26,31 +48,26 @@ namespace slipstick::tfeti
     class Inverse
     {
     public:
+      /// @param weights are referred to.
       Inverse(const RowWeights &weights, const std::vector<bool> &active);
 
       /// y = W^-1 x on the active rows, 0 on the others; owned entries.
       void apply(const DistributedVector &x, DistributedVector &y) const;
 
     private:
-      friend class RowWeights;
-      struct Block
-      {
-        std::vector<unsigned int>           rows;
-        Eigen::MatrixXd                     inverse; // of a small block
-        std::unique_ptr<SemidefiniteFactor> factor;  // of a large one
-      };
-      std::vector<std::shared_ptr<const Block>> blocks;
+      const RowWeights         &weights;
+      std::vector<unsigned int> inactive;
+      InverseBlocks             changed; // those with inactive rows
     };
 
   private:
     struct Block
     {
-      std::vector<unsigned int>             rows; // owned
-      Eigen::SparseMatrix<double>           matrix;
-      std::shared_ptr<const Inverse::Block> inverse; // with all rows active
+      std::vector<unsigned int>   rows; // owned
+      Eigen::SparseMatrix<double> matrix;
     };
-    std::shared_ptr<const Inverse::Block> inverse(const Block &full, const std::vector<bool> &active) const;
 
     std::vector<Block> blocks;
+    InverseBlocks      inverse; // with all rows active
   };
 } // namespace slipstick::tfeti

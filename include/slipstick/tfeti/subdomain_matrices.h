@@ -20,7 +20,7 @@ namespace slipstick::tfeti
   class MovableSparseMatrix : public Eigen::SparseMatrix<double>
   {
   public:
-    MovableSparseMatrix() = default;
+    MovableSparseMatrix()                            = default;
     MovableSparseMatrix(const MovableSparseMatrix &) = default;
     MovableSparseMatrix(MovableSparseMatrix &&other) noexcept
     {
@@ -40,13 +40,13 @@ namespace slipstick::tfeti
   /// K_p, f_p, R_p of one floating subdomain with n unknowns and k rigid motions.
   struct SubdomainMatrices
   {
-    unsigned int                subdomain = 0; // global number
-    unsigned int                body      = 0;
-    MovableSparseMatrix         stiffness;     // n x n [N/mm], lower triangle only, columns compressed and sorted
-    Eigen::VectorXd             load;          // n [N]
-    Eigen::MatrixXd             kernel;        // n x k: motions of unit size about the subdomain's centre
-    Eigen::MatrixXd             body_modes;    // k x k: kernel * body_modes = rigid motions of the body, seen here
-    BodyFrame                   frame;         // of the body's motions
-    std::vector<unsigned int>   boundary_dofs; // unknowns on the boundary of the subdomain, sorted
+    unsigned int              subdomain = 0; // global number
+    unsigned int              body      = 0;
+    MovableSparseMatrix       stiffness;     // n x n [N/mm], lower triangle only, columns compressed and sorted
+    Eigen::VectorXd           load;          // n [N]
+    Eigen::MatrixXd           kernel;        // n x k: motions of unit size about the subdomain's centre
+    Eigen::MatrixXd           body_modes;    // k x k: kernel * body_modes = rigid motions of the body, seen here
+    BodyFrame                 frame;         // of the body's motions
+    std::vector<unsigned int> boundary_dofs; // unknowns on the boundary of the subdomain, sorted
   };
 } // namespace slipstick::tfeti

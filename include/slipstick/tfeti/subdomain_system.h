@@ -2,6 +2,7 @@
 #pragma once
 
 #include <slipstick/tfeti/cholesky.h>
+#include <slipstick/tfeti/packed.h>
 #include <slipstick/tfeti/subdomain_matrices.h>
 
 #include <optional>
@@ -45,12 +46,12 @@ namespace slipstick::tfeti
     /// Forces at the touched unknowns [N] when they move by @p x [mm] and the others do not.
     Eigen::VectorXd apply_touched_stiffness(const Eigen::VectorXd &x) const;
 
-    /// Rows and columns of K+ at the touched unknowns, in their order; packed lower triangle. Needs the trailing block.
-    std::vector<double> pseudo_inverse_block() const;
+    /// Rows and columns of K+ at the touched unknowns, in their order. Needs the trailing block.
+    PackedSymmetric pseudo_inverse_block(const Precision precision) const;
 
     /// Schur complement of K on the touched unknowns (the fixing ones among them or held together with them), in their
-    /// order; packed lower triangle. Needs the trailing block.
-    std::vector<double> schur_complement() const;
+    /// order. Needs the trailing block.
+    PackedSymmetric schur_complement(const Precision precision) const;
 
     /// Diagonal of K at the touched unknowns.
     Eigen::VectorXd touched_diagonal() const;
