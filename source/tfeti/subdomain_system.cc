@@ -89,7 +89,9 @@ namespace slipstick::tfeti
       rows.row(i) = kernel.row(candidates[i]);
 
     std::vector<unsigned int> chosen;
-    double                    smallest = std::numeric_limits<double>::max();
+    if (candidates.empty())
+      return {chosen, 0.};
+    double smallest = std::numeric_limits<double>::max();
     for (int k = 0; k < kernel.cols(); ++k)
       {
         Eigen::Index i;

@@ -2,6 +2,7 @@
 within the discretisation also when slave and master change sides."""
 
 import functools
+import json
 import random
 import unittest
 
@@ -87,6 +88,26 @@ class MultibodyInvariance(unittest.TestCase):
         for name in ('clamp', 'cattaneo_mindlin', 'arch'):
             with self.subTest(name):
                 self.assert_same(scene(name), scene(name, ranks=3))
+
+    def test_same_input_and_ranks_give_the_same_bits(self):
+        """Coulomb friction, default algorithm and tolerance; all that is written but times and memory."""
+        case = shipped('clamp'), {'Decomposition/Subdomains': 9}
+        for ranks in (1, 2):
+            runs = [converged(*case, ranks=ranks) for _ in range(2)]
+            summaries = [run.summary for run in runs]
+            for summary in summaries:
+                self.assertGreater(summary.pop('time_s')['total'], 0)
+                self.assertGreater(summary.pop('memory_mb')['peak_total'], 0)
+            with self.subTest(ranks=ranks):
+                self.assertEqual(summaries[0]['ranks'], ranks)
+                self.assertEqual(summaries[0]['solver']['algorithm'], 'semismooth newton')
+                self.assertGreater(summaries[0]['solver']['coulomb_iterations'], 1)
+                self.assertGreater(summaries[0]['problem']['dual']['equality'], 0)
+                one, other = (json.dumps(summary, indent=1).splitlines() for summary in summaries)  # tells -0 from 0
+                self.assertEqual(one, other)
+                for name in ('contact.csv', 'convergence.csv'):
+                    one, other = ((run.directory / name).read_bytes() for run in runs)
+                    self.assertTrue(one == other, name + ' differs')
 
     def test_subdomains_and_seeds(self):
         for overrides in ({'Decomposition/Subdomains': 9}, {'Decomposition/Subdomains': 9, 'Decomposition/Seed': 5}):

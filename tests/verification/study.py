@@ -11,7 +11,7 @@ import unittest
 
 import measured  # noqa: F401  the path of tests/cases
 import scenes
-from program import ENVIRONMENT, PROGRAM, SOURCE, WORK, converged, new_path
+from program import ENVIRONMENT, PROGRAM, SOURCE, TIME_LIMIT, WORK, converged, new_path
 
 LADDER = ('--refinements', '0,1', '--degrees', '1,2', '--tolerances', '1e-2,1e-4', '--subdomains', 'auto,4', '--ranks', '1')
 RUNS = 2 * 2 * (2 + 1 + 1) + 2 * 3  # one more number of subdomains and algorithm for each mesh and degree; presets
@@ -31,7 +31,8 @@ ENVIRONMENT = dict(ENVIRONMENT, SLIPSTICK=PROGRAM)
 
 
 def study(*arguments):
-    return subprocess.run(command(*arguments), env=ENVIRONMENT, cwd=WORK, capture_output=True, text=True, timeout=200)
+    return subprocess.run(command(*arguments), env=ENVIRONMENT, cwd=WORK, capture_output=True, text=True,
+                          timeout=200 * TIME_LIMIT / 60)
 
 
 def rows(directory):
@@ -51,7 +52,7 @@ class Study(unittest.TestCase):
         process.send_signal(signal.SIGINT)
         rest = process.stderr.read()
         process.stderr.close()
-        self.assertEqual(process.wait(timeout=60), 130, rest)
+        self.assertEqual(process.wait(timeout=TIME_LIMIT), 130, rest)
         kept = rows(directory)
         self.assertGreaterEqual(len(kept), 3)
         self.assertLess(len(kept), RUNS)
