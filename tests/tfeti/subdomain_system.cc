@@ -91,7 +91,7 @@ namespace
       const auto [entry, is_new] = number.emplace(std::make_pair(i, j), piece.vertices.size());
       if (is_new)
         {
-          piece.vertices.emplace_back(0.1 + i + skew * j, 0.7 + j - 0.37 * skew * i * j);
+          piece.vertices.emplace_back(0.1 + i + skew * j, 0.7 + j - 0.37 * skew / n * i * j); // no cell turned over
           piece.global_vertices.push_back(entry->second);
         }
       return entry->second;
