@@ -1,7 +1,7 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/contact/friction.h>
+#include <slipstick/contact/linear.h>
 #include <slipstick/qp/feasible_point.h>
-#include <slipstick/qp/pcpg.h>
 #include <slipstick/qp/semismooth_newton.h>
 #include <slipstick/qp/smalbe.h>
 #include <slipstick/tfeti/rigid_motions.h>
@@ -34,23 +34,8 @@ namespace slipstick::contact
     constexpr unsigned int max_restarts = 4;
     // ... each time from a residual smaller by this factor.
     constexpr double restart_accuracy = 0.1;
-    // Linear problems are solved in parts, each to this part of the residual before, when their accuracy is asked for ...
-    constexpr double part_of_residual = 0.3;
-    // ... from this residual on.
-    constexpr double first_asked = 0.1;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
-
-    /// b - F x~ scaled as the solvers see it, projected on the kernel of G.
-    Vector homogenised_load(const tfeti::DualProblem &dual, const Vector &start)
-    {
-      Vector b = dual.zero(), q = dual.zero();
-      dual.multiply(start, b);
-      b.sadd(-1., 1. / dual.norm(), dual.d());
-      dual.project_range(b, q);
-      b -= q;
-      return b;
-    }
 
     [[noreturn]] void no_equilibrium(const tfeti::DualProblem &dual, const Vector &certificate)
     {
@@ -59,82 +44,6 @@ namespace slipstick::contact
           tfeti::describe(dual.motion_behind(certificate), dual.body_names()),
         "support the body against this motion, raise friction coefficient or slip bound, or turn the loads towards the "
         "contact");
-    }
-
-    /// Energy norm of closing the jumps r of displacements [mm].
-    double residual_energy(const tfeti::DualProblem &dual, const Vector &r)
-    {
-      std::vector<bool> held(r.locally_owned_size());
-      for (unsigned int i = 0; i < held.size(); ++i)
-        held[i] = tfeti::is_equality(dual.constraints().kind[i]) || r.local_element(i) != 0;
-      return std::sqrt(dual.jump_energy(r, held));
-    }
-
-    /// @param goes_on from there, moved to where G x = e, or null.
-    DualSolution solve_linear(const tfeti::DualProblem   &dual,
-                              const scene::SolverOptions &options,
-                              const ProgressObserver     &observer,
-                              const DualSolution         *goes_on,
-                              const AccuracyTest         &is_accurate)
-    {
-      Vector       start = dual.particular();
-      DualSolution solution;
-      solution.free             = std::vector<bool>(start.locally_owned_size(), true);
-      solution.slip_bound       = std::vector<double>(start.locally_owned_size(), 0.);
-      solution.algorithm        = "pcg";
-      const auto   face         = dual.face(solution.free);
-      auto         b            = homogenised_load(dual, start);
-      const double reference    = dual.residual_norm(b);
-      const auto   precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
-      if (goes_on) // from what is left in truth, not in the sums of an earlier solve
-        {
-          start = goes_on->multipliers;
-          face.balance(start);
-          b = homogenised_load(dual, start);
-          ++solution.counts.hessian_multiplications;
-        }
-      const qp::Observer counted = [&](qp::OuterStep step) {
-        step.hessian_multiplications += 1 + solution.counts.hessian_multiplications; // F x~ in the homogenised load
-        step.outer += solution.counts.cg_steps;
-        if (observer)
-          observer({step, 0});
-      };
-      qp::PcpgOptions       pcpg             = options.pcpg;
-      bool                  reorthogonalizes = dual.is_preconditioned();
-      qp::PcpgStart<Vector> from{dual.zero()};
-      if (is_accurate) // parts go on with the directions of those before
-        from.history = std::make_shared<qp::DirectionHistory<Vector>>(dual.is_preconditioned());
-      double tolerance = is_accurate ? std::max(first_asked, options.tolerance) : options.tolerance;
-      for (;; tolerance = std::max(options.tolerance, part_of_residual * tolerance))
-        {
-          const qp::Goal goal(tolerance, reference);
-          auto           result = dual.is_preconditioned() ? qp::pcpg(face, b, from, goal, pcpg, precondition, counted)
-                                                           : qp::pcpg(face, b, from, goal, pcpg, qp::NoPreconditioner(), counted);
-          solution.counts += result.counts;
-          solution.status             = result.status;
-          solution.projected_gradient = result.relative_residual;
-          solution.multipliers        = start;
-          solution.multipliers += result.x;
-          if (result.status == qp::Status::stagnated && !reorthogonalizes)
-            { // rounding has spoilt the conjugacy of the directions
-              reorthogonalizes         = true;
-              pcpg.reorthogonalization = qp::Reorthogonalization::full;
-              from                     = {std::move(result.x)};
-              tolerance /= part_of_residual; // the same once more
-              continue;
-            }
-          if (result.status != qp::Status::converged || tolerance <= options.tolerance)
-            break;
-          Vector jumps = std::move(result.residual);
-          jumps *= dual.norm();
-          if (is_accurate(solution, residual_energy(dual, jumps)))
-            break;
-          from.x       = std::move(result.x);
-          from.product = std::move(result.product);
-        }
-      ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
-      solution.counts.outer_iterations = 1;
-      return solution;
     }
 
     /// A contact problem on its way to the solution: the law with its present bounds, and all that is counted.
@@ -157,7 +66,7 @@ namespace slipstick::contact
 
       DualSolution run(const DualSolution *start)
       {
-        const auto feasible = feasible_start(start);
+        const auto feasible = feasible_start();
         solution.algorithm  = options.algorithm == scene::Algorithm::semismooth_newton ? "semismooth newton" : "smalbe";
         set_bounds(law.bounds(feasible));
         if (options.algorithm == scene::Algorithm::semismooth_newton && newton(feasible, start))
@@ -178,7 +87,7 @@ namespace slipstick::contact
 
     private:
       /// The admissible forces nearest to zero that balance the loads.
-      Vector feasible_start(const DualSolution *)
+      Vector feasible_start()
       {
         auto point = qp::feasible_point(dual, dual.particular(), law.admissible(dual));
         if (point.status == qp::Status::infeasible)

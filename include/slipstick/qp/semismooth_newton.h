@@ -17,10 +17,8 @@
 //       `is_regular()`          false when the free entries alone do not determine a
 #pragma once
 
-#include <slipstick/qp/box.h>
+#include <slipstick/qp/active_set.h>
 #include <slipstick/qp/gcr.h>
-#include <slipstick/qp/pcpg.h>
-#include <slipstick/qp/pressure_bounds.h>
 
 #include <cmath>
 #include <functional>
@@ -37,13 +35,6 @@ namespace slipstick::qp
   {
     std::function<std::optional<double>(const Vector &x)> update; // empty: the bounds are fixed
     double                                                tolerance = 0;
-  };
-
-  /// Bounds that the method differentiates itself; all processes together have some or none of them.
-  struct CoupledBounds
-  {
-    std::vector<PressureBound> bounds; // of owned entries
-    bool                       are_coupled = false;
   };
 
   /// The point that tells the first active set: entries at their bounds, or, with the gradient F x - d + G'a, those that
@@ -76,8 +67,6 @@ namespace slipstick::qp
     constexpr unsigned int cycling = 6;
     // ... so often at most.
     constexpr unsigned int most_single_changes = 60;
-    // Entries as far beyond their bounds as the farthest, up to rounding, change with it.
-    constexpr double same_distance = 1 - 1e-9;
     // Residual reduction by the linear solves of such sets.
     constexpr double cautious_reduction = 1e-2;
 
@@ -100,14 +89,13 @@ namespace slipstick::qp
         : problem(problem_)
         , norm(norm_)
         , d(d_)
-        , given_box(box_)
         , options(options_)
         , pcpg_options(pcpg_options_)
         , observer(observer_)
         , bounds(bounds_)
         , coupled(coupled_)
         , accepts(accepts_)
-        , moving_box(coupled_.are_coupled ? std::make_optional(box_) : std::nullopt)
+        , set(problem_, norm_, box_, options_, coupled_)
         , x(std::move(start.x))
         , Fx(zero_like(d))
         , g(start.gradient ? std::move(*start.gradient) : zero_like(d))
@@ -118,18 +106,15 @@ namespace slipstick::qp
       {
         bound_change = bounds.update ? 1. : 0.;
         has_gradient = problem.reduction().sum(std::array<double, 1>{{local_dot(g, g)}})[0] > 0;
-        active       = next_set();
+        set.become(set.next(x, g));
       }
 
       NewtonResult<Vector> run()
       {
         const Status status = iterate();
-        put_on_bounds(); // ties to the last bit
-        project(box(), x);
-        std::vector<bool> free(active.size());
-        for (std::size_t i = 0; i < free.size(); ++i)
-          free[i] = active[i] == 0;
-        return {status, std::move(x), std::move(free), residual, counts};
+        set.put_on_bounds(x); // ties to the last bit
+        project(set.box(), x);
+        return {status, std::move(x), set.free(), residual, counts};
       }
 
     private:
@@ -141,8 +126,8 @@ namespace slipstick::qp
           {
             if (!solve_on_face())
               return Status::infeasible;
-            auto         next    = next_set();
-            const double changed = count_changes(next);
+            auto         next    = set.next(x, g);
+            const double changed = set.count_changes(next);
             report();
             if (!(residual < HUGE_VAL))
               return Status::stagnated;
@@ -170,11 +155,11 @@ namespace slipstick::qp
                     forcing =
                       std::max(options.last_forcing * eps, std::min(forcing, options.bound_reduction * solved_to));
                     solved_to   = forcing;
-                    next        = next_set();
-                    set_stands  = same_free(next);
+                    next        = set.next(x, g);
+                    set_stands  = set.same_free(next);
                     set_changed = true;
-                    active      = std::move(next);
-                    best        = HUGE_VAL;
+                    set.become(std::move(next));
+                    best  = HUGE_VAL;
                     stuck = alone = 0;
                     continue;
                   }
@@ -189,14 +174,14 @@ namespace slipstick::qp
               return Status::stagnated;
             is_cautious = stuck >= cycling;
             if (is_cautious)
-              keep_largest_changes(next);
+              set.keep_largest_changes(x, g, next);
             if (counts.outer_iterations >= options.max_outer_iterations)
               return Status::iteration_limit;
-            if (changed <= options.settled_part * n_inequalities)
+            if (changed <= options.settled_part * set.n_inequalities())
               tighten();
             set_changed = changed > 0 || off_bounds;
-            set_stands  = coupled.are_coupled ? changed == 0 && !off_bounds : same_free(next);
-            active      = std::move(next);
+            set_stands  = coupled.are_coupled ? changed == 0 && !off_bounds : set.same_free(next);
+            set.become(std::move(next));
           }
       }
 
@@ -215,25 +200,22 @@ namespace slipstick::qp
       // The linear problem of the present set; entries that are not free at their bounds.
       bool solve_on_face()
       {
-        std::vector<bool> free(active.size());
-        for (std::size_t i = 0; i < free.size(); ++i)
-          free[i] = active[i] == 0;
         std::optional<Face> face;
-        face.emplace(problem.face(free, ties()));
+        face.emplace(problem.face(set.free(), set.ties()));
         if (!face->is_regular())
           {
             // entries between two bounds are freed: what they hold in the solution is not known yet
             set_stands  = false;
             set_changed = true;
-            free_two_sided(free);
-            face.emplace(problem.face(free, {}));
+            set.free_two_sided();
+            face.emplace(problem.face(set.free(), {}));
             if (!face->is_regular())
               {
                 // then all of them: the set that follows keeps those that press
                 if (++n_freed > options.max_freed)
                   return false;
-                free_all(free);
-                face.emplace(problem.face(free, {}));
+                set.free_all();
+                face.emplace(problem.face(set.free(), {}));
                 if (!face->is_regular())
                   return false;
               }
@@ -246,7 +228,7 @@ namespace slipstick::qp
         if (set_changed)
           {
             const std::optional<Vector> step = has_gradient ? std::make_optional(descent(*face)) : std::nullopt;
-            put_on_bounds();
+            set.put_on_bounds(x);
             face->balance(x);
             if (step)
               add(-std::min(options.descent_step, last_step), *step, x);
@@ -257,7 +239,7 @@ namespace slipstick::qp
           is_cautious ? std::min(options.face_reduction, cautious_reduction) : options.face_reduction;
         wanted =
           std::max(options.last_forcing * eps, std::min(set_changed ? 1. : forcing, reduction * residual_on(*face)));
-        if (coupled.are_coupled && !all_stick())
+        if (coupled.are_coupled && !set.all_stick())
           solve_unsymmetric(*face);
         else
           solve_symmetric(*face);
@@ -332,61 +314,11 @@ namespace slipstick::qp
           last_step = result.first_step;
       }
 
-      // Slipping entries whose bound moves with a free one.
-      std::vector<Tie> ties() const
-      {
-        std::vector<Tie> result;
-        for (const PressureBound &bound : coupled.bounds)
-          if (active[bound.tangential] != 0 && active[bound.normal] == 0 && bound.coefficient > 0)
-            result.push_back({bound.tangential, bound.normal, active[bound.tangential] * bound.coefficient});
-        return result;
-      }
-
-      bool all_stick() const
-      {
-        return problem.reduction().min(ties().empty() ? 1. : 0.) > 0;
-      }
-
-      void free_two_sided(std::vector<bool> &free)
-      {
-        const auto l = box().lower.begin(), u = box().upper.begin();
-        for (std::size_t i = 0; i < active.size(); ++i)
-          if (l[i] < u[i] && l[i] > -HUGE_VAL && u[i] < HUGE_VAL)
-            {
-              active[i] = 0;
-              free[i]   = true;
-            }
-      }
-
-      // Also in the coupled law: nothing is tied while all entries are free.
-      void free_all(std::vector<bool> &free)
-      {
-        const auto l = box().lower.begin(), u = box().upper.begin();
-        for (std::size_t i = 0; i < active.size(); ++i)
-          if (l[i] < u[i])
-            {
-              active[i] = 0;
-              free[i]   = true;
-            }
-      }
-
-      void put_on_bounds()
-      {
-        move_bounds(active, 0.);
-        const auto l = box().lower.begin(), u = box().upper.begin();
-        const auto xi = x.begin();
-        for (std::size_t i = 0; i < active.size(); ++i)
-          if (active[i] < 0)
-            xi[i] = l[i];
-          else if (active[i] > 0)
-            xi[i] = u[i];
-      }
-
       // Asks with entries on their bounds to the last bit.
       bool is_accepted()
       {
         Vector before = x;
-        put_on_bounds();
+        set.put_on_bounds(x);
         if (accepts(x, g))
           return true;
         x = std::move(before);
@@ -396,9 +328,10 @@ namespace slipstick::qp
       // |gP|, and how far x is out of its bounds: as much, at most, does |gP| rise when x is moved there.
       void measure()
       {
-        move_bounds(active, 0.);
-        const auto            l = box().lower.begin(), u = box().upper.begin();
+        set.move_bounds(x);
+        const auto            l = set.box().lower.begin(), u = set.box().upper.begin();
         const auto            xi = x.begin(), gi = g.begin();
+        const auto           &active  = set.sides();
         const double         *weights = residual_weights(problem, 0);
         std::array<double, 2> sum{{0, 0}};
         for (std::size_t i = 0; i < active.size(); ++i)
@@ -418,93 +351,6 @@ namespace slipstick::qp
         violation = norm * std::sqrt(sum[1]) / reference;
       }
 
-      const Box<Vector> &box() const
-      {
-        return moving_box ? *moving_box : given_box;
-      }
-
-      // Bounds that follow the normal entries: of x, or of the point from which the next set is read; 0 where the set is
-      // open.
-      void move_bounds(const std::vector<signed char> &set, const double gradient_part)
-      {
-        const auto xi = x.begin(), gi = g.begin();
-        for (const PressureBound &bound : coupled.bounds)
-          {
-            const double pressure = std::max(xi[bound.normal] - gradient_part * gi[bound.normal], 0.);
-            const double radius   = set[bound.normal] == 0 ? bound.fixed + bound.coefficient * pressure : 0.;
-            moving_box->lower.begin()[bound.tangential] = -radius;
-            moving_box->upper.begin()[bound.tangential] = radius;
-          }
-      }
-
-      // -1 at the lower bound, 1 at the upper, 0 free: of x - g / |PFP|. Entries with l = u are never free.
-      std::vector<signed char> next_set()
-      {
-        std::vector<signed char> set(local_size(x));
-        const auto               xi = x.begin(), gi = g.begin();
-        const double            *weights = residual_weights(problem, 0);
-        const auto               place   = [&](const std::size_t i) {
-          const double t = xi[i] - options.set_step * (weights ? weights[i] : 1.) * gi[i] / norm;
-          set[i]         = t <= box().lower.begin()[i] ? -1 : t >= box().upper.begin()[i] ? 1 : 0;
-        };
-        for (std::size_t i = 0; i < set.size(); ++i)
-          place(i);
-        move_bounds(set, options.set_step / norm);
-        for (const PressureBound &bound : coupled.bounds)
-          place(bound.tangential);
-        return set;
-      }
-
-      // Of the changes to the next set that which is farthest beyond its bound alone (and what rounding takes for as far).
-      // Sets that change as a whole may cycle; one by one they do not for a given face's strictly convex problem but for
-      // ties (Murty 1988; Judice, Pires 1994), and the cycles seen end.
-      void keep_largest_changes(std::vector<signed char> &next)
-      {
-        const auto          l = box().lower.begin(), u = box().upper.begin();
-        const auto          xi = x.begin(), gi = g.begin();
-        const double       *weights = residual_weights(problem, 0);
-        std::vector<double> beyond(next.size(), 0.);
-        double              largest = 0;
-        for (std::size_t i = 0; i < next.size(); ++i)
-          if (next[i] != active[i])
-            {
-              const double t     = xi[i] - options.set_step * (weights ? weights[i] : 1.) * gi[i] / norm;
-              const double bound = (active[i] == 0 ? next[i] : active[i]) < 0 ? l[i] : u[i];
-              beyond[i]          = std::abs(t - bound);
-              largest            = std::max(largest, beyond[i]);
-            }
-        largest = -problem.reduction().min(-largest);
-        for (std::size_t i = 0; i < next.size(); ++i)
-          if (beyond[i] < same_distance * largest)
-            next[i] = active[i];
-      }
-
-      bool same_free(const std::vector<signed char> &next) const
-      {
-        bool same = true;
-        for (std::size_t i = 0; i < next.size(); ++i)
-          same = same && (next[i] == 0) == (active[i] == 0);
-        return problem.reduction().min(same ? 1. : 0.) > 0;
-      }
-
-      double count_changes(const std::vector<signed char> &next)
-      {
-        const auto            l = box().lower.begin(), u = box().upper.begin();
-        std::array<double, 4> s{{0, 0, 0, 0}};
-        for (std::size_t i = 0; i < next.size(); ++i)
-          {
-            s[0] += next[i] != active[i] && l[i] < u[i];
-            s[1] += l[i] > -HUGE_VAL || u[i] < HUGE_VAL;
-            s[2] += active[i] < 0;
-            s[3] += active[i] > 0;
-          }
-        s              = problem.reduction().sum(s);
-        n_inequalities = s[1];
-        n_lower        = s[2];
-        n_upper        = s[3];
-        return s[0];
-      }
-
       void report() const
       {
         if (observer)
@@ -512,14 +358,13 @@ namespace slipstick::qp
                     counts.hessian_multiplications,
                     residual,
                     0.0,
-                    static_cast<std::size_t>(n_lower),
-                    static_cast<std::size_t>(n_upper)});
+                    static_cast<std::size_t>(set.n_lower()),
+                    static_cast<std::size_t>(set.n_upper())});
       }
 
       const Problem             &problem;
       const double               norm;
       const Vector              &d;
-      const Box<Vector>         &given_box;
       const NewtonOptions       &options;
       const PcpgOptions         &pcpg_options;
       const Observer            &observer;
@@ -527,16 +372,15 @@ namespace slipstick::qp
       const CoupledBounds       &coupled;
       const Acceptance<Vector>  &accepts;
 
-      std::optional<Box<Vector>> moving_box; // with coupled bounds
+      ActiveSet<Vector, Problem> set;
 
       Vector       x, Fx, g, w;
       const double reference, eps;
       double       forcing, wanted = 0;
-      double       solved_to      = 1; // forcing at the last update of the bounds
-      double       residual       = HUGE_VAL;
-      double       violation      = HUGE_VAL; // of the bounds by x, over the reference, in terms of the residual
-      double       n_inequalities = 0, n_lower = 0, n_upper = 0;
-      double       bound_change = 0;     // the last one
+      double       solved_to    = 1; // forcing at the last update of the bounds
+      double       residual     = HUGE_VAL;
+      double       violation    = HUGE_VAL; // of the bounds by x, over the reference, in terms of the residual
+      double       bound_change = 0;        // the last one
       double       last_step = HUGE_VAL; // the first one of the last solve of a face, along its preconditioned residual
       bool         has_gradient;         // g is that of x
       bool         is_cautious = false;  // the set changes by one entry at a time
@@ -545,7 +389,6 @@ namespace slipstick::qp
       unsigned int n_freed     = 0;      // sets that left some motion open, so that all entries were freed
       std::shared_ptr<DirectionHistory<Vector>> history;
       std::optional<ResidualHistory<Vector>>    residual_history;
-      std::vector<signed char>                  active;
       Counts                                    counts;
     };
   } // namespace detail

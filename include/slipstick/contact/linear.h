@@ -1,0 +1,22 @@
+// The dual problem without inequalities, and what linear and contact problems share.
+#pragma once
+
+#include <slipstick/contact/friction.h>
+
+namespace slipstick::contact
+{
+  /// b - F x~ scaled as the solvers see it, projected on the kernel of G. One multiplication by F; collective.
+  tfeti::DistributedVector homogenised_load(const tfeti::DualProblem &dual, const tfeti::DistributedVector &start);
+
+  /// Energy norm of closing the jumps r of displacements [mm]; sqrt(N mm). Collective.
+  double residual_energy(const tfeti::DualProblem &dual, const tfeti::DistributedVector &r);
+
+  /// Projected conjugate gradients on a problem without inequality rows.
+  /// @param goes_on from there, moved to where G x = e, or null.
+  /// @param is_accurate ends the solve before the tolerance is reached; may be empty. Collective.
+  DualSolution solve_linear(const tfeti::DualProblem   &dual,
+                            const scene::SolverOptions &options,
+                            const ProgressObserver     &observer,
+                            const DualSolution         *goes_on,
+                            const AccuracyTest         &is_accurate);
+} // namespace slipstick::contact
