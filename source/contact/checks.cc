@@ -12,8 +12,9 @@ namespace slipstick::contact
   {
     using tfeti::DistributedVector;
 
-    // Lengths below this part of the largest gap or displacement count as none: rounding leaves 1e-14 of these.
-    constexpr double negligible_part = 1e-8;
+    // Lengths below this part of the largest gap or displacement count as none: rounding leaves 1e-14 of these, and the limits of
+    // the checks are no more than 1e-7 of a length.
+    constexpr double negligible_part = 1e-6;
     // Deformations below this part of these count as none: what rounding leaves shows in the stiffest of them.
     constexpr double negligible_deformation = 1e-5;
     // Slip bounds above this multiple of the largest contact force say no more than that nodes stick.
@@ -76,12 +77,22 @@ namespace slipstick::contact
       DistributedVector one = dual.zero();
       if (rank == first)
         one.local_element(owned_row) = 1;
+      unsigned int pair = 0; // its number + 1, 0 for none
+      for (const auto &point : dual.constraints().contact_points)
+        if (rank == first && (point.normal_row == owned_row || point.tangential_row == owned_row))
+          pair = point.pair + 1;
+      pair               = dealii::Utilities::MPI::max(pair, comm);
       const auto touched = dual.forces(one);
       for (unsigned int p = 0; p < touched.size(); ++p)
         {
           Eigen::Index unknown;
           if (touched[p].size() > 0 && touched[p].cwiseAbs().maxCoeff(&unknown) > 0)
-            violation.place = {true, dual.subdomains()[p]->body(), dual.subdomains()[p]->position(unknown), true};
+            violation.place = {true,
+                               dual.subdomains()[p]->body(),
+                               dual.subdomains()[p]->position(unknown),
+                               true,
+                               pair > 0,
+                               pair > 0 ? pair - 1 : 0};
         }
       if (!std::isnan(violation.value))
         violation.value = largest;
