@@ -1,7 +1,8 @@
 // The dual problem without inequalities, and what linear and contact problems share.
 #pragma once
 
-#include <slipstick/contact/friction.h>
+#include <slipstick/contact/dual_solution.h>
+#include <slipstick/scene/scene.h>
 
 namespace slipstick::contact
 {

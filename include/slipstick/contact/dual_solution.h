@@ -1,0 +1,44 @@
+// What a solve of the dual problem returns, and what it is watched by.
+#pragma once
+
+#include <slipstick/qp/types.h>
+#include <slipstick/tfeti/dual_problem.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace slipstick::contact
+{
+  struct DualSolution
+  {
+    qp::Status               status = qp::Status::converged;
+    tfeti::DistributedVector multipliers; // [N], owned rows
+    std::vector<double>      slip_bound;  // [N], owned rows: the bounds that the multipliers keep
+    std::vector<bool>        free;        // owned rows: the multiplier is strictly inside its bounds
+    qp::Counts               counts;
+    double                   projected_gradient = 0; // |gP| / |P d|
+    double                   reference          = 0; // that the residuals are relative to
+    double                   weighted_reference = 0; // the same with the weights of DualProblem::residual_weights()
+    double                   equality           = 0; // |G x - e| / |P d|, scaled
+    unsigned long long       active_constraints = 0; // inequality rows at a bound, over all ranks
+    std::string              algorithm;              // "smalbe", "semismooth newton", "pcg"
+    unsigned int             fallbacks           = 0;
+    unsigned int             friction_iterations = 0; // updates of the slip bounds
+    double                   bound_change        = 0; // their last relative change
+  };
+
+  /// Asked about iterates, of which multipliers (within their bounds), slip bounds and free rows are filled: is the answer
+  /// accurate enough? @p residual_energy: energy norm of what closes the jumps before the multipliers were moved to their
+  /// bounds [sqrt(N mm)], a first idea of the algebraic error; contact::check tells it from the displacement. The same on
+  /// every process.
+  using AccuracyTest = std::function<bool(const DualSolution &iterate, const double residual_energy)>;
+
+  /// A solver step, with the update of the slip bounds that it belongs to.
+  struct Progress
+  {
+    qp::OuterStep step;
+    unsigned int  friction_iteration = 0;
+  };
+  using ProgressObserver = std::function<void(const Progress &)>;
+} // namespace slipstick::contact
