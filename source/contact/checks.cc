@@ -12,8 +12,8 @@ namespace slipstick::contact
   {
     using tfeti::DistributedVector;
 
-    // Lengths below this part of the largest gap or displacement count as none: rounding leaves 1e-14 of these, and the limits of
-    // the checks are no more than 1e-7 of a length.
+    // Lengths below this part of the largest gap or displacement count as none: rounding leaves some 1e-14 of these, a tolerance of
+    // 1e-10 allows 1e-7 of what is left here.
     constexpr double negligible_part = 1e-6;
     // Deformations below this part of these count as none: what rounding leaves shows in the stiffest of them.
     constexpr double negligible_deformation = 1e-5;

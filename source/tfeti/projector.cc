@@ -151,7 +151,7 @@ namespace slipstick::tfeti
       }
 
     private:
-      static constexpr int in_the_plane = 3; // motions, known to the compiler: three times as fast
+      static constexpr int in_the_plane = 3; // motions, known to the compiler: 1.7 times as fast (perf)
 
       template <int n>
       void add_product_of(const double *x, double *a) const

@@ -76,10 +76,9 @@ namespace slipstick::qp
   /// Options of the semismooth Newton method (own choice; method.md section 7).
   struct NewtonOptions
   {
-    double start_tolerance = 0.3; // of the SMALBE steps that give the first active set
-    double set_step        = 0.1; // the next set is that of x - this times (weights) g / |PFP|
-    double descent_step    = 0.3; // along the preconditioned residual, together with the step onto the bounds of
-                                  // a new set: not over 2 / the largest eigenvalue when F M is about I
+    double       start_tolerance = 0.3; // of the SMALBE steps that give the first active set
+    double       set_step        = 0.1; // the next set is that of x - this times (weights) g / |PFP|
+    double       descent_step = 0.3; // along M r with the step onto a new set: below 2 / the largest eigenvalue of F M
     double       face_reduction    = 0.5;  // of the residual by the linear solve of a new set
     double       first_forcing     = 1e-2; // residual over the reference, at first, of solves of a set that stands
     double       forcing_reduction = 0.1;  // of it, whenever the set hardly changed
