@@ -71,7 +71,7 @@ namespace slipstick::tfeti
     DistributedVector step = problem.zero();
     for (unsigned int pass = 0; pass < (problem.projects_twice ? 2 : 1); ++pass)
       {
-        balancing().particular(problem.resultants() - problem.projector->multiply(x), step);
+        balancing().particular(problem.resultants - problem.projector->multiply(x), step);
         x += step;
       }
   }

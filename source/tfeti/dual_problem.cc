@@ -145,6 +145,13 @@ namespace slipstick::tfeti
     for (unsigned int r = 0; r < rows.c.size(); ++r)
       dual_load.local_element(r) -= rows.c[r];
     correction = zero();
+    resultants.resize(0);
+    for (const auto &system : systems)
+      {
+        const Eigen::VectorXd part = system->kernel().transpose() * system->load();
+        resultants.conservativeResize(resultants.size() + part.size());
+        resultants.tail(part.size()) = part;
+      }
   }
 
   double DualProblem::refine(const DistributedVector &x)
@@ -237,22 +244,10 @@ namespace slipstick::tfeti
     return DistributedVector(owned_rows);
   }
 
-  Eigen::VectorXd DualProblem::resultants() const
-  {
-    Eigen::VectorXd e(0);
-    for (const auto &system : systems)
-      {
-        const Eigen::VectorXd part = system->kernel().transpose() * system->load();
-        e.conservativeResize(e.size() + part.size());
-        e.tail(part.size()) = part;
-      }
-    return e;
-  }
-
   DistributedVector DualProblem::particular() const
   {
     DistributedVector x = zero();
-    projector->particular(resultants(), x);
+    projector->particular(resultants, x);
     return x;
   }
 
@@ -383,7 +378,7 @@ namespace slipstick::tfeti
     result.multipliers = x;
     for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
       {
-        on_free.particular(resultants() - projector->multiply(result.multipliers), step);
+        on_free.particular(resultants - projector->multiply(result.multipliers), step);
         result.multipliers += step;
       }
 

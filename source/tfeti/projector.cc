@@ -32,12 +32,6 @@ namespace slipstick::tfeti
     class Gram
     {
     public:
-      Gram() = default;
-      Gram(const Gram &other)
-        : blocks(other.blocks)
-      {}
-      Gram &operator=(const Gram &) = delete;
-
       /// Adds the column that parts (of different subdomains, in ascending order) make up.
       void add(const ColumnPart *begin, const ColumnPart *end, const double weight)
       {
@@ -219,6 +213,7 @@ namespace slipstick::tfeti
       std::partial_sum(first_part.begin(), first_part.end(), first_part.begin());
       for (unsigned int r = 0; r < rows->locally_owned_size(); ++r)
         (stays[r] ? staying : changing).push_back(r);
+      find_changing_motions(rows);
     }
 
     void add(const unsigned int row, const std::vector<double> &metric, Gram &gram) const
@@ -226,17 +221,19 @@ namespace slipstick::tfeti
       gram.add(parts.data() + first_part[row], parts.data() + first_part[row + 1], metric.empty() ? 1. : metric[row]);
     }
 
-    /// The staying rows' part of G M G'; that of one metric at a time is kept.
-    const Gram &staying_part(const std::vector<double> &metric) const
+    /// The staying rows' part of G M G', eliminated; that of one metric at a time is kept.
+    const std::shared_ptr<const CoarseSolver::Elimination> &staying_part(const std::vector<double> &metric,
+                                                                         const MPI_Comm             comm) const
     {
       if (!of_staying || metric_of_staying != metric)
         {
-          of_staying        = std::make_unique<Gram>();
-          metric_of_staying = metric;
+          Gram gram;
           for (const unsigned int r : staying)
-            add(r, metric, *of_staying);
+            add(r, metric, gram);
+          of_staying        = CoarseSolver::eliminate(gram.entries(), changes, comm);
+          metric_of_staying = metric;
         }
-      return *of_staying;
+      return of_staying;
     }
 
     std::vector<ColumnPart> column(const unsigned int row) const
@@ -251,8 +248,23 @@ namespace slipstick::tfeti
     std::vector<unsigned int> staying, changing;
 
   private:
-    mutable std::unique_ptr<Gram> of_staying;
-    mutable std::vector<double>   metric_of_staying;
+    void find_changing_motions(const Partitioner &rows)
+    {
+      DistributedVector is_changing(rows);
+      for (const unsigned int r : changing)
+        is_changing.local_element(r) = 1;
+      is_changing.update_ghost_values();
+      changes.assign(n_motions, false);
+      for (const Block &block : blocks)
+        if (std::any_of(block.rows.begin(), block.rows.end(), [&](const unsigned int r) {
+              return is_changing.begin()[r] != 0;
+            }))
+          std::fill_n(changes.begin() + block.first, block.values.rows(), true);
+    }
+
+    std::vector<bool>                                        changes; // motions of this rank that changing rows resist
+    mutable std::shared_ptr<const CoarseSolver::Elimination> of_staying;
+    mutable std::vector<double>                              metric_of_staying;
   };
 
   Projector::Projector(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
@@ -301,7 +313,7 @@ namespace slipstick::tfeti
         column->second    = sum_of(std::move(column->second), G->column(tie.tied), tie.factor);
         tied.insert(tie.tied);
       }
-    Gram gram = G->staying_part(metric);
+    Gram gram;
     for (const unsigned int r : G->changing)
       if (indicator.local_element(r) != 0 && tied.count(r) == 0)
         {
@@ -312,7 +324,7 @@ namespace slipstick::tfeti
           else
             G->add(r, metric, gram);
         }
-    coarse = std::make_unique<CoarseSolver>(G->n_motions, gram.entries(), comm);
+    coarse = std::make_unique<CoarseSolver>(G->staying_part(metric, comm), gram.entries());
   }
 
   Projector::~Projector() = default;

@@ -84,6 +84,38 @@ TEST(CoarseSolver, agrees_with_a_dense_solve_when_one_rank_owns_all)
     expect_solves(rank() == owner ? 9 : 0);
 }
 
+TEST(CoarseSolver, eliminates_what_stays_once_for_several_changes_elsewhere)
+{
+  // few changing unknowns are eliminated to, many are not: both ways
+  for (const unsigned int every : {3u, 12u, 1000u})
+    {
+      const unsigned int n_owned = 40, n = n_owned * n_ranks(), first = n_owned * rank();
+      Eigen::MatrixXd    A = sparse_matrix(n);
+      std::vector<bool>  changes(n_owned);
+      for (unsigned int i = 0; i < n_owned; ++i)
+        changes[i] = (first + i) % every == 1;
+      A(1, 1) -= 2; // A alone need not be definite where it changes
+      const auto staying = CoarseSolver::eliminate(share_of(A), changes, MPI_COMM_WORLD);
+      for (const unsigned int seed : {1, 2, 3})
+        {
+          Eigen::MatrixXd       B = A;
+          CoarseSolver::Entries change;
+          for (unsigned int i = 1; i < n; i += every)
+            for (unsigned int j = 1; j < n; j += every)
+              {
+                const double value = i == j ? 3. + seed : 0.01 * std::sin(seed * i * j);
+                B(i, j) += value;
+                if (rank() == (i + j) % n_ranks())
+                  change.push_back({i, j, value});
+              }
+          const CoarseSolver    solver(staying, change);
+          const Eigen::VectorXd b = random_vector(n, seed), x = B.ldlt().solve(b);
+          EXPECT_LT((solver.solve(b.segment(first, n_owned)) - x.segment(first, n_owned)).norm(), 1e-12 * x.norm())
+            << every;
+        }
+    }
+}
+
 TEST(CoarseSolver, matrix_without_rows_is_no_error)
 {
   const CoarseSolver solver(0, {}, MPI_COMM_WORLD);

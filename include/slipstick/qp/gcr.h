@@ -121,6 +121,13 @@ namespace slipstick::qp
       weigh(weighted);
       return norm(weighted);
     };
+    const auto take_off = [weights = residual_weights(face, 0), &r, &weighted, &norm](const double  rq,
+                                                                                      const Vector &q) {
+      add(-rq, q, weighted);
+      for (std::size_t i = 0; i < local_size(r); ++i)
+        r.begin()[i] = weights ? weighted.begin()[i] / weights[i] : weighted.begin()[i];
+      return norm(weighted);
+    };
     double norm_r = update_residual();
     if (!history.empty())
       {
@@ -161,11 +168,13 @@ namespace slipstick::qp
           first_step = rq / length;
         add(rq, p, x);
         add(rq, Fp, product);
-        history.push(std::move(p), std::move(Fp), std::move(q));
         ++counts.cg_steps;
         const double previous = norm_r;
-        norm_r                = update_residual();
-        stuck                 = norm_r > options.progress * previous ? stuck + 1 : 0;
+        norm_r                = take_off(rq, q);
+        if (norm_r <= target) // up to rounding
+          norm_r = update_residual();
+        history.push(std::move(p), std::move(Fp), std::move(q));
+        stuck = norm_r > options.progress * previous ? stuck + 1 : 0;
         if (!std::isfinite(norm_r) || stuck >= options.patience)
           return ended_with(Status::stagnated);
       }

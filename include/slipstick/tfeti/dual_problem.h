@@ -156,11 +156,10 @@ namespace slipstick::tfeti
                                   const DistributedVector        &x,
                                   Recovery                       &at) const;
 
-    double          power_method(const DualOptions &options) const;
-    void            apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
-    void            update_dual_load();
-    void            set_dual_load(const std::vector<Eigen::VectorXd> &u); // u = K+ f
-    Eigen::VectorXd resultants() const;                                   // e
+    double power_method(const DualOptions &options) const;
+    void   apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
+    void   update_dual_load();
+    void   set_dual_load(const std::vector<Eigen::VectorXd> &u); // u = K+ f; e too
 
     MPI_Comm                                      comm;
     MpiReduction                                  reduce;
@@ -176,6 +175,7 @@ namespace slipstick::tfeti
     std::vector<double>                           metric; // stiffnesses of the owned rows
     bool               projects_twice = false;            // rounding of one projection would show in the stiffest rows
     DistributedVector  dual_load;
+    Eigen::VectorXd    resultants; // e of this rank's subdomains in turn
     DistributedVector  correction; // (F - F~) x, taken off the dual load
     bool               is_single             = false;
     double             norm_PFP              = 1;
