@@ -1,6 +1,8 @@
 // What the C++ benchmarks share: their command line and medians of times.
 #pragma once
 
+#include <slipstick/tfeti/process.h>
+
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
@@ -9,9 +11,6 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
-
-// Present when the BLAS is OpenBLAS.
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace slipstick::benchmark
 {
@@ -46,10 +45,8 @@ namespace slipstick::benchmark
                      const unsigned int                      default_repetitions,
                      const std::function<int(const Case &)> &run)
   {
-    if (openblas_set_num_threads)
-      openblas_set_num_threads(1);
-    dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-    Case                                     given{"", default_repetitions, {}};
+    tfeti::Process process(argc, argv);
+    Case           given{"", default_repetitions, {}};
     try
       {
         for (int i = 1; i < argc; ++i)

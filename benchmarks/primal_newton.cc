@@ -19,6 +19,7 @@
 #include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/decomposition.h>
 #include <slipstick/scene/read.h>
+#include <slipstick/tfeti/process.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -30,8 +31,6 @@
 #include <malloc.h>
 #include <map>
 #include <nlohmann/json.hpp>
-
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace
 {
@@ -722,12 +721,10 @@ namespace
 
 int main(int argc, char **argv)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   try
     {
-      const Options options = read(argc, argv);
-      if (openblas_set_num_threads)
-        openblas_set_num_threads(options.threads);
+      const Options  options = read(argc, argv);
+      tfeti::Process process(argc, argv, options.threads);
       std::cout << run(options).dump() << std::endl;
     }
   catch (const std::exception &error)

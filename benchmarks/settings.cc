@@ -7,17 +7,14 @@
 #include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/decomposition.h>
 #include <slipstick/scene/read.h>
+#include <slipstick/tfeti/process.h>
 
 #include <deal.II/base/mpi.h>
-
-#include <Tpetra_Core.hpp>
 
 #include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <iostream>
-
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace
 {
@@ -205,16 +202,10 @@ namespace
 
 int main(int argc, char **argv)
 {
-  if (openblas_set_num_threads)
-    openblas_set_num_threads(1);
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  int                                      n_arguments = 1;
-  char                                    *arguments[] = {argv[0], nullptr};
-  char                                   **program     = arguments;
-  Tpetra::ScopeGuard                       tpetra(&n_arguments, &program);
-  std::string                              file;
-  unsigned int                             smallest = 1, largest = 16;
-  std::vector<std::string>                 overrides, only;
+  tfeti::Process           process(argc, argv);
+  std::string              file;
+  unsigned int             smallest = 1, largest = 16;
+  std::vector<std::string> overrides, only;
   try
     {
       for (int i = 1; i < argc; ++i)

@@ -1,9 +1,9 @@
 // main() of a GoogleTest executable under MPI: rank 0 reports as usual, the other ranks report failures only.
+#include <slipstick/tfeti/process.h>
+
 #include <deal.II/base/mpi.h>
 
 #include <gtest/gtest.h>
-
-#include <Tpetra_Core.hpp>
 
 #include <iostream>
 
@@ -26,8 +26,7 @@ namespace
 int main(int argc, char **argv)
 {
   testing::InitGoogleTest(&argc, argv);
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  Tpetra::ScopeGuard                       tpetra(&argc, &argv);
+  slipstick::tfeti::Process process(argc, argv);
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
     {
       testing::TestEventListeners &listeners = testing::UnitTest::GetInstance()->listeners();

@@ -1,18 +1,11 @@
 #include <slipstick/app/command_line.h>
 #include <slipstick/app/simulation.h>
+#include <slipstick/tfeti/process.h>
 #include <slipstick/scene/read.h>
 
 #include <deal.II/base/mpi.h>
 
-#include <Tpetra_Core.hpp>
-
-#include <cstdlib>
 #include <iostream>
-
-// Present when the BLAS is OpenBLAS: its threads would fight with the ranks for the cores.
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
-// Present where CHOLMOD is built with OpenMP, whose regions ask for four threads whatever OMP_NUM_THREADS says.
-extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
 
 namespace
 {
@@ -67,17 +60,7 @@ namespace
 
 int main(int argc, char **argv)
 {
-  if (openblas_set_num_threads)
-    openblas_set_num_threads(1);
-  if (omp_set_max_active_levels)
-    omp_set_max_active_levels(0);
-  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0); // Open MPI 4 starts a daemon where mpirun has not: 0.1 s
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  // Kokkos, below Tpetra, has options of its own (and a --help): it gets to see the program's name only
-  int                n_arguments = 1;
-  char              *arguments[] = {argv[0], nullptr};
-  char             **program     = arguments;
-  Tpetra::ScopeGuard tpetra(&n_arguments, &program);
+  tfeti::Process process(argc, argv);
   try
     {
       return run_program(argc, argv, MPI_COMM_WORLD);

@@ -133,7 +133,7 @@ namespace slipstick::scene
                 dual.max_norm_iterations,
                 1,
                 max_iterations,
-                "steps of the power method for the norm of P F P");
+                "steps of Lanczos' method for the norm of P F P");
       add_number(prm,
                  "Tolerance",
                  dual.norm_tolerance,

@@ -12,7 +12,7 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    /// A number in (-1, 1) from a label: the start of the power method is the same for every number of ranks.
+    /// A number in (-1, 1) from a label: the start of Lanczos' method is the same for every number of ranks.
     double random_number(std::uint64_t label)
     {
       label ^= label >> 33; // finaliser of MurmurHash3
@@ -109,7 +109,7 @@ namespace slipstick::tfeti
 
     is_single = explicit_blocks && options.operator_precision == Precision::single_precision;
     set_dual_load(u);
-    norm_PFP              = power_method(options);
+    norm_PFP              = lanczos(options);
     setup_multiplications = F->n_applications();
   }
 
@@ -178,25 +178,42 @@ namespace slipstick::tfeti
       y.local_element(r) += rows.compliance[r] * x.local_element(r);
   }
 
-  double DualProblem::power_method(const DualOptions &options) const
+  // Lanczos 1950: the largest Ritz value, from below.
+  double DualProblem::lanczos(const DualOptions &options) const
   {
-    DistributedVector x = zero(), y = zero(), q = zero();
+    DistributedVector x = zero(), y = zero(), q = zero(), before = zero();
     for (unsigned int r = 0; r < rows.label.size(); ++r)
       x.local_element(r) = random_number(rows.label[r]);
-    double norm = 0;
+    projector->project_range(x, q);
+    x -= q;
+    double              norm = 0, coupling = x.l2_norm();
+    std::vector<double> diagonal, off_diagonal;
+    if (coupling == 0)
+      return 1;
+    x /= coupling;
     for (unsigned int k = 0; k < options.max_norm_iterations; ++k)
       {
-        projector->project_range(x, q);
-        x -= q;
-        const double length = x.l2_norm();
-        if (length == 0)
-          break;
-        x /= length;
         apply_F(x, y);
+        projector->project_range(y, q);
+        y -= q;
+        diagonal.push_back(x * y);
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> tridiagonal;
+        tridiagonal.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal.data(), diagonal.size()),
+                                           Eigen::Map<const Eigen::VectorXd>(off_diagonal.data(), off_diagonal.size()),
+                                           Eigen::EigenvaluesOnly);
         const double previous = norm;
-        norm                  = x * y;
+        norm                  = tridiagonal.eigenvalues().tail(1)[0];
         if (std::abs(norm - previous) <= options.norm_tolerance * norm)
           break;
+        y.add(-diagonal.back(), x);
+        if (k > 0)
+          y.add(-coupling, before);
+        coupling = y.l2_norm();
+        if (coupling == 0)
+          break;
+        off_diagonal.push_back(coupling);
+        y /= coupling;
+        std::swap(before, x);
         std::swap(x, y);
       }
     return norm > 0 ? norm : 1.;

@@ -16,10 +16,9 @@
 #include "scenes.h"
 
 #include <slipstick/scene/read.h>
+#include <slipstick/tfeti/process.h>
 
 #include <deal.II/base/mpi.h>
-
-#include <Tpetra_Core.hpp>
 
 #include <chrono>
 #include <cstdio>
@@ -29,9 +28,6 @@
 #include <iostream>
 #include <map>
 #include <tuple>
-
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
-extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
 
 namespace
 {
@@ -469,15 +465,7 @@ namespace
 
 int main(int argc, char **argv)
 {
-  if (openblas_set_num_threads)
-    openblas_set_num_threads(1);
-  if (omp_set_max_active_levels)
-    omp_set_max_active_levels(0);
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  int                                      n_arguments = 1;
-  char                                    *arguments[] = {argv[0], nullptr};
-  char                                   **program     = arguments;
-  Tpetra::ScopeGuard                       tpetra(&n_arguments, &program);
+  tfeti::Process process(argc, argv);
   try
     {
       return Test(parsed(argc, argv)).run();

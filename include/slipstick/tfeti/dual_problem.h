@@ -156,7 +156,7 @@ namespace slipstick::tfeti
                                   const DistributedVector        &x,
                                   Recovery                       &at) const;
 
-    double power_method(const DualOptions &options) const;
+    double lanczos(const DualOptions &options) const;
     void   apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
     void   update_dual_load();
     void   set_dual_load(const std::vector<Eigen::VectorXd> &u); // u = K+ f; e too

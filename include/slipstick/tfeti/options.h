@@ -33,7 +33,7 @@ namespace slipstick::tfeti
     Precision        preconditioner_precision = Precision::single_precision;
     bool             keeps_factors = true;   // of an explicit operator, whose K+ is applied several times all the
                                              // same; else factorised anew for every recovery
-    unsigned int max_norm_iterations = 40;   // of the power method for |PFP|
-    double       norm_tolerance      = 1e-3; // relative change at which it stops
+    unsigned int max_norm_iterations = 40;   // of Lanczos' method for |PFP|
+    double       norm_tolerance      = 1e-2; // relative change at which it stops
   };
 } // namespace slipstick::tfeti

@@ -1,0 +1,23 @@
+// What a process sets up before its work: BLAS, MPI, Trilinos.
+#pragma once
+
+#include <memory>
+
+namespace slipstick::tfeti
+{
+  /// One in main(), before anything else: BLAS on one thread (more would fight with the ranks for the cores), MPI
+  /// and Kokkos, with nothing looked for that the run does not need. Ends MPI when destroyed.
+  class Process
+  {
+  public:
+    /// @param argc, argv: those of main(); what MPI takes is removed.
+    /// @param n_threads of BLAS.
+    Process(int &argc, char **&argv, const unsigned int n_threads = 1);
+    ~Process();
+
+  private:
+    struct Libraries;
+
+    std::unique_ptr<Libraries> libraries;
+  };
+} // namespace slipstick::tfeti

@@ -1,0 +1,68 @@
+#include <slipstick/tfeti/process.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <Tpetra_Core.hpp>
+
+#include <cstdlib>
+#include <string>
+
+// Present when the BLAS is OpenBLAS.
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+// Present where CHOLMOD is built with OpenMP, whose regions ask for four threads whatever OMP_NUM_THREADS says.
+extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    void use_threads(const unsigned int n)
+    {
+      if (openblas_set_num_threads)
+        openblas_set_num_threads(static_cast<int>(n));
+      if (omp_set_max_active_levels && n == 1)
+        omp_set_max_active_levels(0);
+    }
+
+    /// Open MPI 4 at the price of what the run needs; what the user has set wins.
+    void prepare_open_mpi()
+    {
+      const auto set    = [](const char *name, const char *value) { setenv(name, value, 0); };
+      const auto number = [](const char *name) {
+        const char *value = std::getenv(name);
+        return std::string(value ? value : "1");
+      };
+      set("OMPI_MCA_ess_singleton_isolated", "1"); // starts a daemon where mpirun has not: 0.1 s
+      // On one node memory is the network. Libraries of others are loaded all the same, and Omni-Path's measures the
+      // processor's clock for 0.2 s (strace).
+      if (number("OMPI_COMM_WORLD_LOCAL_SIZE") == number("OMPI_COMM_WORLD_SIZE") && !std::getenv("PMI_RANK"))
+        {
+          set("OMPI_MCA_pml", "ob1");
+          set("OMPI_MCA_btl", "^ofi,openib,uct,usnic");
+        }
+    }
+  } // namespace
+
+  struct Process::Libraries
+  {
+    Libraries(int &argc, char **&argv)
+      : mpi(argc, argv, 1)
+      , tpetra(&n_arguments, &arguments)
+    {}
+
+    dealii::Utilities::MPI::MPI_InitFinalize mpi;
+    // Kokkos, below Tpetra, has options of its own (and a --help): it gets to see a name only
+    char               name[10] = "slipstick", *names[2] = {name, nullptr}, **arguments = names;
+    int                n_arguments = 1;
+    Tpetra::ScopeGuard tpetra;
+  };
+
+  Process::Process(int &argc, char **&argv, const unsigned int n_threads)
+  {
+    use_threads(n_threads);
+    prepare_open_mpi();
+    libraries = std::make_unique<Libraries>(argc, argv);
+  }
+
+  Process::~Process() = default;
+} // namespace slipstick::tfeti
