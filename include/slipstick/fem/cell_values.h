@@ -62,10 +62,11 @@ namespace slipstick::fem
 
     static bool is_translation(const Cell &a, const Cell &b)
     {
-      constexpr double tolerance = 1e-11; // part of the diameter by which vertices may differ
-      const double     length    = tolerance * a->diameter();
-      for (const unsigned int v : a->vertex_indices())
-        if (((a->vertex(v) - a->vertex(0)) - (b->vertex(v) - b->vertex(0))).norm() > length)
+      constexpr double   tolerance  = 1e-11; // part of the cell's size by which vertices may differ
+      const unsigned int n_vertices = a->n_vertices();
+      const double       square     = tolerance * tolerance * a->vertex(0).distance_square(a->vertex(n_vertices - 1));
+      for (unsigned int v = 1; v < n_vertices; ++v)
+        if (((a->vertex(v) - a->vertex(0)) - (b->vertex(v) - b->vertex(0))).norm_square() > square)
           return false;
       return true;
     }
