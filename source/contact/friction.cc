@@ -34,6 +34,8 @@ namespace slipstick::contact
     constexpr unsigned int max_restarts = 4;
     // ... each time from a residual smaller by this factor.
     constexpr double restart_accuracy = 0.1;
+    // Multipliers nearer to a bound than this part of the largest one are at it: some 50 roundoffs.
+    constexpr double rounding = 1e-14;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
 
@@ -431,15 +433,16 @@ namespace slipstick::contact
         return unshifted(result.x);
       }
 
-      /// Fills which inequality rows are at a bound.
+      /// Fills which inequality rows are at a bound; a force that is all rounding holds nothing.
       DualSolution finished()
       {
-        unsigned long long n = 0;
+        unsigned long long n     = 0;
+        const double       noise = rounding * solution.multipliers.linfty_norm();
         solution.free.resize(solution.multipliers.locally_owned_size());
         for (unsigned int r = 0; r < solution.free.size(); ++r)
           {
             const double x   = solution.multipliers.local_element(r);
-            solution.free[r] = x > box.lower.local_element(r) && x < box.upper.local_element(r);
+            solution.free[r] = x - box.lower.local_element(r) > noise && box.upper.local_element(r) - x > noise;
             n += !solution.free[r];
           }
         solution.active_constraints = dealii::Utilities::MPI::sum(n, dual.communicator());
