@@ -17,8 +17,12 @@ namespace slipstick::contact
     constexpr double negligible_part = 1e-6;
     // Deformations below this part of these count as none: what rounding leaves shows in the stiffest of them.
     constexpr double negligible_deformation = 1e-5;
+    // A body on which less than this part of the largest forces on a body acts counts as one with this part.
+    constexpr double negligible_load = 1e-3;
     // Slip bounds above this multiple of the largest contact force say no more than that nodes stick.
     constexpr double bounds_that_count = 2;
+
+    constexpr unsigned int invalid_rank = std::numeric_limits<unsigned int>::max();
 
     /// The largest of some numbers (none of them: 0; one that is no number stays) and where it is.
     struct Largest
@@ -96,6 +100,38 @@ namespace slipstick::contact
         }
       if (!std::isnan(violation.value))
         violation.value = largest;
+    }
+
+    /// Where a body has most of the energy of its jumps, and the pair that touches there. Collective.
+    void find_place_in_body(const tfeti::DualProblem               &dual,
+                            const tfeti::DualProblem::JumpEnergies &energies,
+                            const unsigned int                      body,
+                            Largest                                &error)
+    {
+      const MPI_Comm               comm  = dual.communicator();
+      const auto                  &spot  = energies.spots[body];
+      const unsigned int           rank  = dealii::Utilities::MPI::this_mpi_process(comm);
+      const bool                   mine  = spot.energy == dealii::Utilities::MPI::max(spot.energy, comm);
+      const unsigned int           first = dealii::Utilities::MPI::min(mine ? rank : invalid_rank, comm);
+      std::vector<Eigen::VectorXd> one;
+      for (const auto &system : dual.subdomains())
+        one.push_back(Eigen::VectorXd::Zero(system->n_unknowns()));
+      if (rank == first && spot.energy >= 0)
+        one[spot.subdomain][spot.unknown] = 1;
+      const auto   touched = dual.jumps(one);
+      unsigned int pair    = 0; // its number + 1, 0 for none
+      for (const auto &point : dual.constraints().contact_points)
+        for (const unsigned int row : {point.normal_row, point.tangential_row})
+          if (row != tfeti::invalid_row && touched.local_element(row) != 0)
+            pair = point.pair + 1;
+      pair = dealii::Utilities::MPI::max(pair, comm);
+      if (rank == first && spot.energy >= 0)
+        error.place = {true,
+                       body,
+                       dual.subdomains()[spot.subdomain]->position(spot.unknown),
+                       true,
+                       pair > 0,
+                       pair > 0 ? pair - 1 : 0};
     }
 
     double relative(const double value, const double scale)
@@ -280,7 +316,7 @@ namespace slipstick::contact
              {"equilibrium of a node", nodal_equilibrium, true, places[5]},
              {"force balance", force_balance, true, places[6]},
              {"moment balance", moment_balance, true, places[7]},
-             {"error in the energy norm", algebraic_error, false, places[8]}}};
+             {"error in the energy norm", body_error, false, places[8]}}};
   }
 
   Checks::Entry Checks::worst_entry() const
@@ -325,13 +361,14 @@ namespace slipstick::contact
     };
     std::array<Largest, Checks::n_entries> largest;
 
+    Eigen::VectorXd energies = Eigen::VectorXd::Zero(n_bodies);
     for (unsigned int p = 0; p < u.size(); ++p)
       {
         // two components a node
         checks.max_displacement =
           std::max(checks.max_displacement,
                    Eigen::Map<const Eigen::Matrix2Xd>(u[p].data(), 2, u[p].size() / 2).colwise().norm().maxCoeff());
-        checks.energy += deformed[p].dot(forces[p] + dual.subdomains()[p]->load());
+        energies[dual.subdomains()[p]->body()] += deformed[p].dot(forces[p] + dual.subdomains()[p]->load());
       }
     const auto violation = [&](const unsigned int r) {
       const double compliance = constraints.compliance.empty() ? 0. : constraints.compliance[r];
@@ -341,8 +378,7 @@ namespace slipstick::contact
     for (unsigned int r = 0; r < constraints.kind.size(); ++r)
       if (is_equality(constraints.kind[r]) && largest[jump].take(std::abs(violation(r)), Place()))
         row_of_jump = r;
-    DistributedVector wrong        = jumps;
-    unsigned int      row_of_wrong = tfeti::invalid_row;
+    DistributedVector wrong = jumps;
     std::vector<bool> held(constraints.kind.size());
     for (unsigned int r = 0; r < held.size(); ++r)
       {
@@ -350,10 +386,9 @@ namespace slipstick::contact
           free[r] ? violation(r)
                   : inadmissible_jump(constraints.kind[r], violation(r), multipliers.local_element(r), slip_bound[r]);
         held[r] = is_equality(constraints.kind[r]) || wrong.local_element(r) != 0;
-        if (largest[energy_norm].take(std::abs(wrong.local_element(r)), Place()))
-          row_of_wrong = r;
       }
-    checks.error_energy = dual.jump_energy(wrong, held);
+    const auto error_energies = dual.jump_energies(wrong, held);
+    checks.error_energy       = error_energies.of_body.sum();
 
     double largest_contact = 0, largest_gap = 0;
     for (const auto &point : constraints.contact_points)
@@ -397,7 +432,9 @@ namespace slipstick::contact
         result.nodes.push_back(bonded_node(point, multipliers, jumps));
         result.keys.push_back(point.key);
       }
-    for (double *sum : {&checks.energy, &checks.complementarity, &all_bounds})
+    MPI_Allreduce(MPI_IN_PLACE, energies.data(), energies.size(), MPI_DOUBLE, MPI_SUM, comm);
+    checks.energy = energies.sum();
+    for (double *sum : {&checks.complementarity, &all_bounds})
       *sum = dealii::Utilities::MPI::sum(*sum, comm);
     const double way       = std::max(largest_gap, checks.max_displacement);
     const double no_length = negligible_part * way;
@@ -414,14 +451,26 @@ namespace slipstick::contact
         largest[force_balance].take(relative(on_bodies.left.col(b).head(last).norm(), scale), {true, b});
         largest[moment_balance].take(relative(std::abs(on_bodies.left(last, b)), scale), {true, b});
       }
+    checks.algebraic_error = std::sqrt(relative(checks.error_energy, energy));
+    // of stiff bodies among soft ones, too, which hold little of the energy
+    const double least_energy = no_force * no_strain;
+    const double least_load   = negligible_load * on_bodies.scale.maxCoeff();
+    unsigned int worst_body   = 0;
+    for (unsigned int b = 0; b < n_bodies; ++b)
+      {
+        const double share = least_load > 0 ? std::min(1., on_bodies.scale[b] / least_load) : 1.;
+        const double error = std::max(error_energies.of_body[b], 0.);
+        if (largest[energy_norm].take(share * std::sqrt(relative(error, std::max(energies[b], least_energy))), Place()))
+          worst_body = b;
+      }
+    find_place_in_body(dual, error_energies, worst_body, largest[energy_norm]);
     find_place_of_row(dual, row_of_jump, largest[jump]);
-    find_place_of_row(dual, row_of_wrong, largest[energy_norm]);
     for (unsigned int i = 0; i < Checks::n_entries; ++i)
       {
         largest[i].over_all_ranks(comm);
         checks.places[i] = largest[i].place;
       }
-    checks.algebraic_error   = std::sqrt(relative(checks.error_energy, energy));
+    checks.body_error        = std::max(largest[energy_norm].value, checks.algebraic_error);
     checks.interface_jump    = relative(largest[jump].value, length);
     checks.penetration       = relative(largest[penetration].value, length);
     checks.tension           = relative(largest[tension].value, force);

@@ -34,6 +34,8 @@ namespace slipstick::contact
     constexpr unsigned int max_restarts = 4;
     // ... each time from a residual smaller by this factor.
     constexpr double restart_accuracy = 0.1;
+    // Multipliers nearer to a bound than this part of the largest one are at it: some 50 roundoffs.
+    constexpr double rounding = 1e-14;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
 
@@ -112,13 +114,15 @@ namespace slipstick::contact
         };
       }
 
-      /// Relative change from the present bounds to those of x, over all ranks.
-      double change_of_bounds(const std::vector<double> &next) const
+      /// Relative change from the present bounds to those of x, over all ranks, of rows that feel it: x strictly inside both
+      /// solves with either.
+      double change_of_bounds(const std::vector<double> &next, const Vector &x) const
       {
         std::array<double, 2> s{{0, 0}};
         for (unsigned int r = 0; r < next.size(); ++r)
           {
-            const double change = next[r] - solution.slip_bound[r];
+            const bool   is_inside = std::abs(x.local_element(r)) < std::min(next[r], solution.slip_bound[r]);
+            const double change    = is_inside ? 0. : next[r] - solution.slip_bound[r];
             s[0] += change * change;
             s[1] += next[r] * next[r];
           }
@@ -251,7 +255,7 @@ namespace slipstick::contact
         solution.friction_iterations = result.counts.outer_iterations;
         solution.multipliers         = std::move(result.x);
         const auto bounds            = law.bounds(solution.multipliers);
-        solution.bound_change        = change_of_bounds(bounds);
+        solution.bound_change        = change_of_bounds(bounds, solution.multipliers);
         set_bounds(bounds);
         return result.status == qp::Status::converged;
       }
@@ -290,7 +294,7 @@ namespace slipstick::contact
       std::optional<double> update_bounds(const Vector &x)
       {
         const auto   next     = law.bounds(x);
-        const double change   = change_of_bounds(next);
+        const double change   = change_of_bounds(next, x);
         solution.bound_change = change;
         if (change <= friction.tolerance)
           return change;
@@ -335,7 +339,7 @@ namespace slipstick::contact
           {
             solution.multipliers  = smalbe(from, accuracy, counted());
             const auto next       = law.bounds(solution.multipliers);
-            solution.bound_change = change_of_bounds(next);
+            solution.bound_change = change_of_bounds(next, solution.multipliers);
             if (solution.status != qp::Status::converged ||
                 (solution.bound_change <= friction.tolerance && accuracy <= options.tolerance))
               return;
@@ -429,15 +433,16 @@ namespace slipstick::contact
         return unshifted(result.x);
       }
 
-      /// Fills which inequality rows are at a bound.
+      /// Fills which inequality rows are at a bound; a force that is all rounding holds nothing.
       DualSolution finished()
       {
-        unsigned long long n = 0;
+        unsigned long long n     = 0;
+        const double       noise = rounding * solution.multipliers.linfty_norm();
         solution.free.resize(solution.multipliers.locally_owned_size());
         for (unsigned int r = 0; r < solution.free.size(); ++r)
           {
             const double x   = solution.multipliers.local_element(r);
-            solution.free[r] = x > box.lower.local_element(r) && x < box.upper.local_element(r);
+            solution.free[r] = x - box.lower.local_element(r) > noise && box.upper.local_element(r) - x > noise;
             n += !solution.free[r];
           }
         solution.active_constraints = dealii::Utilities::MPI::sum(n, dual.communicator());

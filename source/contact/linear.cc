@@ -30,7 +30,7 @@ namespace slipstick::contact
     std::vector<bool> held(r.locally_owned_size());
     for (unsigned int i = 0; i < held.size(); ++i)
       held[i] = tfeti::is_equality(dual.constraints().kind[i]) || r.local_element(i) != 0;
-    return std::sqrt(dual.jump_energy(r, held));
+    return std::sqrt(dual.jump_energies(r, held).of_body.sum());
   }
 
   DualSolution solve_linear(const tfeti::DualProblem   &dual,

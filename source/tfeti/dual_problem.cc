@@ -245,15 +245,25 @@ namespace slipstick::tfeti
       reduce.sum(std::array<double, 1>{{qp::local_weighted_dot(qp::residual_weights(*this, 0), part, part)}})[0]);
   }
 
-  double DualProblem::jump_energy(const DistributedVector &r, const std::vector<bool> &held) const
+  DualProblem::JumpEnergies DualProblem::jump_energies(const DistributedVector &r, const std::vector<bool> &held) const
   {
     std::optional<RowPreconditioner> lumped;
     if (!preconditioner)
       lumped.emplace(systems, gluing, *F, rows.rows, comm, std::vector<PackedSymmetric>());
-    const RowPreconditioner &M      = preconditioner ? *preconditioner : *lumped;
-    DistributedVector        forces = zero();
-    M.apply(RowWeights::Inverse(M.weights(), held), r, forces);
-    return r * forces;
+    const RowPreconditioner &M        = preconditioner ? *preconditioner : *lumped;
+    const auto               energies = M.energies(RowWeights::Inverse(M.weights(), held), r);
+    const std::size_t        n_bodies = names_of_bodies.size();
+    JumpEnergies             result{Eigen::VectorXd::Zero(n_bodies), std::vector<JumpEnergies::Spot>(n_bodies)};
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        const unsigned int body = systems[p]->body();
+        result.of_body[body] += energies[p].sum();
+        Eigen::Index k;
+        if (energies[p].size() > 0 && energies[p].maxCoeff(&k) > result.spots[body].energy)
+          result.spots[body] = {energies[p][k], p, systems[p]->touched()[k]};
+      }
+    MPI_Allreduce(MPI_IN_PLACE, result.of_body.data(), result.of_body.size(), MPI_DOUBLE, MPI_SUM, comm);
+    return result;
   }
 
   DistributedVector DualProblem::zero() const

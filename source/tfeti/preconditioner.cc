@@ -30,16 +30,42 @@ namespace slipstick::tfeti
     Eigen::VectorXd force;
     for (unsigned int p = 0; p < subdomains.size(); ++p)
       {
-        const Eigen::VectorXd move = inverse_diagonals[p].cwiseProduct(scatter_gather.scatter(p, source));
-        if (blocks.empty())
-          force = subdomains[p]->apply_touched_stiffness(move);
-        else
-          blocks[p].multiply(move, force);
+        multiply(p, move(p), force);
         scatter_gather.gather(p, inverse_diagonals[p].cwiseProduct(force), target);
       }
     target.compress(dealii::VectorOperation::add);
     DistributedVector weighted(z);
     weighted.copy_locally_owned_data_from(target);
     inverse.apply(weighted, z);
+  }
+
+  std::vector<Eigen::VectorXd> RowPreconditioner::energies(const RowWeights::Inverse &inverse,
+                                                           const DistributedVector   &r) const
+  {
+    DistributedVector weighted(r);
+    inverse.apply(r, weighted);
+    scatter_gather.import(weighted, source);
+    std::vector<Eigen::VectorXd> result;
+    Eigen::VectorXd              force;
+    for (unsigned int p = 0; p < subdomains.size(); ++p)
+      {
+        result.push_back(move(p));
+        multiply(p, result.back(), force);
+        result.back().array() *= force.array();
+      }
+    return result;
+  }
+
+  Eigen::VectorXd RowPreconditioner::move(const unsigned int p) const
+  {
+    return inverse_diagonals[p].cwiseProduct(scatter_gather.scatter(p, source));
+  }
+
+  void RowPreconditioner::multiply(const unsigned int p, const Eigen::VectorXd &move, Eigen::VectorXd &force) const
+  {
+    if (blocks.empty())
+      force = subdomains[p]->apply_touched_stiffness(move);
+    else
+      blocks[p].multiply(move, force);
   }
 } // namespace slipstick::tfeti

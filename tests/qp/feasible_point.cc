@@ -294,6 +294,51 @@ TEST(FeasiblePoint, in_friction_cones_is_the_nearest)
     }
 }
 
+TEST(FrictionCones, points_are_sums_of_their_parts_along_the_sides)
+{
+  for (unsigned int seed = 0; seed < 20; ++seed)
+    {
+      Random       random(seed);
+      const auto   set = random_cones(random, 20);
+      const Vector x = random_point(random, set, 20), r = random.vector(20);
+      Vector       parts = x, transposed = r;
+      resolve_into_sides(set, parts);
+      add_sides_transposed(set, transposed);
+      EXPECT_GE(*std::min_element(parts.begin(), parts.end()), -1e-15 * length(x)) << seed;
+      EXPECT_NEAR(inner(parts, transposed), inner(x, r), 1e-14 * length(x) * length(r)) << seed;
+      add_sides(set, parts);
+      EXPECT_LT(distance(parts, x), 1e-15 * length(x)) << seed;
+    }
+}
+
+TEST(FeasiblePoint, least_squares_in_friction_cones_finds_a_point_or_the_certificate)
+{
+  FeasiblePointOptions options;
+  options.max_newton_steps  = 0;
+  unsigned int n_infeasible = 0;
+  for (unsigned int seed = 0; seed < 60; ++seed)
+    {
+      Random             random(seed);
+      const DenseProblem problem(identity(20), random.orthonormal(8, 20));
+      const auto         set    = random_cones(random, 20);
+      const Vector       x_e    = seed % 2 == 0 ? random_point(random, set, 20) : random.vector(20);
+      const auto         newton = feasible_point(problem, x_e, set);
+      const auto         result = feasible_point(problem, x_e, set, options);
+      Vector             there  = result.x;
+      project(set, there);
+      EXPECT_LT(distance(there, result.x), 1e-14 * length(x_e)) << seed;
+      ASSERT_EQ(result.status, newton.status) << seed;
+      if (result.status == Status::converged)
+        EXPECT_LT(length(problem.range(minus(x_e, result.x))), 1e-11 * length(x_e)) << seed;
+      else
+        {
+          ++n_infeasible;
+          EXPECT_LT(length(result.certificate), 1.001 * length(newton.certificate)) << seed; // the least there is
+        }
+    }
+  EXPECT_GT(n_infeasible, 10u);
+}
+
 TEST(FeasiblePoint, outside_of_friction_cones_is_certified)
 {
   unsigned int n_infeasible = 0;

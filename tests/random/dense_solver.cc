@@ -199,8 +199,8 @@ namespace slipstick::random
     for (const auto &one : problem.held)
       (one.stiffness > 0 ? springs : held)[one.node].push_back(&one);
 
-    d            = Eigen::VectorXd::Zero(m);
-    W            = Eigen::MatrixXd::Zero(m, m);
+    precise_d    = PreciseVector::Zero(m);
+    precise_W    = PreciseMatrix::Zero(m, m);
     first_motion = {0};
     std::vector<Eigen::MatrixXd> all_T;
     std::vector<Eigen::VectorXd> all_e;
@@ -266,10 +266,10 @@ namespace slipstick::random
         N.push_back(motions);
         first_motion.push_back(first_motion.back() + motions.cols());
 
-        Eigen::MatrixXd H = Z.back().transpose() * K * Z.back();
+        H.push_back(Z.back().transpose() * K * Z.back());
         if (n_free > 0)
-          H += H.trace() / n_free * motions * motions.transpose();
-        factor.emplace_back(H);
+          H.back() += H.back().trace() / n_free * motions * motions.transpose();
+        factor.emplace_back(H.back());
 
         C.push_back(Eigen::MatrixXd::Zero(m, n_free));
         Eigen::MatrixXd full = Eigen::MatrixXd::Zero(m, n);
@@ -279,11 +279,13 @@ namespace slipstick::random
               full(r, unknown - body.first) = value;
         C.back()                   = full * Z.back();
         const Eigen::VectorXd load = Z.back().transpose() * (f - K * prescribed);
-        d += full * prescribed;
+        precise_d += full.cast<Precise>() * prescribed.cast<Precise>();
         if (n_free > 0)
           {
-            d += C.back() * factor.back().solve(load);
-            W += C.back() * factor.back().solve(C.back().transpose());
+            const unsigned int  b      = factor.size() - 1;
+            const PreciseMatrix of_row = C.back().cast<Precise>();
+            precise_d += of_row * solve_stiffness(b, load);
+            precise_W += of_row * solve_stiffness(b, C.back().transpose());
           }
         all_T.push_back(C.back() * motions);
         all_e.push_back(motions.transpose() * load);
@@ -302,13 +304,13 @@ namespace slipstick::random
     row_scale.resize(m);
     for (int r = 0; r < m; ++r)
       {
-        row_scale[r] = W(r, r) > 0 ? 1 / std::sqrt(W(r, r)) : 1.;
+        row_scale[r] = precise_W(r, r) > 0 ? 1 / std::sqrt(static_cast<double>(precise_W(r, r))) : 1.;
         normal_of.push_back(problem.rows[r].normal);
       }
     for (int r = 0; r < m; ++r)
       {
         const Row &row = problem.rows[r];
-        d[r] -= row.c;
+        precise_d[r] -= row.c;
         fixed_bound[r] = row.bound / row_scale[r];
         if (row.kind == RowKind::tangential && row.mu >= 0)
           {
@@ -316,9 +318,12 @@ namespace slipstick::random
             is_coulomb = true;
           }
       }
-    W = row_scale.asDiagonal() * W * row_scale.asDiagonal();
-    T = row_scale.asDiagonal() * T;
-    d = d.cwiseProduct(row_scale);
+    const PreciseVector precise_scale = row_scale.cast<Precise>();
+    precise_W                         = precise_scale.asDiagonal() * precise_W * precise_scale.asDiagonal();
+    precise_d                         = precise_d.cwiseProduct(precise_scale);
+    W                                 = precise_W.cast<double>();
+    d                                 = precise_d.cast<double>();
+    T                                 = row_scale.asDiagonal() * T;
     motion_scale.setOnes(T.cols());
     for (unsigned int b = 0; b < N.size();
          ++b) // of a body, whose motions are of one size: one that nothing resists keeps 0
@@ -334,6 +339,20 @@ namespace slipstick::random
     for (int k = 0; k < e.size(); ++k)
       if (std::abs(e[k]) < 1e-13 * size_of_e)
         e[k] = 0;
+  }
+
+  /// H^-1 times columns: the factor in double precision, corrected until what rounding left is that of extended precision.
+  DenseSolver::PreciseMatrix DenseSolver::solve_stiffness(const unsigned int body, const Eigen::MatrixXd &right) const
+  {
+    constexpr unsigned int n_corrections = 2;
+    const PreciseMatrix    precise_H = H[body].cast<Precise>(), precise_right = right.cast<Precise>();
+    PreciseMatrix          x = factor[body].solve(right).cast<Precise>();
+    for (unsigned int k = 0; k < n_corrections; ++k)
+      {
+        const PreciseMatrix left = precise_right - precise_H * x;
+        x += factor[body].solve(left.cast<double>()).cast<Precise>();
+      }
+    return x;
   }
 
   Eigen::VectorXd DenseSolver::bounds(const Eigen::VectorXd &x) const
@@ -510,42 +529,45 @@ namespace slipstick::random
           else if (number[normal_of[r]] >= 0)
             G(r, number[normal_of[r]]) = sign * mu[r];
         }
-    Eigen::MatrixXd       M(n + k, n + k);
-    const Eigen::MatrixXd WG = W * G;
-    const Eigen::VectorXd Wh = d - W * h;
-    Eigen::VectorXd       right(n + k);
-    M.bottomRightCorner(k, k).setZero();
-    M.bottomLeftCorner(k, n) = T.transpose() * G;
+    const PreciseMatrix WG = precise_W * G.cast<Precise>();
+    const PreciseVector Wh = precise_d - precise_W * h.cast<Precise>();
+    PreciseMatrix       precise_M(n + k, n + k);
+    PreciseVector       right(n + k), solution(n + k);
+    precise_M.bottomRightCorner(k, k).setZero();
+    precise_M.bottomLeftCorner(k, n) = (T.transpose() * G).cast<Precise>();
     for (int i = 0; i < n; ++i)
       {
-        M.row(i).head(n) = WG.row(free[i]);
-        M.row(i).tail(k) = -T.row(free[i]);
-        right[i]         = Wh[free[i]];
+        precise_M.row(i).head(n) = WG.row(free[i]);
+        precise_M.row(i).tail(k) = -T.row(free[i]).cast<Precise>();
+        right[i]                 = Wh[free[i]];
       }
-    right.tail(k)        = e - T.transpose() * h;
-    const double    size = std::max({right.size() > 0 ? right.cwiseAbs().maxCoeff() : 0., scale(at.x)});
-    Eigen::VectorXd solution;
+    right.tail(k)              = (e - T.transpose() * h).cast<Precise>();
+    const Eigen::MatrixXd M    = precise_M.cast<double>();
+    const double          size = std::max({right.size() > 0 ? double(right.cwiseAbs().maxCoeff()) : 0., scale(at.x)});
+    const auto            left = [&] { return Eigen::VectorXd((right - precise_M * solution).cast<double>()); };
+    // factors in double precision, residuals in extended precision
+    const auto solve_by = [&](const auto &factors) {
+      constexpr unsigned int n_corrections = 4;
+      solution = factors.solve(Eigen::VectorXd(right.cast<double>())).template cast<Precise>();
+      for (unsigned int correction = 0; correction < n_corrections; ++correction)
+        solution += factors.solve(left()).template cast<Precise>();
+    };
     if (n + k > 0)
       {
-        const Eigen::PartialPivLU<Eigen::MatrixXd> lu(M);
-        solution = lu.solve(right);
-        solution += lu.solve(right - M * solution);
-        if (!solution.allFinite() || (right - M * solution).cwiseAbs().maxCoeff() > 1e-12 * size ||
+        solve_by(Eigen::PartialPivLU<Eigen::MatrixXd>(M));
+        if (!solution.allFinite() || left().cwiseAbs().maxCoeff() > 1e-12 * size ||
             solution.cwiseAbs().maxCoeff() > 1e8 * size)
           {
             Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> cod;
             cod.setThreshold(1e-11);
             cod.compute(M);
-            solution = cod.solve(right);
-            solution += cod.solve(right - M * solution);
+            solve_by(cod);
           }
         if (!solution.allFinite())
           return false;
       }
-    else
-      solution.resize(0);
-    at.x = G * solution.head(n) + h;
-    at.a = solution.tail(k);
+    at.x = G * solution.head(n).cast<double>() + h;
+    at.a = solution.tail(k).cast<double>();
     return true;
   }
 
@@ -676,7 +698,8 @@ namespace slipstick::random
           Z[b].transpose() * (problem.f.segment(body.first, n) - body.K * u0.segment(body.first, n)) -
           C[b].transpose() * x;
         if (Z[b].cols() > 0)
-          u.segment(body.first, n) += Z[b] * (factor[b].solve(load) + N[b] * a.segment(first_motion[b], N[b].cols()));
+          u.segment(body.first, n) +=
+            Z[b] * (solve_stiffness(b, load).cast<double>() + N[b] * a.segment(first_motion[b], N[b].cols()));
       }
     return u;
   }

@@ -7,7 +7,8 @@
 //   j = C u = d - W x + T a,  W = C H+ C',  T = C N,     and  T'x = e = N'f  is equilibrium.
 //
 // Convex laws (given bounds): a primal-dual interior point method on W, T, then the active set it ends with, solved
-// directly and corrected until all conditions hold to rounding. Coulomb: these with the bounds followed from x until the set
+// directly and corrected until all conditions hold to rounding. W, d and the residuals of that last solution are in extended
+// precision. Coulomb: these with the bounds followed from x until the set
 // of open, sticking and sliding nodes, sliding ones tied x_T = +-mu x_N, solves the whole law to rounding.
 #pragma once
 
@@ -89,7 +90,14 @@ namespace slipstick::random
       Eigen::VectorXd x, a;
     };
 
+    // W and d, and residuals with them, in extended precision: rows that nearly depend on each other would show the
+    // rounding of H+.
+    using Precise       = long double;
+    using PreciseMatrix = Eigen::Matrix<Precise, Eigen::Dynamic, Eigen::Dynamic>;
+    using PreciseVector = Eigen::Matrix<Precise, Eigen::Dynamic, 1>;
+
     void            condense();
+    PreciseMatrix   solve_stiffness(const unsigned int body, const Eigen::MatrixXd &right) const;
     Eigen::VectorXd bounds(const Eigen::VectorXd &x) const;
     Eigen::VectorXd jumps(const Point &at) const;
     double          scale(const Eigen::VectorXd &x) const;
@@ -105,6 +113,7 @@ namespace slipstick::random
 
     const Problem                           &problem;
     std::vector<Eigen::MatrixXd>             Z; // per body: unknowns x free ones
+    std::vector<Eigen::MatrixXd>             H; // per body: stiffness of the free unknowns, motions held
     std::vector<Eigen::LLT<Eigen::MatrixXd>> factor;
     std::vector<Eigen::MatrixXd>             C; // per body: rows x free unknowns, scaled
     std::vector<Eigen::MatrixXd>             N; // per body: free unknowns x motions
@@ -113,7 +122,9 @@ namespace slipstick::random
     Eigen::VectorXd                          row_scale, motion_scale; // x = row_scale x^, a = motion_scale a^
     Eigen::MatrixXd                          W, T;                    // scaled: unit diagonal
     Eigen::VectorXd                          d, e;                    // scaled; d less c
-    Eigen::VectorXd                          fixed_bound, mu;         // scaled, by row
+    PreciseMatrix                            precise_W;
+    PreciseVector                            precise_d;
+    Eigen::VectorXd                          fixed_bound, mu; // scaled, by row
     std::vector<int>                         normal_of;
     double                                   size_of_e  = 0;
     bool                                     is_coulomb = false;

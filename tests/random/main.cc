@@ -78,15 +78,8 @@ namespace
     Verdict     worst;
     const char *reason;
   };
-  const std::map<unsigned int, Known> known = {
-    {142,
-     {Verdict::wrong,
-      "stack with moduli from 1e3 to 1.2e8: the error in the energy norm is 2e-8, but in the stiffest body "
-      "its forces are up to 8e-6 of the largest (Friction/Tolerance and Solver/Tolerance 1e-10)"}},
-    {280,
-     {Verdict::failed,
-      "no equilibrium (margin 6e-4): with one subdomain the point of least violation is not found to the accuracy "
-      "of a certificate in 10000 steps, so the run ends as not converged"}}};
+  // Of other seeds 316, 626, 667 and 686 end as not converged in some runs: several positions, doc/decisions.md.
+  const std::map<unsigned int, Known> known = {};
 
   const char *name_of(const Verdict verdict)
   {

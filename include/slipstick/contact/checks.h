@@ -32,7 +32,8 @@ namespace slipstick::contact
     double force_balance     = 0; // worst body: loads + supports + contact
     double moment_balance    = 0;
     double algebraic_error   = 0; // energy norm, from above: root of error_energy over u'K u
-    double error_energy      = 0; // DualProblem::jump_energy of all that u violates [N mm]
+    double body_error        = 0; // worst body: the same over u'K u of its own, or algebraic_error
+    double error_energy      = 0; // DualProblem::jump_energies of all that u violates [N mm]
     double max_displacement  = 0; // magnitude [mm]
     double energy            = 0; // u'K u, twice the strain energy [N mm]
 

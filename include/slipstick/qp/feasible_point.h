@@ -189,21 +189,65 @@ namespace slipstick::qp
         return low > 0 ? low : high;
       }
 
-      // Newton did not end: least |Q(x - x_e)| within the box, by MPGP. It is positive if there is no such point.
+      // Newton did not end: least |Q(x - x_e)| within the set, by MPGP. It is positive if there is no such point.
       Status least_squares(const Status failure)
-      {
-        if constexpr (std::is_same_v<Set, Box<Vector>>)
-          return least_squares_in_box(failure);
-        else
-          return least_squares_in_set(failure);
-      }
-
-      // The same by accelerated projected gradients (Nesterov 1983; restarts: O'Donoghue, Candes 2015). Q has norm 1.
-      Status least_squares_in_set(const Status failure)
       {
         is_nearest = false;
         std::copy(y.begin(), y.end(), x.begin());
         project(box, x);
+        if constexpr (std::is_same_v<Set, Box<Vector>>)
+          minimize([this](const Vector &v, Vector &Qv) { project_range(v, Qv); }, 1., Qx_e, box);
+        else
+          {
+            // of the parts along the sides of the cones, which have bounds: S'Q S, |S|^2 <= 2
+            const auto multiply = [this](const Vector &v, Vector &product) {
+              std::copy(v.begin(), v.end(), p.begin());
+              add_sides(box, p);
+              project_range(p, product);
+              add_sides_transposed(box, product);
+            };
+            std::copy(Qx_e.begin(), Qx_e.end(), d.begin());
+            add_sides_transposed(box, d);
+            resolve_into_sides(box, x);
+            minimize(multiply, 2., d, bounds_of_sides(box));
+            add_sides(box, x);
+            project(box, x); // to the last bit
+          }
+        const Status status = examine(failure);
+        return status == failure ? accelerated_gradients(failure) : status;
+      }
+
+      // Is x the point that is looked for, or r the certificate?
+      Status examine(const Status neither)
+      {
+        project_range(x, r);
+        combine(1.0, Qx_e, -1.0, r); // Q(x_e - x)
+        norm_r = norm(r, reduction);
+        if (norm_r <= options.tolerance * reference)
+          return Status::converged;
+        return proves_infeasibility(r) ? Status::infeasible : neither;
+      }
+
+      // x := least 1/2 x'Ax - x'b within bounds, down to rounding. It has a minimum: where rounding in directions that A does
+      // not see passes for a way down without end, MPGP starts anew.
+      template <typename Operator>
+      void minimize(const Operator &A, const double norm_A, const Vector &b, const Box<Vector> &bounds)
+      {
+        const auto stop = [this](const Vector &, const double gP) { return gP <= options.least_gradient * reference; };
+        Status     status = Status::infeasible;
+        for (unsigned int k = 0; k < max_starts && status == Status::infeasible; ++k)
+          {
+            auto result =
+              mpgp(A, norm_A, b, bounds, MpgpStart<Vector>{std::move(x)}, stop, options.fallback, reduction);
+            x      = std::move(result.x);
+            status = result.status;
+          }
+      }
+
+      // The same as least_squares by accelerated projected gradients from x (Nesterov 1983; restarts: O'Donoghue, Candes
+      // 2015), for where MPGP gave up. Q has norm 1.
+      Status accelerated_gradients(const Status failure)
+      {
         std::copy(x.begin(), x.end(), y.begin()); // the extrapolated point
         double momentum = 1;
         for (unsigned int k = 0; k < options.fallback.max_iterations; ++k)
@@ -223,34 +267,15 @@ namespace slipstick::qp
             momentum = ascends ? 1 : next;
             if (k % check_interval != 0)
               continue;
-            project_range(x, r);
-            combine(1.0, Qx_e, -1.0, r);
-            norm_r = norm(r, reduction);
-            if (norm_r <= options.tolerance * reference)
-              return Status::converged;
-            if (proves_infeasibility(r))
-              return Status::infeasible;
+            const Status status = examine(failure);
+            if (status != failure)
+              return status;
           }
         return failure;
       }
 
-      Status least_squares_in_box(const Status failure)
-      {
-        const auto multiply = [this](const Vector &v, Vector &Qv) { project_range(v, Qv); };
-        const auto stop     = [this](const Vector &, const double gP) { return gP <= options.tolerance * reference; };
-        MpgpStart<Vector> start{std::move(x)};
-        auto              result = mpgp(multiply, 1.0, Qx_e, box, std::move(start), stop, options.fallback, reduction);
-        x                        = std::move(result.x);
-        is_nearest               = false;
-        std::copy(result.gradient.begin(), result.gradient.end(), r.begin());
-        combine(0.0, r, -1.0, r);
-        norm_r = norm(r, reduction);
-        if (norm_r <= options.tolerance * reference)
-          return Status::converged;
-        return proves_infeasibility(r) ? Status::infeasible : failure;
-      }
-
       static constexpr unsigned int check_interval = 10; // of the accelerated gradients
+      static constexpr unsigned int max_starts     = 10; // of MPGP
 
       const Problem                                        &problem;
       decltype(std::declval<const Problem &>().reduction()) reduction;

@@ -101,6 +101,63 @@ namespace slipstick::qp
     return n_contradictions(set.box);
   }
 
+  // A point of a cone is the sum of parts along its two sides, which are any numbers from 0: x_T = s (a - b),
+  // x_N = c (a + b) with s, c the sine and cosine of half the angle between them, a in the place of x_T, b in that of x_N.
+
+  /// Bounds of the parts along the sides of the cones; other entries keep theirs. Without friction there is one side.
+  template <typename Vector>
+  Box<Vector> bounds_of_sides(const FrictionCones<Vector> &set)
+  {
+    Box<Vector> box = set.box;
+    for (const FrictionCone &cone : set.cones)
+      {
+        box.lower.begin()[cone.tangential] = box.lower.begin()[cone.normal] = 0;
+        box.upper.begin()[cone.tangential]                                  = cone.coefficient > 0 ? infinity : 0;
+        box.upper.begin()[cone.normal]                                      = infinity;
+      }
+    return box;
+  }
+
+  /// x := parts along the sides, of a point within the set.
+  template <typename Vector>
+  void resolve_into_sides(const FrictionCones<Vector> &set, Vector &x)
+  {
+    for (const FrictionCone &cone : set.cones)
+      if (cone.coefficient > 0)
+        {
+          double      &t = x.begin()[cone.tangential], &n = x.begin()[cone.normal];
+          const double length = std::hypot(1., cone.coefficient) / 2, over = t / cone.coefficient;
+          t = length * (n + over);
+          n = length * (n - over);
+        }
+  }
+
+  /// x := sum of the parts along the sides, S x.
+  template <typename Vector>
+  void add_sides(const FrictionCones<Vector> &set, Vector &x)
+  {
+    for (const FrictionCone &cone : set.cones)
+      {
+        double      &t = x.begin()[cone.tangential], &n = x.begin()[cone.normal];
+        const double c = 1 / std::hypot(1., cone.coefficient), a = t, b = n;
+        t = cone.coefficient * c * (a - b);
+        n = c * (a + b);
+      }
+  }
+
+  /// r := S'r.
+  template <typename Vector>
+  void add_sides_transposed(const FrictionCones<Vector> &set, Vector &r)
+  {
+    for (const FrictionCone &cone : set.cones)
+      {
+        double      &t = r.begin()[cone.tangential], &n = r.begin()[cone.normal];
+        const double c = 1 / std::hypot(1., cone.coefficient), along_t = cone.coefficient * c * t, along_n = c * n;
+        t = along_n + along_t;
+        n = along_n - along_t;
+      }
+  }
+
   /// See box.h; a cone is unbounded along r as far as r leaves its polar cone.
   template <typename Vector, typename Reduction>
   bool is_farkas_certificate(const FrictionCones<Vector> &set,

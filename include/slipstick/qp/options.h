@@ -113,6 +113,7 @@ namespace slipstick::qp
 
     unsigned int stagnation_window   = 20;   // Newton steps in which the least residual so far must fall ...
     double       stagnation_progress = 0.99; // ... below this times its old value
-    MpgpOptions  fallback;                   // least squares of Q(x - x_e) within the bounds, when Newton does not end
+    MpgpOptions  fallback;                   // least squares of Q(x - x_e) within the set, when Newton does not end
+    double       least_gradient = 1e-15;     // ... ends at this |gP| over the reference length, or at rounding
   };
 } // namespace slipstick::qp

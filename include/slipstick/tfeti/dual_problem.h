@@ -23,6 +23,20 @@ namespace slipstick::tfeti
       DistributedVector            multipliers; // [N]
     };
 
+    /// Energies of displacements that close jumps.
+    struct JumpEnergies
+    {
+      /// Where this rank's subdomains of a body have most.
+      struct Spot
+      {
+        double       energy    = -1; // none of its subdomains here
+        unsigned int subdomain = 0;  // of this rank
+        unsigned int unknown   = 0;
+      };
+      Eigen::VectorXd   of_body; // on all ranks [N mm]
+      std::vector<Spot> spots;   // by body
+    };
+
     /// Factorises the subdomains and the coarse problem and estimates |P F P|. Collective.
     /// @throws NoEquilibrium naming body and motion when the rows of B leave a rigid motion of a body free.
     /// @throws NumericalError when a subdomain cannot be factorised.
@@ -69,8 +83,8 @@ namespace slipstick::tfeti
     /// Squared energy norm of the least displacements, nearly, that close jumps r (owned rows) [mm], those of rows without
     /// a jump held where @p held says so: r'M r [N mm], M the preconditioner, without one the lumped preconditioner (which
     /// gives more). With r = B u - c of displacements u = K+(f - B'x) + R a it bounds the squared energy norm of their
-    /// error from above, up to what the scaling of M is worth. Collective.
-    double jump_energy(const DistributedVector &r, const std::vector<bool> &held) const;
+    /// error from above, up to what the scaling of M is worth: in the sum, and the part of a body that of its own. Collective.
+    JumpEnergies jump_energies(const DistributedVector &r, const std::vector<bool> &held) const;
 
     /// The problem on the free rows (owned ones), the others held, or tied to free ones. Collective.
     Face face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties = {}) const;

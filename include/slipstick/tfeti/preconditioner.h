@@ -27,7 +27,15 @@ namespace slipstick::tfeti
     /// z = M r [N] of r [mm] on the rows of @p inverse, 0 on the others; owned entries. Collective.
     void apply(const RowWeights::Inverse &inverse, const DistributedVector &r, DistributedVector &z) const;
 
+    /// Summands of r'M r [N mm] at the touched unknowns of every subdomain of this rank. Collective.
+    std::vector<Eigen::VectorXd> energies(const RowWeights::Inverse &inverse, const DistributedVector &r) const;
+
   private:
+    /// D^-1 B' W^-1 r: how far the touched unknowns of a subdomain go. `source` must hold W^-1 r.
+    Eigen::VectorXd move(const unsigned int p) const;
+    /// S or K times that.
+    void multiply(const unsigned int p, const Eigen::VectorXd &move, Eigen::VectorXd &force) const;
+
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     const DualOperator                                  &scatter_gather;
     RowWeights                                           row_weights;
