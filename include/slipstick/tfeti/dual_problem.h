@@ -100,6 +100,14 @@ namespace slipstick::tfeti
     /// @throws NoEquilibrium naming the body when neither free rows nor rows with friction forces fix a.
     Recovery recover(const DistributedVector &x, const std::vector<bool> &free) const;
 
+    /// u += -K+ B'step + R a, x += step, with the a that makes the free rows fit in the sense of least squares. G step = 0
+    /// is taken for granted. What stood in u stays: rounding of x, which a slender subdomain bends by far more than u, does
+    /// not come in again, as it does with recover(). Collective.
+    void correct(Recovery &at, const DistributedVector &step, const std::vector<bool> &free) const;
+
+    /// c + compliance x - B u on the free rows, 0 on the others [mm]. Collective.
+    DistributedVector misfit(const Recovery &of, const std::vector<bool> &free) const;
+
     /// B u of displacements of this rank's subdomains, owned rows [mm]. Collective.
     DistributedVector jumps(const std::vector<Eigen::VectorXd> &u) const;
 
@@ -155,6 +163,9 @@ namespace slipstick::tfeti
                                   const std::vector<bool>        &free,
                                   const DistributedVector        &x,
                                   Recovery                       &at) const;
+
+    /// u += R a: a least squares fit of the free rows, which the projector is restricted to.
+    void fit_motions(const Projector &on_free, const std::vector<bool> &free, Recovery &at) const;
 
     double          power_method(const DualOptions &options) const;
     void            apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
