@@ -232,6 +232,14 @@ namespace slipstick::tfeti
     return r * forces;
   }
 
+  std::vector<bool> DualProblem::ambiguous(const std::vector<bool> &free) const
+  {
+    std::vector<bool> rigid = free; // rows that yield are determined by that
+    for (unsigned int r = 0; r < rows.compliance.size(); ++r)
+      rigid[r] = rigid[r] && rows.compliance[r] == 0;
+    return (preconditioner ? preconditioner->weights() : RowWeights(systems, gluing, rows.rows, comm)).ambiguous(rigid);
+  }
+
   DistributedVector DualProblem::zero() const
   {
     return DistributedVector(owned_rows);

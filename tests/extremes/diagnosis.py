@@ -95,6 +95,9 @@ class Doubtful(Extremes):
         table = Table('units of bodies, of loads')
         self.warned(table, 'modulus of one body in Pa', stack(box={'Young modulus': '2.1e11'}), 'body box is ',
                     'do their meshes and materials have the same units?')
+        self.warned(table, 'all moduli in Pa', stack(base={'Young modulus': '2.1e11'}, box={'Young modulus': '2.1e11'}),
+                    'are the moduli given in Pa', without=('same units', 'linear theory'))
+        self.warned(table, 'all in m, N and Pa', stack(unit=1e3), without=('Pa',))
         self.warned(table, 'moduli in GPa', stack(base={'Young modulus': '210'}, box={'Young modulus': '210'}),
                     'the strain of body ', 'linear theory', without=('same units',))
         self.warned(table, 'load in Pa', stack(load={'Traction y': '-1e7', 'Traction x': '1e6'}),

@@ -72,6 +72,10 @@ namespace slipstick::tfeti
     /// error from above, up to what the scaling of M is worth. Collective.
     double jump_energy(const DistributedVector &r, const std::vector<bool> &held) const;
 
+    /// Of every owned row, whether its multiplier is not determined since the free rows depend on each other: bodies that
+    /// hold each other in more ways than one. u does not depend on it. Collective.
+    std::vector<bool> ambiguous(const std::vector<bool> &free) const;
+
     /// The problem on the free rows (owned ones), the others held, or tied to free ones. Collective.
     Face face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties = {}) const;
 
