@@ -27,7 +27,7 @@ def sections(path, kind):
 
 def materials(case):
     """Of every body: (sigma : epsilon as a, b, g of tests/verification/energy.py, thickness)."""
-    text = open(case).read()
+    text = re.sub(r'\\\n', ' ', open(case).read())
     is_strain = re.search(r'^set Plane state\s*= *plane strain', text, re.M) is not None
     names = re.search(r'^set Bodies\s*= *(.*)$', text, re.M).group(1).split(',')
     found, bodies = sections(case, 'Material'), sections(case, 'Body')
