@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 
 namespace slipstick::app
 {
@@ -17,6 +19,10 @@ namespace slipstick::app
     constexpr double largest_strain = 0.1, largest_rotation = 0.1;
     // Displacements that are more than this part of the diagonal of a body.
     constexpr double largest_motion = 0.5;
+    // Young modulus above that of any material (diamond: 1.2e6 MPa) ...
+    constexpr double largest_modulus = 1e7;
+    // ... which may be meant as rigid, but not of all bodies where these hardly move, as a part of their diagonals.
+    constexpr double least_motion = 1e-8;
     // Contact pressure over the smaller Young modulus of the two sides.
     constexpr double largest_pressure = 1;
     // Overlap and slip over the length of an edge.
@@ -104,6 +110,47 @@ namespace slipstick::app
       return pair.master ? std::min(of(pair.slave.body), of(pair.master->body)) : of(pair.slave.body);
     }
 
+    /// Pairs between which forces may be exchanged without an effect, and where first; none: empty. Collective.
+    std::string doubt_of_split(const scene::Scene<2>    &scene,
+                               const tfeti::DualProblem &dual,
+                               const std::vector<bool>  &free)
+    {
+      const auto                          ambiguous = dual.ambiguous(free);
+      std::set<unsigned int>              pairs;
+      std::set<std::pair<double, double>> places;
+      for (const auto *points : {&dual.constraints().contact_points, &dual.constraints().bonded_points})
+        for (const auto &point : *points)
+          for (const unsigned int row : {point.normal_row, point.tangential_row})
+            if (row != tfeti::invalid_row && ambiguous[row])
+              {
+                pairs.insert(point.pair);
+                places.insert({point.position[0], point.position[1]});
+              }
+      for (const auto &of_rank :
+           dealii::Utilities::MPI::all_gather(dual.communicator(),
+                                              std::vector<unsigned int>(pairs.begin(), pairs.end())))
+        pairs.insert(of_rank.begin(), of_rank.end());
+      std::vector<double> own;
+      for (const auto &[x, y] : places)
+        own.insert(own.end(), {x, y});
+      for (const auto &of_rank : dealii::Utilities::MPI::all_gather(dual.communicator(), own))
+        for (unsigned int i = 0; i < of_rank.size(); i += 2)
+          places.insert({of_rank[i], of_rank[i + 1]});
+      if (pairs.empty())
+        return "";
+      std::string names;
+      for (const unsigned int pair : pairs)
+        names += (names.empty() ? "" : ", ") + scene.contacts[pair].name;
+      return format(
+        "Contact %s: at %zu points, the first at (%.6g, %.6g), what sticks together there holds itself in more "
+        "ways than one, so that only sums of the forces are determined, not how they are split between these "
+        "pairs and supports; leave one of the pairs or nodes out, or rely on the sums",
+        names.c_str(),
+        places.size(),
+        places.begin()->first,
+        places.begin()->second);
+    }
+
     std::string place(const scene::Scene<2> &scene, const fem::Peak<2> &peak)
     {
       return format("of body %s at (%.6g, %.6g)",
@@ -116,12 +163,15 @@ namespace slipstick::app
   std::map<std::string, std::string> doubts(const scene::Scene<2>                   &scene,
                                             const fem::Mesh<2>                      &mesh,
                                             const fem::Spaces<2>                    &spaces,
-                                            const tfeti::Constraints                &constraints,
+                                            const tfeti::DualProblem                &dual,
+                                            const std::vector<bool>                 &free,
                                             const std::vector<contact::ContactNode> &nodes,
                                             const std::vector<Eigen::VectorXd>      &u)
   {
     std::map<std::string, std::string> texts;
-    const auto                         pairs = peaks_of_pairs(scene, constraints, nodes, mesh.comm);
+    const auto                         pairs = peaks_of_pairs(scene, dual.constraints(), nodes, mesh.comm);
+    if (const std::string text = doubt_of_split(scene, dual, free); !text.empty())
+      texts["split"] = text;
     for (unsigned int k = 0; k < pairs.size(); ++k)
       {
         const auto        &pair = pairs[k];
@@ -169,6 +219,15 @@ namespace slipstick::app
         "check gaps, loads and supports",
         place(scene, large.motion).c_str(),
         large.motion.value);
+    double least_modulus = std::numeric_limits<double>::infinity();
+    for (const auto &body : scene.bodies)
+      least_modulus = std::min(least_modulus, scene.materials[body.material].young_modulus);
+    if (least_modulus > largest_modulus && large.motion.value > 0 && large.motion.value < least_motion)
+      texts["moduli"] = format(
+        "the displacement of no body is more than %.1e of its size, and no Young modulus is below %.3g MPa (diamond "
+        "has 1.2e+06): are the moduli given in Pa, lengths and loads in mm and N? check the units",
+        large.motion.value,
+        least_modulus);
     return texts;
   }
 } // namespace slipstick::app

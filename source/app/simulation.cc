@@ -111,7 +111,7 @@ namespace slipstick::app
       void warn(const std::vector<contact::ContactNode> &nodes, const std::vector<Eigen::VectorXd> &u)
       {
         for (const auto &[about, text] :
-             doubts(scene, solver.mesh(), solver.spaces(), solver.dual().constraints(), nodes, u))
+             doubts(scene, solver.mesh(), solver.spaces(), solver.dual(), solver.solution().free, nodes, u))
           if (warned_about.insert(about).second)
             {
               log.line("             warning: " + text);

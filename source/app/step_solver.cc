@@ -38,6 +38,11 @@ namespace slipstick::app
     constexpr double largest_tightening = 1e4;
     // ... down to what double precision reaches nearly everywhere.
     constexpr double least_tolerance = 1e-13;
+    // Below this one rounding of the multipliers may show, which is gone around first ...
+    constexpr double tolerance_of_rounding = 1e-10;
+    // ... so often, as long as the worst check falls by this factor.
+    constexpr unsigned int max_closings     = 4;
+    constexpr double       closing_progress = 0.5;
     // Tolerance = auto: the algebraic error may be this part of the discretisation error. The two are orthogonal, nearly, so
     // that it adds 4.4 % to the total one at most, less as it is estimated from above.
     constexpr double allowed_part = 0.3;
@@ -318,11 +323,15 @@ namespace slipstick::app
         const auto   worst = answer->contact->checks.worst_entry();
         const double reached =
           std::min(options.tolerance, std::max(the_solution.projected_gradient, the_solution.equality));
-        if (worst.value <= limit || worst.is_balance || reached <= least_tolerance)
+        if (worst.value <= limit || worst.is_balance)
           break;
         // an answer that is no number, too
         const double excess = std::min(largest_tightening, std::max(least_tightening, worst.value / limit));
         options.tolerance   = std::max(reached / (margin_of_tightening * excess), least_tolerance);
+        if (options.tolerance < tolerance_of_rounding && close(*answer, step, limit))
+          break;
+        if (reached <= least_tolerance)
+          break;
         log.line(format("checks       %s is %.1e, allowed is %.1e: solved on to a tolerance of %.1e",
                         worst.name,
                         worst.value,
@@ -344,5 +353,29 @@ namespace slipstick::app
           }
       }
     return answer;
+  }
+
+  bool StepSolver::close(Answer &answer, const unsigned int step, const double limit)
+  {
+    double worst = answer.contact->checks.worst().second;
+    for (unsigned int n = 0; n < max_closings && worst > limit; ++n)
+      {
+        Answer next;
+        next.recovery = answer.recovery;
+        the_solution.counts += contact::close_gaps(*the_dual, the_solution.free, options.pcpg, next.recovery);
+        look_at(next, the_solution, scene.load_factors[step]);
+        const double left = next.contact->checks.worst().second;
+        log.line(
+          format("checks       gaps closed by a correction of the displacement: largest %.1e, was %.1e", left, worst));
+        const bool progresses = left < closing_progress * worst;
+        if (left < worst)
+          {
+            answer = std::move(next);
+            worst  = left;
+          }
+        if (!progresses)
+          break;
+      }
+    return worst <= limit;
   }
 } // namespace slipstick::app

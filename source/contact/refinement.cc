@@ -1,4 +1,5 @@
 #include <slipstick/contact/refinement.h>
+#include <slipstick/qp/pcpg.h>
 
 namespace slipstick::contact
 {
@@ -8,6 +9,8 @@ namespace slipstick::contact
     constexpr unsigned int max_corrections = 5;
     // Multiplications that measuring the error of F~ takes.
     constexpr unsigned int multiplications_per_check = 2;
+    // Residual of closing gaps over the gaps; rounding of F leaves no more in slender subdomains.
+    constexpr double closing_tolerance = 1e-4;
   } // namespace
 
   DualSolution solve_refined(tfeti::DualProblem           &dual,
@@ -62,5 +65,25 @@ namespace slipstick::contact
         if (solution.status != qp::Status::converged)
           return solution;
       }
+  }
+
+  qp::Counts close_gaps(const tfeti::DualProblem     &dual,
+                        const std::vector<bool>      &free,
+                        const qp::PcpgOptions        &options,
+                        tfeti::DualProblem::Recovery &recovery)
+  {
+    const auto face = dual.face(free);
+    if (!face.is_regular())
+      return {};
+    auto b = dual.misfit(recovery, free);
+    b /= -dual.norm(); // F step = B u - c
+    const auto result = qp::pcpg(face,
+                                 b,
+                                 qp::PcpgStart<tfeti::DistributedVector>{dual.zero()},
+                                 qp::Goal(closing_tolerance, dual.residual_norm(b)),
+                                 options,
+                                 [&face](const auto &r, auto &z) { face.precondition(r, z); });
+    dual.correct(recovery, result.x, free);
+    return result.counts;
   }
 } // namespace slipstick::contact

@@ -266,6 +266,14 @@ namespace slipstick::tfeti
     return result;
   }
 
+  std::vector<bool> DualProblem::ambiguous(const std::vector<bool> &free) const
+  {
+    std::vector<bool> rigid = free; // rows that yield are determined by that
+    for (unsigned int r = 0; r < rows.compliance.size(); ++r)
+      rigid[r] = rigid[r] && rows.compliance[r] == 0;
+    return (preconditioner ? preconditioner->weights() : RowWeights(systems, gluing, rows.rows, comm)).ambiguous(rigid);
+  }
+
   DistributedVector DualProblem::zero() const
   {
     return DistributedVector(owned_rows);
@@ -417,26 +425,48 @@ namespace slipstick::tfeti
         systems[p]->apply_pseudo_inverse(u[p]);
       }
 
-    // a: B u - compliance x = c on the free rows, in the sense of least squares
-    DistributedVector missing = jumps(u);
+    fit_motions(on_free, fixed, result);
+    if (!loose.empty())
+      slide_apart(loose, free, x, result);
+    return result;
+  }
+
+  DistributedVector DualProblem::misfit(const Recovery &of, const std::vector<bool> &free) const
+  {
+    DistributedVector missing = jumps(of.u);
     for (unsigned int r = 0; r < rows.c.size(); ++r)
-      missing.local_element(r) = fixed[r] ? rows.c[r] - missing.local_element(r) : 0.;
+      missing.local_element(r) = free[r] ? rows.c[r] - missing.local_element(r) : 0.;
     for (unsigned int r = 0; r < rows.compliance.size(); ++r)
-      missing.local_element(r) += fixed[r] ? rows.compliance[r] * result.multipliers.local_element(r) : 0.;
-    Eigen::VectorXd a = on_free.amplitudes(missing);
-    on_free.project_range(missing, step);
-    missing -= step;
-    a += on_free.amplitudes(missing);
+      missing.local_element(r) += free[r] ? rows.compliance[r] * of.multipliers.local_element(r) : 0.;
+    return missing;
+  }
+
+  void DualProblem::fit_motions(const Projector &on_free, const std::vector<bool> &free, Recovery &at) const
+  {
+    DistributedVector missing = misfit(at, free), range = zero();
+    Eigen::VectorXd   a = on_free.amplitudes(missing);
+    on_free.project_range(missing, range);
+    missing -= range;
+    a += on_free.amplitudes(missing); // for the rounding of the first
     unsigned int next = 0;
     for (unsigned int p = 0; p < systems.size(); ++p)
       {
         const unsigned int k = systems[p]->kernel().cols();
-        u[p] += systems[p]->kernel() * a.segment(next, k);
+        at.u[p] += systems[p]->kernel() * a.segment(next, k);
         next += k;
       }
-    if (!loose.empty())
-      slide_apart(loose, free, x, result);
-    return result;
+  }
+
+  void DualProblem::correct(Recovery &at, const DistributedVector &step, const std::vector<bool> &free) const
+  {
+    auto change = forces(step);
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        systems[p]->apply_pseudo_inverse(change[p]);
+        at.u[p] -= change[p];
+      }
+    at.multipliers += step;
+    fit_motions(Projector(*projector, free, comm, std::vector<qp::Tie>(), metric), free, at);
   }
 
   std::vector<Eigen::VectorXd> DualProblem::forces(const DistributedVector &x) const

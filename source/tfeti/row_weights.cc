@@ -13,6 +13,8 @@ namespace slipstick::tfeti
   {
     // Blocks of more rows are factorised as sparse ones.
     constexpr unsigned int largest_dense_block = 32;
+    // Shares of rows in a dependence below this are rounding.
+    constexpr double smallest_share = 1e-6;
 
     /// One summand of an entry of W.
     struct Weight
@@ -107,6 +109,50 @@ namespace slipstick::tfeti
       }
   }
 
+  RowWeights::Block RowWeights::restricted(const Block &full, const std::function<bool(unsigned int)> &is_active)
+  {
+    Block            part;
+    std::vector<int> place(full.rows.size(), -1); // among the active rows
+    for (unsigned int k = 0; k < full.rows.size(); ++k)
+      if (is_active(full.rows[k]))
+        {
+          place[k] = part.rows.size();
+          part.rows.push_back(full.rows[k]);
+        }
+    std::vector<Eigen::Triplet<double>> entries;
+    for (unsigned int k = 0; k < full.rows.size(); ++k)
+      if (place[k] >= 0)
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(full.matrix, k); entry; ++entry)
+          if (place[entry.row()] >= 0)
+            entries.emplace_back(place[entry.row()], place[k], entry.value());
+    part.matrix.resize(part.rows.size(), part.rows.size());
+    part.matrix.setFromTriplets(entries.begin(), entries.end());
+    return part;
+  }
+
+  // Null vectors of W: e_k - W^- W e_k, which is 0 unless row k was left out of the factor.
+  std::vector<bool> RowWeights::ambiguous(const std::vector<bool> &active) const
+  {
+    std::vector<bool> result(active.size(), false);
+    for (const auto &full : blocks)
+      {
+        const Block part = restricted(full, [&active](const unsigned int row) { return active[row]; });
+        if (part.rows.empty())
+          continue;
+        const SemidefiniteFactor factor(part.matrix);
+        if (factor.n_left_out() == 0)
+          continue;
+        for (unsigned int k = 0; k < part.rows.size(); ++k)
+          {
+            Eigen::VectorXd share = -factor.solve(part.matrix.col(k));
+            share[k] += 1;
+            for (unsigned int r = 0; r < part.rows.size(); ++r)
+              result[part.rows[r]] = result[part.rows[r]] || std::abs(share[r]) > smallest_share;
+          }
+      }
+    return result;
+  }
+
   std::vector<double> RowWeights::stiffnesses() const
   {
     std::size_t n = 0;
@@ -184,27 +230,12 @@ namespace slipstick::tfeti
       {
         if (std::all_of(full.rows.begin(), full.rows.end(), is_active))
           continue;
-        std::vector<unsigned int> rows;
-        std::vector<int>          place(full.rows.size(), -1); // among the active rows
-        for (unsigned int k = 0; k < full.rows.size(); ++k)
-          if (is_active(full.rows[k]))
-            {
-              place[k] = rows.size();
-              rows.push_back(full.rows[k]);
-            }
-          else
-            inactive.push_back(full.rows[k]);
-        if (rows.empty())
-          continue;
-        std::vector<Eigen::Triplet<double>> entries;
-        for (unsigned int k = 0; k < full.rows.size(); ++k)
-          if (place[k] >= 0)
-            for (Eigen::SparseMatrix<double>::InnerIterator entry(full.matrix, k); entry; ++entry)
-              if (place[entry.row()] >= 0)
-                entries.emplace_back(place[entry.row()], place[k], entry.value());
-        Eigen::SparseMatrix<double> matrix(rows.size(), rows.size());
-        matrix.setFromTriplets(entries.begin(), entries.end());
-        changed.add(rows, matrix);
+        for (const unsigned int row : full.rows)
+          if (!is_active(row))
+            inactive.push_back(row);
+        const Block part = restricted(full, is_active);
+        if (!part.rows.empty())
+          changed.add(part.rows, part.matrix);
       }
   }
 

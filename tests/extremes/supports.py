@@ -133,6 +133,37 @@ class Supports(Extremes):
             self.near(carried, 100, 1e-6)
             self.near(result.summary['results']['strain_energy'], reference.summary['results']['strain_energy'], 1e-6)
 
+    def test_three_bodies_around_a_point(self):
+        """Three blocks that stick to each other where they meet: their forces on each other are determined up to a cycle, and
+        the summary says so, where and between which pairs, under every cut alike; displacements do not depend on it."""
+        table = Table('two blocks side by side on a third, subdomains')
+        law = {'Law': 'Coulomb'}
+
+        def blocks(subdomains, apart=0):
+            return scenes.box(
+                bodies={'base': {**SQUARE, 'Size': '{!r}, 10'.format(20 + apart), 'Cells': '8, 4'}, 'left': {**SQUARE, 'Origin': '0, 10'},
+                        'right': {**SQUARE, 'Origin': '{!r}, 10'.format(10 + apart)}},
+                supports={'floor': FLOOR}, contacts={
+                    'foot left': {'Slave': 'left/bottom', 'Master': 'base/top', 'Friction coefficient': '1', **law},
+                    'foot right': {'Slave': 'right/bottom', 'Master': 'base/top', 'Friction coefficient': '1', **law},
+                    'between': {'Slave': 'left/right', 'Master': 'right/left', 'Friction coefficient': '1', **law}},
+                tractions={'down left': {**DOWN, 'Boundary': 'left/top'}, 'down right': {**DOWN, 'Boundary': 'right/top'},
+                           'from left': {'Boundary': 'left/left', 'Traction x': '3'},
+                           'from right': {'Boundary': 'right/right', 'Traction x': '-3'}},
+                Decomposition={'Method': 'METIS', 'Subdomains': str(subdomains)}, Solver={'Tolerance': '1e-10'})
+
+        energy = None
+        for subdomains, ranks in ((3, 1), (5, 1), (9, 1), (9, 2), (14, 2)):
+            result = self.converges(table, '{}, {} rank(s)'.format(subdomains, ranks), blocks(subdomains), ranks=ranks)
+            split = [text for text in result.summary['warnings'] if 'how they are split' in text]
+            self.assertEqual(len(split), 1, result)
+            for word in ('foot left, foot right, between: ', 'the first at (10, 10)'):
+                self.assertIn(word, split[0])
+            energy = energy or result.summary['results']['strain_energy']
+            self.near(result.summary['results']['strain_energy'], energy, 1e-8)
+        result = self.converges(table, 'apart: two pairs of two bodies', blocks(5, 0.5))
+        self.assertEqual([text for text in result.summary['warnings'] if 'how they are split' in text], [])
+
     def test_contact_of_a_body_with_itself(self):
         table = Table('one body in contact with itself')
         held = {'supports': {'held': scenes.HELD}, 'tractions': {'down': DOWN}}

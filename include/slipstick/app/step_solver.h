@@ -108,6 +108,10 @@ namespace slipstick::app
                                     const std::uint64_t     multiplications_before,
                                     std::unique_ptr<Answer> answer);
 
+    /// Corrects the displacement of an answer, on its set, until its checks are within the limit or do not fall any more.
+    /// @return whether they are.
+    bool close(Answer &answer, const unsigned int step, const double limit);
+
     scene::Scene<dim>    scene;
     const Log           &log;
     StageClock          &clock;

@@ -1,4 +1,4 @@
-// Solutions in double precision from a dual operator stored in single precision.
+// Solutions beyond the rounding of the dual operator and of the multipliers.
 #pragma once
 
 #include <slipstick/contact/friction.h>
@@ -16,4 +16,14 @@ namespace slipstick::contact
                              const ProgressObserver       &observer,
                              const DualSolution           *start       = nullptr,
                              const AccuracyTest           &is_accurate = {});
+
+  /// Closes what the free rows of a recovered solution leave open by a linear solve of its own, relative to that: u is
+  /// corrected, not computed anew from x. So it gets past the last digit of x, which slender subdomains turn into
+  /// displacements far above those that are looked for (a strip of length L and height h bends (L/h)^2 times as much as it
+  /// yields, and more). The set stays; bodies that slide on all their contacts are left alone. Collective.
+  /// @return the work.
+  qp::Counts close_gaps(const tfeti::DualProblem     &dual,
+                        const std::vector<bool>      &free,
+                        const qp::PcpgOptions        &options,
+                        tfeti::DualProblem::Recovery &recovery);
 } // namespace slipstick::contact

@@ -24,6 +24,9 @@ namespace slipstick::qp
   {
     // Entries as far beyond their bounds as the farthest, up to rounding, change with it.
     constexpr double same_distance = 1 - 1e-9;
+    // The distance beyond which so many entries change is bisected so often, after steps by this factor.
+    constexpr unsigned int bisections      = 20;
+    constexpr double       first_reduction = 0.1;
 
     /// Of every owned entry: -1 at the lower bound, 1 at the upper, 0 free.
     using Sides = std::vector<signed char>;
@@ -87,10 +90,10 @@ namespace slipstick::qp
         return set;
       }
 
-      // Of the changes to the next set that which is farthest beyond its bound alone (and what rounding takes for as far).
-      // Sets that change as a whole may cycle; one by one they do not for a given face's strictly convex problem but for
-      // ties (Murty 1988; Judice, Pires 1994), and the cycles seen end.
-      void keep_largest_changes(const Vector &x, const Vector &g, Sides &next) const
+      // Of the changes to the next set those farthest beyond their bounds, at most `most` (and what rounding takes for as far
+      // as the farthest). Sets that change as a whole may cycle; one by one they do not for a given face's strictly convex
+      // problem but for ties (Murty 1988; Judice, Pires 1994), and the cycles seen end.
+      void keep_largest_changes(const Vector &x, const Vector &g, const double most, Sides &next) const
       {
         const auto          l = box().lower.begin(), u = box().upper.begin();
         const auto          xi = x.begin(), gi = g.begin();
@@ -105,9 +108,25 @@ namespace slipstick::qp
               beyond[i]          = std::abs(t - bound);
               largest            = std::max(largest, beyond[i]);
             }
-        largest = -problem.reduction().min(-largest);
+        largest             = -problem.reduction().min(-largest);
+        const auto n_beyond = [&](const double distance) {
+          double n = 0;
+          for (std::size_t i = 0; i < next.size(); ++i)
+            n += next[i] != active[i] && beyond[i] >= distance;
+          return problem.reduction().sum(std::array<double, 1>{{n}})[0];
+        };
+        double below = 0, least = same_distance * largest; // bisected in the logarithm, to within some changes
+        if (most > 1)
+          for (unsigned int k = 0; k < bisections && n_beyond(least) < most; ++k)
+            {
+              const double middle = below > 0 ? std::sqrt(below * least) : first_reduction * least;
+              if (n_beyond(middle) <= most)
+                least = middle;
+              else
+                below = middle;
+            }
         for (std::size_t i = 0; i < next.size(); ++i)
-          if (beyond[i] < same_distance * largest)
+          if (beyond[i] < least)
             next[i] = active[i];
       }
 

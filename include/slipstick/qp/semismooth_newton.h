@@ -174,7 +174,7 @@ namespace slipstick::qp
               return Status::stagnated;
             is_cautious = stuck >= cycling;
             if (is_cautious)
-              set.keep_largest_changes(x, g, next);
+              set.keep_largest_changes(x, g, std::floor(changed * std::pow(0.5, stuck - cycling + 1.)), next);
             if (counts.outer_iterations >= options.max_outer_iterations)
               return Status::iteration_limit;
             if (changed <= options.settled_part * set.n_inequalities())

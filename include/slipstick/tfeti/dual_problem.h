@@ -86,6 +86,10 @@ namespace slipstick::tfeti
     /// error from above, up to what the scaling of M is worth: in the sum, and the part of a body that of its own. Collective.
     JumpEnergies jump_energies(const DistributedVector &r, const std::vector<bool> &held) const;
 
+    /// Of every owned row, whether its multiplier is not determined since the free rows depend on each other: bodies that
+    /// hold each other in more ways than one. u does not depend on it. Collective.
+    std::vector<bool> ambiguous(const std::vector<bool> &free) const;
+
     /// The problem on the free rows (owned ones), the others held, or tied to free ones. Collective.
     Face face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties = {}) const;
 
@@ -113,6 +117,14 @@ namespace slipstick::tfeti
     /// slip follows its force and no gap is negative, as near as can be to where they just stop sticking. Collective.
     /// @throws NoEquilibrium naming the body when neither free rows nor rows with friction forces fix a.
     Recovery recover(const DistributedVector &x, const std::vector<bool> &free) const;
+
+    /// u += -K+ B'step + R a, x += step, with the a that makes the free rows fit in the sense of least squares. G step = 0
+    /// is taken for granted. What stood in u stays: rounding of x, which a slender subdomain bends by far more than u, does
+    /// not come in again, as it does with recover(). Collective.
+    void correct(Recovery &at, const DistributedVector &step, const std::vector<bool> &free) const;
+
+    /// c + compliance x - B u on the free rows, 0 on the others [mm]. Collective.
+    DistributedVector misfit(const Recovery &of, const std::vector<bool> &free) const;
 
     /// B u of displacements of this rank's subdomains, owned rows [mm]. Collective.
     DistributedVector jumps(const std::vector<Eigen::VectorXd> &u) const;
@@ -169,6 +181,9 @@ namespace slipstick::tfeti
                                   const std::vector<bool>        &free,
                                   const DistributedVector        &x,
                                   Recovery                       &at) const;
+
+    /// u += R a: a least squares fit of the free rows, which the projector is restricted to.
+    void fit_motions(const Projector &on_free, const std::vector<bool> &free, Recovery &at) const;
 
     double lanczos(const DualOptions &options) const;
     void   apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance

@@ -4,6 +4,7 @@
 #include <slipstick/tfeti/dual_operator.h>
 #include <slipstick/tfeti/semidefinite_factor.h>
 
+#include <functional>
 #include <memory>
 
 namespace slipstick::tfeti
@@ -44,6 +45,10 @@ namespace slipstick::tfeti
     /// 1 / W_rr of the owned rows [N/mm]: the force that opens a row, its other rows held, over what it opens by.
     std::vector<double> stiffnesses() const;
 
+    /// Of every owned row, whether its multiplier is not determined: the active rows depend on each other (B'x is 0 for some
+    /// x that is not, on the active rows), and this one has a part in that. Which do does not depend on the partition.
+    std::vector<bool> ambiguous(const std::vector<bool> &active) const;
+
     /// Inverse of W restricted to the active rows; of rows that depend on others, a generalised inverse.
     class Inverse
     {
@@ -66,6 +71,9 @@ namespace slipstick::tfeti
       std::vector<unsigned int>   rows; // owned
       Eigen::SparseMatrix<double> matrix;
     };
+
+    /// W on the active rows of a block, and these rows.
+    static Block restricted(const Block &full, const std::function<bool(unsigned int)> &is_active);
 
     std::vector<Block> blocks;
     InverseBlocks      inverse; // with all rows active

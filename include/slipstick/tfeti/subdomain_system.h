@@ -50,7 +50,8 @@ namespace slipstick::tfeti
     PackedSymmetric pseudo_inverse_block(const Precision precision) const;
 
     /// Schur complement of K on the touched unknowns (the fixing ones among them or held together with them), in their
-    /// order. Needs the trailing block.
+    /// order. Needs the trailing block. In double precision all the same where single precision would lose it: in
+    /// subdomains that are far softer in one way than in another (strips).
     PackedSymmetric schur_complement(const Precision precision) const;
 
     /// Diagonal of K at the touched unknowns.
@@ -110,7 +111,8 @@ namespace slipstick::tfeti
     std::vector<unsigned int>       touched_unknowns;
     std::vector<unsigned int>       fixing_unknowns;
     double                          regularization; // rho [N/mm]
-    std::optional<Cholesky>         cholesky;       // none once released
+    bool                            is_soft;  // against some deformation, by far, compared with the largest entry of K
+    std::optional<Cholesky>         cholesky; // none once released
   };
 
   /// As many of the @p candidates as R has columns, chosen by pivoting so that the rows of R there are as independent
