@@ -394,6 +394,12 @@ TEST(MeshFiles, broken_files_are_refused)
   EXPECT_SAYS(refusal([&] { body_of_text("solid nonsense\n"); }), "no Gmsh file");
   EXPECT_SAYS(refusal([&] { body_of_text("$NOD\n1\n"); }), "version 1");
   EXPECT_SAYS(refusal([&] { body_of_text(gmsh_2(square, {"3 2 1 1 1 2 3 44"})); }), "node 44");
+  // a number without an absolute value, where the sign is dropped
+  EXPECT_SAYS(refusal([&] { body_of_text(gmsh_2(square, {"3 2 -2147483648 1 1 2 3 4"})); }), "mixed up");
+  EXPECT_SAYS(refusal([&] {
+                body_of_text("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n1 0 0 0\n1 0 0 0 1 -2147483648\n$EndEntities\n");
+              }),
+              "mixed up");
 }
 
 TEST(MeshFiles, lines_may_end_as_windows_has_it)
