@@ -14,6 +14,8 @@ namespace slipstick::fem
 {
   namespace
   {
+    constexpr unsigned long long most_generated = 10000000; // members of a set by one line; more is a slip of the pen
+
     std::string upper(std::string text)
     {
       std::transform(text.begin(), text.end(), text.begin(), [](const unsigned char c) { return std::toupper(c); });
@@ -246,12 +248,13 @@ namespace slipstick::fem
           {
             if (parts.size() < 2)
               fail("GENERATE needs first, last and step");
-            const auto step = parts.size() > 2 ? number(parts[2]) : 1;
-            const auto last = number(parts[1]);
-            if (step == 0 || last > 1000000000)
-              fail("GENERATE with step " + std::to_string(step) + " up to " + parts[1]);
-            for (auto k = number(parts[0]); k <= last; k += step)
-              set.insert(k);
+            const auto step  = parts.size() > 2 ? number(parts[2]) : 1;
+            const auto last  = number(parts[1]);
+            const auto first = number(parts[0]);
+            if (step == 0 || (last > first && (last - first) / step > most_generated))
+              fail("GENERATE with step " + std::to_string(step) + " from " + parts[0] + " up to " + parts[1]);
+            for (auto k = first; k <= last; k += step)
+              set.insert(set.end(), k);
             return;
           }
         for (const std::string &part : parts)

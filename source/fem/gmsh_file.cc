@@ -4,7 +4,9 @@
 #include <slipstick/fem/mesh_file.h>
 
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <unordered_map>
 
 namespace slipstick::fem
@@ -117,6 +119,14 @@ namespace slipstick::fem
       double real()
       {
         return binary ? bytes<double>() : word<double>();
+      }
+
+      /// The number of a physical entity, given with the sign of its orientation.
+      int physical(const int number) const
+      {
+        if (number == std::numeric_limits<int>::min()) // has no absolute value
+          fail_broken();
+        return std::abs(number);
       }
 
       /// A count of things of at least @p least bytes each, which cannot be more than the rest of the file holds.
@@ -288,7 +298,7 @@ namespace slipstick::fem
             auto &physicals = physicals_of_entity[{dim, tag}];
             physicals.resize(in.checked(in.count(), 1));
             for (int &physical : physicals)
-              physical = std::abs(in.integer()); // negative: orientation
+              physical = in.physical(in.integer());
             if (dim > 0)
               for (std::size_t b = in.count(); b > 0; --b)
                 in.integer();
@@ -431,7 +441,7 @@ namespace slipstick::fem
                 {
                   const int tag = in.integer();
                   if (t == 0)
-                    physical = std::abs(tag);
+                    physical = in.physical(tag);
                 }
               add_element(known,
                           group(physical == 0 ? std::vector<int>() : std::vector<int>{physical}),

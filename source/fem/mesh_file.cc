@@ -9,6 +9,7 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 namespace slipstick::fem
@@ -36,8 +37,119 @@ namespace slipstick::fem
       return text.substr(0, text.find("--------"));
     }
 
+    /// What deal.II's readers of .vtk and .unv take from a file without looking, so that a spoilt one would crash or, worse,
+    /// give another mesh: corners that are not there, lists of different lengths.
+    class NumberCheck
+    {
+    public:
+      NumberCheck(const std::string &file, const std::string &text)
+        : file(file)
+        , in(text)
+      {}
+
+      void vtk();
+      void unv();
+
+    private:
+      [[noreturn]] void fail(const std::string &problem) const
+      {
+        throw InputError("mesh file " + file + ": " + problem,
+                         "write it again, or convert it to Gmsh's .msh (legacy .vtk of version 3.0 in ASCII and .unv "
+                         "with elements of types 11, 44 and 94 are read)");
+      }
+
+      template <typename T>
+      T next(const std::string &section)
+      {
+        T value;
+        if (!(in >> value))
+          fail("is truncated or mixed up in its section " + section);
+        return value;
+      }
+
+      void corner_is_there(const bool is_there, const long long corner, const long long cell) const
+      {
+        if (!is_there)
+          fail("cell " + std::to_string(cell) + " has corner " + std::to_string(corner) + ", which is not in the file");
+      }
+
+      const std::string &file;
+      std::istringstream in;
+    };
+
+    void NumberCheck::vtk()
+    {
+      std::string word;
+      for (unsigned int line = 0; line < 4; ++line)
+        std::getline(in, word);
+      if (!(in >> word) || word != "POINTS")
+        return; // deal.II says so
+      const auto n_points = next<unsigned int>("POINTS");
+      next<std::string>("POINTS"); // their type
+      for (std::size_t k = 0; k < 3 * std::size_t(n_points); ++k)
+        next<double>("POINTS");
+      if (!(in >> word) || word != "CELLS")
+        return;
+      const auto n_cells = next<unsigned int>("CELLS");
+      next<unsigned int>("CELLS"); // number of entries
+      std::vector<unsigned int> n_corners;
+      for (unsigned int c = 0; c < n_cells; ++c)
+        {
+          n_corners.push_back(next<unsigned int>("CELLS"));
+          for (unsigned int k = 0; k < n_corners.back(); ++k)
+            {
+              const auto corner = next<unsigned int>("CELLS");
+              corner_is_there(corner < n_points, corner, c);
+            }
+        }
+      if (!(in >> word) || word != "CELL_TYPES")
+        return;
+      if (const auto n_types = next<unsigned int>("CELL_TYPES"); n_types != n_cells)
+        fail("has " + std::to_string(n_cells) + " cells, but " + std::to_string(n_types) + " types of cells");
+      const std::map<unsigned int, unsigned int> corners_of_type = {{3, 2}, {5, 3}, {9, 4}};
+      for (unsigned int c = 0; c < n_cells; ++c)
+        if (const auto found = corners_of_type.find(next<unsigned int>("CELL_TYPES"));
+            found != corners_of_type.end() && found->second != n_corners[c])
+          fail("cell " + std::to_string(c) + " of type " + std::to_string(found->first) + " has " +
+               std::to_string(n_corners[c]) + " corners");
+    }
+
+    void NumberCheck::unv()
+    {
+      std::string line;
+      while (std::getline(in, line) && trim(line) != "2411")
+        ;
+      std::set<int> nodes;
+      for (int node = next<int>("2411"); node != -1; node = next<int>("2411"))
+        {
+          for (unsigned int k = 0; k < 6; ++k)
+            next<double>("2411"); // three numbers, three coordinates
+          if (!nodes.insert(node).second)
+            fail("node " + std::to_string(node) + " comes twice");
+        }
+      if (next<int>("2411") != -1 || next<int>("2412") != 2412)
+        return; // deal.II says so
+      for (int cell = next<int>("2412"); cell != -1; cell = next<int>("2412"))
+        {
+          const int type = next<int>("2412");
+          if (type != 11 && type != 44 && type != 94)
+            return;
+          for (unsigned int k = 0; k < (type == 11 ? 7 : 4); ++k)
+            next<int>("2412");
+          for (unsigned int k = 0; k < (type == 11 ? 2 : 4); ++k)
+            {
+              const int corner = next<int>("2412");
+              corner_is_there(nodes.count(corner) > 0, corner, cell);
+            }
+        }
+    }
+
     MeshFile through_deal_ii(const std::string &file, const std::string &text, const std::string &format)
     {
+      if (format == ".vtk")
+        NumberCheck(file, text).vtk();
+      else if (format == ".unv")
+        NumberCheck(file, text).unv();
       MeshFile mesh;
       mesh.file = file;
       dealii::Triangulation<2> triangulation;

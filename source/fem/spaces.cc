@@ -13,17 +13,17 @@ namespace slipstick::fem
 {
   namespace
   {
-    /// Mapping of triangles of degree 2 whose edges follow their own manifolds (deal.II 9.4's MappingFE asks the manifold
-    /// of the cell alone, which leaves curved boundaries straight).
+    /// Mapping of triangles of degree 1 or 2 whose edges follow their own manifolds. deal.II 9.4's MappingFE asks the
+    /// manifold of the cell alone, which leaves curved boundaries straight, and asserts that the edges have no other.
     template <int dim>
-    class CurvedSimplexMapping : public dealii::MappingFE<dim>
+    class SimplexMapping : public dealii::MappingFE<dim>
     {
     public:
       using dealii::MappingFE<dim>::MappingFE;
 
       std::unique_ptr<dealii::Mapping<dim>> clone() const override
       {
-        return std::make_unique<CurvedSimplexMapping<dim>>(*this);
+        return std::make_unique<SimplexMapping<dim>>(*this);
       }
 
     protected:
@@ -33,8 +33,9 @@ namespace slipstick::fem
         std::vector<dealii::Point<dim>> points;
         for (const unsigned int v : cell->vertex_indices())
           points.push_back(cell->vertex(v));
-        for (const unsigned int e : cell->face_indices())
-          points.push_back(cell->face(e)->center(true));
+        if (this->get_degree() == 2)
+          for (const unsigned int e : cell->face_indices())
+            points.push_back(cell->face(e)->center(true));
         return points;
       }
     };
@@ -54,9 +55,7 @@ namespace slipstick::fem
     {
       if (!cell.is_simplex())
         return std::make_unique<dealii::MappingQ<dim>>(degree);
-      if (degree == 1)
-        return std::make_unique<dealii::MappingFE<dim>>(dealii::FE_SimplexP<dim>(1));
-      return std::make_unique<CurvedSimplexMapping<dim>>(dealii::FE_SimplexP<dim>(degree));
+      return std::make_unique<SimplexMapping<dim>>(dealii::FE_SimplexP<dim>(degree));
     }
     template <int dim>
     bool is_curved(const dealii::Triangulation<dim> &triangulation)

@@ -394,6 +394,12 @@ TEST(MeshFiles, broken_files_are_refused)
   EXPECT_SAYS(refusal([&] { body_of_text("solid nonsense\n"); }), "no Gmsh file");
   EXPECT_SAYS(refusal([&] { body_of_text("$NOD\n1\n"); }), "version 1");
   EXPECT_SAYS(refusal([&] { body_of_text(gmsh_2(square, {"3 2 1 1 1 2 3 44"})); }), "node 44");
+  // a number without an absolute value, where the sign is dropped
+  EXPECT_SAYS(refusal([&] { body_of_text(gmsh_2(square, {"3 2 -2147483648 1 1 2 3 4"})); }), "mixed up");
+  EXPECT_SAYS(refusal([&] {
+                body_of_text("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n1 0 0 0\n1 0 0 0 1 -2147483648\n$EndEntities\n");
+              }),
+              "mixed up");
 }
 
 TEST(MeshFiles, lines_may_end_as_windows_has_it)
@@ -497,6 +503,7 @@ TEST(MeshFiles, abaqus_input_with_its_sets_and_surfaces)
   EXPECT_SAYS(refusal([] { fem::parse_abaqus("a.inp", "*NODE\n1, 0, 0\n*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n"); }), "a.inp:4: element 1 has node 2");
   EXPECT_SAYS(refusal([] { fem::parse_abaqus("a.inp", "*NODE\n1, 0, O\n"); }), "'O' is no coordinate");
   EXPECT_SAYS(refusal([] { fem::parse_abaqus("a.inp", "*NSET, NSET=a\nb\n"); }), "no set 'b'");
+  EXPECT_SAYS(refusal([] { fem::parse_abaqus("a.inp", "*NSET, NSET=a, GENERATE\n1, 1e9, 1\n"); }), "from 1 up to 1e9");
   EXPECT_SAYS(refusal([] { fem::parse_abaqus("a.inp", "*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n*ELEMENT, TYPE=CPS3\n1, 1, 2\n"); }), "lacks nodes");
   EXPECT_SAYS(refusal([&] { fem::body_from_file(body, fem::parse_abaqus("a.inp", "*NODE\n1, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 1, 1, 1\n")); }),
               "three-dimensional");
@@ -526,4 +533,42 @@ TEST(MeshFiles, formats_through_deal_ii)
   std::filesystem::remove(name);
   EXPECT_SAYS(refusal([&] { fem::read_mesh_file(body.file); }), "cannot be read");
   EXPECT_SAYS(refusal([] { fem::read_mesh_file(path_of("two_parts.geo")); }), "unknown ending '.geo'");
+}
+
+// deal.II's reader takes these numbers without looking: a crash, or another mesh
+TEST(MeshFiles, numbers_in_vtk_and_unv_are_checked)
+{
+  const auto refusal_of = [](const std::string &ending, std::string text, const std::string &what, const std::string &by) {
+    const auto name = std::filesystem::temp_directory_path() / ("slipstick_" + std::to_string(getpid()) + ending);
+    if (!what.empty())
+      text.replace(text.find(what), what.size(), by);
+    std::ofstream(name) << text;
+    std::string said;
+    try
+      {
+        said = std::to_string(fem::read_mesh_file(name).elements.size()) + " elements";
+      }
+    catch (const InputError &error)
+      {
+        said = error.what();
+      }
+    std::filesystem::remove(name);
+    return said;
+  };
+  const std::string vtk = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 double\n0 0 0 1 0 0 1 1 0 "
+                          "0 1 0 2 0 0 2 1 0\nCELLS 3 13\n4 0 1 2 3\n4 1 4 5 2\n2 0 1\nCELL_TYPES 3\n9 9 3\n";
+  EXPECT_SAYS(refusal_of(".vtk", vtk, "", ""), "8 elements");
+  EXPECT_SAYS(refusal_of(".vtk", vtk, "1 4 5 2", "1 4 6 2"), "cell 1 has corner 6");
+  EXPECT_SAYS(refusal_of(".vtk", vtk, "2 0 1", "2 0 2147483647"), "cell 2 has corner 2147483647");
+  EXPECT_SAYS(refusal_of(".vtk", vtk, "CELL_TYPES 3\n9 9 3", "CELL_TYPES 2\n9 9"), "3 cells, but 2 types");
+  EXPECT_SAYS(refusal_of(".vtk", vtk, "CELL_TYPES 3\n9 9 3", "CELL_TYPES 3\n9 9 9"), "cell 2 of type 9 has 2 corners");
+  EXPECT_SAYS(refusal_of(".vtk", vtk, "4 0 1 2 3", "4 0 1 2 1e16"), "mixed up in its section CELLS");
+  EXPECT_SAYS(refusal_of(".vtk", vtk, "0 1 0 2 0 0", "0 1 O 2 0 0"), "mixed up in its section POINTS");
+
+  const std::string unv = "-1\n2411\n1 1 1 11\n0 0 0\n2 1 1 11\n1 0 0\n3 1 1 11\n1 1 0\n4 1 1 11\n0 1 0\n-1\n-1\n2412\n"
+                          "1 44 2 1 7 4\n1 2 3 4\n2 11 2 1 7 2\n0 1 1\n1 2\n-1\n";
+  EXPECT_SAYS(refusal_of(".unv", unv, "", ""), "5 elements");
+  EXPECT_SAYS(refusal_of(".unv", unv, "1 2 3 4", "1 2 3 5"), "cell 1 has corner 5");
+  EXPECT_SAYS(refusal_of(".unv", unv, "0 1 1\n1 2", "0 1 1\n1 9"), "cell 2 has corner 9");
+  EXPECT_SAYS(refusal_of(".unv", unv, "4 1 1 11", "3 1 1 11"), "node 3 comes twice");
 }

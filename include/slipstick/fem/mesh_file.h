@@ -15,11 +15,11 @@ namespace slipstick::fem
   {
     struct Element
     {
-      unsigned int                dim = 0;    // 0 point, 1 line, 2 triangle or quadrilateral
-      unsigned int                n   = 0;    // number of corners
-      std::array<unsigned int, 4> corners;    // indices into nodes; counterclockwise or all clockwise
-      unsigned int                group  = 0; // index into groups
-      unsigned long long          number = 0; // in the file, for messages
+      unsigned int                dim     = 0;  // 0 point, 1 line, 2 triangle or quadrilateral
+      unsigned int                n       = 0;  // number of corners
+      std::array<unsigned int, 4> corners = {}; // indices into nodes; counterclockwise or all clockwise
+      unsigned int                group   = 0;  // index into groups
+      unsigned long long          number  = 0;  // in the file, for messages
     };
 
     std::string                                file;
