@@ -102,8 +102,8 @@ namespace slipstick::fem
               corner_is_there(corner < n_points, corner, c);
             }
         }
-      if (!(in >> word) || word != "CELL_TYPES")
-        return;
+      if (next<std::string>("CELLS") != "CELL_TYPES")
+        fail("is truncated or mixed up in its section CELLS");
       if (const auto n_types = next<unsigned int>("CELL_TYPES"); n_types != n_cells)
         fail("has " + std::to_string(n_cells) + " cells, but " + std::to_string(n_types) + " types of cells");
       const std::map<unsigned int, unsigned int> corners_of_type = {{3, 2}, {5, 3}, {9, 4}};

@@ -563,6 +563,7 @@ TEST(MeshFiles, numbers_in_vtk_and_unv_are_checked)
   EXPECT_SAYS(refusal_of(".vtk", vtk, "CELL_TYPES 3\n9 9 3", "CELL_TYPES 2\n9 9"), "3 cells, but 2 types");
   EXPECT_SAYS(refusal_of(".vtk", vtk, "CELL_TYPES 3\n9 9 3", "CELL_TYPES 3\n9 9 9"), "cell 2 of type 9 has 2 corners");
   EXPECT_SAYS(refusal_of(".vtk", vtk, "4 0 1 2 3", "4 0 1 2 1e16"), "mixed up in its section CELLS");
+  EXPECT_SAYS(refusal_of(".vtk", vtk, "4 0 1 2 3", "0 0 0 1 0 0\n4 0 1 2 3"), "mixed up in its section CELLS");
   EXPECT_SAYS(refusal_of(".vtk", vtk, "0 1 0 2 0 0", "0 1 O 2 0 0"), "mixed up in its section POINTS");
 
   const std::string unv = "-1\n2411\n1 1 1 11\n0 0 0\n2 1 1 11\n1 0 0\n3 1 1 11\n1 1 0\n4 1 1 11\n0 1 0\n-1\n-1\n2412\n"
