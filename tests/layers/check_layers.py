@@ -32,7 +32,7 @@ RULES = {
     "base": Rule(dealii={"base"}, libraries={"MPI", "Boost", "POSIX"}),
     "qp": Rule(),
     "tfeti": Rule(layers={"base", "qp"}, dealii={"base", "lac"},
-                  libraries={"MPI", "Boost", "Eigen", "Trilinos", "CHOLMOD"}),
+                  libraries={"MPI", "Boost", "Eigen", "Trilinos", "CHOLMOD", "POSIX"}),
     "scene": Rule(layers={"base"}, headers={"qp/options.h", "tfeti/options.h"}, dealii={"base"},
                   libraries={"MPI", "Boost", "muParser"}),
     "fem": Rule(layers={"base", "scene"},
@@ -57,7 +57,7 @@ LIBRARIES = [
     ("CHOLMOD", r"(suitesparse/)?(cholmod|SuiteSparse_config|amd|colamd|camd|ccolamd)\.h$"),
     ("Trilinos", r"(trilinos/)?(Amesos2|Tpetra|Teuchos|Kokkos|Belos|Epetra|Amesos|Xpetra|Trilinos)"),
     ("zlib", r"zlib\.h$"),
-    ("POSIX", r"(sys/|unistd\.h$|fcntl\.h$)"),
+    ("POSIX", r"(sys/|unistd\.h$|fcntl\.h$|dlfcn\.h$)"),
 ]
 
 # A matter of the build, not of a layer.
