@@ -34,8 +34,8 @@ namespace slipstick::contact
     constexpr unsigned int max_restarts = 4;
     // ... each time from a residual smaller by this factor.
     constexpr double restart_accuracy = 0.1;
-    // Multipliers nearer to a bound than this part of the largest one are at it: some 50 roundoffs.
-    constexpr double rounding = 1e-14;
+    // Multipliers nearer to a bound than this part of the largest one are at it: rounding.
+    constexpr double rounding = 1e-13;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
 

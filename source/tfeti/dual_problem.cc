@@ -25,6 +25,8 @@ namespace slipstick::tfeti
 
     // Friction rows hold loose motions if the shares of a choice of them differ by no more than this factor.
     constexpr double least_hold = 1e-8;
+    // ... if they are more than this part of the largest force.
+    constexpr double rounding = 1e-13;
     // Newton steps of the amounts by which loose bodies slide, and the change at which they end.
     constexpr unsigned int max_slide_steps = 100;
     constexpr double       slide_tolerance = 1e-14;
@@ -310,8 +312,9 @@ namespace slipstick::tfeti
     const Eigen::MatrixXd            own = bodies->jumps(loose);
     std::vector<std::vector<double>> candidates;
     std::vector<std::uint64_t>       labels;
+    const double                     noise        = rounding * x.linfty_norm();
     const auto                       is_candidate = [&](const unsigned int r) {
-      return !free[r] && rows.kind[r] == RowKind::tangential && x.local_element(r) != 0;
+      return !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
     };
     for (unsigned int r = 0; r < free.size(); ++r)
       if (is_candidate(r))

@@ -46,18 +46,20 @@ namespace slipstick::tfeti
     /// Open MPI 4 at the price of what the run needs; what the user has set wins.
     void prepare_open_mpi()
     {
-      const auto set    = [](const char *name, const char *value) { setenv(name, value, 0); };
-      const auto number = [](const char *name) {
-        const char *value = std::getenv(name);
-        return std::string(value ? value : "1");
-      };
-      set("OMPI_MCA_ess_singleton_isolated", "1"); // starts a daemon where mpirun has not: 0.1 s
+      const auto set  = [](const char *name, const char *value) { setenv(name, value, 0); };
+      const auto size = std::getenv("OMPI_COMM_WORLD_SIZE"), on_node = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
+      const bool is_alone = !size && !std::getenv("PMI_RANK") && !std::getenv("PMIX_RANK");
+      // A daemon is started where mpirun has not: 0.1 s. Folders for it in one that the last process to end removes, even
+      // while the next one starts and then fails (one of 80 runs, four at a time).
+      set("OMPI_MCA_ess_singleton_isolated", "1");
+      if (is_alone)
+        set("OMPI_MCA_orte_create_session_dirs", "0");
       // On one node memory is the network. Libraries of others are loaded all the same, and Omni-Path's measures the
       // processor's clock for 0.2 s (strace).
-      if (number("OMPI_COMM_WORLD_LOCAL_SIZE") == number("OMPI_COMM_WORLD_SIZE") && !std::getenv("PMI_RANK"))
+      if (is_alone || (size && on_node && std::string(size) == on_node))
         {
           set("OMPI_MCA_pml", "ob1");
-          set("OMPI_MCA_btl", "^ofi,openib,uct,usnic");
+          set("OMPI_MCA_btl", is_alone ? "self" : "^ofi,openib,uct,usnic");
         }
     }
   } // namespace
