@@ -13,7 +13,7 @@
 // --condensed                   contact unknowns last in the ordering, one factorisation, Newton on their dense Schur
 //                               complement: beyond the usual way
 // --analysis-only               one analysis and one factorisation, to choose the ordering
-// --tolerance EPS, --threads N, --set NAME=VALUE
+// --tolerance EPS, --threads N (of BLAS), --openmp (CHOLMOD's OpenMP regions as they come), --set NAME=VALUE
 #include <slipstick/base/log.h>
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/contact_constraints.h>
@@ -45,6 +45,7 @@ namespace
     bool                     condensed = false, analysis_only = false;
     double                   tolerance = 1e-4;
     int                      threads   = 1;
+    bool                     openmp    = false;
     std::vector<std::string> overrides;
   };
 
@@ -708,6 +709,8 @@ namespace
           options.tolerance = std::stod(next());
         else if (word == "--threads")
           options.threads = std::stoi(next());
+        else if (word == "--openmp")
+          options.openmp = true;
         else if (word == "--set")
           options.overrides.push_back(next());
         else
@@ -724,7 +727,7 @@ int main(int argc, char **argv)
   try
     {
       const Options  options = read(argc, argv);
-      tfeti::Process process(argc, argv, options.threads);
+      tfeti::Process process(argc, argv, options.threads, options.openmp);
       std::cout << run(options).dump() << std::endl;
     }
   catch (const std::exception &error)

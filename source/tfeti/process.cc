@@ -15,16 +15,16 @@ extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
 
 namespace
 {
-  bool uses_threads = false;
+  bool opens_regions = false;
 }
 
 // In place of libgomp's. CHOLMOD opens thousands of parallel regions a factorisation, each of which ends in a system call,
-// of one thread too: a seventh of the time of factors of 5000 unknowns (perf). With one thread a region is a call.
+// of one thread too: a seventh of the time of factors of 5000 unknowns (perf). Here a region is a call.
 extern "C" void GOMP_parallel(void (*body)(void *), void *data, unsigned int n_threads, unsigned int flags)
 {
   using Parallel             = void (*)(void (*)(void *), void *, unsigned int, unsigned int);
   static const auto original = reinterpret_cast<Parallel>(dlsym(RTLD_NEXT, "GOMP_parallel"));
-  if (uses_threads && original)
+  if (opens_regions && original)
     original(body, data, n_threads, flags);
   else
     body(data);
@@ -36,10 +36,9 @@ namespace slipstick::tfeti
   {
     void use_threads(const unsigned int n)
     {
-      uses_threads = n > 1;
       if (openblas_set_num_threads)
         openblas_set_num_threads(static_cast<int>(n));
-      if (omp_set_max_active_levels && n == 1)
+      if (omp_set_max_active_levels && !opens_regions)
         omp_set_max_active_levels(0);
     }
 
@@ -78,8 +77,9 @@ namespace slipstick::tfeti
     Tpetra::ScopeGuard tpetra;
   };
 
-  Process::Process(int &argc, char **&argv, const unsigned int n_threads)
+  Process::Process(int &argc, char **&argv, const unsigned int n_threads, const bool opens_regions_)
   {
+    opens_regions = opens_regions_;
     use_threads(n_threads);
     prepare_open_mpi();
     libraries = std::make_unique<Libraries>(argc, argv);

@@ -138,21 +138,22 @@ namespace slipstick::tfeti
                 a->values * b->values.transpose();
         begin = end;
       }
-    Eigen::VectorXd load = Eigen::VectorXd::Zero(n_motions);
-    for (const auto &subdomain : subdomains)
-      load.segment(subdomain->body() * motions_of_body, motions_of_body) +=
-        subdomain->body_modes().transpose() * (subdomain->kernel().transpose() * subdomain->load());
     MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, comm);
-    MPI_Allreduce(MPI_IN_PLACE, load.data(), load.size(), MPI_DOUBLE, MPI_SUM, comm);
 
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
     std::vector<RigidMotion>                             motions;
     for (unsigned int i = 0; i < n_motions; ++i)
       if (eigen.eigenvalues()[i] <= singular_tolerance * std::max(eigen.eigenvalues()[n_motions - 1], 1.))
-        {
-          const Eigen::VectorXd mode = eigen.eigenvectors().col(i);
-          motions.push_back({mode, load.norm() > 0 ? mode.dot(load) / load.norm() : 0., frames});
-        }
+        motions.push_back({eigen.eigenvectors().col(i), 0., frames});
+    if (motions.empty()) // as nearly always: the loads are not asked
+      return motions;
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(n_motions);
+    for (const auto &subdomain : subdomains)
+      load.segment(subdomain->body() * motions_of_body, motions_of_body) +=
+        subdomain->body_modes().transpose() * (subdomain->kernel().transpose() * subdomain->load());
+    MPI_Allreduce(MPI_IN_PLACE, load.data(), load.size(), MPI_DOUBLE, MPI_SUM, comm);
+    for (auto &motion : motions)
+      motion.work = load.norm() > 0 ? motion.amplitudes.dot(load) / load.norm() : 0.;
     return motions;
   }
 

@@ -12,7 +12,8 @@ namespace slipstick::tfeti
   public:
     /// @param argc, argv: those of main(); what MPI takes is removed.
     /// @param n_threads of BLAS.
-    Process(int &argc, char **&argv, const unsigned int n_threads = 1);
+    /// @param opens_regions whether OpenMP regions (of CHOLMOD) are those of libgomp; else they are calls.
+    Process(int &argc, char **&argv, const unsigned int n_threads = 1, const bool opens_regions = false);
     ~Process();
 
   private:
