@@ -304,6 +304,45 @@ TEST(Mortar, corner_of_the_slave_has_a_row_for_each_side)
   EXPECT_EQ(at_corner, 2u);
 }
 
+// along their own normals both curves lean by x / radius, so that closing the gap would look like slip
+TEST(Mortar, equal_arcs_touch_along_their_plane_of_symmetry)
+{
+  const auto lower = arc(1, 50, 130, 32, 1, 0);
+  auto       upper = arc(1, 230, 310, 32, 1, 1000);
+  for (auto &edge : upper)
+    for (unsigned int i = 0; i < edge.n_nodes; ++i)
+      edge.at[i][1] += 2;
+  for (const auto &all : {rows(upper, lower), rows(lower, upper)})
+    {
+      unsigned int n = 0;
+      for (const auto &row : all)
+        if (const double x = std::abs(row.position[0]); x > 0.05 && x < 0.4)
+          {
+            // the ray along the slave's own normal meets the master 2 gap x / radius aside
+            const double gap = 2 * (1 - std::sqrt(1 - x * x));
+            EXPECT_LT(std::abs(row.normal[0]), 1.2 * gap * x);
+            ++n;
+          }
+      EXPECT_GE(n, 16u);
+    }
+}
+
+TEST(Mortar, normals_are_means_of_both_sides)
+{
+  for (const unsigned int degree : {1, 2})
+    {
+      unsigned int n = 0;
+      for (const auto &row : rows(arc(1, 200, 340, 40, degree, 0), line({3, -1}, {-3, -1}, 7, degree, 1000), 4))
+        if (std::abs(row.position[0]) < 0.9) // the nodes at the ends have one edge, whose normal leans more
+          {
+            const auto sum = row.position + dealii::Tensor<1, 2>({0, -1});
+            EXPECT_LT((row.normal - sum / sum.norm()).norm(), 1e-3) << row.position;
+            ++n;
+          }
+      EXPECT_GE(n, 30u);
+    }
+}
+
 TEST(Mortar, distance_where_curves_face_each_other)
 {
   EXPECT_NEAR(*fem::facing_distance(bottom(0, 1, 4, 1), top(0, 1, 3, 1, -0.3)), 0.3, 1e-14);
@@ -333,7 +372,9 @@ TEST(Mortar, moments_of_the_sides_agree_to_the_square_of_the_mesh_size)
               moment += pressure * (torque(row.slave_weights, x) - torque(row.master_weights, y));
             }
           if (previous > 0)
-            EXPECT_LT(std::abs(moment), std::abs(previous) / 3 + 1e-14);
+            {
+              EXPECT_LT(std::abs(moment), std::abs(previous) / 3 + 1e-14);
+            }
           previous = std::abs(moment);
         }
       EXPECT_LT(previous, 1e-4);

@@ -21,6 +21,17 @@ class CattaneoMindlin(unittest.TestCase):
     def test_stick_zone_with_bilinear_elements(self):
         self.assertLess(measured.cattaneo_mindlin()['stick_error_elements'], 1)
 
+    def test_two_cylinders_are_symmetric(self):
+        """Nothing prefers a side but the mesh of the lower one. Along the slave's own normals, 10 % of the largest."""
+        found = measured.cattaneo_mindlin_cylinders()
+        self.assertLess(found['stick_error_elements'], 1, (found['stick'], found['c']))
+        at = {round(x, 3): traction for x, traction in found['nodes']}
+        pairs = [(traction, at[-x]) for x, traction in at.items() if 0 < x < found['exact'].hertz.a and -x in at]
+        self.assertGreaterEqual(len(pairs), 8)
+        largest = max(at.values())
+        for left, right in pairs:
+            self.assertLess(abs(left - right), 0.05 * largest)
+
     def test_closed_form_gives_the_published_figures(self):
         for share, c, middle, largest in ((0.25, 0.64328, 34.447, 128.560), (0.5, 0.52523, 75.309, 181.811),
                                           (0.75, 0.37140, 128.560, 222.672)):

@@ -1,23 +1,15 @@
-// Pairing of two curves and the mortar integrals between them.
+// The mortar integrals between two curves.
 //
 // Notation: N_k shape functions of a slave edge, phi_i its test functions, y(x) the point of the master that the ray from
-// x along the slave's normal field meets, <.> the integral over that part of the slave that has such a point. A row says
+// x along the normal field of the pairing meets, <.> the integral over that part of the slave that has such a point. A row says
 // n_i . (sum_k d_ik u_k - sum_j m_ij u_j) <= gap with d_ik = <phi_i N_k> / D_i, m_ij = <phi_i N_j(y)> / D_i, D_i = <phi_i>.
 #pragma once
 
-#include <slipstick/fem/surface.h>
-
-#include <optional>
+#include <slipstick/fem/curve_pairing.h>
 
 namespace slipstick::fem
 {
   using Weights = std::vector<std::pair<NodeKey, double>>; // sorted by node, sum 1
-
-  /// How far a slave looks for its master along its normal, outwards and (for overlaps) inwards [mm].
-  struct Reach
-  {
-    double ahead = 0, behind = 0;
-  };
 
   /// One slave node and what faces it.
   template <int dim>
@@ -26,7 +18,7 @@ namespace slipstick::fem
     NodeKey                slave{};
     unsigned int           side = 0;        // a node at a corner of the slave boundary has one row for each side
     dealii::Point<dim>     position;        // of the slave node [mm]
-    dealii::Tensor<1, dim> normal;          // outward, averaged over the edges of the slave boundary on this side
+    dealii::Tensor<1, dim> normal;          // outward, mean of both sides (CurvePairing)
     Weights                slave_weights;   // d_ik
     Weights                master_weights;  // m_ij
     dealii::Point<dim>     master_position; // sum_j m_ij y_j [mm]
@@ -59,7 +51,4 @@ namespace slipstick::fem
   std::optional<double> facing_distance(const std::vector<SurfaceEdge<dim>> &a,
                                         const std::vector<SurfaceEdge<dim>> &b,
                                         const double bound = std::numeric_limits<double>::max());
-
-  // Curves face each other where the product of their normals is below this.
-  constexpr double facing_cosine = -0.25; // 104 degrees
 } // namespace slipstick::fem
