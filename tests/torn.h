@@ -79,7 +79,11 @@ namespace slipstick::test
   }
 
   /// Empty formulas leave a component free.
-  inline void support(Scene &scene, const unsigned int body, const std::string &boundary, const std::string &x, const std::string &y)
+  inline void support(Scene             &scene,
+                      const unsigned int body,
+                      const std::string &boundary,
+                      const std::string &x,
+                      const std::string &y)
   {
     scene::PrescribedDisplacement<2> support;
     support.name  = "held " + boundary;
@@ -91,7 +95,24 @@ namespace slipstick::test
     scene.supports.push_back(support);
   }
 
-  inline void load(Scene &scene, const unsigned int body, const std::string &boundary, const std::string &x, const std::string &y)
+  inline void touch(Scene                     &scene,
+                    const scene::BoundaryName &slave,
+                    const scene::BoundaryName &master,
+                    const scene::ContactLaw    law)
+  {
+    scene::ContactPair<2> pair;
+    pair.name   = "pair";
+    pair.slave  = slave;
+    pair.master = master;
+    pair.law    = law;
+    scene.contacts.push_back(pair);
+  }
+
+  inline void load(Scene             &scene,
+                   const unsigned int body,
+                   const std::string &boundary,
+                   const std::string &x,
+                   const std::string &y)
   {
     scene.tractions.push_back({"load on " + boundary, {body, boundary}, {{field(x), field(y)}}, {}});
   }
@@ -289,7 +310,8 @@ namespace slipstick::test
               g.push_back({{offset + double(i), 0., system.load[i]}});
             }
           for (const auto &entry : torn.constraints.blocks[p])
-            b.push_back({{double(torn.constraints.rows->local_to_global(entry.row)), offset + double(entry.dof), entry.value}});
+            b.push_back(
+              {{double(torn.constraints.rows->local_to_global(entry.row)), offset + double(entry.dof), entry.value}});
         }
       const auto matrix = [&](const std::vector<Triple> &own, const unsigned int rows, const unsigned int columns) {
         Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(rows, columns);
@@ -297,7 +319,7 @@ namespace slipstick::test
           sum(static_cast<int>(i), static_cast<int>(j)) += value;
         return sum;
       };
-      const unsigned int n      = first.back();
+      const unsigned int    n   = first.back();
       const Eigen::MatrixXd low = matrix(k, n, n);
       K                         = low.selfadjointView<Eigen::Lower>();
       R                         = matrix(r, n, 3 * sizes.size());
@@ -320,7 +342,7 @@ namespace slipstick::test
       Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(K.rows(), K.cols());
       for (unsigned int s = 0; s + 1 < first.size(); ++s)
         {
-          const unsigned int n = first[s + 1] - first[s];
+          const unsigned int n                    = first[s + 1] - first[s];
           inverse.block(first[s], first[s], n, n) = moore_penrose(K.block(first[s], first[s], n, n));
         }
       return inverse;
@@ -470,9 +492,9 @@ namespace slipstick::test
       return nodal_field(torn, u);
     }
 
-    Torn                                                                            torn;
-    std::vector<std::vector<Point>>                                                 positions; // nodes, by body
-    std::vector<std::vector<std::optional<double>>>                                 held;      // unknowns, by body
+    Torn                                                                             torn;
+    std::vector<std::vector<Point>>                                                  positions; // nodes, by body
+    std::vector<std::vector<std::optional<double>>>                                  held;      // unknowns, by body
     std::vector<std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>> factors;
   };
 

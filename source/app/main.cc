@@ -1,7 +1,7 @@
 #include <slipstick/app/command_line.h>
 #include <slipstick/app/simulation.h>
-#include <slipstick/tfeti/process.h>
 #include <slipstick/scene/read.h>
+#include <slipstick/tfeti/process.h>
 
 #include <deal.II/base/mpi.h>
 

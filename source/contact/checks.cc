@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace slipstick::contact
 {
@@ -21,8 +22,6 @@ namespace slipstick::contact
     constexpr double negligible_load = 1e-3;
     // Slip bounds above this multiple of the largest contact force say no more than that nodes stick.
     constexpr double bounds_that_count = 2;
-
-    constexpr unsigned int invalid_rank = std::numeric_limits<unsigned int>::max();
 
     /// The largest of some numbers (none of them: 0; one that is no number stays) and where it is.
     struct Largest
@@ -68,35 +67,48 @@ namespace slipstick::contact
       }
     };
 
+    /// The pair of contact of a row where x (owned rows) is not 0, the same on all ranks; none: nothing. Collective.
+    std::optional<unsigned int> pair_of(const tfeti::DualProblem &dual, const DistributedVector &x)
+    {
+      unsigned int pair = 0; // its number + 1, 0 for none
+      for (const auto &point : dual.constraints().contact_points)
+        for (const unsigned int row : {point.normal_row, point.tangential_row})
+          if (row != tfeti::invalid_row && x.local_element(row) != 0)
+            pair = point.pair + 1;
+      pair = dealii::Utilities::MPI::max(pair, dual.communicator());
+      return pair > 0 ? std::make_optional(pair - 1) : std::nullopt;
+    }
+
+    Place place_of(const tfeti::SubdomainSystem     &subdomain,
+                   const unsigned int                unknown,
+                   const std::optional<unsigned int> pair)
+    {
+      return {true, subdomain.body(), subdomain.position(unknown), true, pair.has_value(), pair.value_or(0)};
+    }
+
+    /// Is this the first of the ranks that say so? Collective.
+    bool is_first(const bool says_so, const MPI_Comm comm)
+    {
+      const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(comm);
+      return rank == dealii::Utilities::MPI::min(says_so ? rank : dealii::Utilities::MPI::n_mpi_processes(comm), comm);
+    }
+
     /// Violation of an owned row to that of all ranks, and a node that this row touches, where its subdomain is.
     /// Collective.
     void find_place_of_row(const tfeti::DualProblem &dual, const unsigned int owned_row, Largest &violation)
     {
-      const MPI_Comm     comm    = dual.communicator();
-      const double       largest = dealii::Utilities::MPI::max(violation.value, comm);
-      const unsigned int rank    = dealii::Utilities::MPI::this_mpi_process(comm);
-      const bool         mine    = owned_row != tfeti::invalid_row && violation.value == largest;
-      const unsigned int first =
-        dealii::Utilities::MPI::min(mine ? rank : dealii::Utilities::MPI::n_mpi_processes(comm), comm);
-      DistributedVector one = dual.zero();
-      if (rank == first)
+      const MPI_Comm    comm    = dual.communicator();
+      const double      largest = dealii::Utilities::MPI::max(violation.value, comm);
+      DistributedVector one     = dual.zero();
+      if (is_first(owned_row != tfeti::invalid_row && violation.value == largest, comm))
         one.local_element(owned_row) = 1;
-      unsigned int pair = 0; // its number + 1, 0 for none
-      for (const auto &point : dual.constraints().contact_points)
-        if (rank == first && (point.normal_row == owned_row || point.tangential_row == owned_row))
-          pair = point.pair + 1;
-      pair               = dealii::Utilities::MPI::max(pair, comm);
+      const auto pair    = pair_of(dual, one);
       const auto touched = dual.forces(one);
       for (unsigned int p = 0; p < touched.size(); ++p)
         {
           Eigen::Index unknown;
           if (touched[p].size() > 0 && touched[p].cwiseAbs().maxCoeff(&unknown) > 0)
-            violation.place = {true,
-                               dual.subdomains()[p]->body(),
-                               dual.subdomains()[p]->position(unknown),
-                               true,
-                               pair > 0,
-                               pair > 0 ? pair - 1 : 0};
+            violation.place = place_of(*dual.subdomains()[p], unknown, pair);
         }
       if (!std::isnan(violation.value))
         violation.value = largest;
@@ -108,30 +120,16 @@ namespace slipstick::contact
                             const unsigned int                      body,
                             Largest                                &error)
     {
-      const MPI_Comm               comm  = dual.communicator();
-      const auto                  &spot  = energies.spots[body];
-      const unsigned int           rank  = dealii::Utilities::MPI::this_mpi_process(comm);
-      const bool                   mine  = spot.energy == dealii::Utilities::MPI::max(spot.energy, comm);
-      const unsigned int           first = dealii::Utilities::MPI::min(mine ? rank : invalid_rank, comm);
-      std::vector<Eigen::VectorXd> one;
-      for (const auto &system : dual.subdomains())
-        one.push_back(Eigen::VectorXd::Zero(system->n_unknowns()));
-      if (rank == first && spot.energy >= 0)
-        one[spot.subdomain][spot.unknown] = 1;
-      const auto   touched = dual.jumps(one);
-      unsigned int pair    = 0; // its number + 1, 0 for none
-      for (const auto &point : dual.constraints().contact_points)
-        for (const unsigned int row : {point.normal_row, point.tangential_row})
-          if (row != tfeti::invalid_row && touched.local_element(row) != 0)
-            pair = point.pair + 1;
-      pair = dealii::Utilities::MPI::max(pair, comm);
-      if (rank == first && spot.energy >= 0)
-        error.place = {true,
-                       body,
-                       dual.subdomains()[spot.subdomain]->position(spot.unknown),
-                       true,
-                       pair > 0,
-                       pair > 0 ? pair - 1 : 0};
+      const MPI_Comm comm  = dual.communicator();
+      const auto    &spot  = energies.spots[body];
+      const double   most  = dealii::Utilities::MPI::max(spot.energy, comm);
+      const bool     is_it = is_first(spot.energy >= 0 && spot.energy == most, comm);
+      const auto     pair = pair_of(dual, dual.column(is_it ? spot.subdomain : dual.subdomains().size(), spot.touched));
+      if (is_it)
+        {
+          const auto &subdomain = *dual.subdomains()[spot.subdomain];
+          error.place           = place_of(subdomain, subdomain.touched()[spot.touched], pair);
+        }
     }
 
     double relative(const double value, const double scale)
@@ -234,10 +232,14 @@ namespace slipstick::contact
     }
 
     /// What a row at a bound does that the law does not allow [mm]: penetration; slip that the friction drives.
-    /// @param jump B u - c, @param x multiplier, @param bound of it, if tangential.
-    double inadmissible_jump(const tfeti::RowKind kind, const double jump, const double x, const double bound)
+    /// @param jump B u - c, @param x multiplier, @param bound of it, if tangential, @param noise forces that are rounding.
+    double inadmissible_jump(const tfeti::RowKind kind,
+                             const double         jump,
+                             const double         x,
+                             const double         bound,
+                             const double         noise)
     {
-      if (kind == tfeti::RowKind::tangential && bound == 0)
+      if (kind == tfeti::RowKind::tangential && bound <= noise)
         return 0;
       return kind == tfeti::RowKind::tangential && x > 0 ? std::min(jump, 0.) : std::max(jump, 0.);
     }
@@ -378,13 +380,15 @@ namespace slipstick::contact
     for (unsigned int r = 0; r < constraints.kind.size(); ++r)
       if (is_equality(constraints.kind[r]) && largest[jump].take(std::abs(violation(r)), Place()))
         row_of_jump = r;
+    const double      noise = tfeti::force_rounding * multipliers.linfty_norm();
     DistributedVector wrong = jumps;
     std::vector<bool> held(constraints.kind.size());
     for (unsigned int r = 0; r < held.size(); ++r)
       {
         wrong.local_element(r) =
-          free[r] ? violation(r)
-                  : inadmissible_jump(constraints.kind[r], violation(r), multipliers.local_element(r), slip_bound[r]);
+          free[r]
+            ? violation(r)
+            : inadmissible_jump(constraints.kind[r], violation(r), multipliers.local_element(r), slip_bound[r], noise);
         held[r] = is_equality(constraints.kind[r]) || wrong.local_element(r) != 0;
       }
     const auto error_energies = dual.jump_energies(wrong, held);

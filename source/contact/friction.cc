@@ -34,8 +34,6 @@ namespace slipstick::contact
     constexpr unsigned int max_restarts = 4;
     // ... each time from a residual smaller by this factor.
     constexpr double restart_accuracy = 0.1;
-    // Multipliers nearer to a bound than this part of the largest one are at it: rounding.
-    constexpr double rounding = 1e-13;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
 
@@ -433,11 +431,11 @@ namespace slipstick::contact
         return unshifted(result.x);
       }
 
-      /// Fills which inequality rows are at a bound; a force that is all rounding holds nothing.
+      /// Fills which inequality rows are at a bound, or as near as rounding.
       DualSolution finished()
       {
         unsigned long long n     = 0;
-        const double       noise = rounding * solution.multipliers.linfty_norm();
+        const double       noise = tfeti::force_rounding * solution.multipliers.linfty_norm();
         solution.free.resize(solution.multipliers.locally_owned_size());
         for (unsigned int r = 0; r < solution.free.size(); ++r)
           {

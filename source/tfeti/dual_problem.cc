@@ -25,8 +25,6 @@ namespace slipstick::tfeti
 
     // Friction rows hold loose motions if the shares of a choice of them differ by no more than this factor.
     constexpr double least_hold = 1e-8;
-    // ... if they are more than this part of the largest force.
-    constexpr double rounding = 1e-13;
     // Newton steps of the amounts by which loose bodies slide, and the change at which they end.
     constexpr unsigned int max_slide_steps = 100;
     constexpr double       slide_tolerance = 1e-14;
@@ -262,7 +260,7 @@ namespace slipstick::tfeti
         result.of_body[body] += energies[p].sum();
         Eigen::Index k;
         if (energies[p].size() > 0 && energies[p].maxCoeff(&k) > result.spots[body].energy)
-          result.spots[body] = {energies[p][k], p, systems[p]->touched()[k]};
+          result.spots[body] = {energies[p][k], p, static_cast<unsigned int>(k)};
       }
     MPI_Allreduce(MPI_IN_PLACE, result.of_body.data(), result.of_body.size(), MPI_DOUBLE, MPI_SUM, comm);
     return result;
@@ -304,6 +302,16 @@ namespace slipstick::tfeti
     return y;
   }
 
+  DistributedVector DualProblem::column(const unsigned int subdomain, const unsigned int touched) const
+  {
+    DistributedVector sum = F->ghosted(), y = zero();
+    if (subdomain < systems.size())
+      F->gather(subdomain, Eigen::VectorXd::Unit(systems[subdomain]->touched().size(), touched), sum);
+    sum.compress(dealii::VectorOperation::add);
+    y.copy_locally_owned_data_from(sum);
+    return y;
+  }
+
   // The free rows and as many of those with friction forces as hold the loose motions.
   std::vector<bool> DualProblem::rows_that_fix(const std::vector<RigidMotion> &loose,
                                                const DistributedVector        &x,
@@ -312,7 +320,7 @@ namespace slipstick::tfeti
     const Eigen::MatrixXd            own = bodies->jumps(loose);
     std::vector<std::vector<double>> candidates;
     std::vector<std::uint64_t>       labels;
-    const double                     noise        = rounding * x.linfty_norm();
+    const double                     noise        = force_rounding * x.linfty_norm();
     const auto                       is_candidate = [&](const unsigned int r) {
       return !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
     };

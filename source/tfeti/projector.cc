@@ -225,7 +225,8 @@ namespace slipstick::tfeti
     const std::shared_ptr<const CoarseSolver::Elimination> &staying_part(const std::vector<double> &metric,
                                                                          const MPI_Comm             comm) const
     {
-      const bool is_other = !of_staying || metric_of_staying != metric; // not on ranks without rows, which have no metric
+      const bool is_other =
+        !of_staying || metric_of_staying != metric; // not on ranks without rows, which have no metric
       if (dealii::Utilities::MPI::max(is_other ? 1 : 0, comm) > 0)
         {
           Gram gram;

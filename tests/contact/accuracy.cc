@@ -45,12 +45,7 @@ namespace
     scene.materials[1].young_modulus = 1e3;
     support(scene, 0, "bottom", "0", "0");
     support(scene, 1, "top", "0", "-0.1 - 0.02*x");
-    scene::ContactPair<2> pair;
-    pair.name   = "pair";
-    pair.slave  = {1, "bottom"};
-    pair.master = scene::BoundaryName{0, "top"};
-    pair.law    = scene::ContactLaw::frictionless;
-    scene.contacts.push_back(pair);
+    touch(scene, {1, "bottom"}, {0, "top"}, scene::ContactLaw::frictionless);
     scene.solver.algorithm                     = scene::Algorithm::semismooth_newton;
     scene.solver.tolerance                     = 1e-12;
     scene.solver.dual.preconditioner_precision = tfeti::Precision::double_precision;

@@ -26,12 +26,7 @@ namespace
     support(scene, 0, "left", "0", "");
     support(scene, 1, "left", "0", "");
     load(scene, 1, "top", "0", "-100");
-    scene::ContactPair<2> pair;
-    pair.name   = "pair";
-    pair.slave  = {1, "bottom"};
-    pair.master = scene::BoundaryName{0, "top"};
-    pair.law    = law;
-    scene.contacts.push_back(pair);
+    touch(scene, {1, "bottom"}, {0, "top"}, law);
     scene.solver.tolerance = 1e-12;
     return scene;
   }

@@ -52,11 +52,11 @@ namespace
   /// The same forces from the untorn body: its compliance at the contact nodes, projected Gauss-Seidel.
   Forces reference_forces(const Scene &scene)
   {
-    const Untorn    untorn(scene);
-    const auto     &contact = scene.contacts[0];
-    const auto     &circle  = scene.obstacles[0];
-    const auto     &x       = untorn.positions[0];
-    const unsigned  n_nodes = x.size();
+    const Untorn   untorn(scene);
+    const auto    &contact = scene.contacts[0];
+    const auto    &circle  = scene.obstacles[0];
+    const auto    &x       = untorn.positions[0];
+    const unsigned n_nodes = x.size();
     struct Row
     {
       unsigned int    node;
@@ -67,8 +67,9 @@ namespace
     for (unsigned int i = 0; i < n_nodes; ++i)
       if (lies_on(scene.bodies[0], contact.slave.boundary, x[i]) && !untorn.held[0][2 * i])
         {
-          const double h = 10. / 8, area = scene.discretization.degree == 1 ? (x[i][0] < 9.9 ? h : h / 2) :
-                                           std::fmod(x[i][0] + 1e-9, h) > 0.1 ? h * 4 / 6 : (x[i][0] < 9.9 ? h / 3 : h / 6);
+          const double h = 10. / 8, area = scene.discretization.degree == 1     ? (x[i][0] < 9.9 ? h : h / 2)
+                                           : std::fmod(x[i][0] + 1e-9, h) > 0.1 ? h * 4 / 6
+                                                                                : (x[i][0] < 9.9 ? h / 3 : h / 6);
           const auto   ray = circle.center - x[i];
           Row          normal{i, Eigen::VectorXd::Zero(2 * n_nodes), ray.norm() - circle.radius, 0, 1e300};
           normal.b[2 * i]     = ray[0] / ray.norm();
@@ -99,15 +100,16 @@ namespace
         for (unsigned int k = 0; k < m; ++k)
           {
             const double old = force[k];
-            force[k]         = std::min(rows[k].upper, std::max(rows[k].lower, old + (g[k] - C.row(k).dot(force)) / C(k, k)));
-            change           = std::max(change, std::abs(force[k] - old));
+            force[k] = std::min(rows[k].upper, std::max(rows[k].lower, old + (g[k] - C.row(k).dot(force)) / C(k, k)));
+            change   = std::max(change, std::abs(force[k] - old));
           }
         if (change < 1e-13 * force.cwiseAbs().maxCoeff())
           break;
       }
     Forces forces;
     for (unsigned int k = 0; k < m; ++k)
-      forces[position_key(x[rows[k].node][0], x[rows[k].node][1], 1e-6)][rows[k].lower < 0 || rows[k].upper < 1e300] = force[k];
+      forces[position_key(x[rows[k].node][0], x[rows[k].node][1], 1e-6)][rows[k].lower < 0 || rows[k].upper < 1e300] =
+        force[k];
     return forces;
   }
 
@@ -133,8 +135,8 @@ namespace
     {
       const Torn           &torn = solved.torn;
       const Dense           dense(torn);
-      const Eigen::VectorXd x    = gathered(solved.solution.multipliers, torn.comm);
-      const auto            box  = contact::multiplier_box(*solved.dual, contact::slip_bounds(torn.scene, *solved.dual, 1.));
+      const Eigen::VectorXd x = gathered(solved.solution.multipliers, torn.comm);
+      const auto box = contact::multiplier_box(*solved.dual, contact::slip_bounds(torn.scene, *solved.dual, 1.));
       const Eigen::VectorXd l = gathered(box.lower, torn.comm), u = gathered(box.upper, torn.comm);
       const Eigen::MatrixXd Kplus = dense.pseudo_inverse();
       const Eigen::VectorXd gap   = dense.c - dense.B * (Kplus * (dense.f - dense.B.transpose() * x)); // F x - d
@@ -209,9 +211,9 @@ TEST(ContactSolve, contact_forces_of_degree_two_agree_with_those_of_the_untorn_b
 TEST(ContactSolve, some_nodes_slip_some_stick_some_are_open)
 {
   // or the tests above compare less than they claim
-  const Solved       solved(cut(pushed_box("100"), blocks(2)));
-  const auto         bounds = contact::slip_bounds(solved.torn.scene, *solved.dual, 1.);
-  unsigned int       n[4]   = {0, 0, 0, 0};
+  const Solved solved(cut(pushed_box("100"), blocks(2)));
+  const auto   bounds = contact::slip_bounds(solved.torn.scene, *solved.dual, 1.);
+  unsigned int n[4]   = {0, 0, 0, 0};
   for (const auto &point : solved.torn.constraints.contact_points)
     {
       const double tangential = std::abs(solved.solution.multipliers.local_element(point.tangential_row));
@@ -219,7 +221,8 @@ TEST(ContactSolve, some_nodes_slip_some_stick_some_are_open)
       ++n[2 + (solved.solution.multipliers.local_element(point.normal_row) > 0)];
     }
   for (const unsigned int one : n)
-    EXPECT_GT(dealii::Utilities::MPI::sum(one, MPI_COMM_WORLD), 0u) << n[0] << " " << n[1] << " " << n[2] << " " << n[3];
+    EXPECT_GT(dealii::Utilities::MPI::sum(one, MPI_COMM_WORLD), 0u)
+      << n[0] << " " << n[1] << " " << n[2] << " " << n[3];
 }
 
 TEST(ContactSolve, slip_bound_zero_is_no_friction)
@@ -233,9 +236,9 @@ TEST(ContactSolve, free_rows_are_those_strictly_inside_their_bounds)
 {
   for (const Cut &how : cuts)
     {
-      const Solved       solved(cut(pushed_box("20"), how));
-      const auto         box = contact::multiplier_box(*solved.dual, contact::slip_bounds(solved.torn.scene, *solved.dual, 1.));
-      unsigned long long n   = 0;
+      const Solved solved(cut(pushed_box("20"), how));
+      const auto box = contact::multiplier_box(*solved.dual, contact::slip_bounds(solved.torn.scene, *solved.dual, 1.));
+      unsigned long long n = 0;
       for (unsigned int r = 0; r < solved.solution.free.size(); ++r)
         {
           const double x = solved.solution.multipliers.local_element(r);
@@ -266,7 +269,8 @@ TEST(ContactSolve, iteration_limit_is_a_status)
   scene.solver.smalbe.max_outer_iterations = 1;
   const Torn torn(scene);
   const auto dual = torn.dual();
-  EXPECT_EQ(contact::solve(*dual, contact::slip_bounds(scene, *dual, 1.), contact::resolved_options(scene), {}).status, qp::Status::iteration_limit);
+  EXPECT_EQ(contact::solve(*dual, contact::slip_bounds(scene, *dual, 1.), contact::resolved_options(scene), {}).status,
+            qp::Status::iteration_limit);
 }
 
 TEST(ContactSolve, observer_sees_every_outer_step_on_every_rank)
@@ -274,11 +278,12 @@ TEST(ContactSolve, observer_sees_every_outer_step_on_every_rank)
   for (const Scene &scene : {cut(pushed_box("20"), blocks(2)), cut(bent_box(8), blocks(2))})
     {
       const Torn   torn(scene);
-      const auto   dual = torn.dual();
-      unsigned int n    = 0;
-      const auto   solution = contact::solve(*dual, contact::slip_bounds(scene, *dual, 1.), contact::resolved_options(scene), [&](const qp::OuterStep &step) {
-        EXPECT_EQ(step.outer, ++n);
-      });
+      const auto   dual     = torn.dual();
+      unsigned int n        = 0;
+      const auto   solution = contact::solve(*dual,
+                                           contact::slip_bounds(scene, *dual, 1.),
+                                           contact::resolved_options(scene),
+                                           [&](const qp::OuterStep &step) { EXPECT_EQ(step.outer, ++n); });
       // projected conjugate gradients are one outer step and report every step within
       EXPECT_EQ(n, solution.algorithm == "pcg" ? solution.counts.cg_steps : solution.counts.outer_iterations);
       EXPECT_GT(n, 0u);
@@ -290,9 +295,10 @@ TEST(ContactSolve, multiplications_are_all_counted)
   for (const Scene &scene : {cut(pushed_box("20"), blocks(2)), cut(bent_box(8), blocks(2))})
     {
       const Torn torn(scene);
-      const auto dual     = torn.dual();
-      const auto before   = dual->dual_operator().n_applications();
-      const auto solution = contact::solve(*dual, contact::slip_bounds(scene, *dual, 1.), contact::resolved_options(scene), {});
+      const auto dual   = torn.dual();
+      const auto before = dual->dual_operator().n_applications();
+      const auto solution =
+        contact::solve(*dual, contact::slip_bounds(scene, *dual, 1.), contact::resolved_options(scene), {});
       EXPECT_EQ(dual->dual_operator().n_applications() - before, solution.counts.hessian_multiplications);
     }
 }
@@ -370,7 +376,8 @@ TEST(ContactSolve, floating_box_is_carried_by_the_circle)
             own[d] += solved.solution.multipliers.local_element(point.normal_row) * point.normal[d] +
                       solved.solution.multipliers.local_element(point.tangential_row) * tangent;
           }
-      const double sum_x = dealii::Utilities::MPI::sum(own[0], MPI_COMM_WORLD), sum_y = dealii::Utilities::MPI::sum(own[1], MPI_COMM_WORLD);
+      const double sum_x = dealii::Utilities::MPI::sum(own[0], MPI_COMM_WORLD),
+                   sum_y = dealii::Utilities::MPI::sum(own[1], MPI_COMM_WORLD);
       EXPECT_NEAR(sum_x, 5, 1e-6 * 250);
       EXPECT_NEAR(sum_y, -250, 1e-6 * 250);
     }
@@ -382,9 +389,10 @@ TEST(ContactSolve, load_that_lifts_the_box_off_has_no_equilibrium_on_any_rank)
     {
       const Scene       scene = cut(floating_box("0", "5000"), how);
       const Torn        torn(scene);
-      const auto        dual = torn.dual();
+      const auto        dual   = torn.dual();
       const auto        bounds = contact::slip_bounds(scene, *dual, 1.);
-      const std::string text = message_on_all_ranks<NoEquilibrium>([&] { contact::solve(*dual, bounds, contact::resolved_options(scene), {}); });
+      const std::string text   = message_on_all_ranks<NoEquilibrium>(
+        [&] { contact::solve(*dual, bounds, contact::resolved_options(scene), {}); });
       EXPECT_NE(text.find("body box: translation along ("), std::string::npos) << text;
       EXPECT_NE(text.find(", 1)"), std::string::npos) << text;
     }
@@ -396,16 +404,17 @@ TEST(ContactSolve, push_beyond_the_slip_bound_has_no_equilibrium_on_any_rank)
     {
       const Scene       scene = cut(floating_box("200", "-20"), how);
       const Torn        torn(scene);
-      const auto        dual = torn.dual();
+      const auto        dual   = torn.dual();
       const auto        bounds = contact::slip_bounds(scene, *dual, 1.);
-      const std::string text = message_on_all_ranks<NoEquilibrium>([&] { contact::solve(*dual, bounds, contact::resolved_options(scene), {}); });
+      const std::string text   = message_on_all_ranks<NoEquilibrium>(
+        [&] { contact::solve(*dual, bounds, contact::resolved_options(scene), {}); });
       EXPECT_NE(text.find("body box: "), std::string::npos) << text;
     }
 }
 
 TEST(ContactSolve, frictionless_box_on_a_circle_may_roll_off)
 {
-  Scene scene = floating_box("0", "-20");
+  Scene scene           = floating_box("0", "-20");
   scene.contacts[0].law = scene::ContactLaw::frictionless;
   for (const Cut &how : cuts)
     {
@@ -419,18 +428,18 @@ TEST(Solve, operator_in_single_precision_gives_the_solution_of_double)
   for (const auto algorithm : {scene::Algorithm::semismooth_newton, scene::Algorithm::smalbe})
     for (const auto &how : {blocks(4), metis(6)})
       {
-        Scene scene                            = cut(pushed_box("60"), how);
-        scene.solver.algorithm                 = algorithm;
-        scene.solver.dual.dual_operator        = tfeti::DualOperatorKind::explicit_blocks;
-        const auto         options             = contact::resolved_options(scene);
-        tfeti::DualOptions single              = options.dual;
-        single.operator_precision              = tfeti::Precision::single_precision;
+        Scene scene                     = cut(pushed_box("60"), how);
+        scene.solver.algorithm          = algorithm;
+        scene.solver.dual.dual_operator = tfeti::DualOperatorKind::explicit_blocks;
+        const auto         options      = contact::resolved_options(scene);
+        tfeti::DualOptions single       = options.dual;
+        single.operator_precision       = tfeti::Precision::single_precision;
         const Torn torn(scene);
         const auto in_double = torn.dual(options.dual), in_single = torn.dual(single);
         const auto solve = [&](tfeti::DualProblem &dual, const bool refined) {
           const contact::SlipLaw law(contact::slip_bounds(scene, dual, 1.));
-          auto solution = refined ? contact::solve_refined(dual, law, options, scene.friction, {})
-                                  : contact::solve(dual, law, options, scene.friction, {});
+          auto                   solution = refined ? contact::solve_refined(dual, law, options, scene.friction, {})
+                                                    : contact::solve(dual, law, options, scene.friction, {});
           EXPECT_EQ(solution.status, qp::Status::converged);
           return solution;
         };
@@ -447,14 +456,14 @@ TEST(Solve, operator_in_single_precision_gives_the_solution_of_double)
 
 TEST(Solve, linear_problem_in_single_precision_gives_the_solution_of_double)
 {
-  Scene scene            = cut(bent_box(8), blocks(4));
-  scene.solver.tolerance = 1e-10;
-  const auto options     = contact::resolved_options(scene);
-  auto       single      = options.dual;
-  single.dual_operator   = tfeti::DualOperatorKind::explicit_blocks;
+  Scene scene               = cut(bent_box(8), blocks(4));
+  scene.solver.tolerance    = 1e-10;
+  const auto options        = contact::resolved_options(scene);
+  auto       single         = options.dual;
+  single.dual_operator      = tfeti::DualOperatorKind::explicit_blocks;
   single.operator_precision = tfeti::Precision::single_precision;
-  const Torn torn(scene);
-  const auto in_double = torn.dual(options.dual), in_single = torn.dual(single);
+  const Torn                   torn(scene);
+  const auto                   in_double = torn.dual(options.dual), in_single = torn.dual(single);
   std::vector<Eigen::VectorXd> x;
   for (auto *dual : {in_double.get(), in_single.get()})
     {

@@ -36,8 +36,8 @@ namespace
 
   // Displacements and forces agree to this, relative to the largest.
   constexpr double agreement = 1e-6;
-  // What rounding makes of no displacement, over the size of the bodies.
-  constexpr double no_displacement = 1e-12;
+  // What rounding makes of no displacement, over the size of the bodies, and of no force, over that times the stiffness.
+  constexpr double no_displacement = 1e-12, no_force = 1e-13;
   // Solver/Tolerance and Friction/Tolerance; where it is not reached.
   constexpr const char *tolerance = "1e-10", *looser = "1e-8";
   // Another solution of a Coulomb problem is told from an inaccurate one by forces or displacements that differ by more.
@@ -170,15 +170,13 @@ namespace
     Eigen::VectorXd difference = found.u - expected.u;
     if (!expected.position_unique)
       difference -= expected.free_motions * expected.free_motions.householderQr().solve(difference);
-    const double least_length = no_displacement * problem.size;
-    const double length =
-      std::max({largest(expected.u), expected.position_unique ? 0. : largest(found.u), least_length});
-    result.displacement = largest(difference) / length;
+    const double length = std::max(largest(expected.u), largest(found.u));
+    result.displacement = length > no_displacement * problem.size ? largest(difference) / length : 0.;
     const auto   nodal  = [&](const Eigen::VectorXd &x) { return dense.nodal_forces(x); };
-    const double size   = std::max(largest(expected.x), 1e-13 * largest(problem.bodies[0].K.diagonal()) * problem.size);
-    result.force        = expected.forces_unique ? largest(found.x - expected.x) / size
-                                                 : largest(nodal(found.x) - nodal(expected.x)) / size;
-    const bool is_same  = result.displacement < agreement && result.force < agreement;
+    const double force  = std::max(largest(expected.x), largest(found.x));
+    const double apart  = largest(expected.forces_unique ? found.x - expected.x : nodal(found.x) - nodal(expected.x));
+    result.force       = force > no_force * largest(problem.bodies[0].K.diagonal()) * problem.size ? apart / force : 0.;
+    const bool is_same = result.displacement < agreement && result.force < agreement;
     const bool is_other = result.displacement > another || result.force > another;
     result.verdict      = is_same && is_one                           ? Verdict::agreed
                           : is_one && is_other && dense.has_coulomb() ? Verdict::another_solution

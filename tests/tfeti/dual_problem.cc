@@ -78,6 +78,25 @@ TEST(DualProblem, multiplications_are_scaled_by_the_norm)
   EXPECT_LT(relative_difference(gathered(y, MPI_COMM_WORLD), gathered(z, MPI_COMM_WORLD)), 1e-14);
 }
 
+// faces
+
+// The coarse matrix without restriction has no metric, those of faces have one; ranks without rows must not take them for the same.
+TEST(DualProblem, faces_are_made_on_ranks_without_rows_too)
+{
+  const Torn         torn(cut(box_on_circle(6, "100"), whole())); // one subdomain
+  tfeti::DualOptions options;
+  options.preconditioner = tfeti::Preconditioner::dirichlet;
+  const auto   dual      = torn.dual(options);
+  const auto   face      = dual->face(std::vector<bool>(dual->zero().locally_owned_size(), true));
+  auto         r = dual->d(), range = dual->zero();
+  const double size = r.l2_norm();
+  face.project_range(r, range);
+  r -= range;
+  face.project_range(r, range);
+  EXPECT_GT(r.l2_norm(), 1e-6 * size);
+  EXPECT_LT(range.l2_norm(), 1e-12 * size);
+}
+
 // right-hand sides
 
 TEST(DualProblem, particular_multipliers_balance_the_loads_of_every_subdomain)

@@ -9,6 +9,9 @@
 
 namespace slipstick::tfeti
 {
+  /// Forces of no more than this part of the largest are what rounding leaves of none: they hold nothing.
+  constexpr double force_rounding = 1e-13;
+
   /// min 1/2 x'F x - x'd  s.t.  G x = e and bounds on x (which the contact layer knows). x: multipliers [N], one a row
   /// of B. Serves qp's Problem concept with F scaled by |P F P|, so that its norm is about 1 in any units.
   class DualProblem
@@ -31,7 +34,7 @@ namespace slipstick::tfeti
       {
         double       energy    = -1; // none of its subdomains here
         unsigned int subdomain = 0;  // of this rank
-        unsigned int unknown   = 0;
+        unsigned int touched   = 0;  // the unknown: its number among the touched ones
       };
       Eigen::VectorXd   of_body; // on all ranks [N mm]
       std::vector<Spot> spots;   // by body
@@ -128,6 +131,10 @@ namespace slipstick::tfeti
 
     /// B u of displacements of this rank's subdomains, owned rows [mm]. Collective.
     DistributedVector jumps(const std::vector<Eigen::VectorXd> &u) const;
+
+    /// The column of B, owned rows, of a touched unknown (its number among them) of a subdomain of one rank. Collective.
+    /// @param subdomain on the other ranks: subdomains().size()
+    DistributedVector column(const unsigned int subdomain, const unsigned int touched) const;
 
     /// B_p'x of this rank's subdomains, all unknowns [N]: what the multipliers (owned entries) exert. Collective.
     std::vector<Eigen::VectorXd> forces(const DistributedVector &x) const;
