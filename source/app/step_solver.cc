@@ -285,7 +285,7 @@ namespace slipstick::app
             if (!answer)
               {
                 answer           = std::make_unique<Answer>();
-                answer->recovery = the_dual->recover(the_solution.multipliers, the_solution.free);
+                answer->recovery = recovered();
               }
             const double penetration = fem::largest_penetration(pruned, answer->recovery.u, comm);
             if (!(penetration > 0))
@@ -303,6 +303,25 @@ namespace slipstick::app
         make_dual(t);
         if (step > 0)
           start_slip_from_here();
+      }
+  }
+
+  // Where the solution did not converge, loads along a free motion prove nothing: all rows hold then.
+  tfeti::DualProblem::Recovery StepSolver::recovered() const
+  {
+    try
+      {
+        return the_dual->recover(the_solution.multipliers, the_solution.free);
+      }
+    catch (const UndeterminedPosition &)
+      {
+        throw;
+      }
+    catch (const NoEquilibrium &) // on all ranks alike
+      {
+        if (the_solution.status == qp::Status::converged || pruned.rows->size() > 0)
+          throw;
+        return the_dual->recover(the_solution.multipliers, std::vector<bool>(the_solution.free.size(), true));
       }
   }
 

@@ -36,13 +36,13 @@ namespace slipstick::tfeti
     {
       if (motions.empty())
         return;
-      const auto  motion = plainest(motions);
-      std::string text   = "nothing holds " + describe(motion, body_names);
-      text +=
-        motion.work > 0 ? ", where the loads push" : "; no load acts along it, but the position is not determined";
-      if (motions.size() > 1)
-        text += format(" (one of %zu free motions)", motions.size());
-      throw NoEquilibrium(text, "add a support or a contact that acts against this motion");
+      const auto        motion = plainest(motions);
+      const std::string text   = "nothing holds " + describe(motion, body_names);
+      const std::string others = motions.size() > 1 ? format(" (one of %zu free motions)", motions.size()) : "";
+      const std::string remedy = "add a support or a contact that acts against this motion";
+      if (motion.work > 0)
+        throw NoEquilibrium(text + ", where the loads push" + others, remedy);
+      throw UndeterminedPosition(text + "; no load acts along it, but the position is not determined" + others, remedy);
     }
   } // namespace
 

@@ -18,12 +18,12 @@ def text(**kinds):
     if any('disc' == contact.get('Master') for contact in kinds.get('contacts', {}).values()):
         kinds.setdefault('obstacles', {'disc': DISC})
     lists = {'materials': 'Material', 'bodies': 'Body', 'obstacles': 'Obstacle', 'supports': 'Support',
-             'foundations': 'Foundation', 'tractions': 'Traction', 'contacts': 'Contact'}
+             'foundations': 'Foundation', 'tractions': 'Traction', 'contacts': 'Contact', 'body_forces': 'Body force'}
     lines = ['set Plane state = ' + kinds.pop('plane_state', 'plane stress')]
     sections = {}
     for kind, content in kinds.items():
         if kind in lists:
-            lines.append('set {} = {}'.format(kind.capitalize(), ', '.join(content)))
+            lines.append('set {} = {}'.format(kind.capitalize().replace('_', ' '), ', '.join(content)))
             sections.update({lists[kind] + ' ' + name: values for name, values in content.items()})
         else:
             sections[kind] = content

@@ -3,7 +3,7 @@
 import math
 import unittest
 
-from sweep import FLOOR, Extremes, Table, pair, run, scenes, shipped
+from sweep import FLOOR, QUIET, Extremes, Table, pair, run, scenes, shipped, solve
 
 SQUARE = {'Size': '10, 10', 'Cells': '4, 4', 'Material': 'elastic'}
 TWO = {'base': SQUARE, 'box': {**SQUARE, 'Origin': '0, 10'}}
@@ -82,6 +82,37 @@ class Supports(Extremes):
                       without=('body base',))
         self.ends(2, table, 'free, unloaded, no contact', two(contacts={}, tractions=elsewhere),
                   "nothing holds body 'box'")
+
+    def test_heavy_disc_pushed_aside(self):
+        """Random scenes 340 and 867. Obstacles that lean by 0.009 cannot hold a third of the weight along x without friction, by
+        forces however large. With friction the disc rolls on and rests on two nodes: whether the solver gets there or
+        not, it must not say that nothing holds it."""
+        table = Table('heavy disc pushed aside')
+
+        def disc(radius, cells, material, push, weight, obstacle, contact):
+            return scenes.box(
+                plane_state='plane strain', materials={'elastic': material},
+                bodies={'disc': {'Shape': 'disc', 'Center': '{0}, {0}'.format(radius), 'Radius': radius,
+                                 'Cells along arc': cells, 'Material': 'elastic'}},
+                obstacles={'ground': obstacle}, contacts={'foot': {'Slave': 'disc/arc', 'Master': 'ground', **contact}},
+                body_forces={'weight': {'Bodies': 'all', 'Force x': push, 'Force y': weight}})
+
+        for seed in (3, 7):
+            for algorithm in ('semismooth newton', 'smalbe'):
+                self.ends(4, table, 'frictionless, cut {}, {}'.format(seed, algorithm), disc(
+                    3.843, 20, {'Young modulus': 49112, 'Poisson ratio': 0.44}, -0.4515, -1.1295,
+                    {'Shape': 'function', 'Height': '-0.02306*(1-cos(0.3903*x))'}, {'Law': 'frictionless'}),
+                    'balance the loads, which move body disc: translation along (-1, ',
+                    overrides={'Discretization/Degree': 2, 'Decomposition/Method': 'METIS', 'Decomposition/Subdomains': 2,
+                               'Decomposition/Seed': seed, 'Solver/Algorithm': algorithm, 'Solver/Tolerance': 1e-10})
+        for algorithm in ('semismooth newton', 'smalbe'):
+            result = solve(disc(
+                1.988, 16, {'Young modulus': 5.5565e7, 'Poisson ratio': 0.073}, 2.963, -23.073,
+                {'Shape': 'half plane', 'Point': '0, 0', 'Normal': '0, 1'},
+                {'Law': 'Coulomb', 'Friction coefficient': 0.1888, 'Offset': -4.2917e-6}),
+                {**QUIET, 'Decomposition/Method': 'METIS', 'Decomposition/Subdomains': 2, 'Solver/Algorithm': algorithm})
+            table.add('friction, ' + algorithm, result)
+            self.assertIn(result.status, (0, 3), result)
 
     def test_sliding_mechanism(self):
         """A ram guided between walls, on a slope: frictionless it is driven out, friction or a stop hold it."""

@@ -86,6 +86,9 @@ namespace slipstick::app
     /// Slip counts from the displacement at the end of the step before.
     void start_slip_from_here();
 
+    /// The displacement of the solution.
+    tfeti::DualProblem::Recovery recovered() const;
+
     /// Checks and stresses of what was recovered from @p from.
     void look_at(Answer &answer, const contact::DualSolution &from, const double t) const;
 

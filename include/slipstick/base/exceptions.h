@@ -47,6 +47,13 @@ namespace slipstick
     using Error::Error;
   };
 
+  /// No load acts along a motion that nothing holds: there is an equilibrium, but the position is not determined.
+  class UndeterminedPosition : public NoEquilibrium
+  {
+  public:
+    using NoEquilibrium::NoEquilibrium;
+  };
+
   /// Numerics failed where the theory says that they cannot (a factorisation that breaks down, a kernel that is
   /// larger than the rigid motions).
   class NumericalError : public Error

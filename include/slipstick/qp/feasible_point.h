@@ -193,7 +193,9 @@ namespace slipstick::qp
       Status least_squares(const Status failure)
       {
         is_nearest = false;
-        std::copy(y.begin(), y.end(), x.begin());
+        // far out, where y runs to if there is no such point, rounding is larger than what is looked for
+        const bool is_far = norm(y, reduction) > options.certificate_radius * reference;
+        std::copy(is_far ? Qx_e.begin() : y.begin(), is_far ? Qx_e.end() : y.end(), x.begin());
         project(box, x);
         if constexpr (std::is_same_v<Set, Box<Vector>>)
           minimize([this](const Vector &v, Vector &Qv) { project_range(v, Qv); }, 1., Qx_e, box);
