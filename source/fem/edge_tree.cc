@@ -39,6 +39,17 @@ namespace slipstick::fem
     return std::hypot(dx, dy);
   }
 
+  std::vector<std::pair<double, unsigned int>> EdgeTree::nearest(const dealii::Point<2> &x, const std::size_t n) const
+  {
+    std::vector<Entry> found;
+    tree.query(boost::geometry::index::nearest(Place(x[0], x[1]), n), std::back_inserter(found));
+    std::vector<std::pair<double, unsigned int>> sorted;
+    for (const auto &[box, edge] : found)
+      sorted.emplace_back(distance(x, box), edge);
+    std::sort(sorted.begin(), sorted.end());
+    return sorted;
+  }
+
   EdgeTree::Box EdgeTree::box_around(const std::vector<dealii::Point<2>> &points)
   {
     dealii::Point<2> low = points[0], high = points[0];

@@ -22,15 +22,30 @@ namespace slipstick::fem
     /// Edges whose boxes meet @p box, ascending.
     std::vector<unsigned int> near(const Box &box) const;
 
-    /// Calls f(edge) in order of the distance of their boxes from @p x until it returns false or the boxes are farther
-    /// away than @p radius() says.
+    /// Calls f(edge) in order of the distance of their boxes from @p x (equal ones ascending) until it returns false or the
+    /// boxes are farther away than @p radius() says.
     template <class Radius, class F>
     void for_each_by_distance(const dealii::Point<2> &x, const Radius &radius, const F &f) const
     {
-      const Place place(x[0], x[1]);
-      for (auto at = tree.qbegin(boost::geometry::index::nearest(place, tree.size())); at != tree.qend(); ++at)
-        if (distance(x, at->first) > radius() || !f(at->second))
-          return;
+      // the nearest few, then more of them: much quicker than a query that goes on
+      std::pair<double, unsigned int> last(-1., 0);
+      for (std::size_t n = first_batch; !tree.empty(); n *= growth_of_batch)
+        {
+          const auto batch = nearest(x, n);
+          for (const auto &next : batch)
+            {
+              // others may be as far as the last one
+              if (batch.size() < tree.size() && next.first == batch.back().first)
+                break;
+              if (next <= last)
+                continue;
+              if (next.first > radius() || !f(next.second))
+                return;
+              last = next;
+            }
+          if (batch.size() == tree.size() || batch.back().first > radius())
+            return;
+        }
     }
 
     /// Smallest box around points.
@@ -40,7 +55,12 @@ namespace slipstick::fem
     static Box box_around(const SurfaceEdge<2> &edge);
 
   private:
+    static constexpr std::size_t first_batch = 4, growth_of_batch = 4;
+
     static double distance(const dealii::Point<2> &x, const Box &box);
+
+    /// Distances and numbers of the n nearest edges (all, if there are no more), sorted.
+    std::vector<std::pair<double, unsigned int>> nearest(const dealii::Point<2> &x, const std::size_t n) const;
 
     boost::geometry::index::rtree<std::pair<Box, unsigned int>, boost::geometry::index::rstar<8>> tree;
   };
