@@ -18,11 +18,6 @@ namespace slipstick::fem
     // Crossings at distances that differ by no more than this part of an edge are one: at a node of the master.
     constexpr double same_place = 1e-9;
 
-    double cross(const Tensor &a, const Tensor &b)
-    {
-      return a[0] * b[1] - a[1] * b[0];
-    }
-
     /// Zero of a continuous f with f(low) f(high) <= 0: false position made safe (Illinois) between bisections.
     template <class F>
     double zero_between(const F &f, double low, double high, double f_low, double f_high)

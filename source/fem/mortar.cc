@@ -12,6 +12,7 @@ namespace slipstick::fem
 {
   namespace
   {
+    // Edges and nodes of which no more than this part is covered are left out.
     constexpr double smallest_cover = 1e-10;
     // An edge is covered as a whole when no more than this part is missing.
     constexpr double whole_edge = 1e-9;
@@ -21,11 +22,6 @@ namespace slipstick::fem
     constexpr double       across_automatic = 1e-6; // ... to be taken for matching meshes
     constexpr double       across_asked_for = 0.1;  // ... when node to node is asked for
     constexpr unsigned int n_gauss          = 5; // per segment; exact between straight parallel edges of both degrees
-
-    double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
-    {
-      return a[0] * b[1] - a[1] * b[0];
-    }
 
     /// The integrals of all slave edges, by node.
     class MortarIntegrals

@@ -125,10 +125,8 @@ namespace slipstick::fem
     else
       {
         const auto   a = tensor<dim>(node.held[0].direction), b = tensor<dim>(node.held[1].direction);
-        const double area = a[0] * b[1] - a[1] * b[0];
-        there             = ((direction[0] * b[1] - direction[1] * b[0]) * node.held[0].value +
-                 (a[0] * direction[1] - a[1] * direction[0]) * node.held[1].value) /
-                area;
+        const double area = cross(a, b);
+        there = (cross(direction, b) * node.held[0].value + cross(a, direction) * node.held[1].value) / area;
         const double turn = std::abs(area); // rounding of a nearly singular pair of directions
         size              = std::max(size, (std::abs(node.held[0].value) + std::abs(node.held[1].value)) / turn);
       }

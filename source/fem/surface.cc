@@ -98,7 +98,7 @@ namespace slipstick::fem
                                 ++edge.n_nodes;
                               });
     const auto along = edge.node(1) - edge.node(0), inward = cell->center() - edge.node(0);
-    if (along[0] * inward[1] - along[1] * inward[0] < 0)
+    if (cross(along, inward) < 0)
       {
         std::swap(edge.keys[0], edge.keys[1]);
         std::swap(edge.at[0], edge.at[1]);

@@ -7,6 +7,12 @@
 
 namespace slipstick::fem
 {
+  /// a_x b_y - a_y b_x.
+  inline double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
+  {
+    return a[0] * b[1] - a[1] * b[0];
+  }
+
   /// An edge on the outline of a body, straight with two nodes or curved with three; local coordinate s in [0, 1]. The
   /// body lies to the left of the way from node 0 (s = 0) to node 1 (s = 1); node 2 is in the middle.
   template <int dim>
