@@ -123,12 +123,11 @@ namespace slipstick::fem
             const double gap  = hit(e, s, *first)->gap;
             double       best = 0;
             for (const unsigned int m : near)
-              if (const auto found = hit(e, s, m))
+              if (const auto found = hit(e, s, m); found && std::abs(found->gap - gap) <= same_place * slave[e].chord())
                 {
                   const Tensor n     = interpolated(master[m], nodes_of_master[m], of_master, found->s);
                   const double along = n * all_nodes[at].normal / n.norm();
-                  if (std::abs(found->gap - gap) <= same_place * slave[e].chord() &&
-                      along < std::min(best, facing_cosine))
+                  if (along < std::min(best, facing_cosine))
                     {
                       best       = along;
                       facing[at] = n / n.norm();

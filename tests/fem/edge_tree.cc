@@ -9,7 +9,7 @@ using namespace slipstick::test;
 
 namespace
 {
-  /// All edges in the order in which the tree gives them, and how far the one that it is stopped at is.
+  /// The edges within a radius, in the order in which the tree gives them.
   std::vector<unsigned int> order(const fem::EdgeTree &tree, const dealii::Point<2> &x, const double radius)
   {
     std::vector<unsigned int> found;
@@ -52,7 +52,7 @@ TEST(EdgeTree, edges_come_by_distance_each_once)
   for (const auto &edges : {closed, flat, std::vector<Edge>{flat[0]}, std::vector<Edge>()})
     {
       const fem::EdgeTree tree(edges);
-      // from the centre of the circle many are as far; 2 mm to the side of the line none
+      // from the centre of the circle many are as far
       for (const dealii::Point<2> &x : {dealii::Point<2>(0, 0), dealii::Point<2>(0.3, 0.2), dealii::Point<2>(-2, 0)})
         for (const double radius : {0., 0.5, 1., 1.2, 10.})
           EXPECT_EQ(order(tree, x, radius), expected(edges, x, radius)) << x << ' ' << radius;

@@ -22,7 +22,7 @@ class CattaneoMindlin(unittest.TestCase):
         self.assertLess(measured.cattaneo_mindlin()['stick_error_elements'], 1)
 
     def test_two_cylinders_are_symmetric(self):
-        """Nothing prefers a side but the mesh of the lower one. Along the slave's own normals, 10 % of the largest."""
+        """Nothing prefers a side but the mesh of the lower one. Along the slave's own normals they differ by 12 % of the largest."""
         found = measured.cattaneo_mindlin_cylinders()
         self.assertLess(found['stick_error_elements'], 1, (found['stick'], found['c']))
         at = {round(x, 3): traction for x, traction in found['nodes']}

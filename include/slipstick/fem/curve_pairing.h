@@ -73,8 +73,6 @@ namespace slipstick::fem
     /// Distance of y from that ray, positive on its left, times a factor that is the same for all y.
     double side(const unsigned int e, const double s, const dealii::Point<2> &y) const;
 
-    const std::vector<Edge> &slave, &master;
-
   private:
     Tensor                      field(const unsigned int e, const double s) const;
     std::optional<unsigned int> partner(const unsigned int               e,
@@ -83,6 +81,7 @@ namespace slipstick::fem
     std::vector<unsigned int>   candidates(const unsigned int e) const;
     void                        average_normals();
 
+    const std::vector<Edge>                 &slave, &master;
     const Reach                              reach;
     const EdgeTree                           tree; // of the master
     std::vector<Node>                        all_nodes;

@@ -34,8 +34,8 @@ namespace slipstick::fem
           const auto batch = nearest(x, n);
           for (const auto &next : batch)
             {
-              // others may be as far as the last one
-              if (batch.size() < tree.size() && next.first == batch.back().first)
+              // others may be as far as the last one, but for rounding
+              if (batch.size() < tree.size() && next.first >= (1 - same_distance) * batch.back().first)
                 break;
               if (next <= last)
                 continue;
@@ -56,6 +56,7 @@ namespace slipstick::fem
 
   private:
     static constexpr std::size_t first_batch = 4, growth_of_batch = 4;
+    static constexpr double      same_distance = 1e-12; // relative
 
     static double distance(const dealii::Point<2> &x, const Box &box);
 
