@@ -15,7 +15,7 @@ namespace slipstick::qp
   {
     Expansion    expansion      = Expansion::boundary_then_projection;
     double       proportioning  = 1.0;   // Gamma > 0, Dostal 2009, section 5.8
-    double       step_length    = 1.5;   // alpha times |A|, in (0, 2]; see doc/decisions.md
+    double       step_length    = 1.5;   // alpha times |A|, in (0, 2]; see doc/decisions/0005
     unsigned int max_iterations = 10000; // per call
 
     double sufficient_decrease = 0.01;   // of a projected step, over the most on its way; else it is cut (own choice)
