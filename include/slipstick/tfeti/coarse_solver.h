@@ -12,7 +12,7 @@ namespace slipstick::tfeti
 {
   /// Sparse symmetric positive definite matrix, factorised once. Right-hand sides and solutions are distributed over the
   /// ranks; the matrix, whose size is that of the kernel, is held and factorised by every rank, so that a solve costs
-  /// one gather. (KLU2 with a distributed matrix is wrong in Trilinos 13.2, see doc/decisions/0002.)
+  /// one gather. (KLU2 with a distributed matrix is wrong in Trilinos 13.2, see doc/decisions.md.)
   ///
   /// Matrices A + C_1, A + C_2, .. with C_i in the rows and columns of a few changing unknowns share the elimination of
   /// all others; each factorises its Schur complement in the changing ones alone.
