@@ -52,12 +52,12 @@ def half_roller(variant, around=96, mu=0.1):
     return scene
 
 
-def roller(variant, around=96, mu=0.1):
-    """Whole disc of radius 10 on a block, pressed by its weight; nothing else holds it."""
+def roller(variant, around=128, mu=0.1):
+    """Whole disc of radius 10 on a block, pressed by its weight, 20 000 N/mm; nothing else holds it."""
     scene = Scene("Roller on a block, held by contact alone", variant)
-    scene.body("roller", meshes.disc(10, around, around // 8, smallest=0.15))
-    scene.body("block", block(40, 20, around // 4 * 3, around // 3, 0.12))
-    scene.body_force("roller", 0, -2000 / (math.pi * 10 ** 2))
+    scene.body("roller", meshes.disc(10, around, around // 8, smallest=30 / around))
+    scene.body("block", block(40, 20, around // 4 * 3, around // 3, 40 / around))
+    scene.body_force("roller", 0, -20000 / (math.pi * 10 ** 2))
     scene.clamp("block/bottom")
     scene.sections["Body roller"]["Translation"] = ", ".join(scene.turned(0, 10.))
     scene.contact("touch", "roller/arc", "block/top", mu)
@@ -90,6 +90,30 @@ def pad(variant, n=48, mu=0.6, shear=0.008, steps=(1, 2, 3), unload=False):
         scene.clamp("pad/top", f"{shear / (steps[-1] - 1 or 1)}*max(t-1,0)", "-0.02*min(t,1)")
     scene.contact("touch", "pad/bottom", "block/top", mu)
     scene.steps(*steps)
+    return scene
+
+
+def pushed_pad(variant, n=48, mu=0.6, part=0.8):
+    """As pad, pressed by a traction, then sheared by `part` of what friction holds; nothing but contact holds the pad."""
+    scene = Scene("Fretting pad, forces prescribed", variant)
+    scene.body("pad", round_pad(50, 12, 6, n, n // 2, 0.04))
+    scene.body("block", block(24, 12, n + n // 4, n // 2, 0.05))
+    scene.clamp("block/bottom")
+    scene.traction("pad/top", f"{100 * mu * part}*max(t-1,0)/2", "-100*min(t,1)")
+    scene.contact("touch", "pad/bottom", "block/top", mu)
+    scene.steps(1, 2, 3)
+    return scene
+
+
+def flat_pad(variant, n=48, mu=0.6):
+    """A flat pad with sharp corners, pressed, then sheared in three steps till its edges slip."""
+    scene = Scene("Flat pad, pressed then sheared", variant)
+    scene.body("pad", meshes.grid(meshes.uniform(-5, 5, n), meshes.uniform(0, 5, n // 2)))
+    scene.body("block", meshes.grid(meshes.uniform(-12, 12, 2 * n + 6), meshes.graded(0, -12, n // 2, 12 / n)[::-1]))
+    scene.clamp("block/bottom")
+    scene.clamp("pad/top", "0.003*max(t-1,0)", "-0.01*min(t,1)")
+    scene.contact("touch", "pad/bottom", "block/top", mu)
+    scene.steps(1, 2, 3, 4)
     return scene
 
 

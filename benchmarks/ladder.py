@@ -34,7 +34,8 @@ def parser(description):
     made = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     made.add_argument("--only", metavar="PATTERN", action="append", help="part of a name, or pattern with *; repeatable")
     made.add_argument("--program", metavar="FILE", help="slipstick to run, default: build it")
-    made.add_argument("--tolerance", default="1e-8", help="of the solver (default: %(default)s)")
+    made.add_argument("--tolerance", default="1e-8", help='of the solver, or "default": that of the program (default: %(default)s)')
+    made.add_argument("--against", metavar="EPS", help="solves each with this tolerance, too, and tells how far tractions differ")
     made.add_argument("--quick", action="store_true", help="one or two variants of each family, 20 s each at most")
     made.add_argument("--timeout", type=float, help="seconds a run (default: 120, with --quick 20)")
     made.add_argument("--jobs", type=int, default=1, help="runs at the same time (default: %(default)s)")
@@ -54,23 +55,37 @@ def chosen(cases, given):
 
 
 def read_contact(file_name):
-    """Nodes of the last step: {pair: [(s, pressure, tangential)]}, by arc length."""
-    steps = {}
-    with open(file_name, newline="", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            steps.setdefault(int(row["step"]), {}).setdefault(row["pair"], []).append(
-                tuple(float(row[name]) for name in ("s", "pressure", "tangential_traction")))
-    return {pair: sorted(nodes) for pair, nodes in steps[max(steps)].items()} if steps else {}
+    """Nodes of all steps: {(pair, step): [(s, pressure, tangential traction)]}, by arc length; empty without the file."""
+    found = {}
+    try:
+        with open(file_name, newline="", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                found.setdefault((row["pair"], int(row["step"])), []).append(
+                    tuple(float(row[name]) for name in ("s", "pressure", "tangential_traction")))
+    except OSError:
+        pass
+    return {key: sorted(nodes) for key, nodes in found.items()}
 
 
 def run(case, program, given, folder):
-    """A dictionary of what the run gave."""
+    """A dictionary of what the run gave; with --against that of the other tolerance is compared."""
     directory = folder / case.family / case.scene
     scene = case.make(case.variant).write(directory)
-    output = directory / f"out-{case.variant.name}"
     if given.write_only:
         return None
-    command = [str(program), str(scene), "--quiet", "--output", str(output), "--set", f"Solver/Tolerance={given.tolerance}"]
+    result = run_once(case, scene, program, given, given.tolerance, directory / f"out-{case.variant.name}")
+    if given.against:
+        other = run_once(case, scene, program, given, given.against, directory / f"against-{case.variant.name}")
+        result.update({"against_status": other["status"], "against_multiplications": other.get("multiplications")})
+        if result["status"] == other["status"] == 0:
+            result["pressure_off"], result["tangential_off"] = off(result["contact"], other["contact"])
+    return result
+
+
+def run_once(case, scene, program, given, tolerance, output):
+    command = [str(program), str(scene), "--quiet", "--output", str(output)]
+    if tolerance != "default":
+        command += ["--set", f"Solver/Tolerance={tolerance}"]
     for setting in given.more:
         command += ["--set", setting]
     launcher, environment = runs.mpirun(case.variant.ranks)
@@ -78,8 +93,7 @@ def run(case, program, given, folder):
         command = [*launcher, "--oversubscribe", *command]
     for name in ("summary.json", "contact.csv"):  # of an earlier run
         (output / name).unlink(missing_ok=True)
-    start = time.monotonic()
-    message = ""
+    start, message = time.monotonic(), ""
     try:
         done = subprocess.run(command, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               timeout=given.timeout, check=False)
@@ -92,18 +106,43 @@ def run(case, program, given, folder):
         summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return result
-    return {**result, **figures(summary), **({"contact": read_contact(output / "contact.csv")}
-                                             if (output / "contact.csv").exists() else {})}
+    return {**result, **figures(summary), "contact": read_contact(output / "contact.csv")}
+
+
+def off(contact, other):
+    """Differences of pressures and of tangential tractions in L2 over their own norms, the worst of pairs and steps.
+
+    Norms below a thousandth of the largest pressure of the run count as that thousandth: a traction of zero has no relative error.
+    """
+    worst = [0., 0.]
+    floor = 1e-3 * norm([(s, p) for nodes in other.values() for s, p, _ in nodes])
+    for key, nodes in contact.items():
+        others = other.get(key, [])
+        if len(nodes) != len(others):  # pruned otherwise
+            by_place = {round(s, 9): (p, t) for s, p, t in others}
+            others = [(s, *by_place.get(round(s, 9), (0., 0.))) for s, _, _ in nodes]
+        for which in (1, 2):
+            wanted = norm([(node[0], node[which]) for node in others])
+            error = norm([(a[0], a[which] - b[which]) for a, b in zip(nodes, others)])
+            worst[which - 1] = max(worst[which - 1], error / max(wanted, floor) if error > 0 else 0.)
+    return worst
+
+
+def norm(values):
+    """L2 along the boundary, (s, value) by s, trapezoidal rule on the squares."""
+    values = sorted(values)
+    return sum((b[0] - a[0]) * (a[1] ** 2 + b[1] ** 2) / 2 for a, b in zip(values, values[1:])) ** 0.5
 
 
 def figures(summary):
-    solver, residuals = summary["solver"], {name: value for name, value in summary["residuals"].items()}
+    solver, residuals = summary["solver"], summary["residuals"]
     pairs = summary["results"]["contact"]
+    pressures = [pair["max_pressure"] or 0 for step in summary["steps"] for pair in step["contact"]]
     worst = max(residuals, key=lambda name: float("inf") if residuals[name] is None else residuals[name])
     return {"multiplications": solver["hessian_multiplications"], "outer": solver["outer_iterations"],
             "fallbacks": solver["fallbacks"], "residual": residuals[worst], "residual_of": worst,
-            "largest_multiplications_of_a_step": max((step["hessian_multiplications"] for step in summary["steps"]), default=0),
-            "pressure": max((pair["max_pressure"] or 0 for pair in pairs), default=0),
+            "multiplications_of_a_step": max((step["hessian_multiplications"] for step in summary["steps"]), default=0),
+            "pressure": max(pressures, default=0),
             "normal_force": pairs[0]["normal_force"] if pairs else None,
             "tangential_force": pairs[0]["tangential_force"] if pairs else None,
             "contact_nodes": sum(pair["contact_nodes"] for pair in pairs), "slip_nodes": sum(pair["slip_nodes"] for pair in pairs),
@@ -124,22 +163,22 @@ def line(result):
     status = str(result["status"]) + ("" if result["status"] == result["wanted"] else f" !{result['wanted']}")
     return (f"{result['name']:58} {status:>7} {text(result.get('multiplications'), 'd'):>7} "
             f"{text(result.get('outer'), 'd'):>5} {text(result.get('fallbacks'), 'd'):>5} {text(result.get('residual'), '.1e'):>8} "
-            f"{text(result.get('pressure'), '.7g'):>11} {text(result.get('normal_force'), '.7g'):>11} {result['seconds']:6.1f}")
+            f"{text(result.get('pressure'), '.7g'):>11} {text(result.get('normal_force'), '.7g'):>11} {result['seconds']:6.1f}"
+            + (f"  off: pressure {text(result.get('pressure_off'), '.1e')}, tangential {text(result.get('tangential_off'), '.1e')}"
+               if "against_status" in result else ""))
 
 
 def difference(contact, other):
     """Largest difference of pressures and of tangential tractions over the largest pressure; None if nodes differ."""
+    largest = max((abs(p) for nodes in contact.values() for _, p, _ in nodes), default=0)
+    if largest == 0 or contact.keys() != other.keys():
+        return None
     worst = 0.
-    for pair, nodes in contact.items():
-        others = other.get(pair, [])
-        length = max((s for s, _, _ in nodes), default=0)
+    for key, nodes in contact.items():
+        others, length = other[key], max((s for s, _, _ in nodes), default=0)
         if len(nodes) != len(others) or any(abs(a[0] - b[0]) > 1e-6 * length for a, b in zip(nodes, others)):
-            return None
-        largest = max((abs(p) for _, p, _ in nodes), default=0)
-        for a, b in zip(nodes, others):
-            if largest > 0:
-                # the sign of a traction along the boundary goes by its direction, the same for all variants
-                worst = max(worst, abs(a[1] - b[1]) / largest, abs(a[2] - b[2]) / largest)
+            return None  # a closed boundary may begin at another node
+        worst = max([worst] + [abs(a[i] - b[i]) / largest for a, b in zip(nodes, others) for i in (1, 2)])
     return worst
 
 
