@@ -6,7 +6,7 @@
 import math
 
 import meshes
-from scenes import STEEL, Scene
+from scene_files import STEEL, Scene
 
 CONTRAST = 1e9  # of the moduli of "stiff"
 

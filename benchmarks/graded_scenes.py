@@ -5,7 +5,7 @@ import math
 
 import meshes
 from family_scenes import plane_strain_modulus
-from scenes import Scene
+from scene_files import Scene
 
 SIZE, RADIUS = 10., 20.  # of the body and of the circle [mm]
 SMALLEST, STEEP = 1e-3, 2.5e-4  # cells, over the size of the body; aspect ratios of 50 cells a side to 100 and 500

@@ -13,7 +13,7 @@ import threading
 import time
 
 import runs
-from scenes import Variant
+from scene_files import Variant
 
 STATUS_TIMEOUT = "timeout"
 
@@ -270,11 +270,11 @@ def main(cases, given):
     return 0 if all(result["status"] == result["wanted"] for result in results) else 1
 
 
-def variants(seeds, degrees=(1, 2), turn=37., exchange=True, ranks=True, subdomains=8):
+def variants(seeds, degrees=(1, 2), turn=37., exchange=True, ranks=True, subdomains=16):
     """The variants of a scene: seeds, subdomains, ranks, turned, exchanged; fewer with the later degrees."""
     first, *others = degrees
     all_variants = [Variant(first, subdomains, seed) for seed in range(seeds)]
-    all_variants += [Variant(first, 0), Variant(first, subdomains // 2), Variant(first, 2 * subdomains)]
+    all_variants += [Variant(first, 0), Variant(first, 4), Variant(first, 2 * subdomains)]
     all_variants += [Variant(first, subdomains, turn=turn)] if turn else []
     all_variants += [Variant(first, subdomains, exchanged=True), Variant(first, 0, exchanged=True)] if exchange else []
     all_variants += [Variant(first, subdomains, ranks=2)] if ranks else []
