@@ -1,6 +1,6 @@
 """Scenes of the families of benchmarks/families: each function makes one scene in one variant.
 
-`fineness` multiplies the number of cells. Every scene names what is known about its answer in `expected`, a text.
+What is known about an answer stands in the text of its function.
 """
 
 import math
@@ -13,11 +13,6 @@ CONTRAST = 1e9  # of the moduli of "stiff"
 
 def plane_strain_modulus(elastic=STEEL):
     return elastic[0] / (1 - elastic[1] ** 2)
-
-
-def hertz_pressure(force, radius, elastic=STEEL):
-    """Largest pressure of two half planes of equal material, line force [N/mm]."""
-    return math.sqrt(force * plane_strain_modulus(elastic) / 2 / (math.pi * radius))
 
 
 # ----- conforming pins
@@ -218,17 +213,8 @@ def raous(variant, n=32, mu=5):
 
 # ----- fits
 
-def lame_pressure(overlap, inner=5., middle=10., outer=20., elastic=STEEL):
-    """Of a ring on a hollow shaft of the same material, plane strain."""
-    sum_of_shapes = (outer ** 2 + middle ** 2) / (outer ** 2 - middle ** 2) + (middle ** 2 + inner ** 2) / (middle ** 2 - inner ** 2)
-    return overlap * plane_strain_modulus(elastic) / (middle * sum_of_shapes)
-
-
 def twisted_ring(variant, torque=0.5, around=(64, 80), mu=0.2, steps=(1, 2)):
-    """Press fit with 0.01 mm of overlap, the shaft held at its bore, then the ring is twisted by `torque` of what holds.
-
-    The bore is held after the fit as before, so that the pressure is that of a shaft with a rigid bore.
-    """
+    """Press fit with 0.01 mm of overlap, the shaft held at its bore, then the ring is twisted by `torque` of what holds."""
     scene = Scene(f"Ring twisted on its shaft by {torque:g} of what friction holds", variant)
     scene.body("shaft", meshes.ring(meshes.uniform(5, 10, around[0] // 10), around[0]))
     scene.body("ring", meshes.ring(meshes.uniform(10, 20, around[1] // 8), around[1]))

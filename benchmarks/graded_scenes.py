@@ -1,10 +1,8 @@
 """Scenes of benchmarks/graded: contact on tensor grids graded towards it."""
 
 import functools
-import math
 
 import meshes
-from family_scenes import plane_strain_modulus
 from scene_files import Scene
 
 SIZE, RADIUS = 10., 20.  # of the body and of the circle [mm]
@@ -55,11 +53,6 @@ def hertz(variant, n=50, law="frictionless", smallest=SMALLEST):
     scene.clamp("lower/top")
     scene.contact("touch", "upper/bottom", "lower/bottom", law_of(law))
     return scene
-
-
-def hertz_pressure_on_rigid(force, radius=RADIUS):
-    """Largest pressure of an elastic half plane on a rigid cylinder, line force [N/mm]."""
-    return (force * plane_strain_modulus() / (math.pi * radius)) ** 0.5
 
 
 SCENES = {
