@@ -158,15 +158,15 @@ def text(value, form):
     return "-" if value is None else format(value, form)
 
 
-HEAD = (f"{'variant':58} {'status':>7} {'F-mult':>7} {'outer':>5} {'falls':>5} {'residual':>8} "
+HEAD = (f"{'variant':58} {'status':>7} {'F-mult':>7} {'a step':>6} {'outer':>5} {'falls':>5} {'residual':>8} "
         f"{'p max':>11} {'normal':>11} {'s':>6}")
 
 
 def line(result):
     status = str(result["status"]) + ("" if result["status"] == result["wanted"] else f" !{result['wanted']}")
     return (f"{result['name']:58} {status:>7} {text(result.get('multiplications'), 'd'):>7} "
-            f"{text(result.get('outer'), 'd'):>5} {text(result.get('fallbacks'), 'd'):>5} "
-            f"{text(result.get('residual'), '.1e'):>8} "
+            f"{text(result.get('multiplications_of_a_step'), 'd'):>6} {text(result.get('outer'), 'd'):>5} "
+            f"{text(result.get('fallbacks'), 'd'):>5} {text(result.get('residual'), '.1e'):>8} "
             f"{text(result.get('pressure'), '.7g'):>11} {text(result.get('normal_force'), '.7g'):>11} {result['seconds']:6.1f}"
             + (f"  off: pressure {text(result.get('pressure_off'), '.1e')}, tangential {text(result.get('tangential_off'), '.1e')}"
                if "against_status" in result else ""))
@@ -200,7 +200,8 @@ def spread(results):
 
 def summarise(cases, results):
     """One line a scene, then one a family."""
-    print(f"\n{'scene':44} {'runs':>4} {'as wanted':>9} {'max mult':>8} {'max/min':>7} {'spread of max p':>15} {'by nodes':>9}")
+    print(f"\n{'scene':44} {'runs':>4} {'as wanted':>9} {'max mult':>8} {'a step':>7} {'max/min':>7} "
+          f"{'spread of max p':>15} {'by nodes':>9}")
     families = {}
     for case, result in zip(cases, results):
         families.setdefault(case.family, {}).setdefault(case.scene, []).append((case, result))
@@ -216,6 +217,7 @@ def summarise(cases, results):
 def summary_line(name, scenes):
     results = [result for pairs in scenes for _, result in pairs]
     counts = [result["multiplications"] for result in results if result.get("multiplications")]
+    of_a_step = [result["multiplications_of_a_step"] for result in results if "multiplications_of_a_step" in result]
     ratios, spreads = [], []
     for pairs in scenes:
         of_scene = [result["multiplications"] for _, result in pairs if result.get("multiplications")]
@@ -229,7 +231,8 @@ def summary_line(name, scenes):
     of_maxima = max((value for value, _ in spreads if value is not None), default=None)
     by_nodes = max((value for _, value in spreads if value is not None), default=None)
     return (f"{name:44} {len(results):4} {good:9} {text(max(counts, default=None), 'd'):>8} "
-            f"{text(max(ratios, default=None), '.2f'):>7} {text(of_maxima, '.1e'):>15} {text(by_nodes, '.1e'):>9}")
+            f"{text(max(of_a_step, default=None), 'd'):>7} {text(max(ratios, default=None), '.2f'):>7} "
+            f"{text(of_maxima, '.1e'):>15} {text(by_nodes, '.1e'):>9}")
 
 
 def write_csv(file_name, results):
