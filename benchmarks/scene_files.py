@@ -5,6 +5,8 @@ import math
 
 STEEL = (2.1e5, 0.3)  # Young modulus [MPa], Poisson ratio
 
+MESHES_WRITTEN = set()  # files of this process: variants share them
+
 
 @dataclasses.dataclass(frozen=True)
 class Variant:
@@ -133,8 +135,9 @@ class Scene:
         folder.mkdir(parents=True, exist_ok=True)
         for name, mesh in self.meshes.items():
             file = folder / f"{name}-{self.variant.meshes}.msh"
-            if not file.exists():
+            if file not in MESHES_WRITTEN:
                 mesh.write(file, name)
+                MESHES_WRITTEN.add(file)
         lines = [f"set {name} = {value}" for name, value in self.top.items()]
         lines += [f"set {name} = {', '.join(values)}" for name, values in self.lists.items() if values]
         for name, values in self.sections.items():
