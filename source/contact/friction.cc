@@ -70,7 +70,7 @@ namespace slipstick::contact
             solution.directions = start && start->directions
                                     ? start->directions
                                     : std::make_shared<qp::DirectionStore<Vector>>(options.newton.n_directions);
-            const auto from = newton_start(feasible, start);
+            const auto from     = newton_start(feasible, start);
             if (solution.weighted_reference == 0) // neither load nor gap: the start is the solution
               {
                 solution.multipliers = from;
@@ -253,7 +253,8 @@ namespace slipstick::contact
       /// that is not what was asked for, by Newton's method first.
       void solve_within_bounds(const Vector &from, const double accuracy, const bool may_end_early)
       {
-        if (options.algorithm == scene::Algorithm::semismooth_newton && law.depends_on_pressure() && newton(from, false))
+        if (options.algorithm == scene::Algorithm::semismooth_newton && law.depends_on_pressure() &&
+            newton(from, false))
           return;
         solution.multipliers = smalbe(from, accuracy, counted(), may_end_early);
       }

@@ -58,10 +58,10 @@ namespace slipstick::tfeti
         for (double eps = largest; eps >= least_smoothing * largest && eps > 0; eps *= smoothing_reduction)
           for (unsigned int k = 0; k < max_newton_steps; ++k)
             {
-              Eigen::VectorXd slope;
-              Eigen::MatrixXd curvature;
-              const double    value = evaluate(a, eps, &slope, &curvature);
-              const Eigen::VectorXd step = -curvature.completeOrthogonalDecomposition().solve(slope);
+              Eigen::VectorXd       slope;
+              Eigen::MatrixXd       curvature;
+              const double          value = evaluate(a, eps, &slope, &curvature);
+              const Eigen::VectorXd step  = -curvature.completeOrthogonalDecomposition().solve(slope);
               const double          along = slope.dot(step);
               if (!(along < 0))
                 break;
@@ -145,7 +145,8 @@ namespace slipstick::tfeti
       for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
         {
           const auto &row = numbers_of[rank][i];
-          all.emplace(labels_of[rank][i], LooseRow{row[0], row[1], Eigen::Map<const Eigen::VectorXd>(row.data() + 2, n)});
+          all.emplace(labels_of[rank][i],
+                      LooseRow{row[0], row[1], Eigen::Map<const Eigen::VectorXd>(row.data() + 2, n)});
         }
     std::vector<LooseRow> in_order;
     for (const auto &[label, row] : all)

@@ -104,8 +104,8 @@ namespace slipstick::qp
         for (std::size_t i = 0; i < active.size(); ++i)
           {
             const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i], xi = x.begin()[i],
-                         gi  = g.begin()[i];
-            const double gp  = active[i] == 0 ? gi : !(l < u) ? 0. : active[i] < 0 ? std::min(gi, 0.) : std::max(gi, 0.);
+                         gi = g.begin()[i];
+            const double gp = active[i] == 0 ? gi : !(l < u) ? 0. : active[i] < 0 ? std::min(gi, 0.) : std::max(gi, 0.);
             const double out = xi - (active[i] < 0 ? l : active[i] > 0 ? u : clip(xi, l, u));
             sum[0] += weight(i) * weight(i) * gp * gp;
             sum[1] += out * out; // F out is as much smaller as the weight is larger
@@ -168,7 +168,7 @@ namespace slipstick::qp
         for (std::size_t i = 0; i < active.size(); ++i)
           {
             const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i];
-            result[i]      = l < u ? std::max(std::abs(l), std::abs(u)) : -1.;
+            result[i] = l < u ? std::max(std::abs(l), std::abs(u)) : -1.;
           }
         return result;
       }
@@ -205,7 +205,7 @@ namespace slipstick::qp
 
       void set_radius(const PressureBound &bound, const double normal)
       {
-        const double radius                        = bound.radius(normal);
+        const double radius                     = bound.radius(normal);
         set.box.lower.begin()[bound.tangential] = -radius;
         set.box.upper.begin()[bound.tangential] = radius;
       }
@@ -219,8 +219,8 @@ namespace slipstick::qp
         const auto          place = [&](const std::size_t i) {
           const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i];
           const double t = x.begin()[i] - step / norm * weight(i) * g.begin()[i];
-          active[i]    = t <= l ? -1 : t >= u ? 1 : 0;
-          projected[i] = clip(t, l, u);
+          active[i]      = t <= l ? -1 : t >= u ? 1 : 0;
+          projected[i]   = clip(t, l, u);
         };
         for (std::size_t i = 0; i < active.size(); ++i)
           if (bounded[i])

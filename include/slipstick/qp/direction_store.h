@@ -98,8 +98,8 @@ namespace slipstick::qp
     std::vector<double>              squares(2 * n);
     for (std::size_t j = 0; j < n; ++j)
       {
-        violation[j] = conditions(store[j].p);
-        squares[j]   = local_dot(violation[j], violation[j]);
+        violation[j]   = conditions(store[j].p);
+        squares[j]     = local_dot(violation[j], violation[j]);
         squares[n + j] = local_dot(store[j].p, store[j].p);
       }
     sum_all(squares, reduction);

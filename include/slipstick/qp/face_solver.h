@@ -60,9 +60,9 @@ namespace slipstick::qp
       template <typename Energy>
       SmallSymmetric gram(const Energy &of) const
       {
-        const std::size_t                n = store.size(), m = combinations.size();
-        SmallSymmetric                   result(m);
-        std::vector<double>              row(n);
+        const std::size_t   n = store.size(), m = combinations.size();
+        SmallSymmetric      result(m);
+        std::vector<double> row(n);
         for (std::size_t i = 0; i < m; ++i)
           {
             for (std::size_t k = 0; k < n; ++k)
@@ -80,7 +80,10 @@ namespace slipstick::qp
 
       /// x += sum of factor times coefficient times what `part` takes of each direction.
       template <typename Part>
-      void add_combination(const double factor, const std::vector<double> &coefficients, const Part &part, Vector &x) const
+      void add_combination(const double               factor,
+                           const std::vector<double> &coefficients,
+                           const Part                &part,
+                           Vector                    &x) const
       {
         for (std::size_t j = 0; j < store.size(); ++j)
           if (coefficients[j] != 0)
@@ -149,8 +152,16 @@ namespace slipstick::qp
           for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
             {
               const auto c = recycled.coefficients(known->solve(recycled.combined(dots(r, &Direction::p))));
-              recycled.add_combination(1., c, [this](const std::size_t j) -> const Vector & { return store[j].p; }, x);
-              recycled.add_combination(1., c, [this](const std::size_t j) -> const Vector & { return store[j].Fp; }, Fx);
+              recycled.add_combination(
+                1.,
+                c,
+                [this](const std::size_t j) -> const Vector & { return store[j].p; },
+                x);
+              recycled.add_combination(
+                1.,
+                c,
+                [this](const std::size_t j) -> const Vector & { return store[j].Fp; },
+                Fx);
               update_residual();
             }
         }
@@ -165,7 +176,11 @@ namespace slipstick::qp
           if (known)
             {
               const auto c = recycled.coefficients(known->solve(recycled.combined(dots(p, &Direction::Fp))));
-              recycled.add_combination(-1., c, [this](const std::size_t j) -> const Vector & { return store[j].p; }, p);
+              recycled.add_combination(
+                -1.,
+                c,
+                [this](const std::size_t j) -> const Vector & { return store[j].p; },
+                p);
             }
           std::vector<double> along;
           for (const auto &[q, Fq] : own)
@@ -211,8 +226,16 @@ namespace slipstick::qp
           for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
             {
               const auto c = recycled.coefficients(known->solve(recycled.combined(dots(weighted(r), images))));
-              recycled.add_combination(1., c, [this](const std::size_t j) -> const Vector & { return store[j].p; }, x);
-              recycled.add_combination(1., c, [this](const std::size_t j) -> const Vector & { return store[j].Fp; }, Fx);
+              recycled.add_combination(
+                1.,
+                c,
+                [this](const std::size_t j) -> const Vector & { return store[j].p; },
+                x);
+              recycled.add_combination(
+                1.,
+                c,
+                [this](const std::size_t j) -> const Vector & { return store[j].Fp; },
+                Fx);
               update_residual();
             }
         }
@@ -235,9 +258,21 @@ namespace slipstick::qp
               if (known)
                 {
                   const auto c = recycled.coefficients(known->solve(recycled.combined(dots(q, images))));
-                  recycled.add_combination(-1., c, [this](const std::size_t j) -> const Vector & { return store[j].p; }, p);
-                  recycled.add_combination(-1., c, [this](const std::size_t j) -> const Vector & { return store[j].Fp; }, Fp);
-                  recycled.add_combination(-1., c, [&images](const std::size_t j) -> const Vector & { return images[j]; }, q);
+                  recycled.add_combination(
+                    -1.,
+                    c,
+                    [this](const std::size_t j) -> const Vector & { return store[j].p; },
+                    p);
+                  recycled.add_combination(
+                    -1.,
+                    c,
+                    [this](const std::size_t j) -> const Vector & { return store[j].Fp; },
+                    Fp);
+                  recycled.add_combination(
+                    -1.,
+                    c,
+                    [&images](const std::size_t j) -> const Vector & { return images[j]; },
+                    q);
                 }
               std::vector<double> along;
               for (const Own &other : own)

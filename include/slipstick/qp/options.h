@@ -68,25 +68,25 @@ namespace slipstick::qp
   struct FaceSolverOptions
   {
     unsigned int max_iterations = 300;
-    double smallest_curvature = 1e-15; // p'Fp over p'p and the largest such quotient so far: below it F is singular
-    double rounding = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
-    double progress = 0.999; // a step that leaves more than this part of the residual ...
-    unsigned int patience = 10; // ... so often in a row ends the solve
+    double smallest_curvature   = 1e-15; // p'Fp over p'p and the largest such quotient so far: below it F is singular
+    double rounding       = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
+    double progress       = 0.999; // a step that leaves more than this part of the residual ...
+    unsigned int patience = 10;    // ... so often in a row ends the solve
   };
 
   /// Options of the semismooth Newton method (own choice; doc/method.md).
   struct NewtonOptions
   {
-    double       start_tolerance = 0.3; // of the SMALBE steps that give the first active set
-    double       set_step     = 3;   // s of the natural residual times |PFP| over the weight
-    double       forcing      = 0.1; // residual that faces are solved to, over the natural residual
-    double       last_forcing = 0.6; // times the tolerance: never below
-    unsigned int memory       = 6;   // a step must end below the largest natural residual of so many ...
-    double       sufficient_decrease  = 1e-2; // ... by this part times its length, ...
-    double       backtracking         = 0.5;  // ... or is cut by this factor ...
-    double       shortest_step        = 1e-3; // ... down to this part of itself
-    unsigned int max_outer_iterations = 100;
-    unsigned int n_directions         = 200; // kept with their products
+    double            start_tolerance      = 0.3;  // of the SMALBE steps that give the first active set
+    double            set_step             = 3;    // s of the natural residual times |PFP| over the weight
+    double            forcing              = 0.1;  // residual that faces are solved to, over the natural residual
+    double            last_forcing         = 0.6;  // times the tolerance: never below
+    unsigned int      memory               = 6;    // a step must end below the largest natural residual of so many ...
+    double            sufficient_decrease  = 1e-2; // ... by this part times its length, ...
+    double            backtracking         = 0.5;  // ... or is cut by this factor ...
+    double            shortest_step        = 1e-3; // ... down to this part of itself
+    unsigned int      max_outer_iterations = 100;
+    unsigned int      n_directions         = 200; // kept with their products
     FaceSolverOptions face;
   };
 

@@ -28,8 +28,6 @@
 #include <functional>
 #include <optional>
 #include <vector>
-#include <cstdio>
-#include <cstdlib>
 
 namespace slipstick::qp
 {
@@ -78,7 +76,7 @@ namespace slipstick::qp
         : problem(problem_)
         , d(d_)
         , goal(goal_)
-        , options([&]{ static NewtonOptions o; o = options_; if (getenv("SSTEP")) o.set_step = atof(getenv("SSTEP")); if (getenv("SMEM")) o.memory = atoi(getenv("SMEM")); if (getenv("SFORCE")) o.forcing = atof(getenv("SFORCE")); if (getenv("SBACK")) o.backtracking = atof(getenv("SBACK")); return o; }())
+        , options(options_)
         , observer(observer_)
         , accepts(accepts_)
         , set(problem_, norm_, std::move(admissible), options.set_step)
@@ -127,21 +125,8 @@ namespace slipstick::qp
                 std::swap(x, y);
                 return Status::converged;
               }
-            const auto free = set.free();
-            if (!line_search())
-              {
-                if (holds_weak)
-                  return Status::stagnated;
-                holds_weak = true;
-                set.predict(x, g);
-                continue;
-              }
-            holds_weak = false;
-            Vector known(g);
-            if (full)
-            for (std::size_t i = 0; i < free.size(); ++i)
-              if (free[i]) known.begin()[i] = 0;
-            set.predict(x, known);
+            if (!step())
+              return Status::stagnated;
           }
         return Status::iteration_limit;
       }
@@ -208,7 +193,11 @@ namespace slipstick::qp
         face.balance(y);
         step_to_start();
         FaceSolver<Vector, Face> solver(
-          face, d, store, [this](const Vector &p) { return set.conditions(p, ties); }, options.face);
+          face,
+          d,
+          store,
+          [this](const Vector &p) { return set.conditions(p, ties); },
+          options.face);
         const double first  = solver.start(std::move(y), std::move(Fy));
         const double target = std::max(options.last_forcing * goal.tolerance * goal.reference,
                                        options.forcing * std::min(first, merits.back()));
@@ -216,10 +205,6 @@ namespace slipstick::qp
         counts += result.counts;
         y  = std::move(result.x);
         Fy = std::move(result.product);
-        if (getenv("SD")) {
-          Vector b(y), q(y); face.balance(b); add(-1., y, b); problem.multiply(y, q); add(-1., Fy, q);
-          fprintf(stderr, "  first %.2e target %.2e got %.2e its %u status %d store %zu | Gy-e %.2e of %.2e, Fy err %.2e of %.2e merit %.2e\n", first/goal.reference, target/goal.reference, result.residual/goal.reference, result.counts.cg_steps, (int)result.status, store.size(), norm(b, problem.reduction()), norm(y, problem.reduction()), norm(q, problem.reduction()), norm(Fy, problem.reduction()), merits.empty()?0.:merits.back()/goal.reference);
-        }
         gradient_on(face, Fy, gy);
       }
 
@@ -246,8 +231,30 @@ namespace slipstick::qp
           store.push(std::move(step), std::move(product), problem.reduction());
       }
 
-      // x moves towards y as far as the natural residual falls below the largest of the last steps.
-      bool line_search()
+      // Along the step; where the residual does not fall along it the bodies that the face hardly held settle first.
+      bool step()
+      {
+        const auto   solved = set.free();
+        const double t      = line_search();
+        if (t == 0)
+          {
+            const bool is_hopeless = holds_weak;
+            holds_weak             = true;
+            set.predict(x, g);
+            return !is_hopeless;
+          }
+        holds_weak = false;
+        Vector known(g); // what is left on free entries after a whole step says nothing of the set
+        if (t == 1)
+          for (std::size_t i = 0; i < solved.size(); ++i)
+            known.begin()[i] = solved[i] ? 0. : known.begin()[i];
+        set.predict(x, known);
+        return true;
+      }
+
+      // x moves towards y as far as the natural residual falls below the largest of the last steps. @return how
+      // far; 0: not at all.
+      double line_search()
       {
         double            merit     = set.natural_residual(y, gy);
         const std::size_t n         = std::min<std::size_t>(merits.size(), options.memory);
@@ -258,15 +265,13 @@ namespace slipstick::qp
           {
             t *= options.backtracking;
             if (t < options.shortest_step)
-              return false;
+              return 0;
             combine(t, y, 0., xt);
             add(1 - t, x, xt);
             combine(t, gy, 0., gt);
             add(1 - t, g, gt);
             merit = set.natural_residual(xt, gt);
           }
-        full = t == 1;
-        if (getenv("SD")) fprintf(stderr, "   t %.3g merit %.2e\n", t, merit / goal.reference);
         if (t < 1)
           {
             std::swap(y, xt);
@@ -277,7 +282,7 @@ namespace slipstick::qp
         std::swap(x, y);
         std::swap(Fx, Fy);
         std::swap(g, gy);
-        return true;
+        return t;
       }
 
       bool is_accepted()
@@ -305,20 +310,20 @@ namespace slipstick::qp
       const Problem            &problem;
       const Vector             &d;
       const Goal                goal;
-      const NewtonOptions       options;
+      const NewtonOptions      &options;
       const Observer           &observer;
       const Acceptance<Vector> &accepts;
 
-      ActiveSet<Vector, Problem> set;
+      ActiveSet<Vector, Problem>                    set;
       const std::shared_ptr<DirectionStore<Vector>> directions;
-      DirectionStore<Vector>    &store;
-      std::vector<Tie>           ties; // of the present face
+      DirectionStore<Vector>                       &store;
+      std::vector<Tie>                              ties; // of the present face
 
       Vector              x, Fx, g;  // where the method is
       Vector              y, Fy, gy; // where the present step leads
       std::vector<double> merits;    // natural residuals of all x so far
-      double              residual = HUGE_VAL;
-      bool full = true, holds_weak = false;
+      double              residual   = HUGE_VAL;
+      bool                holds_weak = false; // the next face must hold all bodies well
       Counts              counts;
     };
   } // namespace detail
@@ -339,8 +344,15 @@ namespace slipstick::qp
                                          const Observer           &observer = {},
                                          const Acceptance<Vector> &accepts  = {})
   {
-    return detail::SemismoothNewton<Vector, Problem>(
-             problem, norm, d, std::move(admissible), std::move(start), goal, options, observer, accepts)
+    return detail::SemismoothNewton<Vector, Problem>(problem,
+                                                     norm,
+                                                     d,
+                                                     std::move(admissible),
+                                                     std::move(start),
+                                                     goal,
+                                                     options,
+                                                     observer,
+                                                     accepts)
       .run();
   }
 } // namespace slipstick::qp
