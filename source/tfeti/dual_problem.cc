@@ -312,22 +312,18 @@ namespace slipstick::tfeti
     return y;
   }
 
-  // The free rows and as many of those with friction forces as hold the loose motions.
-  std::vector<bool> DualProblem::rows_that_fix(const std::vector<RigidMotion> &loose,
-                                               const DistributedVector        &x,
-                                               std::vector<bool>               free) const
+  bool DualProblem::hold(const std::vector<RigidMotion> &loose,
+                         const std::vector<bool>        &is_candidate,
+                         const std::vector<double>      &scale,
+                         std::vector<bool>              &free) const
   {
     const Eigen::MatrixXd            own = bodies->jumps(loose);
     std::vector<std::vector<double>> candidates;
     std::vector<std::uint64_t>       labels;
-    const double                     noise        = force_rounding * x.linfty_norm();
-    const auto                       is_candidate = [&](const unsigned int r) {
-      return !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
-    };
     for (unsigned int r = 0; r < free.size(); ++r)
-      if (is_candidate(r))
+      if (is_candidate[r])
         {
-          const Eigen::VectorXd share = own.row(r);
+          const Eigen::VectorXd share = scale[r] * own.row(r);
           candidates.emplace_back(share.data(), share.data() + share.size());
           labels.push_back(rows.label[r]);
         }
@@ -338,7 +334,7 @@ namespace slipstick::tfeti
       for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
         all.emplace(labels_of[rank][i], shares_of[rank][i]);
     if (all.empty()) // Eigen's decomposition of no columns reads what is not there
-      require_support(loose, names_of_bodies);
+      return false;
     Eigen::MatrixXd shares(loose.size(), all.size());
     unsigned int    column = 0;
     for (const auto &candidate : all)
@@ -347,12 +343,26 @@ namespace slipstick::tfeti
     // of unit motions: shares that are all rounding hold nothing
     pivoted.setThreshold(least_hold * std::max(1., 1 / std::max(pivoted.maxPivot(), least_hold)));
     if (pivoted.rank() < static_cast<Eigen::Index>(loose.size()))
-      require_support(loose, names_of_bodies);
+      return false;
     std::set<std::uint64_t> chosen;
     for (unsigned int i = 0; i < loose.size(); ++i)
       chosen.insert(std::next(all.begin(), pivoted.colsPermutation().indices()[i])->first);
     for (unsigned int r = 0; r < free.size(); ++r)
-      free[r] = free[r] || (is_candidate(r) && chosen.count(rows.label[r]) > 0);
+      free[r] = free[r] || (is_candidate[r] && chosen.count(rows.label[r]) > 0);
+    return true;
+  }
+
+  // The free rows and as many of those with friction forces as hold the loose motions.
+  std::vector<bool> DualProblem::rows_that_fix(const std::vector<RigidMotion> &loose,
+                                               const DistributedVector        &x,
+                                               std::vector<bool>               free) const
+  {
+    const double      noise = force_rounding * x.linfty_norm();
+    std::vector<bool> is_candidate(free.size());
+    for (unsigned int r = 0; r < free.size(); ++r)
+      is_candidate[r] = !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
+    if (!hold(loose, is_candidate, std::vector<double>(free.size(), 1.), free))
+      require_support(loose, names_of_bodies);
     return free;
   }
 

@@ -96,6 +96,24 @@ namespace slipstick::tfeti
     /// The problem on the free rows (owned ones), the others held, or tied to free ones. Collective.
     Face face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties = {}) const;
 
+    /// Rows that hold bodies which a set leaves loose, and how these bodies move until friction balances their loads.
+    struct Settled
+    {
+      std::vector<bool> free;     // with those that hold
+      DistributedVector shift;    // of the gradient F x - d + G'a, by the motion
+      bool              is_loose; // else nothing was to be done
+    };
+
+    /// Loose bodies move to where the forces at their rows, at present bounds, balance the loads: the least of
+    /// sum_i r_i |g_i + S_i a| + e'a, S the jumps of their motions. The rows that are at rest there hold them.
+    /// @param capacity r_i: the bound of a row between two bounds [N]; negative: the row cannot leave its bound; infinity:
+    ///        a row with one bound, g_i + S_i a >= 0. @param is_weak asks for motions that free rows hardly resist, too.
+    Settled settle(const std::vector<bool>   &free,
+                   const std::vector<double> &capacity,
+                   const DistributedVector   &x,
+                   const DistributedVector   &g,
+                   const bool                 is_weak) const;
+
     /// |P F P| [mm/N].
     double norm() const
     {
@@ -181,6 +199,12 @@ namespace slipstick::tfeti
     }
 
   private:
+    /// Of the candidates, as many as hold the loose motions are added to the free rows: those whose shares, times their
+    /// scale, are largest. @return whether they do.
+    bool              hold(const std::vector<RigidMotion> &loose,
+                           const std::vector<bool>        &is_candidate,
+                           const std::vector<double>      &scale,
+                           std::vector<bool>              &free) const;
     std::vector<bool> rows_that_fix(const std::vector<RigidMotion> &loose,
                                     const DistributedVector        &x,
                                     std::vector<bool>               free) const;
