@@ -11,6 +11,7 @@
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <optional>
 #include <set>
 
 namespace slipstick::app
@@ -91,7 +92,8 @@ namespace slipstick::app
         output::Summary summary;
         for (unsigned int step = 0; step < scene.load_factors.size(); ++step)
           {
-            summary = load_step(step, summary);
+            summary        = load_step(step, summary);
+            finished_steps = summary;
             if (summary.status != output::RunStatus::converged)
               break;
           }
@@ -106,17 +108,39 @@ namespace slipstick::app
         return summary.status == output::RunStatus::converged ? ExitStatus::converged : ExitStatus::not_converged;
       }
 
+      /// After a step without equilibrium: what the steps before it left stays, marked.
+      void write_without_equilibrium()
+      {
+        if (!finished_steps)
+          {
+            directory.remove_results();
+            output::write_summary(directory, summary_without_equilibrium(scene, comm));
+            return;
+          }
+        write_tables();
+        finished_steps->status    = output::RunStatus::no_equilibrium;
+        finished_steps->time_s    = times(clock, solver.factorization_seconds());
+        finished_steps->memory_mb = memory(comm);
+        finished_steps->warnings  = warnings;
+        output::write_summary(directory, *finished_steps);
+        log.line(format("finished load steps whose results are kept: %zu", contact_steps.size()));
+      }
+
     private:
       /// What is doubtful about the answer, once a kind and pair.
       void warn(const std::vector<contact::ContactNode> &nodes, const std::vector<Eigen::VectorXd> &u)
       {
         for (const auto &[about, text] :
              doubts(scene, solver.mesh(), solver.spaces(), solver.dual(), solver.solution().free, nodes, u))
-          if (warned_about.insert(about).second)
-            {
-              log.line("             warning: " + text);
-              warnings.push_back(text);
-            }
+          warn_once(about, text);
+      }
+
+      void warn_once(const std::string &about, const std::string &text)
+      {
+        if (!warned_about.insert(about).second)
+          return;
+        log.line("             warning: " + text);
+        warnings.push_back(text);
       }
 
       /// @param so_far of the steps before.
@@ -135,6 +159,12 @@ namespace slipstick::app
         if (!passes(solution, contact.checks, tolerance))
           print_failure(log, scene, solution, contact.checks, tolerance);
         warn(contact.nodes, u);
+        if (!answer->recovery.unresisted.empty())
+          warn_once(
+            "unresisted",
+            format("nothing resists %s, and no load acts along it: it is set to zero; add a support or a contact "
+                   "against this motion if it matters",
+                   tfeti::describe(tfeti::plainest(answer->recovery.unresisted), solver.dual().body_names()).c_str()));
 
         clock.enter("output");
         auto summary =
@@ -184,6 +214,7 @@ namespace slipstick::app
       std::vector<output::ContactStep> contact_steps;
       std::vector<std::string>         warnings;
       std::set<std::string>            warned_about;
+      std::optional<output::Summary>   finished_steps; // of all load steps that have ended
     };
   } // namespace
 
@@ -201,9 +232,11 @@ namespace slipstick::app
                  const MPI_Comm           comm)
   {
     const output::OutputDirectory directory(output_directory, comm);
+    std::optional<Run>            steps;
     try
       {
-        return Run(scene, directory, log, comm).solve_and_write();
+        steps.emplace(scene, directory, log, comm);
+        return steps->solve_and_write();
       }
     catch (const InputError &) // some of it shows in meshes and formulas only
       {
@@ -212,8 +245,8 @@ namespace slipstick::app
       }
     catch (const NoEquilibrium &) // on all ranks alike
       {
-        directory.remove_results();
-        output::write_summary(directory, summary_without_equilibrium(scene, comm));
+        if (steps)
+          steps->write_without_equilibrium();
         throw;
       }
   }

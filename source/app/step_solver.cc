@@ -136,6 +136,7 @@ namespace slipstick::app
                           checked(solve_step(step, multiplications_before, false), scene.load_factors[step]));
     if (step + 1 < scene.load_factors.size())
       u = answer->recovery.u;
+    largest_displacement = std::max(largest_displacement, answer->contact->checks.max_displacement);
     the_solution.multipliers = answer->recovery.multipliers;
     return answer;
   }
@@ -216,7 +217,8 @@ namespace slipstick::app
                                     u,
                                     law.depends_on_pressure() ? law.bounds(x) : from.slip_bound,
                                     from.free,
-                                    scene.bodies.size());
+                                    scene.bodies.size(),
+                                    largest_displacement);
     answer.stress            = fem::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), u, t);
   }
 

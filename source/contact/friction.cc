@@ -1,4 +1,5 @@
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/log.h>
 #include <slipstick/contact/friction.h>
 #include <slipstick/contact/linear.h>
 #include <slipstick/qp/feasible_point.h>
@@ -30,6 +31,8 @@ namespace slipstick::contact
     constexpr unsigned int cycling_window = 5;
     // ... down to this.
     constexpr double least_relaxation = 0.1;
+    // Loads below this part of those of earlier steps are what rounding leaves of none.
+    constexpr double rounding_of_loads = 1e-12;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
 
@@ -62,7 +65,7 @@ namespace slipstick::contact
 
       DualSolution run(const DualSolution *start)
       {
-        const auto feasible = feasible_start();
+        const auto feasible = feasible_start(start);
         solution.algorithm  = options.algorithm == scene::Algorithm::semismooth_newton ? "semismooth newton" : "smalbe";
         set_bounds(law.bounds(feasible));
         if (options.algorithm == scene::Algorithm::semismooth_newton)
@@ -78,6 +81,7 @@ namespace slipstick::contact
               }
             if (newton(from, true))
               return finished();
+            refuse_overload();
             ++solution.fallbacks;
             set_bounds(law.bounds(feasible));
           }
@@ -89,12 +93,41 @@ namespace slipstick::contact
 
     private:
       /// The admissible forces nearest to zero that balance the loads.
-      Vector feasible_start()
+      Vector feasible_start(const DualSolution *start)
       {
-        auto point = qp::feasible_point(dual, dual.particular(), law.admissible(dual));
+        const auto loads = dual.particular();
+        if (start && loads.l2_norm() <= rounding_of_loads * start->reference) // unloaded to zero
+          return dual.zero();
+        auto point = qp::feasible_point(dual, loads, law.admissible(dual));
         if (point.status == qp::Status::infeasible)
           no_equilibrium(dual, point.certificate);
         return std::move(point.x);
+      }
+
+      /// Where Newton's method found no solution: is friction, at the normal forces that it came to, too weak for the loads
+      /// along a motion that nothing else resists?
+      void refuse_overload() const
+      {
+        if (!law.depends_on_pressure())
+          return;
+        const Vector       &x     = solution.multipliers;
+        const double        noise = tfeti::force_rounding * x.linfty_norm();
+        std::vector<bool>   holds(x.locally_owned_size());
+        std::vector<double> capacity(holds.size(), -1.);
+        for (unsigned int r = 0; r < holds.size(); ++r)
+          {
+            const auto kind = dual.constraints().kind[r];
+            holds[r]        = is_equality(kind) || (kind == tfeti::RowKind::normal && x.local_element(r) > noise);
+            if (!holds[r])
+              capacity[r] = kind == tfeti::RowKind::normal ? qp::infinity : solution.slip_bound[r];
+          }
+        const auto overload = dual.overload(holds, capacity);
+        if (overload)
+          throw NoEquilibrium(
+            format("friction is too weak: at the normal forces found it bears %.3g of the load that moves %s",
+                   overload->held,
+                   tfeti::describe(overload->motion, dual.body_names()).c_str()),
+            "raise the friction coefficient or the normal force, support the body against this motion, or lower the load");
       }
 
       void set_bounds(std::vector<double> bounds)

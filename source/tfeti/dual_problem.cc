@@ -352,18 +352,45 @@ namespace slipstick::tfeti
     return true;
   }
 
-  // The free rows and as many of those with friction forces as hold the loose motions.
-  std::vector<bool> DualProblem::rows_that_fix(const std::vector<RigidMotion> &loose,
-                                               const DistributedVector        &x,
-                                               std::vector<bool>               free) const
+  bool DualProblem::rows_that_fix(const std::vector<RigidMotion> &loose,
+                                  const DistributedVector        &x,
+                                  std::vector<bool>              &free) const
   {
-    const double      noise = force_rounding * x.linfty_norm();
-    std::vector<bool> is_candidate(free.size());
+    const double              noise = force_rounding * x.linfty_norm();
+    const std::vector<double> equal(free.size(), 1.);
+    std::vector<bool>         is_candidate(free.size());
     for (unsigned int r = 0; r < free.size(); ++r)
       is_candidate[r] = !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
-    if (!hold(loose, is_candidate, std::vector<double>(free.size(), 1.), free))
+    if (hold(loose, is_candidate, equal, free))
+      return true;
+    if (plainest(loose).work > 0)
       require_support(loose, names_of_bodies);
-    return free;
+    for (unsigned int r = 0; r < free.size(); ++r)
+      is_candidate[r] = !free[r];
+    if (!hold(loose, is_candidate, equal, free))
+      require_support(loose, names_of_bodies);
+    return false;
+  }
+
+  void DualProblem::remove_motions(const std::vector<RigidMotion> &loose, std::vector<Eigen::VectorXd> &u) const
+  {
+    const std::size_t n    = loose.size();
+    Eigen::MatrixXd   gram = Eigen::MatrixXd::Zero(n, n + 1); // the last column: of u
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        Eigen::MatrixXd motions(u[p].size(), n);
+        for (std::size_t m = 0; m < n; ++m)
+          motions.col(m) = bodies->displacements(p, loose[m].amplitudes);
+        gram.leftCols(n) += motions.transpose() * motions;
+        gram.col(n) += motions.transpose() * u[p];
+      }
+    MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, comm);
+    const Eigen::VectorXd amount     = gram.leftCols(n).completeOrthogonalDecomposition().solve(gram.col(n));
+    Eigen::VectorXd       amplitudes = Eigen::VectorXd::Zero(loose[0].amplitudes.size());
+    for (std::size_t m = 0; m < n; ++m)
+      amplitudes += amount[m] * loose[m].amplitudes;
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      u[p] -= bodies->displacements(p, amplitudes);
   }
 
   // Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of what is.
@@ -426,10 +453,11 @@ namespace slipstick::tfeti
 
   DualProblem::Recovery DualProblem::recover(const DistributedVector &x, const std::vector<bool> &free) const
   {
-    const auto        loose = bodies->free(free);
-    const auto        fixed = loose.empty() ? free : rows_that_fix(loose, x, free);
+    const auto        loose      = bodies->free(free);
+    std::vector<bool> fixed      = free;
+    const bool        is_at_rest = loose.empty() || rows_that_fix(loose, x, fixed);
     const Projector   on_free(*projector, fixed, comm, std::vector<qp::Tie>(), metric);
-    Recovery          result{{}, zero()};
+    Recovery          result{{}, zero(), {}};
     DistributedVector step{zero()};
     result.multipliers = x;
     for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
@@ -447,6 +475,11 @@ namespace slipstick::tfeti
       }
 
     fit_motions(on_free, fixed, result);
+    if (!is_at_rest)
+      {
+        remove_motions(loose, result.u);
+        result.unresisted = loose;
+      }
     if (!loose.empty())
       slide_apart(loose, free, x, result);
     return result;

@@ -42,6 +42,8 @@ namespace slipstick::tfeti
             largest = std::max(largest, std::abs(row.g));
             all += std::isfinite(row.capacity) ? row.capacity : 0.;
           }
+        if (largest == 0)
+          largest = 1; // any length
         for (LooseRow &row : rows)
           if (!std::isfinite(row.capacity))
             {
@@ -50,6 +52,17 @@ namespace slipstick::tfeti
             }
           else
             one_sided.push_back(false);
+      }
+
+      /// What the rows bear of the loads along a, at least; one-sided rows must not be moved against.
+      double held_part(const Eigen::VectorXd &a) const
+      {
+        double bears = 0;
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          bears +=
+            rows[i].capacity * (one_sided[i] ? std::max(0., -rows[i].share.dot(a)) : std::abs(rows[i].share.dot(a)));
+        const double drives = -loads.dot(a);
+        return drives > 0 ? bears / drives : HUGE_VAL;
       }
 
       Eigen::VectorXd motion() const
@@ -107,6 +120,27 @@ namespace slipstick::tfeti
       Eigen::VectorXd       loads;
       double                largest = 0;
     };
+
+    /// The rows of loose bodies, of all ranks in an order that no number of ranks changes.
+    std::vector<LooseRow> gathered(const std::vector<std::uint64_t>       &labels,
+                                   const std::vector<std::vector<double>> &numbers, // g, capacity, share
+                                   const MPI_Comm                          comm)
+    {
+      std::map<std::uint64_t, LooseRow> all;
+      const auto                        labels_of  = dealii::Utilities::MPI::all_gather(comm, labels);
+      const auto                        numbers_of = dealii::Utilities::MPI::all_gather(comm, numbers);
+      for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
+        for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
+          {
+            const auto &row = numbers_of[rank][i];
+            all.emplace(labels_of[rank][i],
+                        LooseRow{row[0], row[1], Eigen::Map<const Eigen::VectorXd>(row.data() + 2, row.size() - 2)});
+          }
+      std::vector<LooseRow> result;
+      for (const auto &[label, row] : all)
+        result.push_back(row);
+      return result;
+    }
   } // namespace
 
   DualProblem::Settled DualProblem::settle(const std::vector<bool>   &free,
@@ -138,20 +172,8 @@ namespace slipstick::tfeti
           labels.push_back(rows.label[r]);
         }
     MPI_Allreduce(MPI_IN_PLACE, loads.data(), n, MPI_DOUBLE, MPI_SUM, comm);
-    std::map<std::uint64_t, LooseRow> all; // in an order that no number of ranks changes
-    const auto                        labels_of  = dealii::Utilities::MPI::all_gather(comm, labels);
-    const auto                        numbers_of = dealii::Utilities::MPI::all_gather(comm, numbers);
-    for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
-      for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
-        {
-          const auto &row = numbers_of[rank][i];
-          all.emplace(labels_of[rank][i],
-                      LooseRow{row[0], row[1], Eigen::Map<const Eigen::VectorXd>(row.data() + 2, n)});
-        }
-    std::vector<LooseRow> in_order;
-    for (const auto &[label, row] : all)
-      in_order.push_back(row);
-    const Eigen::VectorXd a = Settling(in_order, loads).motion();
+    const auto            in_order = gathered(labels, numbers, comm);
+    const Eigen::VectorXd a        = Settling(in_order, loads).motion();
 
     double typical = 0;
     for (const LooseRow &row : in_order)
@@ -168,5 +190,46 @@ namespace slipstick::tfeti
         }
     hold(loose, is_candidate, scale, result.free);
     return result;
+  }
+
+  std::optional<DualProblem::Overload> DualProblem::overload(const std::vector<bool>   &free,
+                                                             const std::vector<double> &capacity) const
+  {
+    const auto loose = bodies->free(free, weak_resistance);
+    if (loose.empty())
+      return {};
+    const Eigen::MatrixXd            own = bodies->jumps(loose);
+    std::vector<std::vector<double>> numbers;
+    std::vector<std::uint64_t>       labels;
+    Eigen::VectorXd                  loads(loose.size());
+    for (std::size_t m = 0; m < loose.size(); ++m)
+      loads[m] = loose[m].load;
+    for (unsigned int r = 0; r < free.size(); ++r)
+      if (!free[r])
+        {
+          if (capacity[r] < 0 || own.row(r).isZero(0.))
+            continue;
+          const double unit = 1; // any gap: what counts is how the sum grows far away
+          numbers.push_back({std::isfinite(capacity[r]) ? 0. : unit, capacity[r]});
+          for (std::size_t m = 0; m < loose.size(); ++m)
+            numbers.back().push_back(own(r, m));
+          labels.push_back(rows.label[r]);
+        }
+    const auto all = gathered(labels, numbers, comm);
+    if (all.empty())
+      return {};
+    const Settling        settling(all, loads);
+    const Eigen::VectorXd a = settling.motion();
+    if (!(a.norm() > 0))
+      return {};
+    const double held = settling.held_part(a);
+    if (!(held < 1))
+      return {};
+    RigidMotion motion = loose.front();
+    motion.amplitudes.setZero();
+    for (std::size_t m = 0; m < loose.size(); ++m)
+      motion.amplitudes -= a[m] * loose[m].amplitudes; // bodies move against G'a
+    motion.amplitudes.normalize();
+    return Overload{motion, held};
   }
 } // namespace slipstick::tfeti

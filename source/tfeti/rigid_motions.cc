@@ -151,7 +151,10 @@ namespace slipstick::tfeti
         subdomain->body_modes().transpose() * (subdomain->kernel().transpose() * subdomain->load());
     MPI_Allreduce(MPI_IN_PLACE, load.data(), load.size(), MPI_DOUBLE, MPI_SUM, comm);
     for (auto &motion : motions)
-      motion.work = load.norm() > 0 ? motion.amplitudes.dot(load) / load.norm() : 0.;
+      {
+        motion.load = motion.amplitudes.dot(load);
+        motion.work = load.norm() > 0 ? motion.load / load.norm() : 0.;
+      }
     return motions;
   }
 

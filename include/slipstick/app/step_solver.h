@@ -131,6 +131,7 @@ namespace slipstick::app
     contact::DualSolution               the_solution;
     std::unique_ptr<Answer>             accepted; // by the test of accuracy, in the step
     std::vector<Eigen::VectorXd>        u;        // of the last step
+    double                              largest_displacement = 0; // of the steps before [mm]
     std::vector<output::ConvergenceRow> rows;
   };
 } // namespace slipstick::app

@@ -96,6 +96,11 @@ namespace slipstick::qp
       NewtonResult<Vector> run()
       {
         const Status status = iterate();
+        if (status != Status::converged && best)
+          {
+            x = std::move(*best);
+            set.predict(x, zero_like(x));
+          }
         set.put_on_bounds(x); // ties to the last bit
         project(set.box(), x);
         return {status, std::move(x), set.free(), residual, counts};
@@ -278,6 +283,8 @@ namespace slipstick::qp
             std::swap(gy, gt);
             combine(1 - t, Fx, t, Fy);
           }
+        if (merit < *std::min_element(merits.begin(), merits.end()))
+          best = y;
         merits.push_back(merit);
         std::swap(x, y);
         std::swap(Fx, Fy);
@@ -319,12 +326,13 @@ namespace slipstick::qp
       DirectionStore<Vector>                       &store;
       std::vector<Tie>                              ties; // of the present face
 
-      Vector              x, Fx, g;  // where the method is
-      Vector              y, Fy, gy; // where the present step leads
-      std::vector<double> merits;    // natural residuals of all x so far
-      double              residual   = HUGE_VAL;
-      bool                holds_weak = false; // the next face must hold all bodies well
-      Counts              counts;
+      Vector                x, Fx, g;  // where the method is
+      Vector                y, Fy, gy; // where the present step leads
+      std::vector<double>   merits;    // natural residuals of all x so far
+      std::optional<Vector> best;      // where the natural residual is least
+      double                residual   = HUGE_VAL;
+      bool                  holds_weak = false; // the next face must hold all bodies well
+      Counts                counts;
     };
   } // namespace detail
 

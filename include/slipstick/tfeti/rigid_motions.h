@@ -11,6 +11,7 @@ namespace slipstick::tfeti
     Eigen::VectorXd        amplitudes; // 3 a body, of unit length
     double                 work = 0;   // of the loads along it, over |loads| [-]
     std::vector<BodyFrame> frames;     // of the bodies
+    double                 load = 0;   // along it [N]
   };
 
   /// What the rows of B (gluing aside, which moves with its body) see of the rigid motions of whole bodies.
