@@ -18,7 +18,7 @@ namespace slipstick::tfeti
     // Pivots below this part of their diagonal entry are rounding.
     constexpr double smallest_pivot = 1e-15;
 
-    const std::string       name_of_matrix = "the coarse matrix G G'";
+    const std::string       name_of_matrix   = "the coarse matrix G G'";
     const Cholesky::Failure of_coarse_matrix = {" is not positive definite",
                                                 "some body is free to move: add a support or a contact that holds it"};
 
@@ -284,8 +284,7 @@ namespace slipstick::tfeti
     Cholesky        factor;
   };
 
-  std::unique_ptr<const CoarseSolver::Factor>
-  CoarseSolver::Elimination::factor_with(const Entries &own_changes) const
+  std::unique_ptr<const CoarseSolver::Factor> CoarseSolver::Elimination::factor_with(const Entries &own_changes) const
   {
     const Entries changes = gather(own_changes, comm);
     if (of_staying || n == 0)
