@@ -133,7 +133,7 @@ TEST(CoarseSolver, units_of_the_unknowns_do_not_matter)
   EXPECT_LT((y.cwiseProduct(units.segment(first, n_owned)) - x.segment(first, n_owned)).norm(), 1e-12 * x.norm());
 }
 
-TEST(CoarseSolver, factors_of_a_grid_hold_n_log_n_numbers_and_a_factor_that_changes_holds_n)
+TEST(CoarseSolver, factors_of_a_grid_hold_n_log_n_numbers_and_what_changes_adds_n)
 {
   const unsigned int    m = 40, n = m * m;
   CoarseSolver::Entries laplacian;
@@ -154,7 +154,8 @@ TEST(CoarseSolver, factors_of_a_grid_hold_n_log_n_numbers_and_a_factor_that_chan
   const auto         staying = CoarseSolver::eliminate(laplacian, changes, MPI_COMM_WORLD);
   const CoarseSolver one(staying, {}), both(rank() == 0 ? n : 0, laplacian, MPI_COMM_WORLD);
   EXPECT_LT(both.n_nonzeros(), 3 * n * std::log2(n)); // the band of a row by row ordering has m n = 3.8 of them
-  EXPECT_LT(one.n_nonzeros(), both.n_nonzeros() + 4 * n);
+  // three dense matrices of m^2 = n numbers, and the fill of a side that comes last; columns of A^-1 would be m n = 40 n
+  EXPECT_LT(one.n_nonzeros(), both.n_nonzeros() + 8 * n);
 }
 
 TEST(CoarseSolver, matrix_without_rows_is_no_error)
