@@ -42,8 +42,8 @@ as_root() {
 
 # missing_packages PACKAGE...: those that dpkg does not have installed, one a line.
 missing_packages() {
-  { dpkg-query -W -f='${Package} ${db:Status-Status}\n' "$@" 2>/dev/null || true; } |
-    awk 'NR == FNR { if ($2 == "installed") have[$1] = 1; next } !($1 in have)' - <(printf '%s\n' "$@")
+  printf '%s\n' "$@" |
+    grep -vxFf <(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null | sed -n 's/^installed //p') || true
 }
 
 # have_candidates PACKAGE...: true when apt's lists know all of them.
@@ -145,10 +145,10 @@ progress() {
 
 # logged SHOW LOG COMMAND...: runs COMMAND with its output in LOG; when it fails, function SHOW prints what matters.
 logged() {
-  local show=$1 log=$2 status=0
+  local show=$1 log=$2 status=0 -
+  set -o pipefail # here only
   shift 2
-  LC_ALL=C "$@" > >(progress "$log") 2>&1 || status=$?
-  wait $! || true
+  LC_ALL=C "$@" 2>&1 | progress "$log" || status=${PIPESTATUS[0]}
   [[ $status -eq 0 ]] && return 0
   "$show" "$log" >&2 || true
   die "failed: $* (complete log: $log)"
