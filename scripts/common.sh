@@ -65,8 +65,8 @@ install_packages() {
   fi
   as_root apt-get update --quiet || die "apt-get update failed (see above): check the network and /etc/apt/sources.list"
   have_candidates "${missing[@]}" ||
-    die "this release of Debian does not have all of: ${missing[*]} (Debian 12 has; or build deal.II >= 9.4" \
-      "yourself and use plain CMake, see README.md)"
+    die "this release of Debian does not have all of: ${missing[*]} (Debian 12 and 13 have; for others see" \
+      "doc/platforms.md)"
   as_root "${install[@]}" || die "apt-get could not install: ${missing[*]} (see above)"
 }
 
@@ -97,7 +97,7 @@ require_libraries() {
   rm -rf "$trial"
   say "this is not a Debian system and something that slipstick needs is missing. Install the counterparts of"
   say "  ${packages[*]}"
-  die "with your package manager (or run in a container of debian:12), then repeat"
+  die "with your package manager (or run in a container: doc/platforms.md), then repeat"
 }
 
 setup() {
@@ -182,12 +182,4 @@ build_target() {
   fi
   say "building $1 (Release, $(n_jobs) jobs)"
   logged build_errors "$build/build.log" cmake --build "$build" --target "$1" --parallel "$(n_jobs)"
-}
-
-# One thread a rank, and Open MPI quiet in the places where it complains needlessly.
-mpi_environment() {
-  export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-  if [[ -e /.dockerenv || -e /run/.containerenv ]]; then
-    export OMPI_MCA_btl_vader_single_copy_mechanism=none # containers forbid it, Open MPI 4 warns on every run
-  fi
 }
