@@ -36,7 +36,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON) # the libraries of the release that it is built on; needs dpkg-dev
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS openmpi-bin)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "openmpi-bin, libopenblas0")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
     "libdeal.ii-dev, libtrilinos-amesos2-dev, libtrilinos-tpetra-dev, libsuitesparse-dev, libeigen3-dev, paraview")
 include(CPack)
