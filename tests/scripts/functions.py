@@ -146,7 +146,7 @@ class TestDebian(WithFolder):
 
     @unittest.skipUnless(os.geteuid() == 0, 'needs root')
     def test_folder_of_others_is_left_alone(self):
-        for name in ('debootstrap', 'unshare'):
+        for name in ('debootstrap', 'unshare', 'git'):
             self.stand_in(name, 'while [[ $1 == --* ]]; do shift; [[ $1 == private ]] && shift; done; exec "$@"\n')
         other = self.folder / 'other'
         other.mkdir()
