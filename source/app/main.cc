@@ -60,7 +60,7 @@ namespace
 
 int main(int argc, char **argv)
 {
-  tfeti::Process process(argc, argv);
+  tfeti::Process process;
   try
     {
       return run_program(argc, argv, MPI_COMM_WORLD);

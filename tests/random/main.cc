@@ -460,7 +460,7 @@ namespace
 
 int main(int argc, char **argv)
 {
-  tfeti::Process process(argc, argv);
+  tfeti::Process process;
   try
     {
       return Test(parsed(argc, argv)).run();
