@@ -489,12 +489,6 @@ namespace slipstick::fem
     }
   } // namespace
 
-  std::string MeshFile::name_of(const unsigned int dim, const int physical) const
-  {
-    const auto found = names.find({dim, physical});
-    return found == names.end() ? std::to_string(physical) : found->second;
-  }
-
   MeshFile parse_gmsh(const std::string &file, const std::string &text)
   {
     return GmshReader(file, text).read();
