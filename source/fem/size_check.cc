@@ -21,7 +21,8 @@ namespace slipstick::fem
     constexpr double bytes_per_unknown = 300, bytes_per_unknown_and_doubling = 32;
     constexpr double cells_per_subdomain = 10000; // what auto aims at, see decomposition.cc
     constexpr double most_cells          = 1e9;   // beyond this counters of 32 bits may overflow
-    constexpr double most_subdomains     = 1e6;   // beyond this their own data outweigh their cells
+    constexpr double bytes_per_subdomain = 100e3; // its mesh and lists, however few its cells
+    constexpr double many_subdomains     = 1e4;   // beyond this the message names them
     constexpr double bytes_of_a_cell     = 40;    // in a mesh file
     constexpr double around_an_edge      = 13;    // cells that come with an edge refined by 3, all levels together
     constexpr double usable              = 0.9;   // of the memory that is free
@@ -127,7 +128,7 @@ namespace slipstick::fem
       n_subdomains = scene.decomposition.subdomains;
     const double of_one = std::max(2., size.unknowns / n_subdomains);
     size.memory_mb = size.unknowns * (bytes_per_unknown + bytes_per_unknown_and_doubling * std::log2(of_one)) / 1048576;
-    if (n_subdomains > most_subdomains)
+    if (n_subdomains > many_subdomains)
       size.largest += ", in " + rounded(n_subdomains) + " subdomains";
     return size;
   }
