@@ -154,6 +154,7 @@ namespace slipstick::fem
         if (at == std::string::npos)
           return "";
         section = line().substr(1);
+        section = section.substr(0, section.find('\0')); // which would cut messages
         return section;
       }
 
@@ -173,6 +174,8 @@ namespace slipstick::fem
         if (start == std::string::npos || end == std::string::npos)
           fail_broken();
         at = end + 1;
+        if (text.find('\0', start) < end) // would cut messages
+          fail_broken();
         return text.substr(start + 1, end - start - 1);
       }
 

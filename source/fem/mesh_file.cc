@@ -99,6 +99,10 @@ namespace slipstick::fem
     });
     if (extension == ".msh")
       return parse_gmsh(file, text);
+    if (text.find('\0') != std::string::npos)
+      throw InputError("mesh file " + file + " is binary, or damaged: its byte " + std::to_string(text.find('\0') + 1) +
+                         " is 0",
+                       "write it in ASCII, or as Gmsh's .msh");
     // .inp is Abaqus' or UCD's: UCD starts with numbers, Abaqus with words
     const auto first = text.find_first_not_of(" \t\r\n");
     if (extension == ".inp" && first != std::string::npos && !std::isdigit(text[first]) && text[first] != '#')

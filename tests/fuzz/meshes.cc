@@ -191,6 +191,8 @@ namespace
 
   fem::MeshFile parse(const Source &source)
   {
+    if (source.extension != ".msh" && source.text.find('\0') != std::string::npos)
+      throw InputError("a byte that is 0", "read_mesh_file() refuses those");
     return source.extension == ".msh"   ? fem::parse_gmsh(source.name, source.text)
            : source.extension == ".inp" ? fem::parse_abaqus(source.name, source.text)
            : source.extension == ".vtk" ? fem::parse_vtk(source.name, source.text)

@@ -131,8 +131,9 @@ def make_case(seed, folder):
     return case, arguments
 
 
-def check_contact(path):
-    """What contact.csv says against the conditions of contact, relative to its largest numbers."""
+def check_contact(path, stress):
+    """What contact.csv says against the conditions of contact, relative to its largest numbers, which are rounding where they
+    are a tiny part of the @p stress in the bodies."""
     with open(path, newline='') as stream:
         rows = list(csv.DictReader(stream))
     for step in {row['step'] for row in rows}:
@@ -142,6 +143,8 @@ def check_contact(path):
                 continue
             number = lambda row, key: float(row[key])
             largest = max(abs(number(row, 'pressure')) + abs(number(row, 'tangential_traction')) for row in own)
+            if largest < 1e-5 * stress:
+                continue
             for row in own:
                 if number(row, 'pressure') < -1e-3 * largest:
                     return 'tension at ' + row['x'] + ', ' + row['y'] + ' of ' + pair
@@ -198,7 +201,7 @@ def run_one(seed, options):
             elif any(value is None or value > 1e-3 for value in summary['residuals'].values()):
                 problem = 'status 0 with residuals ' + str(summary['residuals'])
             elif (output / 'contact.csv').exists():
-                problem = check_contact(output / 'contact.csv')
+                problem = check_contact(output / 'contact.csv', summary['results']['max_von_mises'])
         if problem:
             kept = options.keep / str(seed)
             shutil.rmtree(kept, ignore_errors=True)
