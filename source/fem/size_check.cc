@@ -125,9 +125,11 @@ namespace slipstick::fem
     else if (scene.decomposition.method == scene::DecompositionMethod::none)
       n_subdomains = scene.bodies.size();
     else if (scene.decomposition.subdomains > 0)
-      n_subdomains = scene.decomposition.subdomains;
+      n_subdomains = std::min<double>(scene.decomposition.subdomains, size.cells); // more are refused for themselves
     const double of_one = std::max(2., size.unknowns / n_subdomains);
-    size.memory_mb = size.unknowns * (bytes_per_unknown + bytes_per_unknown_and_doubling * std::log2(of_one)) / 1048576;
+    size.memory_mb      = (n_subdomains * bytes_per_subdomain +
+                      size.unknowns * (bytes_per_unknown + bytes_per_unknown_and_doubling * std::log2(of_one))) /
+                     1048576;
     if (n_subdomains > many_subdomains)
       size.largest += ", in " + rounded(n_subdomains) + " subdomains";
     return size;
