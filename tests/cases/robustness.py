@@ -72,8 +72,8 @@ class Robustness(unittest.TestCase):
         self.refused(case, {'Body a/Cells': '1000000, 1000000'}, 'about 2e+12 unknowns (Body a: 1e+12 cells', 'Cells', ranks=2)
         self.refused(case, {'Discretization/Refinements': 10, 'Body a/Refinements': 9, 'Body a/Cells': '10, 10'}, 'unknowns')
         self.refused(case, {'Body a/Cells': 'auto', 'Decomposition/Blocks': 1000}, '2.5e+09 cells')
-        self.refused(case, {'Body a/Cells': 'auto', 'Decomposition/Blocks': 5000, 'Decomposition/Cells per block': 1},
-                     '2.5e+07 subdomains', 'MB are free', '--force')
+        self.refused(case, {'Body a/Cells': 'auto', 'Decomposition/Blocks': 1000, 'Decomposition/Cells per block': 20},
+                     '1e+06 subdomains', 'MB are free', '--force')
         self.refused(case, {'Body a/Refine towards': '*', 'Body a/Refine levels': 10, 'Body a/Cells': '10000, 100'},
                      'most of them by Refine levels', 'unknowns')
         self.refused(shipped('hertz'), {'Body cylinder/Refinements': 10, 'Discretization/Refinements': 10}, 'unknowns')
