@@ -221,6 +221,15 @@ namespace slipstick::app
     return solution.status == qp::Status::converged && checks.worst().second <= check_limit(tolerance);
   }
 
+  namespace
+  {
+    /// Whether a tolerance can be set to it.
+    bool is_tolerance(const double value)
+    {
+      return value > 0 && value < 1;
+    }
+  } // namespace
+
   void print_failure(const Log                   &log,
                      const scene::Scene<2>       &scene,
                      const contact::DualSolution &solution,
@@ -271,17 +280,21 @@ namespace slipstick::app
                  solution.bound_change,
                  solution.friction_iterations) +
           largest +
-          format(
-            "; what was reached is written and is no solution\n"
-            "  remedy: split the load into more steps (Load steps/Factors), set Friction/Tolerance to %g or more, or raise "
-            "Friction/Max iterations; with a large friction coefficient there may be no or many solutions",
-            rounded_up(solution.bound_change)));
+          "; what was reached is written and is no solution\n"
+          "  remedy: split the load into more steps (Load steps/Factors), " +
+          (is_tolerance(rounded_up(solution.bound_change))
+             ? format("set Friction/Tolerance to %g or more, ", rounded_up(solution.bound_change))
+             : "") +
+          "or raise Friction/Max iterations; with a large friction coefficient there may be no or many solutions");
         return;
       }
     const bool        limit   = solution.status == qp::Status::iteration_limit;
     const double      reached = std::max(solution.projected_gradient, solution.equality);
     const std::string raise =
-      format("set Solver/Tolerance to %g or more, and look at the residuals in convergence.csv", rounded_up(reached));
+      is_tolerance(rounded_up(reached))
+        ? format("set Solver/Tolerance to %g or more, and look at the residuals in convergence.csv",
+                 rounded_up(reached))
+        : "look at the residuals in convergence.csv; loads and supports that hardly balance, and moduli or sizes far apart, do this";
     log.warning(
       format("not converged: the solver %s: %s is %.1e of |Pd|, asked for is %g",
              limit ? "reached its limit of iterations" : "came to a standstill",

@@ -128,6 +128,11 @@ namespace slipstick::scene
           return InputError(problem + "available; available: " + words,
                             near ? "did you mean '" + *near + "'?" : "choose one of these");
         }
+      if (const auto number = parse_number(setting.value);
+          number && (!is_usable(*number) || (*number > 0 && *number < smallest_number)))
+        return InputError(problem + "allowed: numbers here lie between " + number_text(smallest_number) + " and " +
+                            number_text(largest_number) + " in size",
+                          "give " + parameter.allowed + " of that size, in other units if need be");
       return InputError(problem + "allowed; allowed: " + parameter.allowed,
                         "give " + parameter.allowed + " (" + parameter.meaning +
                           (parameter.unit.empty() ? "" : " [" + parameter.unit + "]") + ")");
