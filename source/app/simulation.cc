@@ -1,4 +1,5 @@
 #include <slipstick/app/doubts.h>
+#include <slipstick/app/held_nodes.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/app/step_solver.h>
@@ -108,10 +109,9 @@ namespace slipstick::app
 
     private:
       /// What is doubtful about the answer, once a kind and pair.
-      void warn(const std::vector<contact::ContactNode> &nodes, const std::vector<Eigen::VectorXd> &u)
+      void warn(const std::map<std::string, std::string> &texts)
       {
-        for (const auto &[about, text] :
-             doubts(scene, solver.mesh(), solver.spaces(), solver.dual(), solver.solution().free, nodes, u))
+        for (const auto &[about, text] : texts)
           if (warned_about.insert(about).second)
             {
               log.line("             warning: " + text);
@@ -134,7 +134,8 @@ namespace slipstick::app
         print_checks(log, contact.checks, tolerance);
         if (!passes(solution, contact.checks, tolerance))
           print_failure(log, scene, solution, contact.checks, tolerance);
-        warn(contact.nodes, u);
+        warn(doubts(scene, solver.mesh(), solver.spaces(), solver.dual(), solution.free, contact.nodes, u));
+        warn(doubts_of_held_nodes(scene, solver.held_contacts(), contact, comm));
 
         clock.enter("output");
         auto summary =

@@ -1,3 +1,4 @@
+#include <slipstick/app/held_nodes.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/step_solver.h>
 #include <slipstick/base/exceptions.h>
@@ -164,6 +165,8 @@ namespace slipstick::app
     auto matrices = fem::assemble(scene, *the_mesh, *the_spaces, t);
     auto rows     = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
     pruned        = std::move(rows.pruned);
+    held          = std::move(rows.held);
+    fem::refuse_held_penetration(scene, held, comm);
     print_constraints(log, rows.active);
 
     clock.enter("dual setup");
@@ -187,6 +190,8 @@ namespace slipstick::app
     if (is_same) // gaps that follow the load factor may prune other nodes
       {
         pruned = std::move(rows.pruned);
+        held   = std::move(rows.held);
+        fem::refuse_held_penetration(scene, held, comm);
         clock.enter("dual setup");
         the_dual->set_step(std::move(loads), std::move(rows.active.c));
       }
@@ -217,7 +222,8 @@ namespace slipstick::app
                                     law.depends_on_pressure() ? law.bounds(x) : from.slip_bound,
                                     from.free,
                                     scene.bodies.size());
-    answer.stress            = fem::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), u, t);
+    add_held_nodes(scene, *the_dual, held, x, u, *answer.contact);
+    answer.stress = fem::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), u, t);
   }
 
   bool StepSolver::is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t)

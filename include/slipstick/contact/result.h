@@ -50,9 +50,24 @@ namespace slipstick::contact
     }
   };
 
+  /// Of forces in the plane.
+  struct Resultant
+  {
+    std::array<double, 2> force{{0, 0}}; // [N]
+    double                moment = 0;    // about the origin of coordinates, from x to y positive [N mm]
+
+    void add(const double fx, const double fy, const std::array<double, 3> &at)
+    {
+      force[0] += fx;
+      force[1] += fy;
+      moment += at[0] * fy - at[1] * fx;
+    }
+  };
+
   struct PairResult
   {
     std::string pair;
+    Resultant   on_slave;             // of the tractions, at the slave nodes
     double      normal_force     = 0; // sum of pressure times area [N]
     double      tangential_force = 0; // [N]
     double      moment_mismatch  = 0; // sum of the moments on both sides [N mm]: the linearised gap leaves gap times
