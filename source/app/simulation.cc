@@ -1,9 +1,12 @@
 #include <slipstick/app/doubts.h>
+#include <slipstick/app/geometry_checks.h>
 #include <slipstick/app/held_nodes.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/app/step_solver.h>
+#include <slipstick/contact/resultants.h>
 #include <slipstick/fem/arc_length.h>
+#include <slipstick/fem/loads.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/fields.h>
 
@@ -103,6 +106,8 @@ namespace slipstick::app
         summary.memory_mb = memory(comm);
         summary.warnings  = warnings;
         output::write_summary(directory, summary);
+        log.line("");
+        print_forces(log, scene, summary.results);
         print_result(log, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
         return summary.status == output::RunStatus::converged ? ExitStatus::converged : ExitStatus::not_converged;
       }
@@ -137,9 +142,18 @@ namespace slipstick::app
         warn(doubts(scene, solver.mesh(), solver.spaces(), solver.dual(), solution.free, contact.nodes, u));
         warn(doubts_of_held_nodes(scene, solver.held_contacts(), contact, comm));
 
+        const auto geometry =
+          judge(scene, fem::penetrations(scene, solver.mesh(), solver.spaces(), u, t), contact.checks.max_displacement);
+        warn(geometry.warnings);
+        if (geometry.failure)
+          log.warning(*geometry.failure);
+
         clock.enter("output");
         auto summary =
           make_summary(scene, solver.mesh(), solver.spaces(), solver.dual(), solution, contact.checks, stress);
+        if (geometry.failure)
+          summary.status = output::RunStatus::not_converged;
+        summary.results.forces = forces(*answer, t);
         if (scene.output.vtu)
           {
             output::write_fields(directory, solver.mesh(), solver.spaces(), u, stress, step);
@@ -155,6 +169,43 @@ namespace slipstick::app
         clock.leave();
         add_step(so_far, t, summary);
         return summary;
+      }
+
+      /// Resultants of loads and supports; warns of loads whose formulas no mesh resolves.
+      output::ForceSummary forces(const StepSolver::Answer &answer, const double t)
+      {
+        output::ForceSummary sums;
+        const auto           loads = fem::load_resultants(scene, solver.mesh(), solver.spaces(), t);
+        unsigned int         next  = 0;
+        const auto           take  = [&](const auto &list, const std::string &kind) {
+          for (const auto &load : list)
+            {
+              const auto &sum = loads[next++];
+              sums.loads.push_back({load.name, kind, sum.sum});
+              if (sum.unresolved)
+                warn({{"load " + kind + load.name,
+                       format("%s %s: its formula changes faster than can be integrated at (%.6g, %.6g), so that its "
+                                         "resultant may be off; smooth the formula, or refine the mesh there",
+                              kind.c_str(),
+                              load.name.c_str(),
+                              (*sum.unresolved)[0],
+                              (*sum.unresolved)[1])}});
+            }
+        };
+        take(scene.tractions, "traction");
+        take(scene.body_forces, "body force");
+        take(scene.point_loads, "point load");
+        const unsigned int n_supports = scene.supports.size(), n_holders = n_supports + scene.foundations.size();
+        const auto         reactions = contact::reactions(solver.dual(),
+                                                  solver.held_contacts(),
+                                                  answer.contact->held_forces,
+                                                  answer.recovery.multipliers,
+                                                  n_holders);
+        for (unsigned int h = 0; h < n_supports; ++h)
+          sums.supports.push_back({scene.supports[h].name, "support", reactions[h]});
+        for (unsigned int h = n_supports; h < n_holders; ++h)
+          sums.foundations.push_back({scene.foundations[h - n_supports].name, "foundation", reactions[h]});
+        return sums;
       }
 
       output::ContactNames contact_names() const

@@ -9,6 +9,7 @@
 #include <slipstick/fem/decomposition.h>
 #include <slipstick/fem/loads.h>
 #include <slipstick/fem/pair_checks.h>
+#include <slipstick/fem/shared_sides.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -119,6 +120,7 @@ namespace slipstick::app
       }
     fem::check_overlap(scene, *the_mesh, *the_spaces);
     fem::check_obstacle_pairs(scene, *the_mesh, *the_spaces);
+    fem::check_shared_sides(scene, *the_mesh, *the_spaces);
   }
 
   void StepSolver::build()

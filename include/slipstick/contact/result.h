@@ -5,6 +5,8 @@
 // tangential displacement of the slave relative to the other side. Traction acts on the slave body.
 #pragma once
 
+#include <slipstick/base/resultant.h>
+
 #include <array>
 #include <string>
 #include <vector>
@@ -47,20 +49,6 @@ namespace slipstick::contact
     {
       archive &pair &position &normal &arc_length &area &length &gap &pressure &tangential_traction &slip &status
         &is_closed &slip_bound &moment_mismatch;
-    }
-  };
-
-  /// Of forces in the plane.
-  struct Resultant
-  {
-    std::array<double, 2> force{{0, 0}}; // [N]
-    double                moment = 0;    // about the origin of coordinates, from x to y positive [N mm]
-
-    void add(const double fx, const double fy, const std::array<double, 3> &at)
-    {
-      force[0] += fx;
-      force[1] += fy;
-      moment += at[0] * fy - at[1] * fx;
     }
   };
 
