@@ -9,6 +9,12 @@
 
 namespace slipstick::app
 {
+  namespace
+  {
+    // Of the forces of a pair: less at held nodes, such as one at the corner, is not worth a warning.
+    constexpr double part_that_counts = 0.05;
+  } // namespace
+
   void add_held_nodes(const scene::Scene<2>              &scene,
                       const tfeti::DualProblem           &dual,
                       const tfeti::HeldContacts          &held,
@@ -35,13 +41,16 @@ namespace slipstick::app
                                                           const contact::CheckedContact &contact,
                                                           const MPI_Comm                 comm)
   {
-    std::vector<double> forces(scene.contacts.size());
+    std::vector<double> forces(scene.contacts.size()), all(scene.contacts.size());
+    for (const auto &node : contact.nodes)
+      all[node.pair] += std::abs(node.pressure) * node.area;
     for (unsigned int i = 0; i < held.points.size(); ++i)
       if (!held.points[i].is_bonded)
         forces[held.points[i].contact.pair] += std::hypot(contact.held_forces[i][0], contact.held_forces[i][1]);
     std::map<std::string, std::string> texts;
     for (unsigned int k = 0; k < scene.contacts.size(); ++k)
-      if (const double force = dealii::Utilities::MPI::sum(forces[k], comm); force > 0)
+      if (const double force = dealii::Utilities::MPI::sum(forces[k], comm);
+          force > part_that_counts * dealii::Utilities::MPI::sum(all[k], comm))
         texts["held " + scene.contacts[k].name] = format(
           "Contact %s: supports hold some of its nodes just where they touch, so that only the sum of both forces there is "
           "determined; %.4g N of it, an equal share, are taken for contact (without friction under Coulomb's law); leave "

@@ -9,6 +9,7 @@
 #include <slipstick/fem/loads.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/fields.h>
+#include <slipstick/output/history.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -100,7 +101,7 @@ namespace slipstick::app
               break;
           }
         clock.enter("output");
-        write_tables();
+        write_tables(summary);
         clock.leave();
         summary.time_s    = times(clock, solver.factorization_seconds());
         summary.memory_mb = memory(comm);
@@ -219,8 +220,9 @@ namespace slipstick::app
         return names;
       }
 
-      void write_tables() const
+      void write_tables(const output::Summary &summary) const
       {
+        output::write_history(directory, summary.steps);
         output::write_convergence(directory, solver.convergence());
         directory.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
         if (scene.has_contact())

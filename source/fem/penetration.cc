@@ -142,11 +142,16 @@ namespace slipstick::fem
           }
     }
 
+    /// Of a function the height decides what is inside: the foot that is found on a narrow bump may be that of its far side.
     std::optional<double> gap_at(const scene::Obstacle<2> &obstacle, const Point &x, const double t)
     {
       try
         {
-          return contact_with(obstacle, x, t).gap;
+          const double gap = contact_with(obstacle, x, t).gap;
+          if (obstacle.shape != scene::ObstacleShape::function)
+            return gap;
+          const double above = x[1] - obstacle.height.value(x, t);
+          return above >= 0 ? above : -std::min(std::abs(gap), -above);
         }
       catch (const InputError &) // the centre of a circle, where it has no normal
         {

@@ -77,7 +77,7 @@ namespace slipstick::output
   void OutputDirectory::remove_results() const
   {
     static const std::regex result("solution\\.pvd|solution_\\d+\\.pvtu|subdomain_\\d+_\\d+\\.vtu|contact_\\d+\\.vtp|"
-                                   "contact\\.csv|convergence\\.csv|summary\\.json|parameters\\.prm");
+                                   "contact\\.csv|convergence\\.csv|history\\.csv|summary\\.json|parameters\\.prm");
     collectively(communicator, [&] {
       if (dealii::Utilities::MPI::this_mpi_process(communicator) != 0)
         return;
