@@ -8,6 +8,7 @@
 #include <slipstick/fem/surface.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 
 #include <algorithm>
 
@@ -15,6 +16,11 @@ namespace slipstick::fem
 {
   namespace
   {
+    // Points a direction of the quadrature that body forces are compared with ...
+    constexpr unsigned int finer_order = 6;
+    // ... and by how much the sum over the cells may differ, part of the force.
+    constexpr double allowed_misfit = 0.01;
+
     /// One subdomain and its load at load factor t.
     template <int dim>
     class SubdomainLoad
@@ -45,6 +51,54 @@ namespace slipstick::fem
       Eigen::VectorXd take()
       {
         return std::move(load);
+      }
+
+      /// How far a finer quadrature of the body forces that are formulas is off, by body force.
+      struct Misfit
+      {
+        double                size = 0, difference = 0; // sums of magnitudes over the cells [N]
+        double                largest = -1;             // difference in a cell
+        std::array<double, 2> at{{0, 0}};               // that cell
+      };
+
+      std::vector<Misfit> misfits_of_body_forces()
+      {
+        std::vector<Misfit> result(scene.body_forces.size());
+        const bool          any = std::any_of(body_forces.begin(), body_forces.end(), [this](const unsigned int k) {
+          return !is_constant(scene.body_forces[k]);
+        });
+        if (!any)
+          return result;
+        const auto      finer = element.cell.is_simplex()
+                                  ? dealii::Quadrature<dim>(dealii::QWitherdenVincentSimplex<dim>(finer_order))
+                                  : dealii::Quadrature<dim>(dealii::QGauss<dim>(finer_order));
+        CellValues<dim> coarse(*element.mapping, *element.scalar, element.loads, dealii::update_quadrature_points),
+          fine(*element.mapping, *element.scalar, finer, dealii::update_quadrature_points);
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          {
+            coarse.reinit(cell);
+            fine.reinit(cell);
+            for (const unsigned int k : body_forces)
+              if (!is_constant(scene.body_forces[k]))
+                {
+                  const auto integral = [&](const CellValues<dim> &values, const unsigned int n) {
+                    Vector sum;
+                    for (unsigned int q = 0; q < n; ++q)
+                      sum += body_force(scene.body_forces[k], values.point(q)) * (*values).JxW(q) * body.thickness;
+                    return sum;
+                  };
+                  const Vector a = integral(coarse, element.loads.size()), b = integral(fine, finer.size());
+                  Misfit      &misfit = result[k];
+                  misfit.size += b.norm();
+                  misfit.difference += (a - b).norm();
+                  if ((a - b).norm() > misfit.largest)
+                    {
+                      misfit.largest = (a - b).norm();
+                      misfit.at      = {{cell->center()[0], cell->center()[1]}};
+                    }
+                }
+          }
+        return result;
       }
 
       /// Of tractions and body forces on this subdomain.
@@ -106,6 +160,14 @@ namespace slipstick::fem
                std::all_of(traction.components.begin(), traction.components.end(), [](const auto &component) {
                  return component.is_constant();
                });
+      }
+
+      static bool is_constant(const scene::BodyForce<dim> &load)
+      {
+        const auto all_constant = [](const auto &fields) {
+          return std::all_of(fields.begin(), fields.end(), [](const auto &field) { return field.is_constant(); });
+        };
+        return all_constant(load.force) && all_constant(load.acceleration) && load.angular_velocity.is_constant();
       }
 
       void add_formula(const scene::Traction<dim>                                   &traction,
@@ -326,12 +388,24 @@ namespace slipstick::fem
                                              const Spaces<dim>       &spaces,
                                              const double             t)
   {
-    const unsigned int         n_spread = scene.tractions.size() + scene.body_forces.size();
-    std::vector<LoadResultant> sums(n_spread);
+    const unsigned int                               n_spread = scene.tractions.size() + scene.body_forces.size();
+    std::vector<LoadResultant>                       sums(n_spread);
+    std::vector<typename SubdomainLoad<dim>::Misfit> misfits(scene.body_forces.size());
     collectively(mesh.comm, [&] {
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
         {
-          const SubdomainLoad<dim> load(scene, mesh, spaces, p, t);
+          SubdomainLoad<dim> load(scene, mesh, spaces, p, t);
+          const auto         own_misfits = load.misfits_of_body_forces();
+          for (unsigned int k = 0; k < misfits.size(); ++k)
+            {
+              misfits[k].size += own_misfits[k].size;
+              misfits[k].difference += own_misfits[k].difference;
+              if (own_misfits[k].largest > misfits[k].largest)
+                {
+                  misfits[k].largest = own_misfits[k].largest;
+                  misfits[k].at      = own_misfits[k].at;
+                }
+            }
           for (unsigned int k = 0; k < n_spread; ++k)
             {
               const auto &own = load.resultants()[k];
@@ -343,6 +417,14 @@ namespace slipstick::fem
             }
         }
     });
+    for (unsigned int k = 0; k < misfits.size(); ++k)
+      {
+        const double size       = dealii::Utilities::MPI::sum(misfits[k].size, mesh.comm);
+        const double difference = dealii::Utilities::MPI::sum(misfits[k].difference, mesh.comm);
+        const double largest    = dealii::Utilities::MPI::max(misfits[k].largest, mesh.comm);
+        if (difference > allowed_misfit * size && misfits[k].largest == largest)
+          sums[scene.tractions.size() + k].unresolved = misfits[k].at;
+      }
     sums = over_all_ranks(sums, mesh.comm);
     for_each_point_load(scene, mesh, spaces, [&](const unsigned int k, const PointNode<dim> &at) {
       const auto &force = scene.point_loads[k].force;

@@ -48,6 +48,10 @@ namespace slipstick::fem
     {
       if (first.master.has_value() != second.master.has_value())
         return;
+      if (first.master
+            ? std::minmax(first.slave.body, first.master->body) != std::minmax(second.slave.body, second.master->body)
+            : first.slave.body != second.slave.body)
+        return;
       if (!first.master)
         {
           if (const auto slave = common(a.slave, b.slave); first.obstacle == second.obstacle && !slave.empty())

@@ -200,6 +200,14 @@ class Loads(Case):
                    contacts={'touch': {**TOUCH, 'Law': 'bonded'}})
         self.warned(solve(case), 'traction pressed', 'changes faster')
 
+    def test_body_forces_with_jumps_are_warned_of(self):
+        for fy, is_rough in (('-(x>2.3 && x<7.1)', True), ('-1-sin(pi*x/10)', False)):
+            result = converged(bar(body_forces={'weight': {'Force y': fy}}, contacts={'touch': {**TOUCH, 'Law': 'bonded'}}))
+            if is_rough:
+                self.warned(result, 'body force weight', 'changes faster')
+            else:
+                self.assertEqual(result.summary['warnings'], [])
+
 
 class Names(Case):
 

@@ -14,7 +14,8 @@ namespace slipstick::fem
   struct LoadResultant
   {
     Resultant                            sum;
-    std::optional<std::array<double, 2>> unresolved; // where its formula is too rough for the mesh or has no integral
+    std::optional<std::array<double, 2>> unresolved; // where its formula is too rough for the mesh or has no integral;
+                                                     // of body forces when two quadratures differ by one percent
   };
 
   /// Of the tractions, then the body forces, then the point loads of the scene, at load factor @p t. The same on all ranks.
