@@ -307,6 +307,40 @@ namespace slipstick::app
                                      : "raise Solver/SMALBE/Max outer iterations or Max inner iterations"));
   }
 
+  namespace
+  {
+    std::string row(const std::string &what, const Resultant &sum)
+    {
+      return format("             %-30s %14.6g %14.6g %16.6g", what.c_str(), sum.force[0], sum.force[1], sum.moment);
+    }
+  } // namespace
+
+  void print_forces(const Log &log, const scene::Scene<2> &scene, const output::ResultSummary &results)
+  {
+    Resultant left;
+    log.line(format("forces       %-30s %14s %14s %16s", "on the bodies", "Fx [N]", "Fy [N]", "moment [N mm]"));
+    const auto count = [&left](const Resultant &sum) {
+      for (unsigned int d = 0; d < 2; ++d)
+        left.force[d] += sum.force[d];
+      left.moment += sum.moment;
+    };
+    for (const auto *list : {&results.forces.loads, &results.forces.supports, &results.forces.foundations})
+      for (const auto &one : *list)
+        {
+          log.line(row(one.kind + " " + one.name, one.sum));
+          count(one.sum);
+        }
+    for (unsigned int k = 0; k < results.contact.size(); ++k)
+      {
+        const auto &pair = scene.contacts[k];
+        log.line(row("contact " + pair.name + (pair.master ? " on " + scene.bodies[pair.slave.body].name : ""),
+                     results.contact[k].on_slave));
+        if (!pair.master)
+          count(results.contact[k].on_slave);
+      }
+    log.line(row("sum of all from outside", left));
+  }
+
   void print_result(const Log &log, const output::Summary &summary, const std::string &pvd)
   {
     log.line("");
@@ -361,6 +395,7 @@ namespace slipstick::app
     step.max_displacement        = summary.results.max_displacement;
     step.strain_energy           = summary.results.strain_energy;
     step.contact                 = summary.results.contact;
+    step.forces                  = summary.results.forces;
     summary.steps                = so_far.steps;
     summary.steps.push_back(std::move(step));
 

@@ -1,10 +1,15 @@
 #include <slipstick/app/doubts.h>
+#include <slipstick/app/geometry_checks.h>
+#include <slipstick/app/held_nodes.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/app/step_solver.h>
+#include <slipstick/contact/resultants.h>
 #include <slipstick/fem/arc_length.h>
+#include <slipstick/fem/loads.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/fields.h>
+#include <slipstick/output/history.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -98,12 +103,14 @@ namespace slipstick::app
               break;
           }
         clock.enter("output");
-        write_tables();
+        write_tables(summary);
         clock.leave();
         summary.time_s    = times(clock, solver.factorization_seconds());
         summary.memory_mb = memory(comm);
         summary.warnings  = warnings;
         output::write_summary(directory, summary);
+        log.line("");
+        print_forces(log, scene, summary.results);
         print_result(log, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
         return summary.status == output::RunStatus::converged ? ExitStatus::converged : ExitStatus::not_converged;
       }
@@ -117,7 +124,7 @@ namespace slipstick::app
             output::write_summary(directory, summary_without_equilibrium(scene, comm));
             return;
           }
-        write_tables();
+        write_tables(*finished_steps);
         finished_steps->status    = output::RunStatus::no_equilibrium;
         finished_steps->time_s    = times(clock, solver.factorization_seconds());
         finished_steps->memory_mb = memory(comm);
@@ -128,19 +135,14 @@ namespace slipstick::app
 
     private:
       /// What is doubtful about the answer, once a kind and pair.
-      void warn(const std::vector<contact::ContactNode> &nodes, const std::vector<Eigen::VectorXd> &u)
+      void warn(const std::map<std::string, std::string> &texts)
       {
-        for (const auto &[about, text] :
-             doubts(scene, solver.mesh(), solver.spaces(), solver.dual(), solver.solution().free, nodes, u))
-          warn_once(about, text);
-      }
-
-      void warn_once(const std::string &about, const std::string &text)
-      {
-        if (!warned_about.insert(about).second)
-          return;
-        log.line("             warning: " + text);
-        warnings.push_back(text);
+        for (const auto &[about, text] : texts)
+          if (warned_about.insert(about).second)
+            {
+              log.line("             warning: " + text);
+              warnings.push_back(text);
+            }
       }
 
       /// @param so_far of the steps before.
@@ -158,17 +160,27 @@ namespace slipstick::app
         print_checks(log, contact.checks, tolerance);
         if (!passes(solution, contact.checks, tolerance))
           print_failure(log, scene, solution, contact.checks, tolerance);
-        warn(contact.nodes, u);
+        warn(doubts(scene, solver.mesh(), solver.spaces(), solver.dual(), solution.free, contact.nodes, u));
+        warn(doubts_of_held_nodes(scene, solver.held_contacts(), contact, comm));
+
         if (!answer->recovery.unresisted.empty())
-          warn_once(
-            "unresisted",
-            format("nothing resists %s, and no load acts along it: it is set to zero; add a support or a contact "
-                   "against this motion if it matters",
-                   tfeti::describe(tfeti::plainest(answer->recovery.unresisted), solver.dual().body_names()).c_str()));
+          warn({{"unresisted",
+                 format("nothing resists %s, and no load acts along it: it is set to zero; add a support or a contact "
+                        "against this motion if it matters",
+                        tfeti::describe(tfeti::plainest(answer->recovery.unresisted), solver.dual().body_names())
+                          .c_str())}});
+        const auto geometry =
+          judge(scene, fem::penetrations(scene, solver.mesh(), solver.spaces(), u, t), contact.checks.max_displacement);
+        warn(geometry.warnings);
+        if (geometry.failure)
+          log.warning(*geometry.failure);
 
         clock.enter("output");
         auto summary =
           make_summary(scene, solver.mesh(), solver.spaces(), solver.dual(), solution, contact.checks, stress);
+        if (geometry.failure)
+          summary.status = output::RunStatus::not_converged;
+        summary.results.forces = forces(*answer, t);
         if (scene.output.vtu)
           {
             output::write_fields(directory, solver.mesh(), solver.spaces(), u, stress, step);
@@ -186,6 +198,43 @@ namespace slipstick::app
         return summary;
       }
 
+      /// Resultants of loads and supports; warns of loads whose formulas no mesh resolves.
+      output::ForceSummary forces(const StepSolver::Answer &answer, const double t)
+      {
+        output::ForceSummary sums;
+        const auto           loads = fem::load_resultants(scene, solver.mesh(), solver.spaces(), t);
+        unsigned int         next  = 0;
+        const auto           take  = [&](const auto &list, const std::string &kind) {
+          for (const auto &load : list)
+            {
+              const auto &sum = loads[next++];
+              sums.loads.push_back({load.name, kind, sum.sum});
+              if (sum.unresolved)
+                warn({{"load " + kind + load.name,
+                       format("%s %s: its formula changes faster than can be integrated at (%.6g, %.6g), so that its "
+                                         "resultant may be off; smooth the formula, or refine the mesh there",
+                              kind.c_str(),
+                              load.name.c_str(),
+                              (*sum.unresolved)[0],
+                              (*sum.unresolved)[1])}});
+            }
+        };
+        take(scene.tractions, "traction");
+        take(scene.body_forces, "body force");
+        take(scene.point_loads, "point load");
+        const unsigned int n_supports = scene.supports.size(), n_holders = n_supports + scene.foundations.size();
+        const auto         reactions = contact::reactions(solver.dual(),
+                                                  solver.held_contacts(),
+                                                  answer.contact->held_forces,
+                                                  answer.recovery.multipliers,
+                                                  n_holders);
+        for (unsigned int h = 0; h < n_supports; ++h)
+          sums.supports.push_back({scene.supports[h].name, "support", reactions[h]});
+        for (unsigned int h = n_supports; h < n_holders; ++h)
+          sums.foundations.push_back({scene.foundations[h - n_supports].name, "foundation", reactions[h]});
+        return sums;
+      }
+
       output::ContactNames contact_names() const
       {
         output::ContactNames names;
@@ -197,8 +246,9 @@ namespace slipstick::app
         return names;
       }
 
-      void write_tables() const
+      void write_tables(const output::Summary &summary) const
       {
+        output::write_history(directory, summary.steps);
         output::write_convergence(directory, solver.convergence());
         directory.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
         if (scene.has_contact())

@@ -223,17 +223,6 @@ namespace slipstick::contact
       return (point.position[0] - point.master_position[0]) * fy - (point.position[1] - point.master_position[1]) * fx;
     }
 
-    ContactNode node_at(const tfeti::ContactPoint &point)
-    {
-      ContactNode node;
-      node.pair     = point.pair;
-      node.position = point.position;
-      node.normal   = point.normal;
-      node.area     = point.traction_area;
-      node.length   = point.length;
-      return node;
-    }
-
     /// What a row at a bound does that the law does not allow [mm]: penetration; slip that the friction drives.
     /// @param jump B u - c, @param x multiplier, @param bound of it, if tangential, @param noise forces that are rounding.
     double inadmissible_jump(const tfeti::RowKind kind,
@@ -310,6 +299,17 @@ namespace slipstick::contact
       return node;
     }
   } // namespace
+
+  ContactNode node_at(const tfeti::ContactPoint &point)
+  {
+    ContactNode node;
+    node.pair     = point.pair;
+    node.position = point.position;
+    node.normal   = point.normal;
+    node.area     = point.traction_area;
+    node.length   = point.length;
+    return node;
+  }
 
   std::array<Checks::Entry, Checks::n_entries> Checks::entries() const
   {
@@ -503,6 +503,10 @@ namespace slipstick::contact
         result.normal_force += node.pressure * node.area;
         result.tangential_force += node.tangential_traction * node.area;
         result.moment_mismatch += node.moment_mismatch;
+        const double N = node.pressure * node.area, T = node.tangential_traction * node.area;
+        result.on_slave.add(-N * node.normal[0] - T * node.normal[1],
+                            -N * node.normal[1] + T * node.normal[0],
+                            node.position);
         result.max_pressure = std::max(result.max_pressure, node.pressure);
         result.contact_length += node.is_closed ? node.length : 0.;
         result.contact_nodes += node.is_closed;

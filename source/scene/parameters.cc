@@ -13,6 +13,9 @@ namespace slipstick::scene
 {
   namespace
   {
+    // What stands for every body, or the whole outline, in the place of a name.
+    const std::vector<std::string> reserved_names = {"all", "*"};
+
     /// "a/b/c" -> "a/b", "c"
     std::pair<std::string, std::string> split_path(const std::string &path)
     {
@@ -209,6 +212,10 @@ namespace slipstick::scene
           throw error(kind.list,
                       "'" + name + "' is no valid name",
                       "separate names by commas; use no / and no = in them");
+        if (std::find(reserved_names.begin(), reserved_names.end(), name) != reserved_names.end())
+          throw error(kind.list,
+                      "'" + name + "' is reserved: where names may stand it means all of them",
+                      "choose another name for the " + kind.kind);
         if (!seen.insert(name).second)
           throw error(kind.list, "'" + name + "' is declared twice", "give every " + kind.kind + " its own name");
       }

@@ -62,9 +62,13 @@ namespace slipstick::contact
   struct CheckedContact
   {
     Checks                                    checks;
-    std::vector<ContactNode>                  nodes; // whose rows this rank owns
-    std::vector<std::array<std::uint64_t, 2>> keys;  // the mesh's names of these nodes
+    std::vector<ContactNode>                  nodes;       // whose rows this rank owns
+    std::vector<std::array<std::uint64_t, 2>> keys;        // the mesh's names of these nodes
+    std::vector<std::array<double, 3>>        held_forces; // on the HeldContacts::points of this rank [N]
   };
+
+  /// What the rows do not say of a contact node: its place.
+  ContactNode node_at(const tfeti::ContactPoint &point);
 
   /// @param u displacements of this rank's subdomains [mm].
   /// @param multipliers [N], balanced with u as DualProblem::recover returns them.
