@@ -196,16 +196,18 @@ namespace slipstick::qp
         return weights ? weights[i] : 1.;
       }
 
-      // Bounds that follow the normal entries, to those of x; 0 where the set is open.
+      // Bounds that follow the normal entries, to those of x; 0 where the set is open, and where it is closed without the
+      // jump to 0 that the law has where the normal entry vanishes.
       void move_bounds(const Vector &x)
       {
         for (const PressureBound &bound : set.pressure_bounds)
-          set_radius(bound, active[bound.normal] == 0 ? x.begin()[bound.normal] : 0.);
+          set_radius(bound,
+                     active[bound.normal] == 0 ? bound.fixed + bound.coefficient * std::max(x.begin()[bound.normal], 0.)
+                                               : 0.);
       }
 
-      void set_radius(const PressureBound &bound, const double normal)
+      void set_radius(const PressureBound &bound, const double radius)
       {
-        const double radius                     = bound.radius(normal);
         set.box.lower.begin()[bound.tangential] = -radius;
         set.box.upper.begin()[bound.tangential] = radius;
       }
@@ -227,7 +229,7 @@ namespace slipstick::qp
             place(i);
         for (const PressureBound &bound : set.pressure_bounds)
           {
-            set_radius(bound, projected[bound.normal]);
+            set_radius(bound, bound.radius(projected[bound.normal]));
             place(bound.tangential);
           }
         for (std::size_t i = 0; i < active.size(); ++i)

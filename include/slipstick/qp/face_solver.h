@@ -56,9 +56,10 @@ namespace slipstick::qp
         return result;
       }
 
-      /// A(c_i, c_j) of all pairs of combinations, of A(j, k) of the directions.
+      /// Factors of A(c_i, c_j) of all pairs of combinations, of A(j, k) of the directions. Combinations that cancel to
+      /// rounding are left out.
       template <typename Energy>
-      SmallSymmetric gram(const Energy &of) const
+      PivotedCholesky factor(const Energy &of) const
       {
         const std::size_t   n = store.size(), m = combinations.size();
         SmallSymmetric      result(m);
@@ -75,7 +76,11 @@ namespace slipstick::qp
             for (std::size_t j = 0; j < m; ++j)
               result(i, j) = local_dot(combinations[j], row);
           }
-        return result;
+        std::vector<double> sizes(m, 0.);
+        for (std::size_t i = 0; i < m; ++i)
+          for (std::size_t j = 0; j < n; ++j)
+            sizes[i] += combinations[i][j] * combinations[i][j] * of(j, j);
+        return PivotedCholesky(std::move(result), sizes, dependent_direction);
       }
 
       /// x += sum of factor times coefficient times what `part` takes of each direction.
@@ -147,8 +152,8 @@ namespace slipstick::qp
       std::optional<PivotedCholesky> known;
       if (recycled.size() > 0 && norm_r > target)
         {
-          known.emplace(recycled.gram([this](const std::size_t i, const std::size_t j) { return store.energy(i, j); }),
-                        detail::dependent_direction);
+          known.emplace(
+            recycled.factor([this](const std::size_t i, const std::size_t j) { return store.energy(i, j); }));
           for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
             {
               const auto c = recycled.coefficients(known->solve(recycled.combined(dots(r, &Direction::p))));
@@ -221,8 +226,7 @@ namespace slipstick::qp
           for (std::size_t j = 0; j < n_recycled; ++j)
             images.push_back(image(store[j].Fp));
           const SmallSymmetric all = gram(images);
-          known.emplace(recycled.gram([&all](const std::size_t i, const std::size_t j) { return all(i, j); }),
-                        detail::dependent_direction);
+          known.emplace(recycled.factor([&all](const std::size_t i, const std::size_t j) { return all(i, j); }));
           for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
             {
               const auto c = recycled.coefficients(known->solve(recycled.combined(dots(weighted(r), images))));

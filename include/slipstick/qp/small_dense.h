@@ -36,14 +36,15 @@ namespace slipstick::qp
     std::vector<double> values;
   };
 
-  /// Cholesky factors with diagonal pivoting of a positive semidefinite matrix scaled to a unit diagonal. What depends on
-  /// the pivots before it is left out, so that solve() gives a basic solution of consistent systems. Higham 2002,
-  /// section 10.3.
+  /// Cholesky factors with diagonal pivoting of a positive semidefinite matrix, scaled. What depends on the pivots before it
+  /// is left out, so that solve() gives a basic solution of consistent systems. Higham 2002, section 10.3.
   class PivotedCholesky
   {
   public:
+    /// @param sizes rows and columns are divided by their roots: what the diagonal would be without cancellation, so that
+    ///        one that is all rounding does not pass for a pivot.
     /// @param dependence pivots of the scaled matrix below it count as zero.
-    PivotedCholesky(SmallSymmetric A, const double dependence)
+    PivotedCholesky(SmallSymmetric A, const std::vector<double> &sizes, const double dependence)
       : L(std::move(A))
       , scale(L.size())
       , order(L.size())
@@ -51,7 +52,7 @@ namespace slipstick::qp
       const std::size_t n = L.size();
       std::iota(order.begin(), order.end(), std::size_t(0));
       for (std::size_t i = 0; i < n; ++i)
-        scale[i] = L(i, i) > 0 ? 1 / std::sqrt(L(i, i)) : 0.;
+        scale[i] = sizes[i] > 0 ? 1 / std::sqrt(sizes[i]) : 0.;
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < n; ++j)
           L(i, j) *= scale[i] * scale[j];
