@@ -20,7 +20,7 @@ namespace slipstick::contact
     constexpr double negligible_deformation = 1e-5;
     // Steps of a history are solved to a tolerance of its largest loads: below this part of its largest displacement what
     // is left in a step counts as none.
-    constexpr double part_of_history = 1e-3;
+    constexpr double part_of_history = 1e-2;
     // A body on which less than this part of the largest forces on a body acts counts as one with this part.
     constexpr double negligible_load = 1e-3;
     // Slip bounds above this multiple of the largest contact force say no more than that nodes stick.

@@ -31,6 +31,12 @@ namespace slipstick::contact
     constexpr unsigned int cycling_window = 5;
     // ... down to this.
     constexpr double least_relaxation = 0.1;
+    // Errors of tractions may be this times the tolerance of the solver, over the tractions of the pair: 1 % at 1e-4 ...
+    constexpr double traction_error = 100;
+    // ... and no more than this.
+    constexpr double largest_traction_error = 0.05;
+    // Tractions of a pair below this part of those of the pair with the largest count as this part.
+    constexpr double negligible_pair = 1e-3;
     // Loads below this part of those of earlier steps are what rounding leaves of none.
     constexpr double rounding_of_loads = 1e-12;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
@@ -233,6 +239,33 @@ namespace slipstick::contact
         return [this](const Vector &x, const Vector &g) { return accepts(x, g); };
       }
 
+      /// Are the estimated errors of the tractions of every pair, in L2, below a part of these? What a residual says of them
+      /// depends on the scene, for it is relative to all loads and gaps.
+      bool tractions_are_right(const Vector &x, const Vector &error) const
+      {
+        unsigned int n_pairs = 0;
+        for (const auto &point : dual.constraints().contact_points)
+          n_pairs = std::max(n_pairs, point.pair + 1);
+        std::vector<double> squares(2 * dealii::Utilities::MPI::max(n_pairs, dual.communicator()), 0.);
+        for (const auto &point : dual.constraints().contact_points)
+          for (const unsigned int row : {point.normal_row, point.tangential_row})
+            if (row != tfeti::invalid_row)
+              {
+                squares[2 * point.pair] += x.local_element(row) * x.local_element(row) / point.traction_area;
+                squares[2 * point.pair + 1] +=
+                  error.local_element(row) * error.local_element(row) / point.traction_area;
+              }
+        qp::sum_all(squares, dual.reduction());
+        double largest = 0;
+        for (std::size_t k = 0; k < squares.size(); k += 2)
+          largest = std::max(largest, squares[k]);
+        const double part = std::min(largest_traction_error, traction_error * options.tolerance);
+        for (std::size_t k = 0; k < squares.size(); k += 2)
+          if (squares[k + 1] > part * part * std::max(squares[k], negligible_pair * negligible_pair * largest))
+            return false;
+        return true;
+      }
+
       /// Semismooth Newton, with bounds that follow the solution or (a Tresca problem) as they are. @return convergence.
       bool newton(const Vector &from, const bool bounds_follow)
       {
@@ -247,7 +280,9 @@ namespace slipstick::contact
           qp::Goal(options.tolerance, solution.weighted_reference),
           options.newton,
           counted(),
-          acceptance());
+          acceptance(),
+          qp::ErrorTest<Vector>(
+            [this](const Vector &x, const Vector &error) { return tractions_are_right(x, error); }));
         gradient.reset();
         solution.counts += result.counts;
         solution.status             = result.status;

@@ -48,6 +48,11 @@ namespace slipstick::qp
   template <typename Vector>
   using Acceptance = std::function<bool(const Vector &x, const Vector &gradient)>;
 
+  /// Is the estimated error of x, M r of the face, small where it counts? Asked once the goal is reached; else the method
+  /// goes on to smaller residuals. On every process with the same result.
+  template <typename Vector>
+  using ErrorTest = std::function<bool(const Vector &x, const Vector &error)>;
+
   template <typename Vector>
   struct NewtonResult
   {
@@ -60,6 +65,9 @@ namespace slipstick::qp
 
   namespace detail
   {
+    // Of a step along M r: eigenvalues of F M are 1 to some 5 (first steps of conjugate gradients there: 0.15 to 0.5).
+    constexpr double descent_step = 0.3;
+
     template <typename Vector, typename Problem>
     class SemismoothNewton
     {
@@ -72,13 +80,17 @@ namespace slipstick::qp
                        const Goal               &goal_,
                        const NewtonOptions      &options_,
                        const Observer           &observer_,
-                       const Acceptance<Vector> &accepts_)
+                       const Acceptance<Vector> &accepts_,
+                       const ErrorTest<Vector>  &is_right_)
         : problem(problem_)
+        , norm(norm_)
         , d(d_)
         , goal(goal_)
         , options(options_)
         , observer(observer_)
         , accepts(accepts_)
+        , is_right(is_right_)
+        , tolerance(goal_.tolerance)
         , set(problem_, norm_, std::move(admissible), options.set_step)
         , directions(start.directions ? std::move(start.directions)
                                       : std::make_shared<DirectionStore<Vector>>(options_.n_directions))
@@ -125,15 +137,60 @@ namespace slipstick::qp
             report();
             if (!std::isfinite(residual))
               return Status::stagnated;
-            if (residual + violation / goal.reference <= goal.tolerance || is_accepted())
+            double left = residual + violation / goal.reference;
+            if (left <= goal.tolerance)
+              left += norm * imbalance(*face) / goal.reference;
+            if (left <= goal.tolerance || is_accepted())
               {
-                std::swap(x, y);
-                return Status::converged;
+                best = y;
+                if (!is_right || left <= options.least_part * goal.tolerance || is_right(y, error_on(*face)))
+                  {
+                    std::swap(x, y);
+                    return Status::converged;
+                  }
+                has_met_goal = true;
+                tolerance    = options.tightening * left;
               }
             if (!step())
-              return Status::stagnated;
+              return ended(Status::stagnated);
           }
-        return Status::iteration_limit;
+        return ended(Status::iteration_limit);
+      }
+
+      // Residuals below the goal that do not fall any more are at rounding.
+      Status ended(const Status status)
+      {
+        if (!has_met_goal)
+          return status;
+        x = *best;
+        return Status::converged;
+      }
+
+      // By how much y, put on its bounds, would have to change for G x = e.
+      double imbalance(const Face &face)
+      {
+        Vector at = y;
+        set.put_on_bounds(at);
+        Vector balanced = at;
+        face.balance(balanced);
+        add(-1., at, balanced);
+        return qp::norm(balanced, problem.reduction());
+      }
+
+      // M r on the free entries, and how far the others are from their bounds: nearly the error of y.
+      Vector error_on(const Face &face)
+      {
+        Vector r(gy), error(gy);
+        combine(-1., gy, 0., r);
+        face.precondition(static_cast<const Vector &>(r), error);
+        ++counts.preconditioner_applications;
+        face.project_kernel(error);
+        Vector at = y;
+        set.put_on_bounds(at);
+        project(set.box(), at);
+        for (std::size_t i = 0; i < local_size(at); ++i)
+          error.begin()[i] += at.begin()[i] - y.begin()[i];
+        return error;
       }
 
       // The face of the set. Where that leaves a motion open, or nearly, bodies first settle at present forces, and the
@@ -196,17 +253,17 @@ namespace slipstick::qp
         y = x;
         set.put_on_bounds(y);
         face.balance(y);
-        step_to_start();
+        step_to_start(face);
         FaceSolver<Vector, Face> solver(
           face,
           d,
           store,
           [this](const Vector &p) { return set.conditions(p, ties); },
           options.face);
-        const double first  = solver.start(std::move(y), std::move(Fy));
-        const double target = std::max(options.last_forcing * goal.tolerance * goal.reference,
-                                       options.forcing * std::min(first, merits.back()));
-        auto         result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
+        const double first = solver.start(std::move(y), std::move(Fy));
+        const double target =
+          std::max(options.last_forcing * tolerance * goal.reference, options.forcing * std::min(first, merits.back()));
+        auto result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
         counts += result.counts;
         y  = std::move(result.x);
         Fy = std::move(result.product);
@@ -220,7 +277,7 @@ namespace slipstick::qp
       }
 
       // F y by the product with the step from x, which is a direction as all others; steps of rounding are none.
-      void step_to_start()
+      void step_to_start(const Face &face)
       {
         constexpr double rounding = 1e-13;
         Vector           step(y), product(y);
@@ -229,11 +286,27 @@ namespace slipstick::qp
         std::copy(Fx.begin(), Fx.end(), Fy.begin());
         if (s[0] <= rounding * rounding * s[1])
           return;
+        descend(face, step);
+        std::copy(x.begin(), x.end(), y.begin());
+        add(1., step, y);
         problem.multiply(step, product);
         ++counts.hessian_multiplications;
         add(1., product, Fy);
         if (s[0] > 1e-12 * s[1]) // else G step = 0 holds to few digits
           store.push(std::move(step), std::move(product), problem.reduction());
+      }
+
+      // A short step along the preconditioned residual of the face goes with the one onto its bounds: F is multiplied anyway.
+      void descend(const Face &face, Vector &step)
+      {
+        Vector r(g), shift(g), p(g);
+        face.multiplier_shift(g, shift);
+        add(-1., shift, r);
+        combine(-1., r, 0., r);
+        face.precondition(static_cast<const Vector &>(r), p);
+        ++counts.preconditioner_applications;
+        face.project_kernel(p);
+        add(descent_step, p, step);
       }
 
       // Along the step; where the residual does not fall along it the bodies that the face hardly held settle first.
@@ -283,7 +356,7 @@ namespace slipstick::qp
             std::swap(gy, gt);
             combine(1 - t, Fx, t, Fy);
           }
-        if (merit < *std::min_element(merits.begin(), merits.end()))
+        if (!has_met_goal && merit < *std::min_element(merits.begin(), merits.end()))
           best = y;
         merits.push_back(merit);
         std::swap(x, y);
@@ -315,11 +388,15 @@ namespace slipstick::qp
       }
 
       const Problem            &problem;
+      const double              norm;
       const Vector             &d;
       const Goal                goal;
       const NewtonOptions      &options;
       const Observer           &observer;
       const Acceptance<Vector> &accepts;
+      const ErrorTest<Vector>  &is_right;
+      double                    tolerance; // that faces are solved to: of the goal, or below it until x is right
+      bool                      has_met_goal = false;
 
       ActiveSet<Vector, Problem>                    set;
       const std::shared_ptr<DirectionStore<Vector>> directions;
@@ -338,7 +415,8 @@ namespace slipstick::qp
 
   /// Minimise 1/2 x'Fx - x'd over the admissible set and G x = e; with bounds that follow the solution the equilibrium
   /// in place of the minimum. `norm` is |PFP|; goal.reference must be given (|P(d - F x~)|). Converged: x is within its
-  /// bounds, |gP| and |PFP| |G x - e| are at most goal.tolerance times goal.reference, or @p accepts said so.
+  /// bounds, |gP| and |PFP| |G x - e| are at most goal.tolerance times goal.reference, or @p accepts said so, and @p is_right
+  /// agrees or nothing more can be done.
   /// status: infeasible if no entry at a bound leaves the equalities singular all the same; stagnated if the natural
   /// residual does not fall along a step.
   template <typename Vector, typename Problem>
@@ -350,7 +428,8 @@ namespace slipstick::qp
                                          const Goal               &goal,
                                          const NewtonOptions      &options  = {},
                                          const Observer           &observer = {},
-                                         const Acceptance<Vector> &accepts  = {})
+                                         const Acceptance<Vector> &accepts  = {},
+                                         const ErrorTest<Vector>  &is_right = {})
   {
     return detail::SemismoothNewton<Vector, Problem>(problem,
                                                      norm,
@@ -360,7 +439,8 @@ namespace slipstick::qp
                                                      goal,
                                                      options,
                                                      observer,
-                                                     accepts)
+                                                     accepts,
+                                                     is_right)
       .run();
   }
 } // namespace slipstick::qp
