@@ -234,7 +234,7 @@ TEST(FaceSolver, combinations_that_cancel_do_no_harm)
           {
             Vector part = store[k].p;
             for (double &entry : part)
-              entry *= 0.3;
+              entry *= k % 2 == 0 ? 0.5 : 0.3;
             const Vector product = p.problem.F * part;
             store.push(part, product, SerialReduction());
           }

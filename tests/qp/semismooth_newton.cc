@@ -190,7 +190,9 @@ TEST(SemismoothNewton, ends_where_the_caller_accepts_and_returns_what_it_saw)
       EXPECT_EQ(found.counts.outer_iterations, 2u) << seed;
       for (std::size_t i = 0; i < found.x.size(); ++i)
         if (found.free[i] && i % 3 == 0) // entries with bounds are moved to them
-          EXPECT_EQ(found.x[i], asked.back()[i]) << seed;
+          {
+            EXPECT_EQ(found.x[i], asked.back()[i]) << seed;
+          }
     }
   EXPECT_GT(n_ended, 10u);
 }
@@ -221,4 +223,129 @@ TEST(SemismoothNewton, equalities_that_nothing_free_can_meet)
   const auto                  found =
     semismooth_newton(problem, 1., Vector{0, 1}, set, NewtonStart<Vector>{Vector{0, 0}}, Goal(1e-8, 1.));
   EXPECT_EQ(found.status, Status::infeasible);
+}
+
+namespace
+{
+  /// Three nodes that slip in the direction of their loads: normal forces n >= 0 with M n - 1 >= 0 complementary, M of
+  /// unit diagonal with a on a cycle. Ben Gharbia, Gilbert 2012: full steps between active sets cycle for a > 1.
+  struct Cycle
+  {
+    explicit Cycle(const double a, const double coefficient)
+      : F(6, 6)
+      , set{{Vector(6, 0.), Vector(6, infinity)}, {}}
+    {
+      const double coupling = a / coefficient; // of normal gaps to tangential forces
+      for (std::size_t k = 0; k < 3; ++k)
+        {
+          F(k, k)               = 1;
+          F(3 + k, 3 + k)       = 1.5 * coupling * coupling; // positive definite
+          F((k + 1) % 3, 3 + k) = F(3 + k, (k + 1) % 3) = coupling;
+          set.pressure_bounds.push_back({3 + k, k, 0., coefficient});
+        }
+    }
+
+    Matrix                F;
+    Vector                d{1, 1, 1, 1e3, 1e3, 1e3};
+    AdmissibleSet<Vector> set;
+  };
+
+  /// The set of positive normal forces that a full step from one set leads to, as bits.
+  unsigned int full_step(const Cycle &cycle, const double coefficient, const unsigned int from)
+  {
+    Matrix M(3, 3), A(3, 3);
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        {
+          M(i, j) = cycle.F(i, j) + coefficient * cycle.F(i, 3 + j);
+          A(i, j) = from & (1u << i) ? from & (1u << j) ? M(i, j) : 0. : i == j ? 1. : 0.;
+        }
+    Vector b(3);
+    for (std::size_t i = 0; i < 3; ++i)
+      b[i] = from & (1u << i) ? 1. : 0.;
+    const Vector n = *solve(A, b), g = minus(M * n, {1, 1, 1});
+    unsigned int to = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      to |= n[i] - g[i] > 0 ? 1u << i : 0u;
+    return to;
+  }
+} // namespace
+
+TEST(SemismoothNewton, converges_where_full_steps_cycle)
+{
+  for (const double a : {1.2, 2., 5.})
+    {
+      const double coefficient = 0.8;
+      const Cycle  cycle(a, coefficient);
+      unsigned int at = 1;
+      for (unsigned int k = 0; k < 50; ++k)
+        {
+          at = full_step(cycle, coefficient, at);
+          ASSERT_NE(at, 7u) << a; // the solution
+        }
+      const FacedProblem problem(cycle.F, Matrix(0, 6), {});
+      Vector             start(6, 0.);
+      start[0]         = 1; // the set {1} ...
+      start[3]         = coefficient;
+      const auto found = semismooth_newton(problem,
+                                           spectral_norm(cycle.F),
+                                           cycle.d,
+                                           cycle.set,
+                                           NewtonStart<Vector>{start},
+                                           Goal(1e-12, 1.));
+      ASSERT_EQ(found.status, Status::converged) << a;
+      for (std::size_t i = 0; i < 3; ++i)
+        {
+          EXPECT_NEAR(found.x[i], 1 / (1 + a), 1e-9) << a;
+          EXPECT_NEAR(found.x[3 + i], coefficient / (1 + a), 1e-9) << a;
+        }
+    }
+}
+
+// Equilibria need not be unique, nor be there at all; what is called one has to be one.
+TEST(SemismoothNewton, large_coefficients_never_end_in_a_wrong_solution)
+{
+  unsigned int n_solved = 0;
+  for (const double coefficient : {1., 3., 10.})
+    for (unsigned int seed = 0; seed < 60; ++seed)
+      {
+        const Contact p(seed, 5, coefficient, 0.);
+        const auto    found = p.solve(p.set);
+        if (found.status != Status::converged)
+          continue;
+        ++n_solved;
+        EXPECT_LT(p.violation(found.x), 1e-8) << coefficient << ", " << seed;
+        EXPECT_LT(p.imbalance(found.x), 1e-8) << coefficient << ", " << seed;
+      }
+  EXPECT_GT(n_solved, 100u);
+}
+
+TEST(SemismoothNewton, directions_of_an_earlier_solve_save_multiplications)
+{
+  unsigned int n_alone = 0, n_handed = 0;
+  for (unsigned int seed = 0; seed < 10; ++seed)
+    for (const double coefficient : {0., 0.2})
+      {
+        Contact    p(seed, 12, coefficient, 0.05);
+        const auto directions = std::make_shared<DirectionStore<Vector>>(200);
+        const auto solve      = [&](const Vector &d, const std::shared_ptr<DirectionStore<Vector>> &store) {
+          return semismooth_newton(p.problem,
+                                   1.,
+                                   d,
+                                   p.set,
+                                   NewtonStart<Vector>{Vector(d.size(), 0.), {}, store},
+                                   Goal(1e-10, 1.));
+        };
+        solve(p.d, directions);
+        Vector other = p.d; // another load step
+        add(0.2, p.random.vector(other.size()), other);
+        const auto alone = solve(other, {}), handed = solve(other, directions);
+        if (alone.status != Status::converged || handed.status != Status::converged)
+          continue;
+        EXPECT_LT(distance(alone.x, handed.x), 1e-7) << seed;
+        n_alone += alone.counts.hessian_multiplications;
+        n_handed += handed.counts.hessian_multiplications;
+      }
+  EXPECT_GT(n_alone, 200u);
+  EXPECT_LT(2 * n_handed, n_alone);
 }
