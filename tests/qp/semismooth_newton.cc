@@ -1,5 +1,5 @@
 // Semismooth Newton: enumeration of active sets, bounds that follow other entries, problems without a solution.
-#include "support.h"
+#include "faced_problem.h"
 
 #include <slipstick/qp/semismooth_newton.h>
 
@@ -8,142 +8,6 @@ using namespace slipstick::qp::test;
 
 namespace
 {
-  /// A dense problem with G x = e that can be looked at on its free and tied entries.
-  struct FacedProblem : DenseProblem
-  {
-    FacedProblem(const Matrix &F_, const Matrix &G_, const Vector &e_)
-      : DenseProblem(F_, G_)
-      , e(e_)
-    {}
-
-    class Face
-    {
-    public:
-      Face(const FacedProblem &problem_, const std::vector<bool> &free_, const std::vector<Tie> &ties_)
-        : problem(problem_)
-        , free(free_)
-        , ties(ties_)
-      {}
-
-      void multiply(const Vector &x, Vector &y) const
-      {
-        problem.multiply(x, y);
-      }
-
-      const SerialReduction &reduction() const
-      {
-        return problem.reduction();
-      }
-
-      void project_range(const Vector &x, Vector &y) const
-      {
-        const Vector z = transposed(amplitudes(masked(x), false));
-        for (std::size_t i = 0; i < x.size(); ++i)
-          y[i] = free[i] ? z[i] : x[i];
-      }
-
-      void multiplier_shift(const Vector &v, Vector &y) const
-      {
-        y = transposed(amplitudes(masked(v), false));
-      }
-
-      void balance(Vector &x) const
-      {
-        move_by(minus(problem.e, problem.G * x), x);
-      }
-
-      void project_kernel(Vector &p) const
-      {
-        for (const Tie &tie : ties)
-          p[tie.tied] = tie.factor * p[tie.to];
-        Vector moving = masked(p);
-        for (const Tie &tie : ties)
-          moving[tie.tied] = p[tie.tied];
-        Vector minus_Gp = problem.G * moving;
-        for (double &entry : minus_Gp)
-          entry = -entry;
-        move_by(minus_Gp, p);
-      }
-
-      void precondition(const Vector &r, Vector &z) const
-      {
-        for (std::size_t i = 0; i < r.size(); ++i)
-          z[i] = free[i] ? r[i] / problem.F(i, i) : 0.;
-      }
-
-      bool is_regular() const
-      {
-        return solve(gram(false), Vector(problem.G.m, 1.)).has_value();
-      }
-
-    private:
-      Vector masked(Vector x) const
-      {
-        for (std::size_t i = 0; i < x.size(); ++i)
-          x[i] = free[i] ? x[i] : 0.;
-        return x;
-      }
-
-      // column i of G with what is tied to it
-      double column(const std::size_t k, const std::size_t i, const bool with_ties) const
-      {
-        double value = problem.G(k, i);
-        for (const Tie &tie : ties)
-          if (with_ties && tie.to == i)
-            value += tie.factor * problem.G(k, tie.tied);
-        return value;
-      }
-
-      Matrix gram(const bool with_ties) const
-      {
-        Matrix A(problem.G.m, problem.G.m);
-        for (std::size_t k = 0; k < A.m; ++k)
-          for (std::size_t l = 0; l < A.m; ++l)
-            for (std::size_t i = 0; i < free.size(); ++i)
-              A(k, l) += free[i] ? column(k, i, with_ties) * column(l, i, with_ties) : 0.;
-        return A;
-      }
-
-      Vector amplitudes(const Vector &x, const bool with_ties) const
-      {
-        return *solve(gram(with_ties), problem.G * x);
-      }
-
-      Vector transposed(const Vector &a) const
-      {
-        Vector y(free.size(), 0.);
-        for (std::size_t k = 0; k < a.size(); ++k)
-          for (std::size_t i = 0; i < y.size(); ++i)
-            y[i] += problem.G(k, i) * a[k];
-        return y;
-      }
-
-      // x += T y with the least y that changes G x by c
-      void move_by(const Vector &c, Vector &x) const
-      {
-        const Vector a = *solve(gram(true), c);
-        Vector       step(free.size(), 0.);
-        for (std::size_t i = 0; i < free.size(); ++i)
-          for (std::size_t k = 0; k < a.size() && free[i]; ++k)
-            step[i] += column(k, i, true) * a[k];
-        for (const Tie &tie : ties)
-          step[tie.tied] = tie.factor * step[tie.to];
-        add(1., step, x);
-      }
-
-      const FacedProblem &problem;
-      std::vector<bool>   free;
-      std::vector<Tie>    ties;
-    };
-
-    Face face(const std::vector<bool> &free, const std::vector<Tie> &ties) const
-    {
-      return Face(*this, free, ties);
-    }
-
-    Vector e;
-  };
-
   struct Instance
   {
     Instance(const unsigned int seed, const std::size_t n, const std::size_t m)
@@ -156,20 +20,9 @@ namespace
         entry /= norm;
     }
 
-    NewtonResult<Vector> solve(const Box<Vector> &box, const CoupledBounds &coupled = {}) const
+    NewtonResult<Vector> solve(const AdmissibleSet<Vector> &set) const
     {
-      NewtonOptions options;
-      return semismooth_newton(problem,
-                               1.,
-                               d,
-                               box,
-                               NewtonStart<Vector>{Vector(d.size(), 0.)},
-                               Goal(1e-10, 1.),
-                               options,
-                               {},
-                               {},
-                               {},
-                               coupled);
+      return semismooth_newton(problem, 1., d, set, NewtonStart<Vector>{Vector(d.size(), 0.)}, Goal(1e-10, 1.));
     }
 
     /// Largest violation of G x = e.
@@ -188,14 +41,13 @@ namespace
   {
     Contact(const unsigned int seed, const std::size_t nodes, const double coefficient, const double fixed)
       : Instance(seed, 3 * nodes, 2)
-      , box{Vector(3 * nodes, -infinity), Vector(3 * nodes, infinity)}
+      , set{{Vector(3 * nodes, -infinity), Vector(3 * nodes, infinity)}, {}}
     {
       for (std::size_t k = 0; k < nodes; ++k)
         {
-          box.lower[3 * k + 1] = 0;
-          coupled.bounds.push_back({3 * k + 2, 3 * k + 1, fixed, coefficient});
+          set.box.lower[3 * k + 1] = 0;
+          set.pressure_bounds.push_back({3 * k + 2, 3 * k + 1, fixed, coefficient});
         }
-      coupled.are_coupled = true;
     }
 
     /// By how much x and F x - d + G'a miss the laws of contact and friction, a from the entries without bounds.
@@ -208,7 +60,7 @@ namespace
       problem.face(unbounded, {}).multiplier_shift(g, w);
       add(-1., w, g);
       double worst = 0;
-      for (const PressureBound &bound : coupled.bounds)
+      for (const PressureBound &bound : set.pressure_bounds)
         {
           const double n = x[bound.normal], t = x[bound.tangential];
           const double radius = n > 0 ? bound.fixed + bound.coefficient * n : 0.;
@@ -223,8 +75,7 @@ namespace
       return worst;
     }
 
-    Box<Vector>   box;
-    CoupledBounds coupled;
+    AdmissibleSet<Vector> set;
   };
 } // namespace
 
@@ -236,7 +87,7 @@ TEST(SemismoothNewton, agrees_with_the_enumeration_of_all_active_sets)
       Instance   p(seed, 5, 1);
       const auto box   = p.random.box(5, true);
       const auto exact = enumerate(p.problem.F, p.d, p.problem.G, p.problem.e, box);
-      const auto found = p.solve(box);
+      const auto found = p.solve({box, {}});
       if (found.status != Status::converged)
         continue;
       ++n_solved;
@@ -256,13 +107,13 @@ TEST(SemismoothNewton, bounds_that_follow_the_pressure_are_met)
         for (unsigned int seed = 0; seed < 100; ++seed)
           {
             const Contact p(seed, 4, coefficient, fixed);
-            const auto    found = p.solve(p.box, p.coupled);
+            const auto    found = p.solve(p.set);
             if (found.status != Status::converged)
               continue;
             ++n_solved;
             EXPECT_LT(p.violation(found.x), 1e-8) << seed;
             EXPECT_LT(p.imbalance(found.x), 1e-8) << seed;
-            for (const auto &bound : p.coupled.bounds)
+            for (const auto &bound : p.set.pressure_bounds)
               {
                 const double n = found.x[bound.normal], t = std::abs(found.x[bound.tangential]);
                 ++(!(n > 0) ? n_open : t < fixed + coefficient * n ? n_stick : n_slip);
@@ -280,43 +131,32 @@ TEST(SemismoothNewton, differentiated_bounds_lead_where_followed_ones_do)
   unsigned int n_compared = 0;
   for (unsigned int seed = 0; seed < 50; ++seed)
     {
-      const Contact p(seed, 4, 0.2, 0.);
-      const auto    found = p.solve(p.box, p.coupled);
-      Box<Vector>   box   = p.box;
-      for (const auto &bound : p.coupled.bounds)
-        box.lower[bound.tangential] = box.upper[bound.tangential] = 0;
-      BoundUpdate<Vector> follow;
-      follow.tolerance  = 1e-11;
-      unsigned int left = 200;
-      follow.update     = [&](const Vector &x) -> std::optional<double> {
-        double change = 0, size = 0;
-        for (const auto &bound : p.coupled.bounds)
-          {
-            const double radius         = bound.coefficient * std::max(x[bound.normal], 0.);
-            change                      = std::max(change, std::abs(radius - box.upper[bound.tangential]));
-            size                        = std::max(size, radius);
-            box.lower[bound.tangential] = -radius;
-            box.upper[bound.tangential] = radius;
-          }
-        if (left-- == 0)
-          return {};
-        return size > 0 ? change / size : 0.;
-      };
-      NewtonOptions options;
-      const auto    followed = semismooth_newton(p.problem,
-                                              1.,
-                                              p.d,
-                                              box,
-                                              NewtonStart<Vector>{Vector(p.d.size(), 0.)},
-                                              Goal(1e-10, 1.),
-                                              options,
-                                              {},
-                                              {},
-                                              follow);
-      if (found.status == Status::converged && followed.status == Status::converged)
+      const Contact         p(seed, 4, 0.2, 0.);
+      const auto            found    = p.solve(p.set);
+      AdmissibleSet<Vector> followed = {p.set.box, {}};
+      for (const auto &bound : p.set.pressure_bounds)
+        followed.box.lower[bound.tangential] = followed.box.upper[bound.tangential] = 0;
+      double change = 1;
+      Vector x;
+      for (unsigned int k = 0; k < 200 && change > 1e-11; ++k)
+        {
+          const auto fixed = p.solve(followed);
+          if (fixed.status != Status::converged)
+            break;
+          change = 0;
+          x      = fixed.x;
+          for (const auto &bound : p.set.pressure_bounds)
+            {
+              const double radius = bound.radius(x[bound.normal]);
+              change              = std::max(change, std::abs(radius - followed.box.upper[bound.tangential]));
+              followed.box.lower[bound.tangential] = -radius;
+              followed.box.upper[bound.tangential] = radius;
+            }
+        }
+      if (found.status == Status::converged && change <= 1e-11)
         {
           ++n_compared;
-          EXPECT_LT(distance(found.x, followed.x), 1e-7) << seed;
+          EXPECT_LT(distance(found.x, x), 1e-7) << seed;
         }
     }
   EXPECT_GT(n_compared, 40u);
@@ -327,25 +167,21 @@ TEST(SemismoothNewton, ends_where_the_caller_accepts_and_returns_what_it_saw)
   unsigned int n_ended = 0;
   for (unsigned int seed = 0; seed < 20; ++seed)
     {
-      const Contact        p(seed, 6, 0.3, 0.);
-      unsigned int         n_asked = 0;
-      std::vector<Vector>  asked;
-      NewtonOptions        options;
-      Acceptance<Vector>   accepts = [&](const Vector &x, const Vector &) {
+      const Contact            p(seed, 6, 0.3, 0.);
+      unsigned int             n_asked = 0;
+      std::vector<Vector>      asked;
+      const Acceptance<Vector> accepts = [&](const Vector &x, const Vector &) {
         asked.push_back(x);
         return ++n_asked == 2;
       };
       const auto found = semismooth_newton(p.problem,
                                            1.,
                                            p.d,
-                                           p.box,
+                                           p.set,
                                            NewtonStart<Vector>{Vector(p.d.size(), 0.)},
                                            Goal(1e-14, 1.),
-                                           options,
                                            {},
                                            {},
-                                           {},
-                                           p.coupled,
                                            accepts);
       if (found.status != Status::converged || n_asked < 2)
         continue;
@@ -354,7 +190,9 @@ TEST(SemismoothNewton, ends_where_the_caller_accepts_and_returns_what_it_saw)
       EXPECT_EQ(found.counts.outer_iterations, 2u) << seed;
       for (std::size_t i = 0; i < found.x.size(); ++i)
         if (found.free[i] && i % 3 == 0) // entries with bounds are moved to them
-          EXPECT_EQ(found.x[i], asked.back()[i]) << seed;
+          {
+            EXPECT_EQ(found.x[i], asked.back()[i]) << seed;
+          }
     }
   EXPECT_GT(n_ended, 10u);
 }
@@ -362,7 +200,7 @@ TEST(SemismoothNewton, ends_where_the_caller_accepts_and_returns_what_it_saw)
 TEST(SemismoothNewton, the_gradient_of_the_solution_saves_the_search_for_its_set)
 {
   const Contact p(3, 6, 0.3, 0.);
-  const auto    found = p.solve(p.box, p.coupled);
+  const auto    found = p.solve(p.set);
   ASSERT_EQ(found.status, Status::converged);
   std::vector<bool> unbounded(p.d.size());
   for (std::size_t i = 0; i < unbounded.size(); ++i)
@@ -370,18 +208,7 @@ TEST(SemismoothNewton, the_gradient_of_the_solution_saves_the_search_for_its_set
   Vector g = minus(p.problem.F * found.x, p.d), w = g;
   p.problem.face(unbounded, {}).multiplier_shift(g, w);
   add(-1., w, g);
-  NewtonOptions options;
-  const auto    again = semismooth_newton(p.problem,
-                                       1.,
-                                       p.d,
-                                       p.box,
-                                       NewtonStart<Vector>{found.x, g},
-                                       Goal(1e-9, 1.),
-                                       options,
-                                       {},
-                                       {},
-                                       {},
-                                       p.coupled);
+  const auto again = semismooth_newton(p.problem, 1., p.d, p.set, NewtonStart<Vector>{found.x, g}, Goal(1e-9, 1.));
   EXPECT_EQ(again.status, Status::converged);
   EXPECT_EQ(again.counts.outer_iterations, 1u);
   EXPECT_LT(distance(again.x, found.x), 1e-8);
@@ -391,11 +218,134 @@ TEST(SemismoothNewton, equalities_that_nothing_free_can_meet)
 {
   Matrix F = diagonal({1, 1}), G(1, 2);
   G(0, 0)  = 1;
-  const FacedProblem problem(F, G, {1});
-  const Box<Vector>  box{{0, -infinity}, {0, infinity}};
-  NewtonOptions      options;
-  EXPECT_EQ(
-    semismooth_newton(problem, 1., Vector{0, 1}, box, NewtonStart<Vector>{Vector{0, 0}}, Goal(1e-8, 1.), options)
-      .status,
-    Status::infeasible);
+  const FacedProblem          problem(F, G, {1});
+  const AdmissibleSet<Vector> set{{{0, -infinity}, {0, infinity}}, {}};
+  const auto                  found =
+    semismooth_newton(problem, 1., Vector{0, 1}, set, NewtonStart<Vector>{Vector{0, 0}}, Goal(1e-8, 1.));
+  EXPECT_EQ(found.status, Status::infeasible);
+}
+
+namespace
+{
+  /// Three nodes that slip in the direction of their loads: normal forces n >= 0 with M n - 1 >= 0 complementary, M of
+  /// unit diagonal with a on a cycle. Ben Gharbia, Gilbert 2012: full steps between active sets cycle for a > 1.
+  struct Cycle
+  {
+    explicit Cycle(const double a, const double coefficient)
+      : F(6, 6)
+      , set{{Vector(6, 0.), Vector(6, infinity)}, {}}
+    {
+      const double coupling = a / coefficient; // of normal gaps to tangential forces
+      for (std::size_t k = 0; k < 3; ++k)
+        {
+          F(k, k)               = 1;
+          F(3 + k, 3 + k)       = 1.5 * coupling * coupling; // positive definite
+          F((k + 1) % 3, 3 + k) = F(3 + k, (k + 1) % 3) = coupling;
+          set.pressure_bounds.push_back({3 + k, k, 0., coefficient});
+        }
+    }
+
+    Matrix                F;
+    Vector                d{1, 1, 1, 1e3, 1e3, 1e3};
+    AdmissibleSet<Vector> set;
+  };
+
+  /// The set of positive normal forces that a full step from one set leads to, as bits.
+  unsigned int full_step(const Cycle &cycle, const double coefficient, const unsigned int from)
+  {
+    Matrix M(3, 3), A(3, 3);
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        {
+          M(i, j) = cycle.F(i, j) + coefficient * cycle.F(i, 3 + j);
+          A(i, j) = from & (1u << i) ? from & (1u << j) ? M(i, j) : 0. : i == j ? 1. : 0.;
+        }
+    Vector b(3);
+    for (std::size_t i = 0; i < 3; ++i)
+      b[i] = from & (1u << i) ? 1. : 0.;
+    const Vector n = *solve(A, b), g = minus(M * n, {1, 1, 1});
+    unsigned int to = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      to |= n[i] - g[i] > 0 ? 1u << i : 0u;
+    return to;
+  }
+} // namespace
+
+TEST(SemismoothNewton, converges_where_full_steps_cycle)
+{
+  for (const double a : {1.2, 2., 5.})
+    {
+      const double coefficient = 0.8;
+      const Cycle  cycle(a, coefficient);
+      unsigned int at = 1;
+      for (unsigned int k = 0; k < 50; ++k)
+        {
+          at = full_step(cycle, coefficient, at);
+          ASSERT_NE(at, 7u) << a; // the solution
+        }
+      const FacedProblem problem(cycle.F, Matrix(0, 6), {});
+      Vector             start(6, 0.);
+      start[0]         = 1; // the set {1} ...
+      start[3]         = coefficient;
+      const auto found = semismooth_newton(problem,
+                                           spectral_norm(cycle.F),
+                                           cycle.d,
+                                           cycle.set,
+                                           NewtonStart<Vector>{start},
+                                           Goal(1e-12, 1.));
+      ASSERT_EQ(found.status, Status::converged) << a;
+      for (std::size_t i = 0; i < 3; ++i)
+        {
+          EXPECT_NEAR(found.x[i], 1 / (1 + a), 1e-9) << a;
+          EXPECT_NEAR(found.x[3 + i], coefficient / (1 + a), 1e-9) << a;
+        }
+    }
+}
+
+// Equilibria need not be unique, nor be there at all; what is called one has to be one.
+TEST(SemismoothNewton, large_coefficients_never_end_in_a_wrong_solution)
+{
+  unsigned int n_solved = 0;
+  for (const double coefficient : {1., 3., 10.})
+    for (unsigned int seed = 0; seed < 60; ++seed)
+      {
+        const Contact p(seed, 5, coefficient, 0.);
+        const auto    found = p.solve(p.set);
+        if (found.status != Status::converged)
+          continue;
+        ++n_solved;
+        EXPECT_LT(p.violation(found.x), 1e-8) << coefficient << ", " << seed;
+        EXPECT_LT(p.imbalance(found.x), 1e-8) << coefficient << ", " << seed;
+      }
+  EXPECT_GT(n_solved, 100u);
+}
+
+TEST(SemismoothNewton, directions_of_an_earlier_solve_save_multiplications)
+{
+  unsigned int n_alone = 0, n_handed = 0;
+  for (unsigned int seed = 0; seed < 10; ++seed)
+    for (const double coefficient : {0., 0.2})
+      {
+        Contact    p(seed, 12, coefficient, 0.05);
+        const auto directions = std::make_shared<DirectionStore<Vector>>(200);
+        const auto solve      = [&](const Vector &d, const std::shared_ptr<DirectionStore<Vector>> &store) {
+          return semismooth_newton(p.problem,
+                                   1.,
+                                   d,
+                                   p.set,
+                                   NewtonStart<Vector>{Vector(d.size(), 0.), {}, store},
+                                   Goal(1e-10, 1.));
+        };
+        solve(p.d, directions);
+        Vector other = p.d; // another load step
+        add(0.2, p.random.vector(other.size()), other);
+        const auto alone = solve(other, {}), handed = solve(other, directions);
+        if (alone.status != Status::converged || handed.status != Status::converged)
+          continue;
+        EXPECT_LT(distance(alone.x, handed.x), 1e-7) << seed;
+        n_alone += alone.counts.hessian_multiplications;
+        n_handed += handed.counts.hessian_multiplications;
+      }
+  EXPECT_GT(n_alone, 200u);
+  EXPECT_LT(2 * n_handed, n_alone);
 }

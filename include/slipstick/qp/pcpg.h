@@ -28,8 +28,7 @@ namespace slipstick::qp
     Vector residual;          // P(b - F x)
     double relative_residual; // |P(b - F x)| over the reference of the goal
     double reference;
-    Counts counts;         // cg_steps, hessian_multiplications, preconditioner_applications
-    double first_step = 0; // along the preconditioned residual of the start; 0 without steps
+    Counts counts; // cg_steps, hessian_multiplications, preconditioner_applications
   };
 
   /// y = r; not counted as a preconditioner.
@@ -49,11 +48,6 @@ namespace slipstick::qp
     bool empty() const
     {
       return directions.empty();
-    }
-
-    void clear()
-    {
-      directions.clear();
     }
 
     /// x += z, Fx += F z with the z of the span that makes b - F(x + z) orthogonal to it; r = P(b - F x).
@@ -166,7 +160,7 @@ namespace slipstick::qp
       PcpgResult<Vector> run()
       {
         const Status status = iterate();
-        return {status, std::move(x), std::move(Fx), std::move(r), norm_r / reference, reference, counts, first_step};
+        return {status, std::move(x), std::move(Fx), std::move(r), norm_r / reference, reference, counts};
       }
 
     private:
@@ -232,8 +226,6 @@ namespace slipstick::qp
         if (pFp <= options.smallest_curvature * largest_curvature * pp)
           return Status::infeasible;
         largest_curvature = std::max(largest_curvature, pFp / pp);
-        if (counts.cg_steps == 0)
-          first_step = pr / pFp;
         add(pr / pFp, p, x);
         add(pr / pFp, Fp, Fx);
         update_residual();
@@ -268,7 +260,6 @@ namespace slipstick::qp
       double                                    norm_b = 0, norm_r = 0, norm_Fx = 0;
       double                                    reference = 0, target = 0, largest_curvature = 0;
       Counts                                    counts;
-      double                                    first_step = 0;
     };
   } // namespace detail
 

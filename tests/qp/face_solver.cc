@@ -1,0 +1,293 @@
+// Linear problems of faces by directions of earlier ones: dense systems, the store, both solvers.
+#include "faced_problem.h"
+
+#include <slipstick/qp/active_set.h>
+#include <slipstick/qp/face_solver.h>
+
+using namespace slipstick::qp;
+using namespace slipstick::qp::test;
+
+namespace
+{
+  /// A random problem, some entries of which a face holds where the start has them, or ties to others.
+  struct Held
+  {
+    Held(const unsigned int seed, const std::size_t n, const std::size_t m)
+      : random(seed)
+      , problem(random.semidefinite(n, n, 0.5), random.orthonormal(m, n), random.vector(m))
+      , d(random.vector(n))
+    {}
+
+    /// x0 with its product, G x0 = e, held and tied entries as they are
+    FaceSolution<Vector> solve(const std::vector<std::size_t> &at_bounds,
+                               const std::vector<Tie>         &ties,
+                               DirectionStore<Vector>         &store,
+                               const double                    target = 1e-10) const
+    {
+      std::vector<bool> free(d.size(), true);
+      for (const std::size_t i : at_bounds)
+        free[i] = false;
+      for (const Tie &tie : ties)
+        free[tie.tied] = false;
+      const auto face       = problem.face(free, ties);
+      const auto conditions = [&](Vector p) {
+        const Vector present = p;
+        for (const Tie &tie : ties)
+          p[tie.tied] -= tie.factor * present[tie.to];
+        Vector values;
+        for (std::size_t i = 0; i < free.size(); ++i)
+          if (!free[i])
+            values.push_back(p[i]);
+        return values;
+      };
+      const FaceSolverOptions                options;
+      const Vector                           x = start(free, ties);
+      FaceSolver<Vector, FacedProblem::Face> solver(face, d, store, conditions, options);
+      solver.start(x, problem.F * x);
+      return ties.empty() ? solver.solve_symmetric(target) : solver.solve_unsymmetric(target);
+    }
+
+    Vector start(const std::vector<bool> &free, const std::vector<Tie> &ties) const
+    {
+      Vector x(d.size(), 0.);
+      for (std::size_t i = 0; i < x.size(); ++i)
+        x[i] = free[i] ? 0. : 0.1 * static_cast<double>(i);
+      problem.face(free, ties).balance(x);
+      return x;
+    }
+
+    /// The same by elimination: held and tied rows say how entries are bound, the others F x + G'a = d; then G x = e.
+    Vector exact(const std::vector<std::size_t> &at_bounds, const std::vector<Tie> &ties) const
+    {
+      const std::size_t n = d.size(), m = problem.G.m;
+      Matrix            A(n + m, n + m);
+      Vector            b(n + m, 0.);
+      std::vector<bool> free(n, true);
+      for (const std::size_t i : at_bounds)
+        {
+          free[i] = false;
+          A(i, i) = 1;
+          b[i]    = 0.1 * static_cast<double>(i);
+        }
+      for (const Tie &tie : ties) // increments are tied
+        {
+          free[tie.tied]        = false;
+          A(tie.tied, tie.tied) = 1;
+          A(tie.tied, tie.to)   = -tie.factor;
+          b[tie.tied]           = 0.1 * static_cast<double>(tie.tied);
+        }
+      for (std::size_t i = 0; i < n; ++i)
+        if (free[i])
+          {
+            for (std::size_t j = 0; j < n; ++j)
+              A(i, j) = problem.F(i, j);
+            for (std::size_t k = 0; k < m; ++k)
+              A(i, n + k) = problem.G(k, i);
+            b[i] = d[i];
+          }
+      for (std::size_t k = 0; k < m; ++k)
+        {
+          for (std::size_t j = 0; j < n; ++j)
+            A(n + k, j) = problem.G(k, j);
+          b[n + k] = problem.e[k];
+        }
+      Vector x = *::slipstick::qp::test::solve(A, b);
+      x.resize(n);
+      return x;
+    }
+
+    Random       random;
+    FacedProblem problem;
+    Vector       d;
+  };
+
+  SmallSymmetric small(const Matrix &A)
+  {
+    SmallSymmetric result(A.n);
+    for (std::size_t i = 0; i < A.n; ++i)
+      for (std::size_t j = 0; j < A.n; ++j)
+        result(i, j) = A(i, j);
+    return result;
+  }
+
+  const std::vector<Tie> tied{{2, 1, 0.4}, {5, 4, -0.3}};
+} // namespace
+
+TEST(PivotedCholesky, solves_consistent_singular_systems)
+{
+  for (unsigned int seed = 0; seed < 50; ++seed)
+    for (const std::size_t rank : {1, 4, 9, 10})
+      {
+        Random       random(seed);
+        Matrix       A     = random.semidefinite(10, rank, 0.);
+        const Vector sizes = random.vector(10, 8.); // rows and columns of very different sizes
+        for (std::size_t i = 0; i < 10; ++i)
+          for (std::size_t j = 0; j < 10; ++j)
+            A(i, j) *= std::exp(sizes[i] + sizes[j]);
+        const Vector b = A * random.vector(10);
+        const Vector x = PivotedCholesky(small(A), 1e-12).solve(b);
+        EXPECT_LT(distance(A * x, b), 1e-8 * length(b)) << seed << ", rank " << rank;
+      }
+}
+
+TEST(DirectionStore, energies_are_those_of_the_directions_left)
+{
+  Random                 random(1);
+  const Matrix           F = random.semidefinite(6, 6, 0.1);
+  DirectionStore<Vector> store(4);
+  std::vector<Vector>    all;
+  for (unsigned int k = 0; k < 7; ++k)
+    {
+      all.push_back(random.vector(6));
+      store.push(all.back(), F * all.back(), SerialReduction());
+    }
+  ASSERT_EQ(store.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j < 4; ++j)
+      EXPECT_NEAR(store.energy(i, j), inner(all[3 + i], F * all[3 + j]), 1e-12);
+}
+
+TEST(DirectionStore, as_many_combinations_as_the_rank_allows_vanish_on_the_conditions)
+{
+  for (unsigned int seed = 0; seed < 50; ++seed)
+    for (const std::size_t n_conditions : {0, 1, 3, 8})
+      {
+        constexpr std::size_t  n = 8;
+        Random                 random(seed);
+        DirectionStore<Vector> store(n);
+        for (std::size_t k = 0; k < n; ++k)
+          {
+            const Vector p = random.vector(12);
+            store.push(p, p, SerialReduction());
+          }
+        const auto conditions = [n_conditions](const Vector &p) { return Vector(p.begin(), p.begin() + n_conditions); };
+        const auto found      = admissible_combinations(store, conditions, SerialReduction());
+        EXPECT_EQ(found.size(), n - n_conditions) << seed;
+        Matrix gram(found.size(), found.size()); // of coefficients: regular when they are independent
+        for (std::size_t a = 0; a < found.size(); ++a)
+          {
+            Vector p(12, 0.);
+            for (std::size_t k = 0; k < n; ++k)
+              add(found[a][k], store[k].p, p);
+            EXPECT_LT(length(conditions(p)), 1e-11 * length(found[a])) << seed;
+            for (std::size_t b = 0; b < found.size(); ++b)
+              gram(a, b) = inner(found[a], found[b]);
+          }
+        EXPECT_TRUE(solve(gram, Vector(found.size(), 1.))) << seed;
+      }
+}
+
+TEST(FaceSolver, agrees_with_a_dense_solve)
+{
+  for (unsigned int seed = 0; seed < 50; ++seed)
+    for (const auto &ties : {std::vector<Tie>(), tied})
+      {
+        const Held             p(seed, 12, seed % 3);
+        DirectionStore<Vector> store(100);
+        const auto             found = p.solve({0, 7}, ties, store);
+        EXPECT_EQ(found.status, Status::converged) << seed;
+        EXPECT_LT(distance(found.x, p.exact({0, 7}, ties)), 1e-8) << seed << ", ties " << ties.size();
+        EXPECT_LT(distance(found.product, p.problem.F * found.x), 1e-11) << seed;
+      }
+}
+
+TEST(FaceSolver, the_same_face_again_costs_no_multiplication)
+{
+  for (unsigned int seed = 0; seed < 20; ++seed)
+    for (const auto &ties : {std::vector<Tie>(), tied})
+      {
+        const Held             p(seed, 12, 2);
+        DirectionStore<Vector> store(100);
+        EXPECT_GT(p.solve({0, 7}, ties, store, 1e-9).counts.hessian_multiplications, 3u) << seed;
+        const auto again = p.solve({0, 7}, ties, store, 1e-8);
+        EXPECT_EQ(again.counts.hessian_multiplications, 0u) << seed << ", ties " << ties.size();
+        EXPECT_LT(distance(again.x, p.exact({0, 7}, ties)), 1e-6) << seed;
+      }
+}
+
+TEST(FaceSolver, a_face_with_few_other_entries_costs_fewer_multiplications_than_from_nothing)
+{
+  for (unsigned int seed = 0; seed < 20; ++seed)
+    for (const auto &ties : {std::vector<Tie>(), tied})
+      {
+        const Held             p(seed, 40, 2);
+        DirectionStore<Vector> store(100), empty(100);
+        p.solve({0, 7, 8}, ties, store);
+        const auto reused = p.solve({0, 8, 20, 30}, ties, store), fresh = p.solve({0, 8, 20, 30}, ties, empty);
+        EXPECT_LE(reused.counts.hessian_multiplications + 3, fresh.counts.hessian_multiplications)
+          << seed << ", ties " << ties.size();
+        EXPECT_LT(distance(reused.x, p.exact({0, 8, 20, 30}, ties)), 1e-8) << seed;
+      }
+}
+
+// What is left of them is rounding, in energies too.
+TEST(FaceSolver, combinations_that_cancel_do_no_harm)
+{
+  for (unsigned int seed = 0; seed < 20; ++seed)
+    for (const auto &ties : {std::vector<Tie>(), tied})
+      {
+        Held                   p(seed, 12, 2);
+        DirectionStore<Vector> store(100);
+        p.solve({0, 7}, ties, store);
+        const std::size_t n = store.size();
+        for (std::size_t k = 0; k < n; ++k) // parts of them again, as cut steps leave them
+          {
+            Vector part = store[k].p;
+            for (double &entry : part)
+              entry *= k % 2 == 0 ? 0.5 : 0.3;
+            const Vector product = p.problem.F * part;
+            store.push(part, product, SerialReduction());
+          }
+        for (const std::size_t other : {8, 9, 10})
+          {
+            const auto found = p.solve({0, other}, ties, store);
+            EXPECT_LT(distance(found.product, p.problem.F * found.x), 1e-10) << seed << ", ties " << ties.size();
+            EXPECT_LT(distance(found.x, p.exact({0, other}, ties)), 1e-8) << seed << ", ties " << ties.size();
+          }
+      }
+}
+
+namespace
+{
+  struct Unweighted
+  {
+    SerialReduction serial;
+
+    const SerialReduction &reduction() const
+    {
+      return serial;
+    }
+  };
+} // namespace
+
+TEST(ActiveSet, natural_residual_is_zero_at_solutions_alone)
+{
+  const Unweighted                      problem;
+  const Box<Vector>                     box{{0, -2, -2, -infinity, -9}, {infinity, 2, 2, infinity, 9}};
+  detail::ActiveSet<Vector, Unweighted> set(problem, 2., {box, {{4, 0, 0.1, 0.5}}}, 3.);
+  // pressed and slipping at the bound 0.1 + 0.5 * 4; at both ends of boxes; without bounds
+  const Vector x{4, -2, 2, 7, -2.1}, g{0, 1, -3, 0, 2};
+  EXPECT_EQ(set.natural_residual(x, g), 0.);
+  EXPECT_EQ(set.natural_residual({0, 1, 2, 7, 0}, {5, 0, -3, 0, 2}), 0.); // open: no friction
+  for (std::size_t i = 0; i < x.size(); ++i)
+    {
+      Vector moved = x, pulled = g;
+      moved[i] += i == 0 || i == 3 ? 0. : i == 2 ? -0.1 : 0.1; // those without g may be anywhere
+      pulled[i] += i == 1 || i == 4 ? -4. : i == 2 ? 4. : 0.1;
+      EXPECT_TRUE(i == 0 || i == 3 || set.natural_residual(moved, g) > 0.01) << i;
+      EXPECT_GT(set.natural_residual(x, pulled), 0.01) << i;
+    }
+}
+
+TEST(ActiveSet, entries_pass_from_bound_to_bound_by_way_of_the_inside)
+{
+  const Unweighted                      problem;
+  detail::ActiveSet<Vector, Unweighted> set(problem, 1., {{{-1, -1}, {1, 1}}, {}}, 1.);
+  EXPECT_TRUE(set.predict({-1, 0}, {1, 0}));
+  EXPECT_EQ(set.sides(), (detail::Sides{-1, 0}));
+  EXPECT_TRUE(set.predict({-1, 0}, {-9, -9})); // far beyond the other bound
+  EXPECT_EQ(set.sides(), (detail::Sides{0, 1}));
+  EXPECT_TRUE(set.predict({-1, 0}, {-9, -9}));
+  EXPECT_EQ(set.sides(), (detail::Sides{1, 1}));
+  EXPECT_FALSE(set.predict({-1, 0}, {-9, -9}));
+}

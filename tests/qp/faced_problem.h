@@ -1,0 +1,173 @@
+// Dense problems with equalities that can be looked at on their free and tied entries, as the Newton method needs them.
+#pragma once
+
+#include "support.h"
+
+#include <slipstick/qp/pressure_bounds.h>
+
+namespace slipstick::qp::test
+{
+  /// A dense problem with G x = e that can be looked at on its free and tied entries.
+  struct FacedProblem : DenseProblem
+  {
+    FacedProblem(const Matrix &F_, const Matrix &G_, const Vector &e_)
+      : DenseProblem(F_, G_)
+      , e(e_)
+    {}
+
+    class Face
+    {
+    public:
+      Face(const FacedProblem &problem_, const std::vector<bool> &free_, const std::vector<Tie> &ties_)
+        : problem(problem_)
+        , free(free_)
+        , ties(ties_)
+      {}
+
+      void multiply(const Vector &x, Vector &y) const
+      {
+        problem.multiply(x, y);
+      }
+
+      const SerialReduction &reduction() const
+      {
+        return problem.reduction();
+      }
+
+      void project_range(const Vector &x, Vector &y) const
+      {
+        const Vector z = transposed(amplitudes(masked(x), false));
+        for (std::size_t i = 0; i < x.size(); ++i)
+          y[i] = free[i] ? z[i] : x[i];
+      }
+
+      void multiplier_shift(const Vector &v, Vector &y) const
+      {
+        y = transposed(amplitudes(masked(v), false));
+      }
+
+      void balance(Vector &x) const
+      {
+        move_by(minus(problem.e, problem.G * x), x);
+      }
+
+      void project_kernel(Vector &p) const
+      {
+        for (const Tie &tie : ties)
+          p[tie.tied] = tie.factor * p[tie.to];
+        Vector moving = masked(p);
+        for (const Tie &tie : ties)
+          moving[tie.tied] = p[tie.tied];
+        Vector minus_Gp = problem.G * moving;
+        for (double &entry : minus_Gp)
+          entry = -entry;
+        move_by(minus_Gp, p);
+      }
+
+      void precondition(const Vector &r, Vector &z) const
+      {
+        for (std::size_t i = 0; i < r.size(); ++i)
+          z[i] = free[i] ? r[i] / problem.F(i, i) : 0.;
+      }
+
+      bool is_regular() const
+      {
+        return solve(gram(false), Vector(problem.G.m, 1.)).has_value();
+      }
+
+    private:
+      Vector masked(Vector x) const
+      {
+        for (std::size_t i = 0; i < x.size(); ++i)
+          x[i] = free[i] ? x[i] : 0.;
+        return x;
+      }
+
+      // column i of G with what is tied to it
+      double column(const std::size_t k, const std::size_t i, const bool with_ties) const
+      {
+        double value = problem.G(k, i);
+        for (const Tie &tie : ties)
+          if (with_ties && tie.to == i)
+            value += tie.factor * problem.G(k, tie.tied);
+        return value;
+      }
+
+      Matrix gram(const bool with_ties) const
+      {
+        Matrix A(problem.G.m, problem.G.m);
+        for (std::size_t k = 0; k < A.m; ++k)
+          for (std::size_t l = 0; l < A.m; ++l)
+            for (std::size_t i = 0; i < free.size(); ++i)
+              A(k, l) += free[i] ? column(k, i, with_ties) * column(l, i, with_ties) : 0.;
+        return A;
+      }
+
+      Vector amplitudes(const Vector &x, const bool with_ties) const
+      {
+        return *solve(gram(with_ties), problem.G * x);
+      }
+
+      Vector transposed(const Vector &a) const
+      {
+        Vector y(free.size(), 0.);
+        for (std::size_t k = 0; k < a.size(); ++k)
+          for (std::size_t i = 0; i < y.size(); ++i)
+            y[i] += problem.G(k, i) * a[k];
+        return y;
+      }
+
+      // x += T y with the least y that changes G x by c
+      void move_by(const Vector &c, Vector &x) const
+      {
+        const Vector a = *solve(gram(true), c);
+        Vector       step(free.size(), 0.);
+        for (std::size_t i = 0; i < free.size(); ++i)
+          for (std::size_t k = 0; k < a.size() && free[i]; ++k)
+            step[i] += column(k, i, true) * a[k];
+        for (const Tie &tie : ties)
+          step[tie.tied] = tie.factor * step[tie.to];
+        add(1., step, x);
+      }
+
+      const FacedProblem &problem;
+      std::vector<bool>   free;
+      std::vector<Tie>    ties;
+    };
+
+    Face face(const std::vector<bool> &free, const std::vector<Tie> &ties) const
+    {
+      return Face(*this, free, ties);
+    }
+
+    struct Settled
+    {
+      std::vector<bool> free;
+      Vector            shift;
+      bool              is_loose;
+    };
+
+    /// Without moving anything: the candidates with the least gradients leave until the face is regular.
+    Settled settle(std::vector<bool>          free,
+                   const std::vector<double> &capacity,
+                   const Vector              &x,
+                   const Vector              &g,
+                   const bool) const
+    {
+      const bool is_loose = !face(free, {}).is_regular();
+      while (!face(free, {}).is_regular())
+        {
+          std::size_t next = free.size();
+          for (std::size_t i = 0; i < free.size(); ++i)
+            if (!free[i] && capacity[i] >= 0 && (next == free.size() || std::abs(g[i]) < std::abs(g[next])))
+              next = i;
+          if (next == free.size())
+            break;
+          free[next] = true;
+        }
+      return {std::move(free), Vector(x.size(), 0.), is_loose};
+    }
+
+    Vector e;
+  };
+} // namespace slipstick::qp::test
