@@ -191,7 +191,8 @@ TEST(DualProblem, recovery_keeps_still_what_nothing_resists_and_no_load_drives_a
       for (unsigned int r = 0; r < free.size(); ++r)
         if (!free[r])
           x.local_element(r) = 0;
-      const auto recovered = dual->recover(x, free);
+      EXPECT_THROW(dual->recover(x, free), UndeterminedPosition);
+      const auto recovered = dual->recover(x, free, true);
       ASSERT_EQ(recovered.unresisted.size(), 1u);
       const std::string text = describe(recovered.unresisted[0], dual->body_names());
       EXPECT_NE(text.find("body box: rotation about (5, -20)"), std::string::npos) << text;
