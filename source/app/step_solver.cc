@@ -139,7 +139,7 @@ namespace slipstick::app
                           checked(solve_step(step, multiplications_before, false), scene.load_factors[step]));
     if (step + 1 < scene.load_factors.size())
       u = answer->recovery.u;
-    largest_displacement     = std::max(largest_displacement, answer->contact->checks.max_displacement);
+    history.add(answer->contact->checks);
     the_solution.multipliers = answer->recovery.multipliers;
     return answer;
   }
@@ -162,13 +162,33 @@ namespace slipstick::app
     make_dual(t);
   }
 
+  // A history that unloads to zero leaves the rounding of its formulas.
+  void StepSolver::drop_rounding(std::vector<Eigen::VectorXd> &loads)
+  {
+    constexpr double rounding = 1e-12; // of the largest load so far
+    double           square   = 0;
+    for (const auto &load : loads)
+      square += load.squaredNorm();
+    const double size = std::sqrt(dealii::Utilities::MPI::sum(square, comm));
+    if (size <= rounding * largest_load)
+      for (auto &load : loads)
+        load.setZero();
+    largest_load = std::max(largest_load, size);
+  }
+
   void StepSolver::make_dual(const double t)
   {
     clock.enter("assembly");
-    auto matrices = fem::assemble(scene, *the_mesh, *the_spaces, t);
-    auto rows     = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
-    pruned        = std::move(rows.pruned);
-    held          = std::move(rows.held);
+    auto                         matrices = fem::assemble(scene, *the_mesh, *the_spaces, t);
+    std::vector<Eigen::VectorXd> loads;
+    for (const auto &subdomain : matrices)
+      loads.push_back(subdomain.load);
+    drop_rounding(loads);
+    for (unsigned int p = 0; p < matrices.size(); ++p)
+      matrices[p].load = std::move(loads[p]);
+    auto rows = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
+    pruned    = std::move(rows.pruned);
+    held      = std::move(rows.held);
     fem::refuse_held_penetration(scene, held, comm);
     print_constraints(log, rows.active);
 
@@ -186,9 +206,10 @@ namespace slipstick::app
   bool StepSolver::advance(const double t)
   {
     clock.enter("assembly");
-    std::vector<Eigen::VectorXd> loads = fem::assemble_loads(scene, *the_mesh, *the_spaces, t);
-    auto                         rows  = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
-    const bool                   is_same =
+    auto loads = fem::assemble_loads(scene, *the_mesh, *the_spaces, t);
+    auto rows  = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
+    drop_rounding(loads);
+    const bool is_same =
       dealii::Utilities::MPI::min(rows.active.label == the_dual->constraints().label ? 1 : 0, comm) > 0;
     if (is_same) // gaps that follow the load factor may prune other nodes
       {
@@ -225,7 +246,7 @@ namespace slipstick::app
                                     law.depends_on_pressure() ? law.bounds(x) : from.slip_bound,
                                     from.free,
                                     scene.bodies.size(),
-                                    largest_displacement);
+                                    history);
     add_held_nodes(scene, *the_dual, held, x, u, *answer.contact);
     answer.stress = fem::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), u, t);
   }

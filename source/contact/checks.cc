@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace slipstick::contact
@@ -338,13 +339,22 @@ namespace slipstick::contact
     return {entry.name, entry.value};
   }
 
+  void History::add(const Checks &step)
+  {
+    displacement = std::max(displacement, step.max_displacement);
+    force        = std::max(force, step.largest_force);
+    energies.resize(step.energies.size());
+    for (std::size_t b = 0; b < energies.size(); ++b)
+      energies[b] = std::max(energies[b], step.energies[b]);
+  }
+
   CheckedContact check(const tfeti::DualProblem           &dual,
                        const DistributedVector            &multipliers,
                        const std::vector<Eigen::VectorXd> &u,
                        const std::vector<double>          &slip_bound,
                        const std::vector<bool>            &free,
                        const unsigned int                  n_bodies,
-                       const double                        displacement_before)
+                       const History                      &history)
   {
     const MPI_Comm comm        = dual.communicator();
     const auto    &constraints = dual.constraints();
@@ -442,16 +452,20 @@ namespace slipstick::contact
       }
     MPI_Allreduce(MPI_IN_PLACE, energies.data(), energies.size(), MPI_DOUBLE, MPI_SUM, comm);
     checks.energy = energies.sum();
+    checks.energies.assign(energies.data(), energies.data() + energies.size());
+    checks.largest_force = largest_contact;
     for (double *sum : {&checks.complementarity, &all_bounds})
       *sum = dealii::Utilities::MPI::sum(*sum, comm);
     const double way       = std::max(largest_gap, checks.max_displacement);
-    const double before    = part_of_history * displacement_before;
+    const double before    = part_of_history * history.displacement;
     const double no_length = std::max(negligible_part * way, before);
     const double no_strain = std::max(negligible_deformation * way, before);
-    const double no_force  = no_strain / dual.norm();
+    const double no_force  = std::max(no_strain / dual.norm(), part_of_history * history.force);
     const double length    = std::max(checks.max_displacement, no_length);
     const double force     = std::max(largest_contact, no_force);
-    const double energy    = std::max({checks.energy, no_force * no_strain, all_bounds * no_strain});
+    const double energy_before =
+      part_of_history * part_of_history * std::accumulate(history.energies.begin(), history.energies.end(), 0.);
+    const double energy    = std::max({checks.energy, no_force * no_strain, all_bounds * no_strain, energy_before});
     const auto   on_bodies = balance(dual, forces, multipliers, n_bodies, largest[nodal_equilibrium]);
     for (unsigned int b = 0; b < n_bodies; ++b)
       {
@@ -462,14 +476,16 @@ namespace slipstick::contact
       }
     checks.algebraic_error = std::sqrt(relative(checks.error_energy, energy));
     // of stiff bodies among soft ones, too, which hold little of the energy
-    const double least_energy = no_force * no_strain;
-    const double least_load   = negligible_load * on_bodies.scale.maxCoeff();
-    unsigned int worst_body   = 0;
+    const double least_load = negligible_load * on_bodies.scale.maxCoeff();
+    unsigned int worst_body = 0;
     for (unsigned int b = 0; b < n_bodies; ++b)
       {
         const double share = least_load > 0 ? std::min(1., on_bodies.scale[b] / least_load) : 1.;
         const double error = std::max(error_energies.of_body[b], 0.);
-        if (largest[energy_norm].take(share * std::sqrt(relative(error, std::max(energies[b], least_energy))), Place()))
+        const double least =
+          std::max(no_force * no_strain,
+                   history.energies.empty() ? 0. : part_of_history * part_of_history * history.energies[b]);
+        if (largest[energy_norm].take(share * std::sqrt(relative(error, std::max(energies[b], least))), Place()))
           worst_body = b;
       }
     find_place_in_body(dual, error_energies, worst_body, largest[energy_norm]);

@@ -35,7 +35,7 @@ namespace slipstick::contact
     constexpr double traction_error = 100;
     // ... and no more than this.
     constexpr double largest_traction_error = 0.05;
-    // Tractions of a pair below this part of those of the pair with the largest count as this part.
+    // Tractions of a pair below this part of the largest, of any pair in any step so far, count as this part.
     constexpr double negligible_pair = 1e-3;
     // Loads below this part of those of earlier steps are what rounding leaves of none.
     constexpr double rounding_of_loads = 1e-12;
@@ -71,6 +71,7 @@ namespace slipstick::contact
 
       DualSolution run(const DualSolution *start)
       {
+        largest_traction    = start ? start->largest_traction : 0.;
         const auto feasible = feasible_start(start);
         solution.algorithm  = options.algorithm == scene::Algorithm::semismooth_newton ? "semismooth newton" : "smalbe";
         set_bounds(law.bounds(feasible));
@@ -245,6 +246,20 @@ namespace slipstick::contact
       /// depends on the scene, for it is relative to all loads and gaps.
       bool tractions_are_right(const Vector &x, const Vector &error) const
       {
+        const auto squares = squares_of_tractions(x, error);
+        double     largest = largest_traction * largest_traction;
+        for (std::size_t k = 0; k < squares.size(); k += 2)
+          largest = std::max(largest, squares[k]);
+        const double part = std::min(largest_traction_error, traction_error * options.tolerance);
+        for (std::size_t k = 0; k < squares.size(); k += 2)
+          if (squares[k + 1] > part * part * std::max(squares[k], negligible_pair * negligible_pair * largest))
+            return false;
+        return true;
+      }
+
+      /// Of every pair in turn: squares of the norms in L2 of the tractions of x and of the error [N MPa].
+      std::vector<double> squares_of_tractions(const Vector &x, const Vector &error) const
+      {
         unsigned int n_pairs = 0;
         for (const auto &point : dual.constraints().contact_points)
           n_pairs = std::max(n_pairs, point.pair + 1);
@@ -258,14 +273,7 @@ namespace slipstick::contact
                   error.local_element(row) * error.local_element(row) / point.traction_area;
               }
         qp::sum_all(squares, dual.reduction());
-        double largest = 0;
-        for (std::size_t k = 0; k < squares.size(); k += 2)
-          largest = std::max(largest, squares[k]);
-        const double part = std::min(largest_traction_error, traction_error * options.tolerance);
-        for (std::size_t k = 0; k < squares.size(); k += 2)
-          if (squares[k + 1] > part * part * std::max(squares[k], negligible_pair * negligible_pair * largest))
-            return false;
-        return true;
+        return squares;
       }
 
       /// Semismooth Newton, with bounds that follow the solution or (a Tresca problem) as they are. @return convergence.
@@ -452,6 +460,9 @@ namespace slipstick::contact
             n += !solution.free[r];
           }
         solution.active_constraints = dealii::Utilities::MPI::sum(n, dual.communicator());
+        solution.largest_traction   = largest_traction;
+        for (const double square : squares_of_tractions(solution.multipliers, dual.zero()))
+          solution.largest_traction = std::max(solution.largest_traction, std::sqrt(square));
         return std::move(solution);
       }
 
@@ -465,9 +476,10 @@ namespace slipstick::contact
       Box                   box;
       std::optional<Vector> gradient; // where SMALBE-M ended
       DualSolution          solution;
-      double                relaxation     = 1; // damping of the bounds
-      double                least_change   = qp::infinity;
-      unsigned int          updates_in_row = 0; // without progress
+      double                relaxation       = 1; // damping of the bounds
+      double                least_change     = qp::infinity;
+      unsigned int          updates_in_row   = 0; // without progress
+      double                largest_traction = 0; // norm in L2 of a pair's, in the steps before [sqrt(N MPa)]
     };
   } // namespace
 

@@ -88,6 +88,7 @@ namespace slipstick::tfeti
     F      = std::make_unique<DualOperator>(systems, gluing, rows.rows, std::move(inverses));
     bodies = std::make_unique<BodyMotions>(systems, gluing, rows, body_names.size(), comm);
     require_support(bodies->free({}), body_names);
+    held_by_contact = std::make_unique<BodyEquilibrium>(*bodies, rows, comm);
     if (options.preconditioner == Preconditioner::lumped || options.preconditioner == Preconditioner::dirichlet)
       {
         preconditioner =
@@ -152,6 +153,8 @@ namespace slipstick::tfeti
         resultants.conservativeResize(resultants.size() + part.size());
         resultants.tail(part.size()) = part;
       }
+    if (!held_by_contact->empty())
+      held_by_contact->set_loads(bodies->loads());
   }
 
   double DualProblem::refine(const DistributedVector &x)
@@ -312,10 +315,10 @@ namespace slipstick::tfeti
     return y;
   }
 
-  bool DualProblem::hold(const std::vector<RigidMotion> &loose,
-                         const std::vector<bool>        &is_candidate,
-                         const std::vector<double>      &scale,
-                         std::vector<bool>              &free) const
+  bool DualProblem::hold_by(const std::vector<RigidMotion> &loose,
+                            const std::vector<bool>        &is_candidate,
+                            const std::vector<double>      &scale,
+                            std::vector<bool>              &free) const
   {
     const Eigen::MatrixXd            own = bodies->jumps(loose);
     std::vector<std::vector<double>> candidates;
@@ -362,13 +365,13 @@ namespace slipstick::tfeti
     std::vector<bool>         is_candidate(free.size());
     for (unsigned int r = 0; r < free.size(); ++r)
       is_candidate[r] = !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
-    if (hold(loose, is_candidate, equal, free))
+    if (hold_by(loose, is_candidate, equal, free))
       return true;
     if (!keeps_still || plainest(loose).work > 0)
       require_support(loose, names_of_bodies);
     for (unsigned int r = 0; r < free.size(); ++r)
       is_candidate[r] = !free[r];
-    if (!hold(loose, is_candidate, equal, free))
+    if (!hold_by(loose, is_candidate, equal, free))
       require_support(loose, names_of_bodies);
     return false;
   }

@@ -84,6 +84,9 @@ namespace slipstick::app
     void build_dual(const double t);
     void make_dual(const double t);
 
+    /// Loads of this rank's subdomains that are what rounding leaves of those of earlier steps become zero.
+    void drop_rounding(std::vector<Eigen::VectorXd> &loads);
+
     /// Loads and right-hand sides of a later step; slip starts from where the step before ended.
     /// @return whether the multipliers of the step before fit the rows.
     bool advance(const double t);
@@ -132,12 +135,13 @@ namespace slipstick::app
     tfeti::Constraints                  pruned; // normal rows of the contact nodes without multipliers
     tfeti::HeldContacts                 held;   // contact nodes whose gap supports prescribe
     double                              kept_part;
+    double                              largest_load  = 0;    // of the steps so far [N]
     double                              factorization = 0;    // [s]
     double                              discretization_error; // last estimate in the step [sqrt(N mm)]
     contact::DualSolution               the_solution;
     std::unique_ptr<Answer>             accepted; // by the test of accuracy, in the step
     std::vector<Eigen::VectorXd>        u;        // of the last step
-    double                              largest_displacement = 0; // of the steps before [mm]
+    contact::History                    history;  // of the steps before
     std::vector<output::ConvergenceRow> rows;
   };
 } // namespace slipstick::app

@@ -26,6 +26,20 @@ namespace slipstick::qp
     /// Of every owned entry: -1 at the lower bound, 1 at the upper, 0 free.
     using Sides = std::vector<signed char>;
 
+    /// `balance_bodies` of problems that have it; others have no bodies that contact alone holds.
+    template <typename Problem, typename Set>
+    auto balance_bodies(const Problem             &problem,
+                        const std::vector<double> &stiffness,
+                        const Set                 &set,
+                        std::vector<double>       &moved,
+                        int) -> decltype(problem.balance_bodies(stiffness, set, moved))
+    {
+      problem.balance_bodies(stiffness, set, moved);
+    }
+    template <typename Problem, typename Set>
+    void balance_bodies(const Problem &, const std::vector<double> &, const Set &, std::vector<double> &, long)
+    {}
+
     /// The natural map x -> proj(x - s g) of an admissible set, and the set of entries that it puts on bounds. s: `step`
     /// over the norm of F, times the weight of the entry, so that s g is a force of the size that closes g.
     template <typename Vector, typename Problem>
@@ -40,6 +54,7 @@ namespace slipstick::qp
         , set(std::move(set_))
         , weights(residual_weights(problem_, 0))
         , active(local_size(set.box.lower))
+        , beyond(active.size(), 0.)
       {
         for (std::size_t i = 0; i < active.size(); ++i)
           bounded.push_back(set.box.lower.begin()[i] > -HUGE_VAL || set.box.upper.begin()[i] < HUGE_VAL);
@@ -69,7 +84,9 @@ namespace slipstick::qp
       bool predict(const Vector &x, const Vector &g)
       {
         const Sides before = active;
-        map(x, g, [](const std::size_t, const double, const double) {});
+        map(x, g, [this](const std::size_t i, const double, const double projected, const double moved) {
+          beyond[i] = std::abs(moved - projected) * norm / (step * weight(i));
+        });
         for (std::size_t i = 0; i < active.size(); ++i)
           if (active[i] * before[i] < 0 && set.box.lower.begin()[i] < set.box.upper.begin()[i])
             active[i] = 0; // from one bound to the other by way of the inside: s g is cut to the width
@@ -87,7 +104,7 @@ namespace slipstick::qp
               const double r = weight(i) * g.begin()[i];
               sum += r * r;
             }
-        map(x, g, [&](const std::size_t, const double xi, const double projected) {
+        map(x, g, [&](const std::size_t, const double xi, const double projected, const double) {
           const double r = norm * (xi - projected) / step;
           sum += r * r;
         });
@@ -160,17 +177,10 @@ namespace slipstick::qp
         return result;
       }
 
-      /// What entries at bounds can bear: the bound of those between two, infinity with one bound, negative where the
-      /// bounds leave no room.
-      std::vector<double> capacities() const
+      /// By how much, in units of g, the entries at bounds are beyond them in the prediction made last.
+      const std::vector<double> &gaps() const
       {
-        std::vector<double> result(active.size());
-        for (std::size_t i = 0; i < active.size(); ++i)
-          {
-            const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i];
-            result[i] = l < u ? std::max(std::abs(l), std::abs(u)) : -1.;
-          }
-        return result;
+        return beyond;
       }
 
       /// Entries leave their bounds where @p free says so.
@@ -212,17 +222,22 @@ namespace slipstick::qp
         set.box.upper.begin()[bound.tangential] = radius;
       }
 
-      // The set, and action(i, x_i, proj(x - s g)_i) for all entries with bounds. Normal entries come first: bounds of
+      // The set, and action(i, x_i, proj(x - s g)_i, (x - s g)_i) for all entries with bounds. Normal entries come first: bounds of
       // others follow the projected ones.
       template <typename Action>
       void map(const Vector &x, const Vector &g, const Action &action)
       {
-        std::vector<double> projected(active.size());
-        const auto          place = [&](const std::size_t i) {
+        std::vector<double> projected(active.size()), moved(active.size()), stiffness(active.size());
+        for (std::size_t i = 0; i < active.size(); ++i)
+          {
+            stiffness[i] = step / norm * weight(i);
+            moved[i]     = x.begin()[i] - stiffness[i] * g.begin()[i];
+          }
+        balance_bodies(problem, stiffness, set, moved, 0);
+        const auto place = [&](const std::size_t i) {
           const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i];
-          const double t = x.begin()[i] - step / norm * weight(i) * g.begin()[i];
-          active[i]      = t <= l ? -1 : t >= u ? 1 : 0;
-          projected[i]   = clip(t, l, u);
+          active[i]    = moved[i] <= l ? -1 : moved[i] >= u ? 1 : 0;
+          projected[i] = clip(moved[i], l, u);
         };
         for (std::size_t i = 0; i < active.size(); ++i)
           if (bounded[i])
@@ -234,7 +249,7 @@ namespace slipstick::qp
           }
         for (std::size_t i = 0; i < active.size(); ++i)
           if (bounded[i])
-            action(i, x.begin()[i], projected[i]);
+            action(i, x.begin()[i], projected[i], moved[i]);
       }
 
       const Problem        &problem;
@@ -243,6 +258,7 @@ namespace slipstick::qp
       const double         *weights;
       std::vector<bool>     bounded;
       Sides                 active;
+      std::vector<double>   beyond;
     };
   } // namespace detail
 } // namespace slipstick::qp

@@ -33,6 +33,9 @@ namespace slipstick::tfeti
 
     static constexpr double rounding_of_resistance = 1e-12;
 
+    /// Loads along the motions of all bodies, 3 a body [N]; 0 where the loads cancel to rounding. Collective.
+    Eigen::VectorXd loads() const;
+
     /// Jumps B u of all rows that this rank owns (0 for gluing) under motions; rows x motions.
     Eigen::MatrixXd jumps(const std::vector<RigidMotion> &motions) const;
 
