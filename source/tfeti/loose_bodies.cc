@@ -146,10 +146,12 @@ namespace slipstick::tfeti
     }
   } // namespace
 
-  std::vector<bool> DualProblem::hold(const std::vector<bool> &free, const std::vector<double> &gaps) const
+  std::vector<bool> DualProblem::hold(const std::vector<bool>   &free,
+                                      const std::vector<double> &gaps,
+                                      const bool                 well) const
   {
     std::vector<bool> result = free;
-    const auto        loose  = bodies->free(free);
+    const auto        loose  = bodies->free(free, well ? weak_resistance : BodyMotions::rounding_of_resistance);
     if (loose.empty())
       return result;
     const double largest =

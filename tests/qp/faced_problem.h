@@ -141,7 +141,7 @@ namespace slipstick::qp::test
     }
 
     /// The entries with the least gaps become free until the face is regular.
-    std::vector<bool> hold(std::vector<bool> free, const std::vector<double> &gaps) const
+    std::vector<bool> hold(std::vector<bool> free, const std::vector<double> &gaps, const bool) const
     {
       while (!face(free, {}).is_regular())
         {

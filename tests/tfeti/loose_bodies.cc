@@ -191,7 +191,7 @@ TEST(LooseBodies, are_held_by_the_row_that_is_nearest_to_its_bound)
       least   = free[r] ? least : std::min(least, gaps[r]);
     }
   least              = dealii::Utilities::MPI::min(least, MPI_COMM_WORLD);
-  const auto   holds = dual->hold(free, gaps);
+  const auto   holds = dual->hold(free, gaps, false);
   unsigned int added = 0;
   for (unsigned int r = 0; r < n; ++r)
     if (holds[r] != free[r])
@@ -200,5 +200,5 @@ TEST(LooseBodies, are_held_by_the_row_that_is_nearest_to_its_bound)
         EXPECT_EQ(gaps[r], least);
       }
   EXPECT_EQ(dealii::Utilities::MPI::sum(added, MPI_COMM_WORLD), 1u);
-  EXPECT_EQ(dual->hold(holds, gaps), holds);
+  EXPECT_EQ(dual->hold(holds, gaps, false), holds);
 }

@@ -16,7 +16,8 @@
 //       `precondition(r, z)`    z = M r on the free entries, 0 on the others; symmetric positive semidefinite
 //       the Problem and its faces may have residual_weights (kernels.h)
 //       `is_regular()`          false when the free entries alone do not determine a
-//   `hold(free, gaps) const`   the free entries and as many others, with small gaps, as make the face regular if that can be
+//   `hold(free, gaps, well) const`   the free entries and as many others, with small gaps, as make the face regular if that
+//       can be; or, if that is asked for, far from singular
 // It may have `balance_bodies(stiffness, set, moved) const`, which moves bodies that nothing but entries with bounds holds,
 //       moved -= stiffness times their jumps, so that proj(moved) balances their loads: the least of the potential of the
 //       projected forces. So sets are predicted that can bear the loads.
@@ -200,9 +201,12 @@ namespace slipstick::qp
         return error;
       }
 
-      // The face of the set. Where that leaves a motion open, the entries at bounds that come nearest to leaving them hold it.
+      // The face of the set. Where that leaves a motion open, the entries at bounds that come nearest to leaving them hold
+      // it; where a step failed, motions that the free entries hardly hold count as open.
       std::optional<Face> regular_face()
       {
+        if (is_stuck)
+          set.release(problem.hold(set.free(), set.gaps(), true));
         for (unsigned int attempt = 0; attempt < 2; ++attempt)
           {
             ties = set.ties();
@@ -210,7 +214,7 @@ namespace slipstick::qp
             face.emplace(problem.face(set.free(), ties));
             if (face->is_regular())
               return face;
-            set.release(problem.hold(set.free(), set.gaps()));
+            set.release(problem.hold(set.free(), set.gaps(), false));
           }
         return {};
       }

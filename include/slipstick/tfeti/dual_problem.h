@@ -112,8 +112,9 @@ namespace slipstick::tfeti
     std::optional<Overload> overload(const std::vector<bool> &free, const std::vector<double> &capacity) const;
 
     /// The free rows and, of the others, as many as hold the bodies that these leave loose, those with the smallest gaps [of
-    /// any unit] rather than others. Just the free ones when nothing is loose, or nothing can hold. Collective.
-    std::vector<bool> hold(const std::vector<bool> &free, const std::vector<double> &gaps) const;
+    /// any unit] rather than others. Just the free ones when nothing is loose, or nothing can hold. @param well bodies that
+    /// free rows hardly hold are held, too. Collective.
+    std::vector<bool> hold(const std::vector<bool> &free, const std::vector<double> &gaps, const bool well) const;
 
     /// moved -= stiffness times the jumps of the motion of bodies which nothing but contact holds, after which the forces
     /// `moved`, cut to their bounds, balance the loads of these bodies. Owned rows. Collective.
