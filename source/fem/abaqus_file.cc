@@ -216,13 +216,16 @@ namespace slipstick::fem
         element.n      = dim == 1 ? 2 : n_nodes % 3 == 0 ? 3 : 4;
         element.number = data[0];
         mesh.is_curved = mesh.is_curved || n_nodes > element.n;
-        for (unsigned int k = 0; k < element.n; ++k)
+        for (unsigned int k = 0; k < n_nodes; ++k)
           {
             const auto found = node_index.find(data[k + 1]);
             if (found == node_index.end())
               fail("element " + std::to_string(data[0]) + " has node " + std::to_string(data[k + 1]) +
                    ", which is not there");
-            element.corners[k] = found->second;
+            if (k < element.n)
+              element.corners[k] = found->second;
+            else
+              mesh.keep_middle(element, k, found->second);
           }
         if (!element_index.emplace(data[0], mesh.elements.size()).second)
           fail("element " + std::to_string(data[0]) + " comes twice");

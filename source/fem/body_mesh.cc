@@ -3,6 +3,7 @@
 #include <slipstick/base/text.h>
 #include <slipstick/fem/body_mesh.h>
 #include <slipstick/fem/refinement.h>
+#include <slipstick/fem/smooth_outline.h>
 
 #include <numeric>
 
@@ -137,6 +138,7 @@ namespace slipstick::fem
           files[body.file] = read_mesh_file(body.file);
         mesh = body_from_file(body, files[body.file]);
         check_names(scene, b, mesh);
+        smooth_outline(body, mesh);
         refine_uniformly(body, body.refinements + scene.discretization.refinements, mesh);
       }
     else

@@ -1,7 +1,7 @@
+#include <slipstick/fem/edge_middles.h>
 #include <slipstick/fem/mesh_piece.h>
 
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/grid/manifold_lib.h>
 
 #include <metis.h>
 
@@ -16,15 +16,15 @@ namespace slipstick::fem
 
     /// Sub-piece of the given cells.
     template <int dim>
-    MeshPiece<dim> extract(const MeshPiece<dim>                                                      &whole,
-                           const std::vector<unsigned int>                                           &cells,
-                           const std::map<typename MeshPiece<dim>::Face, dealii::types::boundary_id> &boundary)
+    MeshPiece<dim> extract(
+      const MeshPiece<dim>                                                                 &whole,
+      const std::vector<unsigned int>                                                      &cells,
+      const std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> &boundary)
     {
       MeshPiece<dim>                       piece;
       std::map<unsigned int, unsigned int> local;
-      piece.body        = whole.body;
-      piece.ordered     = whole.ordered;
-      piece.arc_centers = whole.arc_centers;
+      piece.body    = whole.body;
+      piece.ordered = whole.ordered;
       for (const unsigned int c : cells)
         {
           auto cell = whole.cells[c];
@@ -32,7 +32,7 @@ namespace slipstick::fem
             {
               const auto found = boundary.find(face_of_cell<dim>(cell, f));
               if (found != boundary.end())
-                piece.boundary_faces.push_back({found->first, found->second});
+                piece.boundary_faces.push_back(found->second);
             }
           for (unsigned int k = 0; k < n_corners<dim>(cell); ++k)
             {
@@ -77,6 +77,23 @@ namespace slipstick::fem
         ids[key] = face.id;
       }
     return ids;
+  }
+
+  template <int dim>
+  std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> boundary_by_vertices(
+    const MeshPiece<dim> &piece)
+  {
+    std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> faces;
+    for (auto face : piece.boundary_faces)
+      {
+        if (face.vertices[0] > face.vertices[1])
+          {
+            std::swap(face.vertices[0], face.vertices[1]);
+            face.curve = face.curve.reversed();
+          }
+        faces[face.vertices] = face;
+      }
+    return faces;
   }
 
   template <int dim>
@@ -146,8 +163,8 @@ namespace slipstick::fem
     };
     for (auto &x : piece.vertices)
       move(x);
-    for (auto &arc : piece.arc_centers)
-      move(arc.second);
+    for (auto &face : piece.boundary_faces)
+      face.curve.move(move);
     if (placement.mirror_x != placement.mirror_y)
       for (auto &cell : piece.cells)
         std::swap(cell[1], cell[2]); // of a quadrilateral in lexicographic order, and of a triangle
@@ -175,7 +192,7 @@ namespace slipstick::fem
           root[std::max(a, b)] = std::min(a, b);
         }
 
-    const auto                                                                 boundary = ids_of_faces(whole);
+    const auto                                                                 boundary = boundary_by_vertices(whole);
     std::map<std::pair<unsigned int, unsigned int>, std::vector<unsigned int>> cells_of_piece; // by part and root
     for (unsigned int c = 0; c < n_cells; ++c)
       cells_of_piece[{part[c], find(c)}].push_back(c);
@@ -264,7 +281,8 @@ namespace slipstick::fem
     mesh->triangulation.create_triangulation(piece.vertices, cells, dealii::SubCellData());
 
     // every face starts as a cut, the boundaries are marked from their vertices
-    const auto boundary = ids_of_faces(piece);
+    const auto boundary = boundary_by_vertices(piece);
+    const auto middles  = middles_of_edges(piece, boundary);
     for (const auto &cell : mesh->triangulation.active_cell_iterators())
       for (const auto &face : cell->face_iterators())
         if (face->at_boundary())
@@ -274,19 +292,23 @@ namespace slipstick::fem
               key[v] = face->vertex_index(v);
             std::sort(key.begin(), key.end());
             const auto found = boundary.find(key);
-            const auto id    = found == boundary.end() ? cut_id : found->second;
-            face->set_boundary_id(id);
-            if (piece.arc_centers.count(id) > 0)
-              face->set_manifold_id(id);
+            face->set_boundary_id(found == boundary.end() ? cut_id : found->second.id);
+            if (found == boundary.end())
+              continue;
+            if (const auto &curve = found->second.curve; curve || curve.left_out > 0)
+              mesh->curves[key] = curve;
+            if (middles.count(key) > 0)
+              face->set_manifold_id(EdgeMiddles<dim>::id);
           }
-    for (const auto &[id, center] : piece.arc_centers)
-      mesh->triangulation.set_manifold(id, dealii::SphericalManifold<dim>(center));
+    if (!middles.empty())
+      mesh->triangulation.set_manifold(EdgeMiddles<dim>::id, EdgeMiddles<dim>(middles));
     return mesh;
   }
 
   template struct MeshPiece<2>;
   template std::vector<std::pair<MeshPiece<2>::Face, unsigned int>> faces_with_cells(const MeshPiece<2> &);
   template std::map<MeshPiece<2>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<2> &);
+  template std::map<MeshPiece<2>::Face, MeshPiece<2>::BoundaryFace> boundary_by_vertices(const MeshPiece<2> &);
   template MeshPiece<2>                                             rectangle_piece<2>(const scene::Body<2> &,
                                            const std::array<unsigned int, 2> &,
                                            const std::array<unsigned int, 2> &,

@@ -16,10 +16,11 @@ namespace slipstick::fem
     std::map<std::string, dealii::types::boundary_id>                          boundary_ids; // by name
     std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>> combined_ids; // as in Mesh
     std::map<std::string, unsigned int>                                        points;       // by name: local vertex
-    std::vector<std::string>                                                   remarks;
+    std::map<typename MeshPiece<dim>::Face, dealii::Point<dim>> middles; // mid nodes of the outline in the file
+    std::vector<std::string>                                    remarks;
   };
 
-  /// The cells of @p file that make the body, scaled, not yet placed or refined: those of Body::part, or all. Lines
+  /// The cells of @p file that make the body, scaled, not yet placed, refined or smoothed: those of Body::part, or all. Lines
   /// with physical names that bound the body are its boundaries, lines inside it are left out.
   /// @throws InputError for a part that is not there; for a file that is not of plane cells; for cells that are
   /// turned over (unless all are), degenerate or cross themselves; for edges of three cells; for a body in pieces.
