@@ -17,6 +17,12 @@ namespace slipstick::fem
     constexpr double outstanding = 3;
     // Coarse circles: neighbouring angles below the limit [rad] and lengths differ by no more than this part.
     constexpr double coarse_limit = 65 * M_PI / 180, regular = 0.1;
+    // Parabolas through mid nodes that meet at this angle [rad] or a larger one make a corner: those of a circle of eight edges
+    // meet at 2 degrees.
+    constexpr double corner_of_parabolas = 10 * M_PI / 180;
+    // A cubic in place of a parabola: its mid node is off the middle of the chord by no more than this part, its speed at the
+    // ends differs by no more than this part from that of an arc.
+    constexpr double off_middle = 0.05, other_speed = 0.25;
     // Mid nodes are on the chord when they are no farther from it than this part of its length.
     constexpr double on_chord = 1e-9;
 
@@ -71,11 +77,14 @@ namespace slipstick::fem
       void find_corners();
       void find_flats();
       void find_tangents();
+      void follow_middles();
+      void continue_to_corners();
       bool is_outstanding(const Edge &edge) const;
       bool is_inflection(const Edge &edge) const;
       bool is_coarse_circle(const Edge &edge) const;
 
       Curve spline(const Edge &edge) const;
+      Curve parabola(const Edge &edge) const;
       Curve through_middle(const Edge &edge) const;
       bool  has_middles() const;
 
@@ -183,7 +192,12 @@ namespace slipstick::fem
                 next.start = edge.turn - edge.end;
               }
           }
-      // at corners as at the other end, like an arc
+      continue_to_corners();
+    }
+
+    /// Angles at corners are those at the other end of the edge, as of an arc.
+    void Reconstruction::continue_to_corners()
+    {
       for (auto &edge : edges)
         {
           const bool from_corner = edge.last < 0 || edges[edge.last].is_corner;
@@ -207,7 +221,7 @@ namespace slipstick::fem
                             mesh.piece.vertices[edge.to]);
     }
 
-    EdgeCurve<2> Reconstruction::through_middle(const Edge &edge) const
+    EdgeCurve<2> Reconstruction::parabola(const Edge &edge) const
     {
       const auto found = mesh.middles.find(face_of_cell<2>(mesh.piece.cells[edge.cell], edge.face));
       const auto start = mesh.piece.vertices[edge.from], end = mesh.piece.vertices[edge.to];
@@ -220,9 +234,66 @@ namespace slipstick::fem
     bool Reconstruction::has_middles() const
     {
       for (const auto &edge : edges)
-        if (through_middle(edge))
+        if (parabola(edge))
           return true;
       return false;
+    }
+
+    /// As find_corners(), find_flats() and find_tangents(), for edges with mid nodes: tangents are those of the circles through
+    /// nodes and the mid nodes beside them.
+    void Reconstruction::follow_middles()
+    {
+      std::vector<Curve> parabolas;
+      for (auto &edge : edges)
+        {
+          parabolas.push_back(parabola(edge));
+          edge.is_flat = !parabolas.back();
+        }
+      const auto angle   = [](const Tensor &a, const Tensor &b) { return std::atan2(across(a, b), a * b); };
+      const auto tangent = [&](const unsigned int e, const double s) {
+        return parabolas[e] ? parabolas[e].tangent(s) : edges[e].chord;
+      };
+      for (unsigned int e = 0; e < edges.size(); ++e)
+        {
+          auto &edge     = edges[e];
+          edge.is_corner = edge.next < 0 || std::abs(angle(tangent(e, 1), tangent(edge.next, 0))) >=
+                                              std::min(limit, corner_of_parabolas);
+          if (edge.is_corner)
+            continue;
+          auto &next = edges[edge.next];
+          if (edge.is_flat || next.is_flat)
+            {
+              (edge.is_flat ? next.start : edge.end) = edge.turn;
+              continue;
+            }
+          const auto   at     = mesh.piece.vertices[edge.to];
+          const Tensor before = at - parabolas[e].point(0.5), behind = parabolas[edge.next].point(0.5) - at;
+          const double turn = angle(before, behind);
+          const double of_circle =
+            std::atan2(before.norm() * std::sin(turn), behind.norm() + before.norm() * std::cos(turn));
+          edge.end   = angle(edge.chord, before) + of_circle;
+          next.start = turn - of_circle + angle(behind, next.chord);
+        }
+      continue_to_corners();
+    }
+
+    /// The cubic through the mid node with the tangents at the ends; the parabola where that would be another curve.
+    EdgeCurve<2> Reconstruction::through_middle(const Edge &edge) const
+    {
+      const auto through = parabola(edge);
+      if (!through || ((edge.last < 0 || edges[edge.last].is_corner) && edge.is_corner))
+        return through;
+      const auto   middle = through.point(0.5) - mesh.piece.vertices[edge.from];
+      const double half   = std::cos((std::abs(edge.start) + std::abs(edge.end)) / 4);
+      const double height = across(edge.chord, middle) / edge.length, sines = std::sin(edge.start) + std::sin(edge.end);
+      const double speed = sines != 0 ? -8 * height / sines / edge.length : 0; // over the length
+      if (std::abs(middle * edge.chord / (edge.length * edge.length) - 0.5) > off_middle ||
+          std::abs(speed * half * half - 1) > other_speed)
+        return through;
+      return Curve::hermite(mesh.piece.vertices[edge.from],
+                            turned(speed * edge.chord, -edge.start),
+                            turned(speed * edge.chord, edge.end),
+                            mesh.piece.vertices[edge.to]);
     }
 
     /// Edges of equal lengths that meet at equal angles, of which two or more are needed for a corner of 90 degrees?
@@ -241,7 +312,9 @@ namespace slipstick::fem
     void Reconstruction::run()
     {
       const bool by_middles = has_middles();
-      if (!by_middles)
+      if (by_middles)
+        follow_middles();
+      else
         {
           find_corners();
           find_flats();

@@ -7,7 +7,8 @@ namespace slipstick::fem
 {
   /// Gives the boundary edges of an unrefined body from a mesh file the curves that they stand for, and adds a remark.
   ///
-  /// With mid nodes off the chords (BodyMesh::middles) these are the parabolas through them. Else they are reconstructed:
+  /// With mid nodes off the chords (BodyMesh::middles) these are cubics through them with common tangents at the nodes, parabolas
+  /// where that would be another curve, as between corners. Else they are reconstructed:
   /// cubics over the edges with common tangents at the nodes, those of the circle through a node and its two neighbours,
   /// which reproduces circles to 1e-6 of the sagitta with edges of 20 degrees. Corners, where curves end, are nodes where
   /// edges meet at Body::corner_angle or more, or at a much larger angle than at the nodes beside it, as where two straight
