@@ -212,13 +212,12 @@ class Curves(unittest.TestCase):
         return math.sqrt(error), abs(max(row['pressure'] for row in result.contact) / largest - 1)
 
     def test_gear_flanks(self):
-        for degree in (1, 2):
-            for second_order in (False, True):
-                with self.subTest(degree=degree, second_order=second_order):
-                    errors = [self.hertz_error(degree, refinements, second_order) for refinements in (0, 1, 2)]
-                    self.assertLess(errors[2][0], 0.02, errors)
-                    self.assertLess(errors[2][1], 0.01, errors)
-                    self.assertLess(errors[2][0], errors[0][0] / 3, errors)
+        for degree, second_order in ((1, False), (2, True)):
+            with self.subTest(degree=degree, second_order=second_order):
+                errors = [self.hertz_error(degree, refinements, second_order) for refinements in (0, 2)]
+                self.assertLess(errors[1][0], 0.02, errors)
+                self.assertLess(errors[1][1], 0.01, errors)
+                self.assertLess(errors[1][0], errors[0][0] / 3, errors)
 
 
 if __name__ == '__main__':
