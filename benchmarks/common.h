@@ -45,7 +45,7 @@ namespace slipstick::benchmark
                      const unsigned int                      default_repetitions,
                      const std::function<int(const Case &)> &run)
   {
-    tfeti::Process process(argc, argv);
+    tfeti::Process process;
     Case           given{"", default_repetitions, {}};
     try
       {

@@ -727,7 +727,7 @@ int main(int argc, char **argv)
   try
     {
       const Options  options = read(argc, argv);
-      tfeti::Process process(argc, argv, options.threads, options.openmp);
+      tfeti::Process process(options.threads, options.openmp);
       std::cout << run(options).dump() << std::endl;
     }
   catch (const std::exception &error)

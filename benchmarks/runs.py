@@ -46,14 +46,8 @@ def build(target="slipstick"):
 
 
 def mpirun(ranks):
-    """The launcher and its environment, as scripts/run has them."""
-    command = ["mpirun", "-n", str(ranks), "--quiet"]
-    if os.geteuid() == 0:
-        command.append("--allow-run-as-root")
-    if ranks > n_cores():
-        command.append("--oversubscribe")
-    environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_MCA_btl_vader_single_copy_mechanism="none")
-    return command, environment
+    """The launcher, that of scripts/run, and an environment in which programs may start alone, too."""
+    return [str(ROOT / "scripts" / "mpirun"), "-n", str(ranks)], dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
 
 
 def run(program, settings, ranks, scene=BOX, look=None):

@@ -202,7 +202,7 @@ namespace
 
 int main(int argc, char **argv)
 {
-  tfeti::Process           process(argc, argv);
+  tfeti::Process           process;
   std::string              file;
   unsigned int             smallest = 1, largest = 16;
   std::vector<std::string> overrides, only;

@@ -42,8 +42,8 @@ as_root() {
 
 # missing_packages PACKAGE...: those that dpkg does not have installed, one a line.
 missing_packages() {
-  { dpkg-query -W -f='${Package} ${db:Status-Status}\n' "$@" 2>/dev/null || true; } |
-    awk 'NR == FNR { if ($2 == "installed") have[$1] = 1; next } !($1 in have)' - <(printf '%s\n' "$@")
+  printf '%s\n' "$@" |
+    grep -vxFf <(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null | sed -n 's/^installed //p') || true
 }
 
 # have_candidates PACKAGE...: true when apt's lists know all of them.
@@ -65,8 +65,8 @@ install_packages() {
   fi
   as_root apt-get update --quiet || die "apt-get update failed (see above): check the network and /etc/apt/sources.list"
   have_candidates "${missing[@]}" ||
-    die "this release of Debian does not have all of: ${missing[*]} (Debian 12 has; or build deal.II >= 9.4" \
-      "yourself and use plain CMake, see README.md)"
+    die "this release of Debian does not have all of: ${missing[*]} (Debian 12 and 13 have; for others see" \
+      "doc/platforms.md)"
   as_root "${install[@]}" || die "apt-get could not install: ${missing[*]} (see above)"
 }
 
@@ -97,7 +97,7 @@ require_libraries() {
   rm -rf "$trial"
   say "this is not a Debian system and something that slipstick needs is missing. Install the counterparts of"
   say "  ${packages[*]}"
-  die "with your package manager (or run in a container of debian:12), then repeat"
+  die "with your package manager (or run in a container: doc/platforms.md), then repeat"
 }
 
 setup() {
@@ -145,10 +145,10 @@ progress() {
 
 # logged SHOW LOG COMMAND...: runs COMMAND with its output in LOG; when it fails, function SHOW prints what matters.
 logged() {
-  local show=$1 log=$2 status=0
+  local show=$1 log=$2 status=0 -
+  set -o pipefail # here only
   shift 2
-  LC_ALL=C "$@" > >(progress "$log") 2>&1 || status=$?
-  wait $! || true
+  LC_ALL=C "$@" 2>&1 | progress "$log" || status=${PIPESTATUS[0]}
   [[ $status -eq 0 ]] && return 0
   "$show" "$log" >&2 || true
   die "failed: $* (complete log: $log)"
@@ -182,12 +182,4 @@ build_target() {
   fi
   say "building $1 (Release, $(n_jobs) jobs)"
   logged build_errors "$build/build.log" cmake --build "$build" --target "$1" --parallel "$(n_jobs)"
-}
-
-# One thread a rank, and Open MPI quiet in the places where it complains needlessly.
-mpi_environment() {
-  export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-  if [[ -e /.dockerenv || -e /run/.containerenv ]]; then
-    export OMPI_MCA_btl_vader_single_copy_mechanism=none # containers forbid it, Open MPI 4 warns on every run
-  fi
 }

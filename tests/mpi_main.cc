@@ -26,7 +26,7 @@ namespace
 int main(int argc, char **argv)
 {
   testing::InitGoogleTest(&argc, argv);
-  slipstick::tfeti::Process process(argc, argv);
+  slipstick::tfeti::Process process;
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
     {
       testing::TestEventListeners &listeners = testing::UnitTest::GetInstance()->listeners();

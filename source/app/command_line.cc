@@ -72,6 +72,7 @@ namespace slipstick::app
     const CLI::Option *output =
       app.add_option("--output", line.output_directory, "output directory, default output/<name of the case>")
         ->type_name("DIR");
+    app.add_flag("--force", line.force, "run a scene that asks for more memory than is free");
     app.add_flag("--check", line.check, "build and check the scene, solve nothing");
     const CLI::Option *list =
       app.add_option("--list-parameters", list_format, "list all parameters as text (default), prm, json or latex")
@@ -98,14 +99,30 @@ namespace slipstick::app
       {
         throw InputError(error.what(), usage);
       }
-    if (!app.remaining().empty())
-      throw unknown_argument(app.remaining().front(), app);
+    auto remaining = app.remaining();
+    if (!remaining.empty() && remaining.front() == "--") // only file names follow
+      {
+        remaining.erase(remaining.begin());
+        if (line.case_file.empty() && !remaining.empty())
+          {
+            line.case_file = remaining.front();
+            remaining.erase(remaining.begin());
+          }
+        if (!remaining.empty())
+          throw InputError("'" + remaining.front() + "' is one case file too many", "give one case file: " + usage);
+      }
+    if (!remaining.empty())
+      throw unknown_argument(remaining.front(), app);
     if (list->count() > 0)
       line.list_parameters = read_list_format(list_format.empty() ? "text" : list_format);
     check(line);
     if (output->count() > 0 && line.output_directory.empty())
       throw InputError("--output: the name of the directory is empty",
                        "name a directory, for example --output /tmp/run");
+    const std::string name = std::filesystem::path(line.case_file).stem().string();
+    if (output->count() == 0 && !line.list_parameters && (name.empty() || name == "." || name == ".."))
+      throw InputError("the case file '" + line.case_file + "' gives no name to an output directory",
+                       "name the directory, for example --output output/case, or the file otherwise");
     if (output->count() == 0)
       line.output_directory = (std::filesystem::path("output") / std::filesystem::path(line.case_file).stem()).string();
     return line;

@@ -1,27 +1,72 @@
 #include <slipstick/app/command_line.h>
 #include <slipstick/app/simulation.h>
+#include <slipstick/base/collective.h>
+#include <slipstick/base/printable.h>
+#include <slipstick/fem/size_check.h>
 #include <slipstick/scene/read.h>
 #include <slipstick/tfeti/process.h>
 
 #include <deal.II/base/mpi.h>
 
+#include <csignal>
 #include <iostream>
+#include <vector>
+
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+extern "C" void dgemm_(const char *,
+                       const char *,
+                       const int *,
+                       const int *,
+                       const int *,
+                       const double *,
+                       const double *,
+                       const int *,
+                       const double *,
+                       const int *,
+                       const double *,
+                       double *,
+                       const int *);
 
 namespace
 {
   using namespace slipstick;
+
+  // OpenBLAS takes a buffer at its first product of matrices and tries for ever where it gets none.
+  constexpr std::size_t least_free_space = 256u << 20; // bytes of address space: the buffer, and what stands around it
+
+  /// Where the address space is limited (ulimit -v): that the buffer is there before all else.
+  void check_address_space()
+  {
+    rlimit limit;
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+      return;
+    void *const space = mmap(nullptr, least_free_space, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (space == MAP_FAILED)
+      throw InputError("the address space is limited to " + std::to_string(limit.rlim_cur >> 20) +
+                         " MB a process, of which less than " + std::to_string(least_free_space >> 20) +
+                         " MB are left at the start",
+                       "raise or lift the limit: ulimit -v unlimited");
+    munmap(space, least_free_space);
+    constexpr int       n   = 64;
+    const double        one = 1;
+    std::vector<double> a(n * n, 1.), c(n * n, 0.);
+    dgemm_("N", "N", &n, &n, &n, &one, a.data(), &n, a.data(), &n, &one, c.data(), &n);
+  }
 
   int run_program(int argc, char **argv, const MPI_Comm comm)
   {
     const bool prints = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
     const auto report = [prints](const std::exception &error, const ExitStatus status) {
       if (prints)
-        std::cerr << "error: " << error.what() << std::endl;
+        std::cerr << "error: " << for_terminal(error.what()) << std::endl;
       return static_cast<int>(status);
     };
     // these errors come to all ranks alike, see base/collective.h
     try
       {
+        collectively(comm, check_address_space);
         const auto command_line = app::parse_command_line(argc, argv);
         if (command_line.message || command_line.list_parameters)
           {
@@ -29,6 +74,9 @@ namespace
               std::cout << *command_line.message << std::flush;
             else if (prints)
               scene::list_parameters(std::cout, *command_line.list_parameters);
+            if (prints && !std::cout.flush())
+              throw InputError("the text could not be written to standard output",
+                               "see where it leads to, and whether there is space");
             return static_cast<int>(ExitStatus::converged);
           }
         const auto scene = scene::read_scene(command_line.case_file, command_line.overrides);
@@ -36,6 +84,7 @@ namespace
                       command_line.quiet                           ? Verbosity::quiet
                        : command_line.verbose || command_line.check ? Verbosity::verbose
                                                                     : Verbosity::normal);
+        fem::check_size(scene, command_line.force, comm);
         if (command_line.check)
           {
             app::check_scene(scene, log, comm);
@@ -60,7 +109,8 @@ namespace
 
 int main(int argc, char **argv)
 {
-  tfeti::Process process(argc, argv);
+  std::signal(SIGXFSZ, SIG_IGN); // a limit on the size of files is reported as a full disk is
+  tfeti::Process process;
   try
     {
       return run_program(argc, argv, MPI_COMM_WORLD);
@@ -68,7 +118,7 @@ int main(int argc, char **argv)
   catch (const std::exception &error)
     {
       // perhaps on this rank alone: the others must not be left waiting
-      std::cerr << "internal error: " << error.what()
+      std::cerr << "internal error: " << for_terminal(error.what())
                 << "\n  remedy: this is a bug of slipstick, please report it with the .prm" << std::endl;
       MPI_Abort(MPI_COMM_WORLD, static_cast<int>(ExitStatus::internal_error));
     }

@@ -221,6 +221,15 @@ namespace slipstick::app
     return solution.status == qp::Status::converged && checks.worst().second <= check_limit(tolerance);
   }
 
+  namespace
+  {
+    /// Whether a tolerance can be set to it.
+    bool is_tolerance(const double value)
+    {
+      return value > 0 && value < 1;
+    }
+  } // namespace
+
   void print_failure(const Log                   &log,
                      const scene::Scene<2>       &scene,
                      const contact::DualSolution &solution,
@@ -271,17 +280,21 @@ namespace slipstick::app
                  solution.bound_change,
                  solution.friction_iterations) +
           largest +
-          format(
-            "; what was reached is written and is no solution\n"
-            "  remedy: split the load into more steps (Load steps/Factors), set Friction/Tolerance to %g or more, or raise "
-            "Friction/Max iterations; with a large friction coefficient there may be no or many solutions",
-            rounded_up(solution.bound_change)));
+          "; what was reached is written and is no solution\n"
+          "  remedy: split the load into more steps (Load steps/Factors), " +
+          (is_tolerance(rounded_up(solution.bound_change))
+             ? format("set Friction/Tolerance to %g or more, ", rounded_up(solution.bound_change))
+             : "") +
+          "or raise Friction/Max iterations; with a large friction coefficient there may be no or many solutions");
         return;
       }
     const bool        limit   = solution.status == qp::Status::iteration_limit;
     const double      reached = std::max(solution.projected_gradient, solution.equality);
     const std::string raise =
-      format("set Solver/Tolerance to %g or more, and look at the residuals in convergence.csv", rounded_up(reached));
+      is_tolerance(rounded_up(reached))
+        ? format("set Solver/Tolerance to %g or more, and look at the residuals in convergence.csv",
+                 rounded_up(reached))
+        : "look at the residuals in convergence.csv; loads and supports that hardly balance, and moduli or sizes far apart, do this";
     log.warning(
       format("not converged: the solver %s: %s is %.1e of |Pd|, asked for is %g",
              limit ? "reached its limit of iterations" : "came to a standstill",
@@ -292,6 +305,40 @@ namespace slipstick::app
       (!limit                        ? raise
        : solution.algorithm == "pcg" ? "raise Solver/PCG/Max iterations"
                                      : "raise Solver/SMALBE/Max outer iterations or Max inner iterations"));
+  }
+
+  namespace
+  {
+    std::string row(const std::string &what, const Resultant &sum)
+    {
+      return format("             %-30s %14.6g %14.6g %16.6g", what.c_str(), sum.force[0], sum.force[1], sum.moment);
+    }
+  } // namespace
+
+  void print_forces(const Log &log, const scene::Scene<2> &scene, const output::ResultSummary &results)
+  {
+    Resultant left;
+    log.line(format("forces       %-30s %14s %14s %16s", "on the bodies", "Fx [N]", "Fy [N]", "moment [N mm]"));
+    const auto count = [&left](const Resultant &sum) {
+      for (unsigned int d = 0; d < 2; ++d)
+        left.force[d] += sum.force[d];
+      left.moment += sum.moment;
+    };
+    for (const auto *list : {&results.forces.loads, &results.forces.supports, &results.forces.foundations})
+      for (const auto &one : *list)
+        {
+          log.line(row(one.kind + " " + one.name, one.sum));
+          count(one.sum);
+        }
+    for (unsigned int k = 0; k < results.contact.size(); ++k)
+      {
+        const auto &pair = scene.contacts[k];
+        log.line(row("contact " + pair.name + (pair.master ? " on " + scene.bodies[pair.slave.body].name : ""),
+                     results.contact[k].on_slave));
+        if (!pair.master)
+          count(results.contact[k].on_slave);
+      }
+    log.line(row("sum of all from outside", left));
   }
 
   void print_result(const Log &log, const output::Summary &summary, const std::string &pvd)
@@ -348,6 +395,7 @@ namespace slipstick::app
     step.max_displacement        = summary.results.max_displacement;
     step.strain_energy           = summary.results.strain_energy;
     step.contact                 = summary.results.contact;
+    step.forces                  = summary.results.forces;
     summary.steps                = so_far.steps;
     summary.steps.push_back(std::move(step));
 

@@ -1,16 +1,22 @@
 #include <slipstick/app/doubts.h>
+#include <slipstick/app/geometry_checks.h>
+#include <slipstick/app/held_nodes.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/app/step_solver.h>
+#include <slipstick/contact/resultants.h>
 #include <slipstick/fem/arc_length.h>
+#include <slipstick/fem/loads.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/fields.h>
+#include <slipstick/output/history.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <optional>
 #include <set>
 
 namespace slipstick::app
@@ -91,27 +97,47 @@ namespace slipstick::app
         output::Summary summary;
         for (unsigned int step = 0; step < scene.load_factors.size(); ++step)
           {
-            summary = load_step(step, summary);
+            summary        = load_step(step, summary);
+            finished_steps = summary;
             if (summary.status != output::RunStatus::converged)
               break;
           }
         clock.enter("output");
-        write_tables();
+        write_tables(summary);
         clock.leave();
         summary.time_s    = times(clock, solver.factorization_seconds());
         summary.memory_mb = memory(comm);
         summary.warnings  = warnings;
         output::write_summary(directory, summary);
+        log.line("");
+        print_forces(log, scene, summary.results);
         print_result(log, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
         return summary.status == output::RunStatus::converged ? ExitStatus::converged : ExitStatus::not_converged;
       }
 
+      /// After a step without equilibrium: what the steps before it left stays, marked.
+      void write_without_equilibrium()
+      {
+        if (!finished_steps)
+          {
+            directory.remove_results();
+            output::write_summary(directory, summary_without_equilibrium(scene, comm));
+            return;
+          }
+        write_tables(*finished_steps);
+        finished_steps->status    = output::RunStatus::no_equilibrium;
+        finished_steps->time_s    = times(clock, solver.factorization_seconds());
+        finished_steps->memory_mb = memory(comm);
+        finished_steps->warnings  = warnings;
+        output::write_summary(directory, *finished_steps);
+        log.line(format("finished load steps whose results are kept: %zu", contact_steps.size()));
+      }
+
     private:
       /// What is doubtful about the answer, once a kind and pair.
-      void warn(const std::vector<contact::ContactNode> &nodes, const std::vector<Eigen::VectorXd> &u)
+      void warn(const std::map<std::string, std::string> &texts)
       {
-        for (const auto &[about, text] :
-             doubts(scene, solver.mesh(), solver.spaces(), solver.dual(), solver.solution().free, nodes, u))
+        for (const auto &[about, text] : texts)
           if (warned_about.insert(about).second)
             {
               log.line("             warning: " + text);
@@ -134,11 +160,27 @@ namespace slipstick::app
         print_checks(log, contact.checks, tolerance);
         if (!passes(solution, contact.checks, tolerance))
           print_failure(log, scene, solution, contact.checks, tolerance);
-        warn(contact.nodes, u);
+        warn(doubts(scene, solver.mesh(), solver.spaces(), solver.dual(), solution.free, contact.nodes, u));
+        warn(doubts_of_held_nodes(scene, solver.held_contacts(), contact, comm));
+
+        if (!answer->recovery.unresisted.empty())
+          warn({{"unresisted",
+                 format("nothing resists %s, and no load acts along it: it is set to zero; add a support or a contact "
+                        "against this motion if it matters",
+                        tfeti::describe(tfeti::plainest(answer->recovery.unresisted), solver.dual().body_names())
+                          .c_str())}});
+        const auto geometry =
+          judge(scene, fem::penetrations(scene, solver.mesh(), solver.spaces(), u, t), contact.checks.max_displacement);
+        warn(geometry.warnings);
+        if (geometry.failure)
+          log.warning(*geometry.failure);
 
         clock.enter("output");
         auto summary =
           make_summary(scene, solver.mesh(), solver.spaces(), solver.dual(), solution, contact.checks, stress);
+        if (geometry.failure)
+          summary.status = output::RunStatus::not_converged;
+        summary.results.forces = forces(*answer, t);
         if (scene.output.vtu)
           {
             output::write_fields(directory, solver.mesh(), solver.spaces(), u, stress, step);
@@ -156,6 +198,43 @@ namespace slipstick::app
         return summary;
       }
 
+      /// Resultants of loads and supports; warns of loads whose formulas no mesh resolves.
+      output::ForceSummary forces(const StepSolver::Answer &answer, const double t)
+      {
+        output::ForceSummary sums;
+        const auto           loads = fem::load_resultants(scene, solver.mesh(), solver.spaces(), t);
+        unsigned int         next  = 0;
+        const auto           take  = [&](const auto &list, const std::string &kind) {
+          for (const auto &load : list)
+            {
+              const auto &sum = loads[next++];
+              sums.loads.push_back({load.name, kind, sum.sum});
+              if (sum.unresolved)
+                warn({{"load " + kind + load.name,
+                       format("%s %s: its formula changes faster than can be integrated at (%.6g, %.6g), so that its "
+                                         "resultant may be off; smooth the formula, or refine the mesh there",
+                              kind.c_str(),
+                              load.name.c_str(),
+                              (*sum.unresolved)[0],
+                              (*sum.unresolved)[1])}});
+            }
+        };
+        take(scene.tractions, "traction");
+        take(scene.body_forces, "body force");
+        take(scene.point_loads, "point load");
+        const unsigned int n_supports = scene.supports.size(), n_holders = n_supports + scene.foundations.size();
+        const auto         reactions = contact::reactions(solver.dual(),
+                                                  solver.held_contacts(),
+                                                  answer.contact->held_forces,
+                                                  answer.recovery.multipliers,
+                                                  n_holders);
+        for (unsigned int h = 0; h < n_supports; ++h)
+          sums.supports.push_back({scene.supports[h].name, "support", reactions[h]});
+        for (unsigned int h = n_supports; h < n_holders; ++h)
+          sums.foundations.push_back({scene.foundations[h - n_supports].name, "foundation", reactions[h]});
+        return sums;
+      }
+
       output::ContactNames contact_names() const
       {
         output::ContactNames names;
@@ -167,8 +246,9 @@ namespace slipstick::app
         return names;
       }
 
-      void write_tables() const
+      void write_tables(const output::Summary &summary) const
       {
+        output::write_history(directory, summary.steps);
         output::write_convergence(directory, solver.convergence());
         directory.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
         if (scene.has_contact())
@@ -184,6 +264,7 @@ namespace slipstick::app
       std::vector<output::ContactStep> contact_steps;
       std::vector<std::string>         warnings;
       std::set<std::string>            warned_about;
+      std::optional<output::Summary>   finished_steps; // of all load steps that have ended
     };
   } // namespace
 
@@ -201,9 +282,11 @@ namespace slipstick::app
                  const MPI_Comm           comm)
   {
     const output::OutputDirectory directory(output_directory, comm);
+    std::optional<Run>            steps;
     try
       {
-        return Run(scene, directory, log, comm).solve_and_write();
+        steps.emplace(scene, directory, log, comm);
+        return steps->solve_and_write();
       }
     catch (const InputError &) // some of it shows in meshes and formulas only
       {
@@ -212,8 +295,8 @@ namespace slipstick::app
       }
     catch (const NoEquilibrium &) // on all ranks alike
       {
-        directory.remove_results();
-        output::write_summary(directory, summary_without_equilibrium(scene, comm));
+        if (steps)
+          steps->write_without_equilibrium();
         throw;
       }
   }

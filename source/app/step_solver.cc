@@ -1,3 +1,4 @@
+#include <slipstick/app/held_nodes.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/step_solver.h>
 #include <slipstick/base/exceptions.h>
@@ -8,6 +9,7 @@
 #include <slipstick/fem/decomposition.h>
 #include <slipstick/fem/loads.h>
 #include <slipstick/fem/pair_checks.h>
+#include <slipstick/fem/shared_sides.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -118,6 +120,7 @@ namespace slipstick::app
       }
     fem::check_overlap(scene, *the_mesh, *the_spaces);
     fem::check_obstacle_pairs(scene, *the_mesh, *the_spaces);
+    fem::check_shared_sides(scene, *the_mesh, *the_spaces);
   }
 
   void StepSolver::build()
@@ -136,6 +139,7 @@ namespace slipstick::app
                           checked(solve_step(step, multiplications_before, false), scene.load_factors[step]));
     if (step + 1 < scene.load_factors.size())
       u = answer->recovery.u;
+    largest_displacement     = std::max(largest_displacement, answer->contact->checks.max_displacement);
     the_solution.multipliers = answer->recovery.multipliers;
     return answer;
   }
@@ -164,6 +168,8 @@ namespace slipstick::app
     auto matrices = fem::assemble(scene, *the_mesh, *the_spaces, t);
     auto rows     = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
     pruned        = std::move(rows.pruned);
+    held          = std::move(rows.held);
+    fem::refuse_held_penetration(scene, held, comm);
     print_constraints(log, rows.active);
 
     clock.enter("dual setup");
@@ -187,6 +193,8 @@ namespace slipstick::app
     if (is_same) // gaps that follow the load factor may prune other nodes
       {
         pruned = std::move(rows.pruned);
+        held   = std::move(rows.held);
+        fem::refuse_held_penetration(scene, held, comm);
         clock.enter("dual setup");
         the_dual->set_step(std::move(loads), std::move(rows.active.c));
       }
@@ -216,8 +224,10 @@ namespace slipstick::app
                                     u,
                                     law.depends_on_pressure() ? law.bounds(x) : from.slip_bound,
                                     from.free,
-                                    scene.bodies.size());
-    answer.stress            = fem::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), u, t);
+                                    scene.bodies.size(),
+                                    largest_displacement);
+    add_held_nodes(scene, *the_dual, held, x, u, *answer.contact);
+    answer.stress = fem::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), u, t);
   }
 
   bool StepSolver::is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t)

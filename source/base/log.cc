@@ -1,7 +1,6 @@
 #include <slipstick/base/log.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/utilities.h>
 
 #include <algorithm>
 #include <cstdarg>
@@ -11,6 +10,7 @@
 #include <iostream>
 #include <sstream>
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace slipstick
@@ -99,8 +99,14 @@ namespace slipstick
 
   double peak_memory_mb()
   {
-    dealii::Utilities::System::MemoryStats memory;
-    dealii::Utilities::System::get_memory_stats(memory);
-    return memory.VmHWM / 1024.; // VmHWM is in kB
+    // deal.II's reader of this file never ends where there is no /proc
+    std::ifstream status("/proc/self/status");
+    std::string   word;
+    double        kilobytes;
+    while (status >> word)
+      if (word == "VmHWM:" && status >> kilobytes)
+        return kilobytes / 1024;
+    rusage usage; // may count what stood in the process before the program
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? usage.ru_maxrss / 1024. : 0;
   }
 } // namespace slipstick

@@ -7,6 +7,8 @@ namespace slipstick
 {
   namespace
   {
+    constexpr std::size_t longest_name = 200; // characters: nobody misspells longer ones, and comparing takes their product
+
     std::string to_lower(std::string text)
     {
       for (char &c : text)
@@ -42,6 +44,8 @@ namespace slipstick
     unsigned int               least = 0;
     for (const std::string &candidate : candidates)
       {
+        if (name.size() > longest_name || candidate.size() > longest_name)
+          continue;
         const unsigned int distance = edit_distance(name, candidate);
         if (2 * distance <= std::max(name.size(), candidate.size()) && (!nearest || distance < least))
           {

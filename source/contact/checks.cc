@@ -18,6 +18,9 @@ namespace slipstick::contact
     constexpr double negligible_part = 1e-6;
     // Deformations below this part of these count as none: what rounding leaves shows in the stiffest of them.
     constexpr double negligible_deformation = 1e-5;
+    // Steps of a history are solved to a tolerance of its largest loads: below this part of its largest displacement what
+    // is left in a step counts as none.
+    constexpr double part_of_history = 1e-3;
     // A body on which less than this part of the largest forces on a body acts counts as one with this part.
     constexpr double negligible_load = 1e-3;
     // Slip bounds above this multiple of the largest contact force say no more than that nodes stick.
@@ -220,17 +223,6 @@ namespace slipstick::contact
       return (point.position[0] - point.master_position[0]) * fy - (point.position[1] - point.master_position[1]) * fx;
     }
 
-    ContactNode node_at(const tfeti::ContactPoint &point)
-    {
-      ContactNode node;
-      node.pair     = point.pair;
-      node.position = point.position;
-      node.normal   = point.normal;
-      node.area     = point.traction_area;
-      node.length   = point.length;
-      return node;
-    }
-
     /// What a row at a bound does that the law does not allow [mm]: penetration; slip that the friction drives.
     /// @param jump B u - c, @param x multiplier, @param bound of it, if tangential, @param noise forces that are rounding.
     double inadmissible_jump(const tfeti::RowKind kind,
@@ -308,6 +300,17 @@ namespace slipstick::contact
     }
   } // namespace
 
+  ContactNode node_at(const tfeti::ContactPoint &point)
+  {
+    ContactNode node;
+    node.pair     = point.pair;
+    node.position = point.position;
+    node.normal   = point.normal;
+    node.area     = point.traction_area;
+    node.length   = point.length;
+    return node;
+  }
+
   std::array<Checks::Entry, Checks::n_entries> Checks::entries() const
   {
     return {{{"interface jump", interface_jump, false, places[0]},
@@ -340,7 +343,8 @@ namespace slipstick::contact
                        const std::vector<Eigen::VectorXd> &u,
                        const std::vector<double>          &slip_bound,
                        const std::vector<bool>            &free,
-                       const unsigned int                  n_bodies)
+                       const unsigned int                  n_bodies,
+                       const double                        displacement_before)
   {
     const MPI_Comm comm        = dual.communicator();
     const auto    &constraints = dual.constraints();
@@ -441,8 +445,9 @@ namespace slipstick::contact
     for (double *sum : {&checks.complementarity, &all_bounds})
       *sum = dealii::Utilities::MPI::sum(*sum, comm);
     const double way       = std::max(largest_gap, checks.max_displacement);
-    const double no_length = negligible_part * way;
-    const double no_strain = negligible_deformation * way;
+    const double before    = part_of_history * displacement_before;
+    const double no_length = std::max(negligible_part * way, before);
+    const double no_strain = std::max(negligible_deformation * way, before);
     const double no_force  = no_strain / dual.norm();
     const double length    = std::max(checks.max_displacement, no_length);
     const double force     = std::max(largest_contact, no_force);
@@ -498,6 +503,10 @@ namespace slipstick::contact
         result.normal_force += node.pressure * node.area;
         result.tangential_force += node.tangential_traction * node.area;
         result.moment_mismatch += node.moment_mismatch;
+        const double N = node.pressure * node.area, T = node.tangential_traction * node.area;
+        result.on_slave.add(-N * node.normal[0] - T * node.normal[1],
+                            -N * node.normal[1] + T * node.normal[0],
+                            node.position);
         result.max_pressure = std::max(result.max_pressure, node.pressure);
         result.contact_length += node.is_closed ? node.length : 0.;
         result.contact_nodes += node.is_closed;

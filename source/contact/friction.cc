@@ -1,4 +1,5 @@
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/log.h>
 #include <slipstick/contact/friction.h>
 #include <slipstick/contact/linear.h>
 #include <slipstick/qp/feasible_point.h>
@@ -30,10 +31,8 @@ namespace slipstick::contact
     constexpr unsigned int cycling_window = 5;
     // ... down to this.
     constexpr double least_relaxation = 0.1;
-    // Semismooth Newton is started anew from SMALBE-M so often before SMALBE-M goes to the end ...
-    constexpr unsigned int max_restarts = 4;
-    // ... each time from a residual smaller by this factor.
-    constexpr double restart_accuracy = 0.1;
+    // Loads below this part of those of earlier steps are what rounding leaves of none.
+    constexpr double rounding_of_loads = 1e-12;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
 
@@ -66,33 +65,69 @@ namespace slipstick::contact
 
       DualSolution run(const DualSolution *start)
       {
-        const auto feasible = feasible_start();
+        const auto feasible = feasible_start(start);
         solution.algorithm  = options.algorithm == scene::Algorithm::semismooth_newton ? "semismooth newton" : "smalbe";
         set_bounds(law.bounds(feasible));
-        if (options.algorithm == scene::Algorithm::semismooth_newton && newton(feasible, start))
-          return finished();
-        const bool falls_back = options.algorithm == scene::Algorithm::semismooth_newton;
-        if (falls_back)
+        if (options.algorithm == scene::Algorithm::semismooth_newton)
           {
+            solution.directions = start && start->directions
+                                    ? start->directions
+                                    : std::make_shared<qp::DirectionStore<Vector>>(options.newton.n_directions);
+            const auto from     = newton_start(feasible, start);
+            if (solution.weighted_reference == 0) // neither load nor gap: the start is the solution
+              {
+                solution.multipliers = from;
+                return finished();
+              }
+            if (newton(from, true))
+              return finished();
+            refuse_overload();
             ++solution.fallbacks;
             set_bounds(law.bounds(feasible));
           }
         follow_bounds(feasible);
-        const bool follows =
-          law.depends_on_pressure() && solution.friction_iterations > 0; // not a limit of SMALBE alone
-        if (solution.status == qp::Status::stagnated || (solution.status == qp::Status::iteration_limit && follows))
+        if (solution.status != qp::Status::converged)
           finish_by_newton(feasible);
         return finished();
       }
 
     private:
       /// The admissible forces nearest to zero that balance the loads.
-      Vector feasible_start()
+      Vector feasible_start(const DualSolution *start)
       {
-        auto point = qp::feasible_point(dual, dual.particular(), law.admissible(dual));
+        const auto loads = dual.particular();
+        if (start && loads.l2_norm() <= rounding_of_loads * start->reference) // unloaded to zero
+          return dual.zero();
+        auto point = qp::feasible_point(dual, loads, law.admissible(dual));
         if (point.status == qp::Status::infeasible)
           no_equilibrium(dual, point.certificate);
         return std::move(point.x);
+      }
+
+      /// Where Newton's method found no solution: is friction, at the normal forces that it came to, too weak for the loads
+      /// along a motion that nothing else resists?
+      void refuse_overload() const
+      {
+        if (!law.depends_on_pressure())
+          return;
+        const Vector       &x     = solution.multipliers;
+        const double        noise = tfeti::force_rounding * x.linfty_norm();
+        std::vector<bool>   holds(x.locally_owned_size());
+        std::vector<double> capacity(holds.size(), -1.);
+        for (unsigned int r = 0; r < holds.size(); ++r)
+          {
+            const auto kind = dual.constraints().kind[r];
+            holds[r]        = is_equality(kind) || (kind == tfeti::RowKind::normal && x.local_element(r) > noise);
+            if (!holds[r])
+              capacity[r] = kind == tfeti::RowKind::normal ? qp::infinity : solution.slip_bound[r];
+          }
+        const auto overload = dual.overload(holds, capacity);
+        if (overload)
+          throw NoEquilibrium(
+            format("friction is too weak: at the normal forces found it bears %.3g of the load that moves %s",
+                   overload->held,
+                   tfeti::describe(overload->motion, dual.body_names()).c_str()),
+            "raise the friction coefficient or the normal force, support the body against this motion, or lower the load");
       }
 
       void set_bounds(std::vector<double> bounds)
@@ -153,53 +188,22 @@ namespace slipstick::contact
         return result;
       }
 
-      /// Semismooth Newton from a few steps of SMALBE (or the load step before). @return whether it converged.
-      bool newton(const Vector &feasible, const DualSolution *start)
+      /// A few steps of SMALBE-M, or the load step before, tell the first set.
+      Vector newton_start(const Vector &feasible, const DualSolution *start)
       {
-        Vector from;
         if (start)
           {
-            from                        = start->multipliers;
             const auto load             = homogenised_load(dual, feasible);
             solution.reference          = std::max(start->reference, load.l2_norm());
             solution.weighted_reference = std::max(start->weighted_reference, dual.residual_norm(load));
             ++solution.counts.hessian_multiplications;
-            set_bounds(law.bounds(from));
+            set_bounds(law.bounds(start->multipliers));
+            return start->multipliers;
           }
-        else
-          {
-            from = smalbe(feasible, options.newton.start_tolerance, {});
-            if (solution.weighted_reference == 0) // neither load nor gap: the start is the solution
-              {
-                solution.multipliers = from;
-                return solution.status == qp::Status::converged;
-              }
-            if (law.depends_on_pressure())
-              set_bounds(law.bounds(from));
-            solution.counts.outer_iterations = 0;
-          }
-        if (law.depends_on_pressure())
-          {
-            if (coupled_newton_from(from))
-              return true;
-            ++solution.fallbacks;
-            set_bounds(law.bounds(from));
-          }
-        for (unsigned int restart = 0;; ++restart)
-          {
-            if (newton_from(from))
-              return true;
-            if (restart == max_restarts)
-              return false;
-            // a better first set: SMALBE-M from the nearest point within bounds that admit one, to a smaller residual
-            ++solution.fallbacks;
-            const auto next = law.bounds(solution.multipliers);
-            Vector     near = feasible;
-            set_bounds(law.bounds(feasible));
-            move_bounds(next, 1., near);
-            from = smalbe(near, options.newton.start_tolerance * std::pow(restart_accuracy, restart + 1.), counted());
-            set_bounds(law.bounds(from));
-          }
+        Vector from                      = smalbe(feasible, options.newton.start_tolerance, {});
+        solution.counts.outer_iterations = 0;
+        set_bounds(law.bounds(from));
+        return from;
       }
 
       /// Asks whether x, moved to its bounds, is accurate enough. @p g: gradient F x - d + G'a (scaled).
@@ -229,78 +233,35 @@ namespace slipstick::contact
         return [this](const Vector &x, const Vector &g) { return accepts(x, g); };
       }
 
-      /// Bounds differentiated with the rest.
-      bool coupled_newton_from(const Vector &from)
+      /// Semismooth Newton, with bounds that follow the solution or (a Tresca problem) as they are. @return convergence.
+      bool newton(const Vector &from, const bool bounds_follow)
       {
         Vector d = dual.d();
         d /= dual.norm();
-        auto result = qp::semismooth_newton(dual,
-                                            1.,
-                                            d,
-                                            box,
-                                            qp::NewtonStart<Vector>{from, gradient},
-                                            qp::Goal(options.tolerance, solution.weighted_reference),
-                                            options.newton,
-                                            options.pcpg,
-                                            counted(),
-                                            {},
-                                            qp::CoupledBounds{law.pressure_bounds(), true},
-                                            acceptance());
-        solution.counts += result.counts;
-        solution.status              = result.status;
-        solution.projected_gradient  = result.projected_gradient;
-        solution.equality            = 0;
-        solution.friction_iterations = result.counts.outer_iterations;
-        solution.multipliers         = std::move(result.x);
-        const auto bounds            = law.bounds(solution.multipliers);
-        solution.bound_change        = change_of_bounds(bounds, solution.multipliers);
-        set_bounds(bounds);
-        return result.status == qp::Status::converged;
-      }
-
-      bool newton_from(const Vector &from)
-      {
-        Vector d = dual.d();
-        d /= dual.norm();
-        qp::BoundUpdate<Vector> bounds;
-        bounds.tolerance = friction.tolerance;
-        if (law.depends_on_pressure())
-          bounds.update = [this](const Vector &x) { return update_bounds(x); };
-        relaxation   = 1;
-        least_change = qp::infinity;
-        auto result  = qp::semismooth_newton(dual,
-                                            1.,
-                                            d,
-                                            box,
-                                            qp::NewtonStart<Vector>{from, gradient},
-                                            qp::Goal(options.tolerance, solution.weighted_reference),
-                                            options.newton,
-                                            options.pcpg,
-                                            counted(),
-                                            bounds,
-                                            {},
-                                            acceptance());
+        auto result = qp::semismooth_newton(
+          dual,
+          1.,
+          d,
+          qp::AdmissibleSet<Vector>{box, bounds_follow ? law.pressure_bounds() : std::vector<qp::PressureBound>()},
+          qp::NewtonStart<Vector>{from, gradient, solution.directions},
+          qp::Goal(options.tolerance, solution.weighted_reference),
+          options.newton,
+          counted(),
+          acceptance());
+        gradient.reset();
         solution.counts += result.counts;
         solution.status             = result.status;
         solution.projected_gradient = result.projected_gradient;
         solution.equality           = 0;
         solution.multipliers        = std::move(result.x);
+        if (bounds_follow && law.depends_on_pressure())
+          {
+            solution.friction_iterations = result.counts.outer_iterations;
+            const auto bounds            = law.bounds(solution.multipliers);
+            solution.bound_change        = change_of_bounds(bounds, solution.multipliers);
+            set_bounds(bounds);
+          }
         return result.status == qp::Status::converged;
-      }
-
-      /// For semismooth Newton: new bounds unless they hardly change; nothing after too many.
-      std::optional<double> update_bounds(const Vector &x)
-      {
-        const auto   next     = law.bounds(x);
-        const double change   = change_of_bounds(next, x);
-        solution.bound_change = change;
-        if (change <= friction.tolerance)
-          return change;
-        if (solution.friction_iterations >= friction.max_iterations)
-          return {};
-        ++solution.friction_iterations;
-        set_bounds(blend(next, damping(change)));
-        return change;
       }
 
       /// Where SMALBE-M ends without convergence its set may be near the right one, on which Newton's method solves.
@@ -313,7 +274,7 @@ namespace slipstick::contact
             ++solution.counts.hessian_multiplications;
           }
         const auto before = solution;
-        if (law.depends_on_pressure() ? coupled_newton_from(before.multipliers) : newton_from(before.multipliers))
+        if (newton(before.multipliers, true))
           return;
         const auto counts = solution.counts;
         solution          = before;
@@ -321,12 +282,22 @@ namespace slipstick::contact
         set_bounds(before.slip_bound);
       }
 
-      /// Fixed point of the bounds by SMALBE-M.
+      /// The problem with its present bounds, from a point that balances the loads within them: by SMALBE-M, or, where
+      /// that is not what was asked for, by Newton's method first.
+      void solve_within_bounds(const Vector &from, const double accuracy, const bool may_end_early)
+      {
+        if (options.algorithm == scene::Algorithm::semismooth_newton && law.depends_on_pressure() &&
+            newton(from, false))
+          return;
+        solution.multipliers = smalbe(from, accuracy, counted(), may_end_early);
+      }
+
+      /// Fixed point of the bounds.
       void follow_bounds(Vector from)
       {
         if (!law.depends_on_pressure())
           {
-            solution.multipliers = smalbe(from, options.tolerance, counted(), true);
+            solve_within_bounds(from, options.tolerance, true);
             return;
           }
         double accuracy              = std::max(options.tolerance, first_accuracy);
@@ -335,7 +306,7 @@ namespace slipstick::contact
         least_change                 = qp::infinity;
         for (;; ++solution.friction_iterations)
           {
-            solution.multipliers  = smalbe(from, accuracy, counted());
+            solve_within_bounds(from, accuracy, false);
             const auto next       = law.bounds(solution.multipliers);
             solution.bound_change = change_of_bounds(next, solution.multipliers);
             if (solution.status != qp::Status::converged ||

@@ -2,6 +2,7 @@
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/base/text.h>
 #include <slipstick/fem/body_mesh.h>
+#include <slipstick/fem/conformity.h>
 
 #include <cmath>
 #include <cstdio>
@@ -14,6 +15,14 @@ namespace slipstick::fem
     constexpr double       flat_tolerance = 1e-8; // of z, over the size of the body
     constexpr double       least_sine     = 1e-6; // of the angles of a cell
     constexpr unsigned int named_cells    = 3;    // in messages
+
+    const std::string remedy_of_overlap =
+      "remove what lies on top of each other (in Gmsh: Coherence; Coherence Mesh), or choose one Part";
+
+    std::array<unsigned int, 2> sorted(const unsigned int a, const unsigned int b)
+    {
+      return {{std::min(a, b), std::max(a, b)}};
+    }
 
     std::string at(const dealii::Point<3> &x)
     {
@@ -46,9 +55,10 @@ namespace slipstick::fem
         name_points();
         keep_middles();
         check_connected();
+        check_conformity();
         if (file.is_curved && mesh.middles.empty())
           mesh.remarks.push_back("body " + body.name + ": only the corners of the curved cells in " + file.file +
-                                 " are used (mid nodes are kept of cells of second order)");
+                                 " are used (mid nodes are kept of cells of second order in Gmsh and Abaqus files)");
         return std::move(mesh);
       }
 
@@ -66,16 +76,6 @@ namespace slipstick::fem
         return "cell " + std::to_string(cell.number) + " at " + at(center);
       }
 
-      bool in_part(const Element &cell) const
-      {
-        if (body.part.empty())
-          return true;
-        for (const int physical : file.groups[cell.group])
-          if (file.name_of(cell.dim, physical) == body.part || std::to_string(physical) == body.part)
-            return true;
-        return false;
-      }
-
       void choose_cells();
       void check_plane();
       void check_shapes();
@@ -85,6 +85,8 @@ namespace slipstick::fem
       void name_points();
       void keep_middles();
       void check_connected();
+      void check_conformity();
+      void note_left_out_lines(const std::map<Face, std::set<std::string>> &names);
 
       const scene::Body<dim>              &body;
       const MeshFile                      &file;
@@ -92,6 +94,7 @@ namespace slipstick::fem
       std::vector<Element>                 cells;
       std::map<unsigned int, unsigned int> vertex_of_node;
       std::map<Face, unsigned int>         n_cells_at; // by face
+      std::set<Face>                       named_faces;
     };
 
     template <int dim>
@@ -107,7 +110,7 @@ namespace slipstick::fem
             continue;
           for (const int physical : file.groups[element.group])
             parts.insert(file.name_of(2, physical));
-          if (!in_part(element))
+          if (!file.is_in(element, body.part))
             continue;
           auto key = element.corners;
           if (element.n == 3)
@@ -217,10 +220,24 @@ namespace slipstick::fem
     template <int dim>
     void Extraction<dim>::check_faces()
     {
-      for (const auto &[face, c] : faces_with_cells(mesh.piece))
+      const auto faces = faces_with_cells(mesh.piece);
+      for (const auto &[face, c] : faces)
         if (++n_cells_at[face] > 2)
-          fail("has an edge of three cells, one of them " + cell_text(cells[c]),
-               "remove what lies on top of each other (in Gmsh: Coherence; Coherence Mesh), or choose one Part");
+          fail("has an edge of three cells, one of them " + cell_text(cells[c]), remedy_of_overlap);
+      // neighbours run along their edge in opposite ways, unless one is folded onto the other
+      const auto runs_up = [this](const Face &face, const unsigned int c) {
+        const auto &cell = mesh.piece.cells[c];
+        for (unsigned int k = 0; k < n_corners<dim>(cell); ++k)
+          if (corner<dim>(cell, k) == face[0] && corner<dim>(cell, k + 1) == face[1])
+            return true;
+        return false;
+      };
+      for (std::size_t k = 1; k < faces.size(); ++k)
+        if (const auto &[face, c] = faces[k];
+            faces[k - 1].first == face && runs_up(face, c) == runs_up(face, faces[k - 1].second))
+          fail("has cells on top of each other: " + cell_text(cells[faces[k - 1].second]) + " and " +
+                 cell_text(cells[c]) + " lie on the same side of their edge",
+               remedy_of_overlap);
     }
 
     /// Lines of the file at the outline carry its names; what is left over is outline without a name.
@@ -240,6 +257,11 @@ namespace slipstick::fem
               for (const int physical : file.groups[line.group])
                 found->second.insert(file.name_of(1, physical));
           }
+
+      note_left_out_lines(names);
+      for (const auto &[face, of_face] : names)
+        if (!of_face.empty())
+          named_faces.insert(face);
 
       // 0 is the outline without a name; then the names; then the sets of several
       dealii::types::boundary_id next = 1;
@@ -264,17 +286,102 @@ namespace slipstick::fem
         }
     }
 
+    /// Boundaries with lines that are not on the outline would lose their share of a load.
+    template <int dim>
+    void Extraction<dim>::note_left_out_lines(const std::map<Face, std::set<std::string>> &names)
+    {
+      std::vector<Face> edges_of_cells; // of the whole file, by nodes; made when needed
+      const auto        is_edge_of_cell = [&](const Face &edge) {
+        if (edges_of_cells.empty())
+          {
+            for (const Element &cell : file.elements)
+              if (cell.dim == 2)
+                for (unsigned int k = 0; k < cell.n; ++k)
+                  edges_of_cells.push_back(sorted(cell.corners[k], cell.corners[(k + 1) % cell.n]));
+            std::sort(edges_of_cells.begin(), edges_of_cells.end());
+          }
+        return std::binary_search(edges_of_cells.begin(), edges_of_cells.end(), edge);
+      };
+      std::map<std::string, std::pair<unsigned int, std::string>> left_out; // how many, the first one
+      for (const Element &line : file.elements)
+        if (line.dim == 1 && !line.implied)
+          {
+            const auto a = vertex_of_node.find(line.corners[0]), b = vertex_of_node.find(line.corners[1]);
+            const bool is_ours = a != vertex_of_node.end() && b != vertex_of_node.end() &&
+                                 n_cells_at.count(sorted(a->second, b->second)) > 0;
+            std::string problem;
+            if (is_ours && names.count(sorted(a->second, b->second)) == 0)
+              problem = "lies inside of the body";
+            else if (!is_ours && !is_edge_of_cell(sorted(line.corners[0], line.corners[1])))
+              problem = "is no edge of a cell";
+            else
+              continue;
+            for (const int physical : file.groups[line.group])
+              if (auto &entry = left_out[file.name_of(1, physical)]; ++entry.first == 1)
+                entry.second = "line " + std::to_string(line.number) + " from " + at(file.nodes[line.corners[0]]) +
+                               " to " + at(file.nodes[line.corners[1]]) + " " + problem;
+          }
+      std::string all;
+      for (const auto &[name, entry] : left_out)
+        {
+          const std::string others = entry.first > 1 ? ", and " + std::to_string(entry.first - 1) + " more" : "";
+          mesh.incomplete_boundaries[name] = entry.second + others;
+          all += (all.empty() ? "" : "; ") + ("'" + name + "': " + entry.second) + others;
+        }
+      if (!all.empty())
+        mesh.remarks.push_back("body " + body.name + ": not on its outline and left out: " + all);
+      for (const auto &[name, nodes] : file.node_sets)
+        {
+          std::set<unsigned int> reached;
+          for (const auto &[face, of_face] : names)
+            if (of_face.count(name) > 0)
+              reached.insert(face.begin(), face.end());
+          for (const unsigned int node : nodes)
+            if (const auto v = vertex_of_node.find(node); v != vertex_of_node.end() && reached.count(v->second) == 0)
+              if (std::string &problem = mesh.incomplete_boundaries[name]; problem.empty())
+                problem = "its node at " + at(file.nodes[node]) +
+                          " is no end of an edge of the outline between two nodes "
+                          "of the set";
+        }
+    }
+
     template <int dim>
     void Extraction<dim>::name_points()
     {
+      std::map<std::string, std::set<unsigned int>> nodes;
       for (const Element &point : file.elements)
         if (point.dim == 0)
-          {
-            const auto found = vertex_of_node.find(point.corners[0]);
-            if (found != vertex_of_node.end())
-              for (const int physical : file.groups[point.group])
-                mesh.points.emplace(file.name_of(0, physical), found->second);
-          }
+          for (const int physical : file.groups[point.group])
+            nodes[file.name_of(0, physical)].insert(point.corners[0]);
+      for (const auto &[name, of_name] : nodes)
+        for (const unsigned int node : of_name)
+          if (const auto found = vertex_of_node.find(node); found != vertex_of_node.end())
+            if (!mesh.points.emplace(name, found->second).second)
+              mesh.ambiguous_points[name] = "there are several, one at " + at(file.nodes[node]);
+    }
+
+    template <int dim>
+    void Extraction<dim>::check_conformity()
+    {
+      const auto fault = find_fault(mesh.piece, named_faces);
+      if (!fault)
+        return;
+      const std::string place = at(dealii::Point<3>(fault->place[0] / body.scale, fault->place[1] / body.scale, 0));
+      const std::string of =
+        cell_text(cells[fault->first_cell]) +
+        (fault->first_cell == fault->second_cell ? "" : " and " + cell_text(cells[fault->second_cell]));
+      const std::string remedy =
+        "join the nodes (in Gmsh: Coherence before, Coherence Mesh after meshing); where a slit is meant, "
+        "give the lines on both its sides physical names";
+      switch (fault->kind)
+        {
+          case ConformityFault<dim>::Kind::overlap:
+            fail("has cells on top of each other at " + place + ": " + of, remedy_of_overlap);
+          case ConformityFault<dim>::Kind::hanging_node:
+            fail("has a node inside of an edge at " + place + ", which is not joined to it: " + of, remedy);
+          case ConformityFault<dim>::Kind::twin_nodes:
+            fail("has two nodes at " + place + " that are not joined: " + of, remedy);
+        }
     }
 
     template <int dim>

@@ -5,6 +5,7 @@
 #include <slipstick/fem/refinement.h>
 #include <slipstick/fem/smooth_outline.h>
 
+#include <algorithm>
 #include <numeric>
 
 namespace slipstick::fem
@@ -82,6 +83,21 @@ namespace slipstick::fem
         mesh.piece = refined_towards(mesh.piece, ids);
     }
 
+    /// Types of elements that contradict the plane state of the scene, which is the one that counts.
+    template <int dim>
+    void remark_on_plane_state(const scene::Scene<dim> &scene, MeshFile &file)
+    {
+      const bool  is_stress = scene.plane_state == scene::PlaneState::plane_stress;
+      const auto &other     = is_stress ? file.plane_strain_types : file.plane_stress_types;
+      std::string types;
+      for (const std::string &type : other)
+        types += (types.empty() ? "" : ", ") + type;
+      if (!types.empty())
+        file.remarks.push_back(
+          "warning: mesh file " + file.file + " has elements of plane " + (is_stress ? "strain (" : "stress (") +
+          types + "), and the scene is computed in plane " + (is_stress ? "stress" : "strain") + ": see Plane state");
+    }
+
     /// Every boundary and point of body @p b that the scene uses must be there.
     template <int dim>
     void check_names(const scene::Scene<dim> &scene, const unsigned int b, const BodyMesh<dim> &mesh)
@@ -94,6 +110,11 @@ namespace slipstick::fem
       for (const auto &entry : mesh.points)
         points.push_back(entry.first);
       const auto boundary = [&](const std::string &user, const scene::BoundaryName &where) {
+        if (const auto lost = mesh.incomplete_boundaries.find(where.boundary);
+            where.body == b && lost != mesh.incomplete_boundaries.end())
+          throw InputError(user + ": boundary '" + where.boundary + "' of body '" + body.name + "'" + from +
+                             " is not all on its outline: " + lost->second,
+                           "let the name stand for edges of the outline only, or write the mesh again");
         if (where.body == b && where.boundary != "*" && mesh.boundary_ids.count(where.boundary) == 0)
           throw InputError(user + ": body '" + body.name + "' has no boundary '" + where.boundary + "'" + from,
                            suggest_name(where.boundary, boundaries) +
@@ -104,6 +125,11 @@ namespace slipstick::fem
           throw InputError(user + ": body '" + body.name + "' has no point '" + where.point + "'" + from,
                            suggest_name(where.point, points) +
                              (points.empty() ? "; name one in the mesh (Physical Point), or give coordinates" : ""));
+        if (const auto several = mesh.ambiguous_points.find(where.point);
+            where.body == b && several != mesh.ambiguous_points.end())
+          throw InputError(user + ": point '" + where.point + "' of body '" + body.name + "'" + from +
+                             " is not one node: " + several->second,
+                           "give each its own name in the mesh, or give coordinates");
       };
       for (const std::string &name : body.refined_boundaries)
         boundary("Body " + body.name + "/Refine towards", {b, name});
@@ -128,6 +154,32 @@ namespace slipstick::fem
   } // namespace
 
   template <int dim>
+  std::vector<std::string> unused_parts(const scene::Scene<dim> &scene, const std::map<std::string, MeshFile> &files)
+  {
+    std::vector<std::string> remarks;
+    for (const auto &[path, file] : files)
+      {
+        std::map<std::string, unsigned int> cells; // by names
+        for (const auto &element : file.elements)
+          if (element.dim == 2 && std::none_of(scene.bodies.begin(), scene.bodies.end(), [&](const auto &body) {
+                return body.file == path && file.is_in(element, body.part);
+              }))
+            {
+              std::string names;
+              for (const int physical : file.groups[element.group])
+                names += (names.empty() ? "'" : ", '") + file.name_of(2, physical) + "'";
+              ++cells[names.empty() ? "no name" : names];
+            }
+        std::string all;
+        for (const auto &[names, n] : cells)
+          all += (all.empty() ? "" : "; ") + names + " (" + std::to_string(n) + ")";
+        if (!all.empty())
+          remarks.push_back("mesh file " + path + ": cells that belong to no body: " + all);
+      }
+    return remarks;
+  }
+
+  template <int dim>
   BodyMesh<dim> make_body(const scene::Scene<dim> &scene, const unsigned int b, std::map<std::string, MeshFile> &files)
   {
     const scene::Body<dim> &body = scene.bodies[b];
@@ -135,8 +187,14 @@ namespace slipstick::fem
     if (body.shape == scene::Shape::mesh)
       {
         if (files.count(body.file) == 0)
-          files[body.file] = read_mesh_file(body.file);
-        mesh = body_from_file(body, files[body.file]);
+          {
+            files[body.file] = read_mesh_file(body.file);
+            remark_on_plane_state(scene, files[body.file]);
+          }
+        mesh          = body_from_file(body, files[body.file]);
+        auto &of_file = files[body.file].remarks; // once
+        mesh.remarks.insert(mesh.remarks.begin(), of_file.begin(), of_file.end());
+        of_file.clear();
         check_names(scene, b, mesh);
         smooth_outline(body, mesh);
         refine_uniformly(body, body.refinements + scene.discretization.refinements, mesh);
@@ -152,5 +210,6 @@ namespace slipstick::fem
     return mesh;
   }
 
+  template std::vector<std::string> unused_parts(const scene::Scene<2> &, const std::map<std::string, MeshFile> &);
   template BodyMesh<2> make_body(const scene::Scene<2> &, const unsigned int, std::map<std::string, MeshFile> &);
 } // namespace slipstick::fem

@@ -112,6 +112,8 @@ namespace slipstick::fem
     rows.active.counts = sum(rows.active.counts, mesh.comm);
     rows.pruned        = std::move(builder.pruned);
     distribute(mesh, builder.pruned_entries, 0, rows.pruned);
+    rows.held = std::move(builder.held);
+    distribute(mesh, builder.held_entries, 0, rows.held.gaps);
     return rows;
   }
 

@@ -4,6 +4,7 @@
 #include <slipstick/fem/body_mesh.h>
 #include <slipstick/fem/decomposition.h>
 #include <slipstick/fem/shapes.h>
+#include <slipstick/fem/size_check.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -162,6 +163,8 @@ namespace slipstick::fem
             v += first;
           first += bodies.back().piece.vertices.size();
         }
+      for (auto &remark : unused_parts(scene, files))
+        bodies.back().remarks.push_back(std::move(remark));
       return bodies;
     }
 
@@ -337,6 +340,7 @@ namespace slipstick::fem
       make_blocks(scene, mesh);
     else
       make_on_one_rank(scene, mesh);
+    check_positions(scene, mesh);
     return mesh;
   }
 

@@ -154,6 +154,7 @@ namespace slipstick::fem
         if (at == std::string::npos)
           return "";
         section = line().substr(1);
+        section = section.substr(0, section.find('\0')); // which would cut messages
         return section;
       }
 
@@ -173,6 +174,8 @@ namespace slipstick::fem
         if (start == std::string::npos || end == std::string::npos)
           fail_broken();
         at = end + 1;
+        if (text.find('\0', start) < end) // would cut messages
+          fail_broken();
         return text.substr(start + 1, end - start - 1);
       }
 
@@ -491,12 +494,6 @@ namespace slipstick::fem
       return std::move(mesh);
     }
   } // namespace
-
-  std::string MeshFile::name_of(const unsigned int dim, const int physical) const
-  {
-    const auto found = names.find({dim, physical});
-    return found == names.end() ? std::to_string(physical) : found->second;
-  }
 
   MeshFile parse_gmsh(const std::string &file, const std::string &text)
   {

@@ -98,7 +98,7 @@ namespace slipstick::fem
             for (auto *node : on_face)
               for (unsigned int c = 0; c < dim; ++c)
                 if (support.components[c])
-                  hold(*node, axis<dim>(c), support.components[c]->value(node->point(), t), c);
+                  hold(*node, axis<dim>(c), support.components[c]->value(node->point(), t), c, {s});
             if (support.normal)
               add_sides(s);
           }
@@ -159,7 +159,7 @@ namespace slipstick::fem
               }
             for (unsigned int c = 0; c < dim; ++c)
               if (support.components[c])
-                hold(node, axis<dim>(c), support.components[c]->value(node.point(), t), c);
+                hold(node, axis<dim>(c), support.components[c]->value(node.point(), t), c, {s});
           }
     }
 
@@ -189,7 +189,7 @@ namespace slipstick::fem
           dealii::Tensor<1, dim> direction;
           for (unsigned int d = 0; d < dim; ++d)
             direction[d] = held.direction[d];
-          hold(node, direction, held.value, held.which);
+          hold(node, direction, held.value, held.which, held.by);
         }
       node.sides.insert(node.sides.end(), other.sides.begin(), other.sides.end());
       for (const auto &[pair, area] : other.areas)
@@ -206,7 +206,11 @@ namespace slipstick::fem
             pair.law == scene::ContactLaw::bonded &&
             !(pair.reach && contact_with(scene.obstacles[pair.obstacle], node.point(), t).gap > *pair.reach))
           for (unsigned int c = 0; c < dim; ++c)
-            hold(node, axis<dim>(c), 0., c);
+            hold(node,
+                 axis<dim>(c),
+                 0.,
+                 c,
+                 {static_cast<unsigned int>(scene.supports.size() + scene.foundations.size() + k)});
     }
 
     template <int dim>

@@ -1,9 +1,14 @@
 #include <slipstick/base/collective.h>
+#include <slipstick/fem/adaptive_quadrature.h>
 #include <slipstick/fem/cell_values.h>
 #include <slipstick/fem/dilatation.h>
 #include <slipstick/fem/elasticity.h>
 #include <slipstick/fem/loads.h>
 #include <slipstick/fem/points.h>
+#include <slipstick/fem/surface.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 
 #include <algorithm>
 
@@ -11,6 +16,11 @@ namespace slipstick::fem
 {
   namespace
   {
+    // Points a direction of the quadrature that body forces are compared with ...
+    constexpr unsigned int finer_order = 6;
+    // ... and by how much the sum over the cells may differ, part of the force.
+    constexpr double allowed_misfit = 0.01;
+
     /// One subdomain and its load at load factor t.
     template <int dim>
     class SubdomainLoad
@@ -18,12 +28,15 @@ namespace slipstick::fem
     public:
       SubdomainLoad(const scene::Scene<dim> &scene_,
                     const Mesh<dim>         &mesh_,
-                    const Spaces<dim>       &spaces,
+                    const Spaces<dim>       &spaces_,
                     const unsigned int       p,
                     const double             t_)
         : scene(scene_)
         , mesh(mesh_)
+        , subdomain(*mesh.subdomains[p])
+        , spaces(spaces_)
         , element(spaces.of(p))
+        , sums(scene.tractions.size() + scene.body_forces.size())
         , dof_handler(*spaces.dof_handlers[p])
         , number(mesh.subdomains[p]->body)
         , body(scene.bodies[number])
@@ -38,6 +51,60 @@ namespace slipstick::fem
       Eigen::VectorXd take()
       {
         return std::move(load);
+      }
+
+      /// How far a finer quadrature of the body forces that are formulas is off, by body force.
+      struct Misfit
+      {
+        double                size = 0, difference = 0; // sums of magnitudes over the cells [N]
+        double                largest = -1;             // difference in a cell
+        std::array<double, 2> at{{0, 0}};               // that cell
+      };
+
+      std::vector<Misfit> misfits_of_body_forces()
+      {
+        std::vector<Misfit> result(scene.body_forces.size());
+        const bool          any = std::any_of(body_forces.begin(), body_forces.end(), [this](const unsigned int k) {
+          return !is_constant(scene.body_forces[k]);
+        });
+        if (!any)
+          return result;
+        const auto      finer = element.cell.is_simplex()
+                                  ? dealii::Quadrature<dim>(dealii::QWitherdenVincentSimplex<dim>(finer_order))
+                                  : dealii::Quadrature<dim>(dealii::QGauss<dim>(finer_order));
+        CellValues<dim> coarse(*element.mapping, *element.scalar, element.loads, dealii::update_quadrature_points),
+          fine(*element.mapping, *element.scalar, finer, dealii::update_quadrature_points);
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          {
+            coarse.reinit(cell);
+            fine.reinit(cell);
+            for (const unsigned int k : body_forces)
+              if (!is_constant(scene.body_forces[k]))
+                {
+                  const auto integral = [&](const CellValues<dim> &values, const unsigned int n) {
+                    Vector sum;
+                    for (unsigned int q = 0; q < n; ++q)
+                      sum += body_force(scene.body_forces[k], values.point(q)) * (*values).JxW(q) * body.thickness;
+                    return sum;
+                  };
+                  const Vector a = integral(coarse, element.loads.size()), b = integral(fine, finer.size());
+                  Misfit      &misfit = result[k];
+                  misfit.size += b.norm();
+                  misfit.difference += (a - b).norm();
+                  if ((a - b).norm() > misfit.largest)
+                    {
+                      misfit.largest = (a - b).norm();
+                      misfit.at      = {{cell->center()[0], cell->center()[1]}};
+                    }
+                }
+          }
+        return result;
+      }
+
+      /// Of tractions and body forces on this subdomain.
+      const std::vector<LoadResultant> &resultants() const
+      {
+        return sums;
       }
 
     private:
@@ -72,16 +139,78 @@ namespace slipstick::fem
         for (const auto &cell : dof_handler.active_cell_iterators())
           for (const unsigned int f : cell->face_indices())
             if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != cut_id)
-              for (const auto &traction : scene.tractions)
-                if (traction.where.body == number && mesh.on_boundary(traction.where, cell->face(f)->boundary_id()))
+              for (unsigned int k = 0; k < scene.tractions.size(); ++k)
+                if (const auto &traction = scene.tractions[k];
+                    traction.where.body == number && mesh.on_boundary(traction.where, cell->face(f)->boundary_id()))
                   {
+                    if (!is_constant(traction))
+                      {
+                        add_formula(traction, cell, f, sums[k]);
+                        continue;
+                      }
                     values.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell), f);
                     element.nodes_of(cell, dofs, nodes);
-                    add_traction(traction, values);
+                    add_traction(traction, values, sums[k]);
                   }
       }
 
-      void add_traction(const scene::Traction<dim> &traction, const dealii::FEFaceValues<dim> &values)
+      static bool is_constant(const scene::Traction<dim> &traction)
+      {
+        return traction.pressure.is_constant() &&
+               std::all_of(traction.components.begin(), traction.components.end(), [](const auto &component) {
+                 return component.is_constant();
+               });
+      }
+
+      static bool is_constant(const scene::BodyForce<dim> &load)
+      {
+        const auto all_constant = [](const auto &fields) {
+          return std::all_of(fields.begin(), fields.end(), [](const auto &field) { return field.is_constant(); });
+        };
+        return all_constant(load.force) && all_constant(load.acceleration) && load.angular_velocity.is_constant();
+      }
+
+      void add_formula(const scene::Traction<dim>                                   &traction,
+                       const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+                       const unsigned int                                            f,
+                       LoadResultant                                                &sum)
+      {
+        static_assert(dim == 2, "the edge of a plane body");
+        const auto edge     = surface_edge(subdomain, spaces, cell, f);
+        const auto force_at = [&](const double s) {
+          const auto         N = edge.shape(s), dN = edge.shape_derivative(s);
+          dealii::Point<dim> x;
+          Vector             along;
+          for (unsigned int i = 0; i < edge.n_nodes; ++i)
+            {
+              x += N[i] * Vector(edge.node(i));
+              along += dN[i] * Vector(edge.node(i));
+            }
+          const double p     = traction.pressure.value(x, t); // against the normal (along_y, -along_x)
+          const Vector force = body.thickness * (along.norm() * vector(traction.components, x));
+          const double fx = force[0] - body.thickness * p * along[1], fy = force[1] + body.thickness * p * along[0];
+          return std::array<double, 6>{{N[0] * fx, N[0] * fy, N[1] * fx, N[1] * fy, N[2] * fx, N[2] * fy}};
+        };
+        const AdaptiveQuadrature<6> forces(force_at);
+        spaces.for_each_face_node(subdomain,
+                                  cell->face(f),
+                                  [&](const unsigned int node, const NodeKey &key, const dealii::Point<dim> &x) {
+                                    unsigned int i = 0;
+                                    while (edge.keys[i] != key)
+                                      ++i;
+                                    Vector force;
+                                    for (unsigned int c = 0; c < dim; ++c)
+                                      force[c] = forces.integral[2 * i + c];
+                                    add(node, force);
+                                    sum.sum.add(force[0], force[1], x);
+                                  });
+        if (!forces.is_resolved && !sum.unresolved)
+          sum.unresolved = std::array<double, 2>{{edge.point(0.5)[0], edge.point(0.5)[1]}};
+      }
+
+      void add_traction(const scene::Traction<dim>      &traction,
+                        const dealii::FEFaceValues<dim> &values,
+                        LoadResultant                   &sum)
       {
         for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
           {
@@ -89,30 +218,26 @@ namespace slipstick::fem
             const Vector force =
               (vector(traction.components, x) - traction.pressure.value(x, t) * values.normal_vector(q)) *
               values.JxW(q) * body.thickness;
+            sum.sum.add(force[0], force[1], x);
             for (unsigned int i = 0; i < nodes.size(); ++i)
               add(nodes[i], force * values.shape_value(i, q));
           }
       }
 
-      /// All forces per volume [N/mm^3].
-      Vector body_force(const dealii::Point<dim> &x) const
+      /// Force per volume [N/mm^3].
+      Vector body_force(const scene::BodyForce<dim> &load, const dealii::Point<dim> &x) const
       {
-        Vector       sum;
         const double density = scene.materials[body.material].density;
-        for (const auto *load : body_forces)
-          {
-            const double omega = load->angular_velocity.value(x, t);
-            sum +=
-              vector(load->force, x) + density * (vector(load->acceleration, x) + omega * omega * (x - load->axis));
-          }
-        return sum;
+        const double omega   = load.angular_velocity.value(x, t);
+        return vector(load.force, x) + density * (vector(load.acceleration, x) + omega * omega * (x - load.axis));
       }
 
       void add_body_forces()
       {
-        for (const auto &force : scene.body_forces)
-          if (std::find(force.bodies.begin(), force.bodies.end(), number) != force.bodies.end())
-            body_forces.push_back(&force);
+        for (unsigned int k = 0; k < scene.body_forces.size(); ++k)
+          if (const auto &bodies = scene.body_forces[k].bodies;
+              std::find(bodies.begin(), bodies.end(), number) != bodies.end())
+            body_forces.push_back(k);
         if (body_forces.empty())
           return;
         CellValues<dim> values(*element.mapping,
@@ -125,7 +250,14 @@ namespace slipstick::fem
             element.nodes_of(cell, dofs, nodes);
             for (unsigned int q = 0; q < element.loads.size(); ++q)
               {
-                const Vector force = body_force(values.point(q)) * (*values).JxW(q) * body.thickness;
+                const auto x = values.point(q);
+                Vector     force;
+                for (const unsigned int k : body_forces)
+                  {
+                    const Vector one = body_force(scene.body_forces[k], x) * (*values).JxW(q) * body.thickness;
+                    sums[scene.tractions.size() + k].sum.add(one[0], one[1], x);
+                    force += one;
+                  }
                 for (unsigned int i = 0; i < nodes.size(); ++i)
                   add(nodes[i], force * (*values).shape_value(i, q));
               }
@@ -166,24 +298,29 @@ namespace slipstick::fem
 
       const scene::Scene<dim>                     &scene;
       const Mesh<dim>                             &mesh;
+      const SubdomainMesh<dim>                    &subdomain;
+      const Spaces<dim>                           &spaces;
       const Element<dim>                          &element;
+      std::vector<LoadResultant>                   sums;
       const dealii::DoFHandler<dim>               &dof_handler;
       unsigned int                                 number;
       const scene::Body<dim>                      &body;
       double                                       t;
       Eigen::VectorXd                              load;
-      std::vector<const scene::BodyForce<dim> *>   body_forces; // on this body
+      std::vector<unsigned int>                    body_forces; // on this body
       std::vector<dealii::types::global_dof_index> dofs;        // of the present cell
       std::vector<unsigned int>                    nodes;
     };
 
-    template <int dim>
-    void add_point_loads(const scene::Scene<dim>      &scene,
-                         const Mesh<dim>              &mesh,
-                         const Spaces<dim>            &spaces,
-                         const double                  t,
-                         std::vector<Eigen::VectorXd> &loads)
+    /// Calls f(number of the load, its node).
+    template <int dim, class F>
+    void for_each_point_load(const scene::Scene<dim> &scene,
+                             const Mesh<dim>         &mesh,
+                             const Spaces<dim>       &spaces,
+                             const F                 &f)
     {
+      if (scene.point_loads.empty())
+        return;
       std::vector<scene::PointName<dim>> points;
       std::vector<std::string>           owners;
       for (const auto &load : scene.point_loads)
@@ -194,11 +331,34 @@ namespace slipstick::fem
       const auto found = nodes_at(scene, mesh, spaces, points, owners);
       collectively(mesh.comm, [&] {
         for (unsigned int k = 0; k < found.size(); ++k)
-          for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
-            if (mesh.subdomains[p]->subdomain == found[k].subdomain)
-              for (unsigned int c = 0; c < dim; ++c)
-                loads[p][dim * found[k].node + c] += scene.point_loads[k].force[c].value(found[k].position, t);
+          f(k, found[k]);
       });
+    }
+
+    /// Sums over the ranks; of the places where a formula is not resolved that of the first rank.
+    std::vector<LoadResultant> over_all_ranks(const std::vector<LoadResultant> &own, const MPI_Comm comm)
+    {
+      std::vector<double> numbers;
+      for (const auto &load : own)
+        numbers.insert(numbers.end(),
+                       {load.sum.force[0],
+                        load.sum.force[1],
+                        load.sum.moment,
+                        load.unresolved ? 1. : 0.,
+                        load.unresolved ? (*load.unresolved)[0] : 0.,
+                        load.unresolved ? (*load.unresolved)[1] : 0.});
+      std::vector<LoadResultant> all(own.size());
+      for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
+        for (unsigned int k = 0; k < all.size(); ++k)
+          {
+            const double *n = of_rank.data() + 6 * k;
+            for (unsigned int d = 0; d < 2; ++d)
+              all[k].sum.force[d] += n[d];
+            all[k].sum.moment += n[2];
+            if (n[3] > 0 && !all[k].unresolved)
+              all[k].unresolved = std::array<double, 2>{{n[4], n[5]}};
+          }
+      return all;
     }
   } // namespace
 
@@ -213,10 +373,71 @@ namespace slipstick::fem
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
         loads.push_back(SubdomainLoad<dim>(scene, mesh, spaces, p, t).take());
     });
-    if (!scene.point_loads.empty())
-      add_point_loads(scene, mesh, spaces, t, loads);
+    for_each_point_load(scene, mesh, spaces, [&](const unsigned int k, const PointNode<dim> &at) {
+      for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+        if (mesh.subdomains[p]->subdomain == at.subdomain)
+          for (unsigned int c = 0; c < dim; ++c)
+            loads[p][dim * at.node + c] += scene.point_loads[k].force[c].value(at.position, t);
+    });
     return loads;
   }
+
+  template <int dim>
+  std::vector<LoadResultant> load_resultants(const scene::Scene<dim> &scene,
+                                             const Mesh<dim>         &mesh,
+                                             const Spaces<dim>       &spaces,
+                                             const double             t)
+  {
+    const unsigned int                               n_spread = scene.tractions.size() + scene.body_forces.size();
+    std::vector<LoadResultant>                       sums(n_spread);
+    std::vector<typename SubdomainLoad<dim>::Misfit> misfits(scene.body_forces.size());
+    collectively(mesh.comm, [&] {
+      for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+        {
+          SubdomainLoad<dim> load(scene, mesh, spaces, p, t);
+          const auto         own_misfits = load.misfits_of_body_forces();
+          for (unsigned int k = 0; k < misfits.size(); ++k)
+            {
+              misfits[k].size += own_misfits[k].size;
+              misfits[k].difference += own_misfits[k].difference;
+              if (own_misfits[k].largest > misfits[k].largest)
+                {
+                  misfits[k].largest = own_misfits[k].largest;
+                  misfits[k].at      = own_misfits[k].at;
+                }
+            }
+          for (unsigned int k = 0; k < n_spread; ++k)
+            {
+              const auto &own = load.resultants()[k];
+              for (unsigned int d = 0; d < 2; ++d)
+                sums[k].sum.force[d] += own.sum.force[d];
+              sums[k].sum.moment += own.sum.moment;
+              if (!sums[k].unresolved)
+                sums[k].unresolved = own.unresolved;
+            }
+        }
+    });
+    for (unsigned int k = 0; k < misfits.size(); ++k)
+      {
+        const double size       = dealii::Utilities::MPI::sum(misfits[k].size, mesh.comm);
+        const double difference = dealii::Utilities::MPI::sum(misfits[k].difference, mesh.comm);
+        const double largest    = dealii::Utilities::MPI::max(misfits[k].largest, mesh.comm);
+        if (difference > allowed_misfit * size && misfits[k].largest == largest)
+          sums[scene.tractions.size() + k].unresolved = misfits[k].at;
+      }
+    sums = over_all_ranks(sums, mesh.comm);
+    for_each_point_load(scene, mesh, spaces, [&](const unsigned int k, const PointNode<dim> &at) {
+      const auto &force = scene.point_loads[k].force;
+      sums.emplace_back();
+      sums.back().sum.add(force[0].value(at.position, t), force[1].value(at.position, t), at.position);
+    });
+    return sums;
+  }
+
+  template std::vector<LoadResultant> load_resultants(const scene::Scene<2> &,
+                                                      const Mesh<2> &,
+                                                      const Spaces<2> &,
+                                                      const double);
 
   template std::vector<Eigen::VectorXd> assemble_loads(const scene::Scene<2> &,
                                                        const Mesh<2> &,

@@ -34,21 +34,44 @@ namespace slipstick::fem
       return format("displacement along (%.3g, %.3g)", direction[0], direction[1]);
     }
 
+    /// Adds those who are not there yet.
+    void share(std::vector<unsigned int> &all, const std::vector<unsigned int> &more)
+    {
+      for (const unsigned int one : more)
+        if (std::find(all.begin(), all.end(), one) == all.end())
+          all.push_back(one);
+    }
+
     /// Supports along normals: what edges agree in value is averaged where there is no corner.
     template <int dim>
     void hold_along_normals(InterfaceNode<dim> &node, const scene::Scene<dim> &scene, const double t)
     {
-      std::map<double, std::vector<dealii::Tensor<1, dim>>> normals; // by value
+      struct Normals
+      {
+        std::vector<dealii::Tensor<1, dim>> all;
+        std::vector<unsigned int>           by;
+      };
+      std::map<double, Normals> normals; // by value
       for (const auto &side : node.sides)
         if (side.condition < scene.supports.size())
-          normals[scene.supports[side.condition].normal->value(node.point(), t)].push_back(tensor<dim>(side.normal));
+          {
+            auto &list = normals[scene.supports[side.condition].normal->value(node.point(), t)];
+            list.all.push_back(tensor<dim>(side.normal));
+            list.by.push_back(side.condition);
+          }
       unsigned int which = dim;
       for (const auto &[value, list] : normals)
         {
           std::vector<dealii::Tensor<1, dim>> means;
-          smooth_normals(list, means);
-          for (const auto &mean : means)
-            hold(node, mean, value, which++);
+          const auto                          group = smooth_normals(list.all, means);
+          for (unsigned int g = 0; g < means.size(); ++g)
+            {
+              std::vector<unsigned int> by;
+              for (unsigned int i = 0; i < group.size(); ++i)
+                if (group[i] == g)
+                  share(by, {list.by[i]});
+              hold(node, means[g], value, which++, by);
+            }
         }
     }
 
@@ -103,10 +126,28 @@ namespace slipstick::fem
   }
 
   template <int dim>
-  void hold(InterfaceNode<dim>           &node,
-            const dealii::Tensor<1, dim> &direction,
-            const double                  value,
-            const unsigned int            which)
+  dealii::Tensor<1, dim> InterfaceNode<dim>::held_displacement() const
+  {
+    static_assert(dim == 2, "one held direction or all");
+    dealii::Tensor<1, dim> u;
+    if (held.empty())
+      return u;
+    const auto a = tensor<dim>(held[0].direction);
+    if (held.size() == 1)
+      return held[0].value * a;
+    const auto   b    = tensor<dim>(held[1].direction);
+    const double area = cross(a, b);
+    u[0]              = (held[0].value * b[1] - held[1].value * a[1]) / area;
+    u[1]              = (held[1].value * a[0] - held[0].value * b[0]) / area;
+    return u;
+  }
+
+  template <int dim>
+  void hold(InterfaceNode<dim>              &node,
+            const dealii::Tensor<1, dim>    &direction,
+            const double                     value,
+            const unsigned int               which,
+            const std::vector<unsigned int> &by)
   {
     if (node.free_part(direction).norm() > held_direction_tolerance)
       {
@@ -115,9 +156,14 @@ namespace slipstick::fem
           held.direction[d] = direction[d];
         held.value = value;
         held.which = which;
+        held.by    = by;
         node.held.push_back(held);
         return;
       }
+    const auto nearest = std::max_element(node.held.begin(), node.held.end(), [&](const auto &a, const auto &b) {
+      return std::abs(tensor<dim>(a.direction) * direction) < std::abs(tensor<dim>(b.direction) * direction);
+    });
+    share(nearest->by, by);
     // the value that is implied: sum of w_k value_k with direction = sum of w_k direction_k
     double there = 0, size = std::abs(value);
     if (node.held.size() == 1)
@@ -151,6 +197,10 @@ namespace slipstick::fem
   }
 
   template struct InterfaceNode<2>;
-  template void hold(InterfaceNode<2> &, const dealii::Tensor<1, 2> &, const double, const unsigned int);
+  template void hold(InterfaceNode<2> &,
+                     const dealii::Tensor<1, 2> &,
+                     const double,
+                     const unsigned int,
+                     const std::vector<unsigned int> &);
   template void resolve_sides(InterfaceNode<2> &, const scene::Scene<2> &, const double);
 } // namespace slipstick::fem

@@ -1,9 +1,11 @@
+#include <slipstick/fem/held_contact.h>
 #include <slipstick/fem/obstacle.h>
 #include <slipstick/fem/row_builder.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace slipstick::fem
 {
@@ -45,6 +47,8 @@ namespace slipstick::fem
       return tangent;
     }
 
+    // Sums below this part of their terms are rounding.
+    constexpr double rounding_of_sums = 1e-12;
     // Gaps of the geometry below this part of the coordinates are their rounding.
     constexpr double rounding_of_gaps = 16 * std::numeric_limits<double>::epsilon();
 
@@ -119,25 +123,9 @@ namespace slipstick::fem
   void RowBuilder<dim>::add(const unsigned int i)
   {
     const auto &node = nodes[i];
+    add_bonds_to_obstacles(i);
     add_contact(i);
-    for (const auto &held : node.held)
-      {
-        Vector coefficients;
-        for (unsigned int c = 0; c < dim; ++c)
-          coefficients[dim * i + c] = held.direction[c];
-        fill(new_row(tfeti::RowKind::prescribed, held.value, node.key, held.which), coefficients);
-        ++constraints.counts.prescribed;
-      }
-    for (unsigned int k = 0; k < node.springs.size(); ++k)
-      {
-        Vector coefficients;
-        for (unsigned int c = 0; c < dim; ++c)
-          coefficients[dim * i + c] = node.springs[k].direction[c];
-        fill(new_row(tfeti::RowKind::prescribed, 0., node.key, 1000 + k), coefficients);
-        constraints.compliance.resize(constraints.kind.size(), 0.);
-        constraints.compliance.back() = 1 / node.springs[k].stiffness;
-        ++constraints.counts.prescribed;
-      }
+    add_held_rows(i);
     for (unsigned int k = 0; k + 1 < node.copies.size(); ++k)
       for (unsigned int c = 0; c < dim; ++c)
         {
@@ -153,6 +141,65 @@ namespace slipstick::fem
         constraints.interface_held.push_back(node.is_acted_on());
         ++n_interface;
       }
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::add_held_rows(const unsigned int i)
+  {
+    const auto        &node             = nodes[i];
+    const unsigned int first_reaction   = constraints.reactions.size();
+    const auto         row_coefficients = [i](const Tensor &direction) {
+      Vector coefficients;
+      for (unsigned int c = 0; c < dim; ++c)
+        coefficients[dim * i + c] = direction[c];
+      return coefficients;
+    };
+    for (const auto &held : node.held)
+      {
+        Tensor direction;
+        for (unsigned int c = 0; c < dim; ++c)
+          direction[c] = held.direction[c];
+        const unsigned int row = new_row(tfeti::RowKind::prescribed, held.value, node.key, held.which);
+        fill(row, row_coefficients(direction));
+        add_reaction(i, row, direction, held.by);
+        ++constraints.counts.prescribed;
+      }
+    // the contact nodes that were found here a moment ago share these
+    std::vector<unsigned int> reactions(constraints.reactions.size() - first_reaction);
+    std::iota(reactions.begin(), reactions.end(), first_reaction);
+    for (auto point = held.points.rbegin(); point != held.points.rend() && point->contact.key == node.key; ++point)
+      if (!point->contact.has_master)
+        point->reactions = reactions;
+    std::set<unsigned int> foundations;
+    for (const auto &side : node.sides)
+      if (side.condition >= scene.supports.size())
+        foundations.insert(side.condition);
+    for (unsigned int k = 0; k < node.springs.size(); ++k)
+      {
+        const unsigned int row = new_row(tfeti::RowKind::prescribed, 0., node.key, 1000 + k);
+        fill(row, row_coefficients(node.springs[k].direction));
+        add_reaction(i, row, node.springs[k].direction, {foundations.begin(), foundations.end()});
+        constraints.compliance.resize(constraints.kind.size(), 0.);
+        constraints.compliance.back() = 1 / node.springs[k].stiffness;
+        ++constraints.counts.prescribed;
+      }
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::add_reaction(const unsigned int               i,
+                                     const unsigned int               row,
+                                     const Tensor                    &direction,
+                                     const std::vector<unsigned int> &holders)
+  {
+    tfeti::Reaction reaction;
+    reaction.row     = row;
+    reaction.holders = holders;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        reaction.direction[d] = direction[d];
+        reaction.position[d]  = nodes[i].position[d];
+      }
+    constraints.reactions.push_back(std::move(reaction));
   }
 
   template <int dim>
@@ -173,11 +220,17 @@ namespace slipstick::fem
   template <int dim>
   void RowBuilder<dim>::fill(const unsigned int row, const Vector &coefficients)
   {
+    fill(row, coefficients, entries);
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::fill(const unsigned int row, const Vector &coefficients, std::vector<RowEntry> &to) const
+  {
     for (const auto &[i, value] : coefficients)
       if (value != 0)
         {
           const auto &copy = nodes[i / dim].copies[0];
-          entries.push_back({row, copy.first, copy.second * dim + i % dim, value, true});
+          to.push_back({row, copy.first, copy.second * dim + i % dim, value, true});
         }
   }
 
@@ -187,11 +240,20 @@ namespace slipstick::fem
                                        const double       area,
                                        Touch             &touch) const
   {
+    return scene.contacts[pair].law != scene::ContactLaw::bonded && place_on_obstacle(i, pair, area, touch);
+  }
+
+  template <int dim>
+  bool RowBuilder<dim>::place_on_obstacle(const unsigned int i,
+                                          const unsigned int pair,
+                                          const double       area,
+                                          Touch             &touch) const
+  {
     const auto &node    = nodes[i];
     const auto &where   = scene.contacts[pair];
     const auto  contact = contact_with(scene.obstacles[where.obstacle], node.point(), t);
     touch.point.gap     = gap_of(where, node.point(), contact.gap, t);
-    if (where.law == scene::ContactLaw::bonded || (where.reach && touch.point.gap > *where.reach))
+    if (where.reach && touch.point.gap > *where.reach)
       return false;
     touch.pair                = pair;
     touch.normal              = contact.normal;
@@ -243,18 +305,7 @@ namespace slipstick::fem
         if (Touch touch; touch_body(i, pair, *row, touch))
           touches.push_back(touch);
     for (auto &touch : touches)
-      {
-        touch.point.pair          = touch.pair;
-        touch.point.slave_body    = node.body;
-        touch.point.key           = node.key;
-        touch.point.interface_dof = dim * i;
-        touch.has_tangent         = scene.contacts[touch.pair].law != scene::ContactLaw::frictionless;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            touch.point.position[d] = node.position[d];
-            touch.point.normal[d]   = touch.normal[d];
-          }
-      }
+      complete(i, touch);
     // of obstacles in the same direction the nearest
     std::vector<Touch> kept;
     for (unsigned int a = 0; a < touches.size(); ++a)
@@ -269,6 +320,21 @@ namespace slipstick::fem
           kept.push_back(touches[a]);
       }
     return kept;
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::complete(const unsigned int i, Touch &touch) const
+  {
+    touch.point.pair          = touch.pair;
+    touch.point.slave_body    = nodes[i].body;
+    touch.point.key           = nodes[i].key;
+    touch.point.interface_dof = dim * i;
+    touch.has_tangent         = scene.contacts[touch.pair].law != scene::ContactLaw::frictionless;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        touch.point.position[d] = nodes[i].position[d];
+        touch.point.normal[d]   = touch.normal[d];
+      }
   }
 
   template <int dim>
@@ -365,20 +431,23 @@ namespace slipstick::fem
       {
         if (scene.contacts[touch.pair].law == scene::ContactLaw::bonded)
           continue;
-        const auto normal = jump(touch, touch.normal);
+        const auto normal     = jump(touch, touch.normal);
+        const auto left       = bonds.reduce(free_part(normal));
+        const bool has_normal = is_free(left);
+        if (!has_normal)
+          add_held(i, touch, normal);
         if (is_pruned(touch))
           {
-            if (is_free(bonds.reduce(free_part(normal))))
+            if (has_normal)
               add_pruned(touch, normal);
             continue;
           }
         const auto tangential = jump(touch, tangent_of<dim>(touch.normal));
-        const auto left       = bonds.reduce(free_part(normal));
-        const bool has_normal = is_free(left);
         auto       across     = bonds.reduce(free_part(tangential));
         if (has_normal)
           across = without(across, left);
-        const bool has_tangent = touch.has_tangent && is_free(across);
+        const bool has_tangent =
+          touch.has_tangent && is_free(across) && !(!has_normal && is_held_open(held.points.back()));
         if (!has_normal && !has_tangent)
           continue;
         const std::uint64_t which = touch.pair + (std::uint64_t(touch.side) << 32);
@@ -394,9 +463,61 @@ namespace slipstick::fem
             fill(touch.point.normal_row, normal);
             ++constraints.counts.normal;
           }
+        else
+          held.points.back().place = constraints.contact_points.size();
         ++constraints.counts.candidates;
         constraints.contact_points.push_back(touch.point);
       }
+  }
+
+  template <int dim>
+  bool RowBuilder<dim>::is_held_open(const tfeti::HeldContacts::Point &point) const
+  {
+    return point.is_known && can_be_pruned(scene.contacts[point.contact.pair]) &&
+           point.contact.gap - point.closing > held_contact_tolerance(point);
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::add_held(const unsigned int i, const Touch &touch, const Vector &coefficients)
+  {
+    tfeti::HeldContacts::Point point;
+    point.contact = touch.point;
+    fill(held.points.size(), coefficients, held_entries);
+    held.gaps.kind.push_back(tfeti::RowKind::normal);
+    held.gaps.c.push_back(touch.point.gap);
+    std::set<unsigned int> holders, all_nodes{i};
+    for (const auto *side : {&touch.slave, &touch.master})
+      for (const auto &[node, weight] : *side)
+        all_nodes.insert(node);
+    for (const unsigned int node : all_nodes)
+      for (const auto &direction : nodes[node].held)
+        holders.insert(direction.by.begin(), direction.by.end());
+    point.holders.assign(holders.begin(), holders.end());
+    point.is_known = norm(free_part(coefficients)) <= held_direction_tolerance;
+    double size    = 0;
+    for (const auto &[k, value] : coefficients)
+      {
+        const double part = value * nodes[k / dim].held_displacement()[k % dim];
+        point.closing += part;
+        size += std::abs(part);
+      }
+    if (std::abs(point.closing) <= rounding_of_sums * size) // both sides are moved alike
+      point.closing = 0;
+    held.points.push_back(std::move(point));
+  }
+
+  template <int dim>
+  void RowBuilder<dim>::add_bonds_to_obstacles(const unsigned int i)
+  {
+    for (const auto &[k, area] : nodes[i].areas)
+      if (const auto &pair = scene.contacts[k]; pair.law == scene::ContactLaw::bonded)
+        if (Touch touch; place_on_obstacle(i, k, area, touch))
+          {
+            complete(i, touch);
+            add_held(i, touch, jump(touch, touch.normal));
+            held.points.back().is_bonded = true;
+            held.points.back().holder    = scene.supports.size() + scene.foundations.size() + k;
+          }
   }
 
   template <int dim>
@@ -408,12 +529,7 @@ namespace slipstick::fem
   template <int dim>
   void RowBuilder<dim>::add_pruned(const Touch &touch, const Vector &coefficients)
   {
-    for (const auto &[i, value] : coefficients)
-      if (value != 0)
-        {
-          const auto &copy = nodes[i / dim].copies[0];
-          pruned_entries.push_back({pruned.c.size(), copy.first, copy.second * dim + i % dim, value, true});
-        }
+    fill(pruned.c.size(), coefficients, pruned_entries);
     pruned.kind.push_back(tfeti::RowKind::normal);
     pruned.c.push_back(touch.point.gap);
     ++constraints.counts.candidates;

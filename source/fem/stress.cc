@@ -47,14 +47,16 @@ namespace slipstick::fem
       CellStress(const Subdomain<dim> &on_, const dealii::Quadrature<dim> &points)
         : on(on_)
         , values(*on.element.mapping, *on.element.scalar, points, flags())
-        , all_values(*on.element.mapping, *on.element.scalar, on.element.stiffness, flags())
         , projection(on.element)
         , stress(points.size(), n_components)
         , dilatation(points.size())
         , temperature(Eigen::VectorXd::Zero(points.size()))
         , of_projection(on.element.stiffness.size())
         , real_points(points.size())
-      {}
+      {
+        if (on.project)
+          all_values.emplace(*on.element.mapping, *on.element.scalar, on.element.stiffness, flags());
+      }
 
       /// @p u: displacement at the nodes of the cell, dim x nodes. @return points x (xx, yy, xy).
       const Eigen::MatrixXd &reinit(const typename CellValues<dim>::Cell &cell, const Eigen::MatrixXd &u)
@@ -100,13 +102,13 @@ namespace slipstick::fem
       /// As in the stiffness: projected from the points of its rule, then taken at our points.
       void project_dilatation(const typename CellValues<dim>::Cell &cell, const Eigen::MatrixXd &u)
       {
-        if (all_values.reinit(cell))
-          projection.reinit(*all_values);
+        if (all_values->reinit(cell))
+          projection.reinit(**all_values);
         for (unsigned int q = 0; q < of_projection.size(); ++q)
           {
-            of_projection[q] = trace(gradient_at(*all_values, q, u));
+            of_projection[q] = trace(gradient_at(**all_values, q, u));
             if (!on.temperature.is_zero())
-              of_projection[q] -= on.law.volume_expansion * on.temperature(all_values.point(q));
+              of_projection[q] -= on.law.volume_expansion * on.temperature(all_values->point(q));
           }
         for (unsigned int q = 0; q < real_points.size(); ++q)
           real_points[q] = (*values).quadrature_point(q); // of the cell that both were computed for
@@ -114,7 +116,8 @@ namespace slipstick::fem
       }
 
       const Subdomain<dim>           &on;
-      CellValues<dim>                 values, all_values;
+      CellValues<dim>                 values;
+      std::optional<CellValues<dim>>  all_values; // at the points of the stiffness, if it is projected from there
       DilatationProjection<dim>       projection;
       Eigen::MatrixXd                 stress;
       Eigen::VectorXd                 dilatation, temperature, of_projection;

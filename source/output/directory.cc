@@ -5,12 +5,18 @@
 #include <deal.II/base/mpi.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
+#include <ext/stdio_filebuf.h>
+#include <fcntl.h>
 #include <filesystem>
-#include <fstream>
+#include <iomanip>
 #include <locale>
+#include <random>
 #include <regex>
+#include <sstream>
 #include <system_error>
+#include <unistd.h>
 
 namespace slipstick::output
 {
@@ -23,19 +29,105 @@ namespace slipstick::output
       throw InputError("Output directory '" + path + "': " + reason, other_directory);
     }
 
+    const std::string result_names =
+      "solution\\.pvd|solution_\\d+\\.pvtu|subdomain_\\d+_\\d+\\.vtu|contact_\\d+\\.vtp|contact\\.csv|"
+      "convergence\\.csv|history\\.csv|summary\\.json|parameters\\.prm";
+
+    /// Beside @p name, with the number of the process, by which others know whether it is still written, and a random part.
+    std::string temporary_name(const std::string &name)
+    {
+      std::random_device random;
+      std::ostringstream text;
+      text << name << '.' << getpid() << '-' << std::hex << std::setw(8) << std::setfill('0') << random() << ".tmp";
+      return text.str();
+    }
+
+    /// A file that was not there before; nothing is written through a link that somebody left in its place.
+    class NewFile
+    {
+    public:
+      explicit NewFile(const std::string &name)
+        : path(name)
+        , buffer((errno = 0, open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666)),
+                 std::ios::out | std::ios::binary)
+        , is_open(buffer.is_open())
+        , error(is_open ? 0 : errno)
+      {}
+
+      ~NewFile()
+      {
+        if (is_open && !is_renamed)
+          unlink(path.c_str());
+      }
+
+      /// @return why the file is not complete, empty when it is.
+      std::string fill(const std::function<void(std::ostream &)> &content)
+      {
+        if (is_open)
+          {
+            std::ostream out(&buffer);
+            out.imbue(std::locale::classic());
+            errno = 0;
+            try
+              {
+                content(out);
+              }
+            catch (const std::exception &)
+              {
+                if (out) // not for lack of space
+                  throw;
+              }
+            const bool failed = !out.flush();
+            error             = errno;
+            errno             = 0;
+            if (const bool closed = buffer.close() != nullptr; !failed && closed)
+              return "";
+            error = error != 0 ? error : errno;
+          }
+        return error != 0 ? std::strerror(error) : "the stream failed";
+      }
+
+      std::string take_name(const std::string &final_name)
+      {
+        is_renamed = std::rename(path.c_str(), final_name.c_str()) == 0;
+        return is_renamed ? "" : std::strerror(errno);
+      }
+
+    private:
+      std::string                    path;
+      __gnu_cxx::stdio_filebuf<char> buffer;
+      bool                           is_open;
+      int                            error;
+      bool                           is_renamed = false;
+    };
+
     // Permission bits do not tell (root ignores them, read-only and full disks do not show in them): try a file.
     void try_a_file(const std::filesystem::path &directory)
     {
-      const std::filesystem::path probe = directory / ".slipstick-probe.tmp";
-      errno                             = 0;
-      std::ofstream file(probe);
-      file << "probe\n";
-      file.close();
-      const int       error = errno;
-      std::error_code ignored;
-      std::filesystem::remove(probe, ignored);
-      if (file.fail())
-        reject(directory.string(), std::string("no file can be written there: ") + std::strerror(error));
+      NewFile           probe(temporary_name((directory / ".slipstick-probe").string()));
+      const std::string reason = probe.fill([](std::ostream &out) { out << "probe\n"; });
+      if (!reason.empty())
+        reject(directory.string(), "no file can be written there: " + reason);
+    }
+
+    /// What killed runs left half written.
+    void remove_stale(const std::filesystem::path &directory)
+    {
+      static const std::regex stale("(" + result_names + "|\\.slipstick-probe)(\\.(\\d{1,9})-[0-9a-f]+)?\\.tmp");
+      std::error_code         error;
+      std::vector<std::filesystem::path> found;
+      for (std::filesystem::directory_iterator entry(directory, error), end; !error && entry != end;
+           entry.increment(error))
+        {
+          std::smatch       match;
+          const std::string name = entry->path().filename().string();
+          if (std::regex_match(name, match, stale) &&
+              (match[3].length() == 0 || (kill(std::stoi(match[3]), 0) != 0 && errno == ESRCH)))
+            found.push_back(entry->path());
+        }
+      for (const auto &path : found)
+        if (!std::filesystem::is_directory(std::filesystem::symlink_status(path, error)))
+          std::filesystem::remove(path, error);
     }
 
     /// Creates @p path; returns what was missing, outermost first.
@@ -52,6 +144,7 @@ namespace slipstick::output
       std::filesystem::create_directories(path, error);
       if (error)
         reject(path, "cannot be created: " + error.message());
+      remove_stale(path);
       try_a_file(path);
       return missing;
     }
@@ -76,17 +169,20 @@ namespace slipstick::output
 
   void OutputDirectory::remove_results() const
   {
-    static const std::regex result("solution\\.pvd|solution_\\d+\\.pvtu|subdomain_\\d+_\\d+\\.vtu|contact_\\d+\\.vtp|"
-                                   "contact\\.csv|convergence\\.csv|summary\\.json|parameters\\.prm");
+    static const std::regex result(result_names);
     collectively(communicator, [&] {
       if (dealii::Utilities::MPI::this_mpi_process(communicator) != 0)
         return;
       std::vector<std::filesystem::path> old;
-      for (const auto &entry : std::filesystem::directory_iterator(directory))
-        if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), result))
-          old.push_back(entry.path());
+      std::error_code                    error;
+      for (std::filesystem::directory_iterator entry(directory, error), end; !error && entry != end;
+           entry.increment(error))
+        if (entry->is_regular_file(error) && std::regex_match(entry->path().filename().string(), result))
+          old.push_back(entry->path());
       for (const auto &file : old)
-        std::filesystem::remove(file);
+        if (!std::filesystem::remove(file, error) && error)
+          reject(directory,
+                 "'" + file.filename().string() + "' of an earlier run cannot be removed: " + error.message());
     });
   }
 
@@ -98,31 +194,14 @@ namespace slipstick::output
   void OutputDirectory::write(const std::string &name, const std::function<void(std::ostream &)> &content) const
   {
     const std::string final_name = path(name);
-    const std::string temporary  = final_name + ".tmp";
-    const auto        fail       = [&](const std::string &reason) {
-      throw Error("Could not write '" + final_name + "': " + reason, "free space there or " + other_directory);
+    const auto        check      = [&](const std::string &reason) {
+      if (!reason.empty())
+        throw InputError("Could not write '" + final_name + "': " + reason + "; what was written before it is complete",
+                         "free space there or " + other_directory);
     };
-    try
-      {
-        errno = 0;
-        std::ofstream file(temporary, std::ios::binary);
-        file.imbue(std::locale::classic());
-        if (file)
-          content(file);
-        file.close();
-        if (file.fail())
-          fail(errno != 0 ? std::strerror(errno) : "the stream failed");
-        std::error_code error;
-        std::filesystem::rename(temporary, final_name, error);
-        if (error)
-          fail(error.message());
-      }
-    catch (...)
-      {
-        std::error_code ignored;
-        std::filesystem::remove(temporary, ignored);
-        throw;
-      }
+    NewFile file(temporary_name(final_name));
+    check(file.fill(content));
+    check(file.take_name(final_name));
   }
 
   void OutputDirectory::write_from_root(const std::string                         &name,

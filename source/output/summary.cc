@@ -61,6 +61,31 @@ namespace slipstick::output
               {"nodal_equilibrium", residuals.nodal_equilibrium}};
     }
 
+    /// @param noun key of the name.
+    Json json(const std::vector<NamedResultant> &list, const char *noun)
+    {
+      Json all = Json::array();
+      for (const auto &one : list)
+        {
+          Json entry = {{noun, one.name}};
+          if (noun != one.kind)
+            entry["kind"] = one.kind;
+          entry["force"]  = one.sum.force;
+          entry["moment"] = one.sum.moment;
+          all.push_back(std::move(entry));
+        }
+      return all;
+    }
+
+    /// Adds the lists of loads, supports and foundations.
+    Json with(Json entry, const ForceSummary &forces)
+    {
+      entry["loads"]       = json(forces.loads, "load");
+      entry["supports"]    = json(forces.supports, "support");
+      entry["foundations"] = json(forces.foundations, "foundation");
+      return entry;
+    }
+
     Json json(const std::vector<contact::PairResult> &contact)
     {
       Json pairs = Json::array();
@@ -68,6 +93,8 @@ namespace slipstick::output
         pairs.push_back({{"pair", pair.pair},
                          {"normal_force", pair.normal_force},
                          {"tangential_force", pair.tangential_force},
+                         {"force", pair.on_slave.force},
+                         {"moment", pair.on_slave.moment},
                          {"moment_mismatch", pair.moment_mismatch},
                          {"max_pressure", pair.max_pressure},
                          {"contact_length", pair.contact_length},
@@ -82,22 +109,24 @@ namespace slipstick::output
     {
       Json list = Json::array();
       for (const StepSummary &step : steps)
-        list.push_back({{"load_factor", step.load_factor},
-                        {"hessian_multiplications", step.hessian_multiplications},
-                        {"outer_iterations", step.outer_iterations},
-                        {"coulomb_iterations", step.coulomb_iterations},
-                        {"max_displacement", step.max_displacement},
-                        {"strain_energy", step.strain_energy},
-                        {"contact", json(step.contact)}});
+        list.push_back(with({{"load_factor", step.load_factor},
+                             {"hessian_multiplications", step.hessian_multiplications},
+                             {"outer_iterations", step.outer_iterations},
+                             {"coulomb_iterations", step.coulomb_iterations},
+                             {"max_displacement", step.max_displacement},
+                             {"strain_energy", step.strain_energy},
+                             {"contact", json(step.contact)}},
+                            step.forces));
       return list;
     }
 
     Json json(const ResultSummary &results)
     {
-      return {{"max_displacement", results.max_displacement},
-              {"max_von_mises", results.max_von_mises},
-              {"strain_energy", results.strain_energy},
-              {"contact", json(results.contact)}};
+      return with({{"max_displacement", results.max_displacement},
+                   {"max_von_mises", results.max_von_mises},
+                   {"strain_energy", results.strain_energy},
+                   {"contact", json(results.contact)}},
+                  results.forces);
     }
 
     Json json(const TimeSummary &time)

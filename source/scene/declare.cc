@@ -79,6 +79,11 @@ namespace slipstick::scene
     }
   } // namespace
 
+  bool is_usable(const double value)
+  {
+    return std::abs(value) <= largest_number;
+  }
+
   Interval Interval::above(const double lower)
   {
     return {lower, std::numeric_limits<double>::infinity(), true, false};
@@ -98,7 +103,9 @@ namespace slipstick::scene
 
   bool Interval::contains(const double value) const
   {
-    return std::isfinite(value) && (lower_open ? value > lower : value >= lower) &&
+    const bool may_be_tiny =
+      !(lower_open && lower == 0) || value >= smallest_number; // as coordinates that rounding left are
+    return is_usable(value) && may_be_tiny && (lower_open ? value > lower : value >= lower) &&
            (upper_open ? value < upper : value <= upper);
   }
 

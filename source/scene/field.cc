@@ -1,6 +1,7 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/base/text.h>
+#include <slipstick/scene/declare.h>
 #include <slipstick/scene/field.h>
 
 #include <deal.II/base/numbers.h>
@@ -97,8 +98,8 @@ namespace slipstick::scene
       {
         throw formula_error(where, formula, explain(error, parser, names));
       }
-    if (parser.GetUsedVar().empty() && !std::isfinite(parser.Eval()))
-      throw formula_error(where, formula, "not a finite number");
+    if (parser.GetUsedVar().empty() && !is_usable(parser.Eval()))
+      throw formula_error(where, formula, "not a finite number, or beyond " + number_text(largest_number));
   }
 
   template <int dim>
@@ -108,7 +109,7 @@ namespace slipstick::scene
       position[d] = x[d];
     load_factor         = t;
     const double result = parser.Eval();
-    if (!std::isfinite(result))
+    if (!is_usable(result))
       {
         std::string at;
         for (unsigned int d = 0; d < dim; ++d)
@@ -132,10 +133,10 @@ namespace slipstick::scene
     const auto number = parse_number(text);
     if (!number)
       parsed = std::make_shared<Formula>(text, where);
-    else if (std::isfinite(*number))
+    else if (is_usable(*number))
       constant = *number;
     else
-      throw formula_error(where, text, "not a finite number");
+      throw formula_error(where, text, "not a finite number, or beyond " + number_text(largest_number));
   }
 
   template <int dim>

@@ -2,14 +2,59 @@
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/sections.h>
 
-#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <sstream>
 
 namespace slipstick::scene
 {
   namespace
   {
+    /// Whether the segments a-b and c-d have a point in common.
+    bool meet(const dealii::Point<2> &a,
+              const dealii::Point<2> &b,
+              const dealii::Point<2> &c,
+              const dealii::Point<2> &d)
+    {
+      const auto side = [](const dealii::Point<2> &p, const dealii::Point<2> &q, const dealii::Point<2> &x) {
+        return (q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0]);
+      };
+      for (unsigned int k = 0; k < 2; ++k) // boxes apart, as of segments on one line
+        if (std::max(a[k], b[k]) < std::min(c[k], d[k]) || std::max(c[k], d[k]) < std::min(a[k], b[k]))
+          return false;
+      const double c_side = side(a, b, c), d_side = side(a, b, d), a_side = side(c, d, a), b_side = side(c, d, b);
+      return !(c_side > 0 && d_side > 0) && !(c_side < 0 && d_side < 0) && !(a_side > 0 && b_side > 0) &&
+             !(a_side < 0 && b_side < 0);
+    }
+
+    /// The first two edges of a polyline that meet elsewhere than where one ends and the next begins.
+    std::optional<std::pair<std::size_t, std::size_t>> first_crossing(const std::vector<dealii::Point<2>> &points)
+    {
+      const std::size_t        n         = points.size() - 1;
+      const bool               is_closed = n > 2 && points.front().distance(points.back()) == 0;
+      std::vector<std::size_t> by_left(n);
+      std::iota(by_left.begin(), by_left.end(), std::size_t(0));
+      const auto left  = [&](const std::size_t e) { return std::min(points[e][0], points[e + 1][0]); };
+      const auto right = [&](const std::size_t e) { return std::max(points[e][0], points[e + 1][0]); };
+      std::sort(by_left.begin(), by_left.end(), [&](const auto e, const auto f) { return left(e) < left(f); });
+      for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t l = k + 1; l < n && left(by_left[l]) <= right(by_left[k]); ++l)
+          {
+            const std::size_t e = std::min(by_left[k], by_left[l]), f = std::max(by_left[k], by_left[l]);
+            if (f == e + 1 || (is_closed && e == 0 && f == n - 1)) // neighbours: one may run back on the other
+              {
+                const auto into = f == e + 1 ? points[e + 1] - points[e] : points[f + 1] - points[f];
+                const auto from = f == e + 1 ? points[f + 1] - points[f] : points[e + 1] - points[e];
+                if (into[0] * from[1] - into[1] * from[0] == 0 && into * from < 0)
+                  return std::make_pair(e, f);
+              }
+            else if (meet(points[e], points[e + 1], points[f], points[f + 1]))
+              return std::make_pair(e, f);
+          }
+      return {};
+    }
+
     const std::vector<std::string> geometry = {"Center", "Radius", "Point", "Normal", "Points", "Height"};
 
     /// "x y; x y; ..." @throws InputError naming @p path.
@@ -30,7 +75,7 @@ namespace slipstick::scene
           std::istringstream numbers(item);
           dealii::Point<2>   x;
           std::string        rest;
-          if (!(numbers >> x[0] >> x[1]) || numbers >> rest || !std::isfinite(x[0]) || !std::isfinite(x[1]))
+          if (!(numbers >> x[0] >> x[1]) || numbers >> rest || !is_usable(x[0]) || !is_usable(x[1]))
             throw parameters.error(path, "'" + trim(item) + "' is no point", remedy);
           if (!points.empty() && points.back().distance(x) == 0)
             throw parameters.error(path, "has the point '" + trim(item) + "' twice in a row", "leave one away");
@@ -38,6 +83,12 @@ namespace slipstick::scene
         }
       if (points.size() < 2)
         throw parameters.error(path, "has fewer than two points", remedy);
+      if (const auto crossing = first_crossing(points))
+        throw parameters.error(
+          path,
+          "crosses or touches itself: edge " + std::to_string(crossing->first + 1) + " and edge " +
+            std::to_string(crossing->second + 1),
+          "give the points along a way that does not come back on itself; give each part its own obstacle");
       return points;
     }
   } // namespace

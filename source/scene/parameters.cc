@@ -13,6 +13,9 @@ namespace slipstick::scene
 {
   namespace
   {
+    // What stands for every body, or the whole outline, in the place of a name.
+    const std::vector<std::string> reserved_names = {"all", "*"};
+
     /// "a/b/c" -> "a/b", "c"
     std::pair<std::string, std::string> split_path(const std::string &path)
     {
@@ -128,6 +131,11 @@ namespace slipstick::scene
           return InputError(problem + "available; available: " + words,
                             near ? "did you mean '" + *near + "'?" : "choose one of these");
         }
+      if (const auto number = parse_number(setting.value);
+          number && (!is_usable(*number) || (*number > 0 && *number < smallest_number)))
+        return InputError(problem + "allowed: numbers here lie between " + number_text(smallest_number) + " and " +
+                            number_text(largest_number) + " in size",
+                          "give " + parameter.allowed + " of that size, in other units if need be");
       return InputError(problem + "allowed; allowed: " + parameter.allowed,
                         "give " + parameter.allowed + " (" + parameter.meaning +
                           (parameter.unit.empty() ? "" : " [" + parameter.unit + "]") + ")");
@@ -204,6 +212,10 @@ namespace slipstick::scene
           throw error(kind.list,
                       "'" + name + "' is no valid name",
                       "separate names by commas; use no / and no = in them");
+        if (std::find(reserved_names.begin(), reserved_names.end(), name) != reserved_names.end())
+          throw error(kind.list,
+                      "'" + name + "' is reserved: where names may stand it means all of them",
+                      "choose another name for the " + kind.kind);
         if (!seen.insert(name).second)
           throw error(kind.list, "'" + name + "' is declared twice", "give every " + kind.kind + " its own name");
       }

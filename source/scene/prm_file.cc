@@ -1,5 +1,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/nearest_name.h>
+#include <slipstick/base/printable.h>
 #include <slipstick/base/text.h>
 #include <slipstick/scene/prm_file.h>
 
@@ -12,6 +13,20 @@ namespace slipstick::scene
 {
   namespace
   {
+    constexpr unsigned int most_levels = 10;  // of subsections within each other, and of files that include others
+    constexpr unsigned int most_files  = 100; // included in all: files that include others several times multiply
+
+    const std::string encoding_remedy = "save the file as UTF-8 (iconv -f latin1 -t utf-8), or leave the character out";
+
+    /// Names and values stand in files that must be UTF-8.
+    void check_encoding(const std::string &text, const std::string &where)
+    {
+      const auto bad = first_invalid_utf8(text);
+      if (bad != std::string::npos)
+        throw InputError(where + ": '" + text + "' is not UTF-8, from its byte " + std::to_string(bad + 1) + " on",
+                         encoding_remedy);
+    }
+
     /// Splits "set Name = value" into "set" and "Name = value".
     std::pair<std::string, std::string> split_first_word(const std::string &line)
     {
@@ -24,8 +39,10 @@ namespace slipstick::scene
     {
       namespace fs = std::filesystem;
       std::error_code ignore;
-      std::ifstream   stream(file);
-      if (stream && !fs::is_directory(file, ignore))
+      std::ifstream   stream;
+      if (fs::is_regular_file(file, ignore)) // opening a pipe waits for its other end
+        stream.open(file);
+      if (stream.is_open())
         return stream;
 
       std::vector<std::string> names;
@@ -47,6 +64,7 @@ namespace slipstick::scene
       Reader(const std::string    &file,
              const std::string    &included_from,
              const unsigned int    depth,
+             unsigned int         &n_files,
              std::vector<Setting> &settings);
 
     private:
@@ -71,6 +89,7 @@ namespace slipstick::scene
 
       std::string                                      file;
       unsigned int                                     depth;
+      unsigned int                                    &n_files; // read so far
       std::vector<Setting>                            &settings;
       unsigned int                                     line_number = 0; // where the present statement begins
       std::vector<std::pair<std::string, std::string>> sections;        // open ones: name, where
@@ -80,9 +99,11 @@ namespace slipstick::scene
     Reader::Reader(const std::string    &file_name,
                    const std::string    &included_from,
                    const unsigned int    include_depth,
+                   unsigned int         &number_of_files,
                    std::vector<Setting> &all_settings)
       : file(file_name)
       , depth(include_depth)
+      , n_files(number_of_files)
       , settings(all_settings)
     {
       std::ifstream stream = open(file, included_from);
@@ -98,6 +119,7 @@ namespace slipstick::scene
           if (line.find('\0') != std::string::npos)
             throw InputError("'" + file + "' is no text file", "name a .prm file");
           line = trim(line.substr(0, line.find('#')));
+          check_encoding(line, where());
           if (!line.empty() && line.back() == '\\')
             {
               statement += line.substr(0, line.size() - 1);
@@ -106,6 +128,10 @@ namespace slipstick::scene
           read_line(trim(statement + line));
           statement.clear();
         }
+      if (stream.bad())
+        throw InputError("'" + file + "' could not be read to its end, only " + std::to_string(n_lines) +
+                           " lines of it",
+                         "look at the disk or the network that it is on");
       read_line(trim(statement));
       if (!sections.empty())
         throw InputError(sections.back().second + ": subsection '" + sections.back().first + "' has no end",
@@ -151,6 +177,10 @@ namespace slipstick::scene
       if (name.empty() || name.find_first_of("/=") != std::string::npos)
         throw InputError(where() + ": 'subsection " + text + "' is no valid name of a subsection",
                          "write: subsection NAME, without / and =");
+      if (sections.size() >= most_levels)
+        throw InputError(where() + ": subsection '" + name + "' is nested more than " + std::to_string(most_levels) +
+                           " deep",
+                         "close every subsection with a line 'end'");
       settings.push_back({path(name), "", where(), true});
       sections.emplace_back(name, where());
     }
@@ -166,25 +196,35 @@ namespace slipstick::scene
 
     void Reader::include(const std::string &text)
     {
-      if (depth == 10)
-        throw InputError(where() + ": include '" + text + "' is nested more than 10 deep",
+      if (depth == most_levels)
+        throw InputError(where() + ": include '" + text + "' is nested more than " + std::to_string(most_levels) +
+                           " deep",
                          "look for a file that includes itself");
+      if (++n_files > most_files)
+        throw InputError(where() + ": include '" + text + "' would be file number " + std::to_string(n_files) +
+                           " of the scene",
+                         "include at most " + std::to_string(most_files) +
+                           " files; look for files that include others several times");
       if (!sections.empty())
         throw InputError(where() + ": include '" + text + "' inside of subsection '" + sections.back().first + "'",
                          "include files at top level");
       const auto directory = std::filesystem::path(file).parent_path();
-      Reader((directory / text).string(), where(), depth + 1, settings);
+      Reader((directory / text).string(), where(), depth + 1, n_files, settings);
     }
 
     Setting read_override(const std::string &text)
     {
-      const std::string where  = "--set " + text;
-      const auto        equals = text.find('=');
-      std::string       path;
+      const std::string where = "--set " + text;
+      check_encoding(text, "--set");
+      const auto  equals = text.find('=');
+      std::string path;
       for (const std::string &part : split_list(text.substr(0, equals), '/'))
         path += (path.empty() ? "" : "/") + collapse_blanks(part);
       if (equals == std::string::npos || path.empty())
         throw InputError("'" + where + "' has no '=' that separates name and value",
+                         "write: --set 'Section/Sub/Name=value', for example --set 'Solver/Tolerance=1e-6'");
+      if (static_cast<unsigned int>(std::count(path.begin(), path.end(), '/')) > most_levels)
+        throw InputError("'" + where + "' is nested more than " + std::to_string(most_levels) + " deep",
                          "write: --set 'Section/Sub/Name=value', for example --set 'Solver/Tolerance=1e-6'");
       const std::string value = trim(text.substr(equals + 1));
       if (value.find_first_of("#\n") != std::string::npos || (!value.empty() && value.back() == '\\'))
@@ -197,7 +237,8 @@ namespace slipstick::scene
   std::vector<Setting> read_settings(const std::string &file, const std::vector<std::string> &overrides)
   {
     std::vector<Setting> settings;
-    Reader(file, "", 0, settings);
+    unsigned int         n_files = 1;
+    Reader(file, "", 0, n_files, settings);
     for (const std::string &text : overrides)
       settings.push_back(read_override(text));
     return settings;

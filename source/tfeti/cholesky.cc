@@ -37,9 +37,52 @@ namespace slipstick::tfeti
       AssertThrow(success, dealii::ExcMessage("camd_order failed"));
       return permutation;
     }
+
+    /// Nested dissection of all but the given unknowns, which come last; each separator's columns follow each other.
+    std::vector<int> dissection(const cholmod_sparse &A, const std::vector<unsigned int> &last, cholmod_common &common)
+    {
+      std::vector<int> place(A.nrow, 0), others;
+      for (const unsigned int i : last)
+        place[i] = -1;
+      for (unsigned int i = 0; i < A.nrow; ++i)
+        if (place[i] == 0)
+          {
+            place[i] = static_cast<int>(others.size());
+            others.push_back(static_cast<int>(i));
+          }
+      const auto      *columns = static_cast<const int *>(A.p), *rows = static_cast<const int *>(A.i);
+      std::vector<int> part_columns = {0}, part_rows;
+      for (const int j : others)
+        {
+          for (int k = columns[j]; k < columns[j + 1]; ++k)
+            if (place[rows[k]] >= 0)
+              part_rows.push_back(place[rows[k]]);
+          part_columns.push_back(static_cast<int>(part_rows.size()));
+        }
+      cholmod_sparse pattern = A;
+      pattern.nrow = pattern.ncol = others.size();
+      pattern.nzmax               = part_rows.size();
+      pattern.p                   = part_columns.data();
+      pattern.i                   = part_rows.data();
+      pattern.x                   = nullptr;
+      pattern.xtype               = CHOLMOD_PATTERN;
+      std::vector<int> permutation(others.size());
+      AssertThrow(others.empty() || cholmod_metis(&pattern, nullptr, 0, 1, permutation.data(), &common) != 0,
+                  dealii::ExcMessage("cholmod_metis failed"));
+      for (int &k : permutation)
+        k = others[k];
+      permutation.insert(permutation.end(), last.begin(), last.end());
+      return permutation;
+    }
   } // namespace
 
-  CholmodSession::CholmodSession()
+  const Cholesky::Failure Cholesky::of_stiffness = {
+    ": its regularised stiffness matrix is not positive definite, so its kernel is larger than the rigid motions or its "
+    "stiffness is zero to rounding",
+    "look for degenerate cells, a hinge inside the subdomain, or extreme material parameters"};
+
+  CholmodSession::CholmodSession(const Ordering ordering)
+    : ordering(ordering)
   {
     cholmod_start(&common);
     common.supernodal         = CHOLMOD_SUPERNODAL;
@@ -75,22 +118,9 @@ namespace slipstick::tfeti
     if (found != analyses.end())
       return found->factor;
 
-    cholmod_factor *factor;
-    if (last.empty())
-      {
-        common.method[0].ordering = CHOLMOD_AMD;
-        common.postorder          = 1;
-        factor                    = cholmod_analyze(&A, &common);
-      }
-    else
-      {
-        auto permutation          = constrained_ordering(A, last, common);
-        common.method[0].ordering = CHOLMOD_GIVEN;
-        common.postorder          = 0; // CAMD has done so within its constraints; another one may mix the groups
-        factor                    = cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common);
-      }
+    cholmod_factor *factor = analyse(A, last);
     if (factor == nullptr)
-      throw NumericalError("not enough memory for the analysis of a stiffness matrix",
+      throw NumericalError("not enough memory for the analysis of a sparse matrix",
                            "use more or smaller subdomains (Decomposition), or more ranks on more machines");
     if (analyses.size() == max_analyses)
       {
@@ -99,6 +129,21 @@ namespace slipstick::tfeti
       }
     analyses.push_back({{columns, columns + n + 1}, {rows, rows + n_entries}, last, factor});
     return factor;
+  }
+
+  cholmod_factor *CholmodSession::analyse(cholmod_sparse &A, const std::vector<unsigned int> &last)
+  {
+    if (last.empty() && ordering == Ordering::minimum_degree)
+      {
+        common.method[0].ordering = CHOLMOD_AMD;
+        common.postorder          = 1;
+        return cholmod_analyze(&A, &common);
+      }
+    auto permutation =
+      ordering == Ordering::minimum_degree ? constrained_ordering(A, last, common) : dissection(A, last, common);
+    common.method[0].ordering = CHOLMOD_GIVEN;
+    common.postorder          = 0; // done within the groups; another one may mix them
+    return cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common);
   }
 
   void Cholesky::FactorDeleter::operator()(cholmod_factor *factor) const
@@ -114,7 +159,8 @@ namespace slipstick::tfeti
   Cholesky::Cholesky(const std::shared_ptr<CholmodSession> &session,
                      const Eigen::SparseMatrix<double>     &lower,
                      const std::vector<unsigned int>       &last,
-                     const std::string                     &name)
+                     const std::string                     &name,
+                     const Failure                         &failure)
     : session(session)
     , factor(nullptr, FactorDeleter{session})
   {
@@ -129,13 +175,27 @@ namespace slipstick::tfeti
                            "use more or smaller subdomains (Decomposition), or more ranks on more machines");
     if (common.status != CHOLMOD_OK || factor->minor < factor->n ||
         cholmod_rcond(factor.get(), &common) < smallest_reciprocal_condition)
-      throw NumericalError(name +
-                             ": its regularised stiffness matrix is not positive definite, so its kernel is larger "
-                             "than the rigid motions or its stiffness is zero to rounding",
-                           "look for degenerate cells, a hinge inside the subdomain, or extreme material parameters");
+      throw NumericalError(name + failure.text, failure.remedy);
   }
 
   void Cholesky::solve(Eigen::VectorXd &x) const
+  {
+    solve(CHOLMOD_A, x);
+  }
+
+  void Cholesky::solve_lower(Eigen::VectorXd &x) const
+  {
+    solve(CHOLMOD_P, x);
+    solve(CHOLMOD_L, x);
+  }
+
+  void Cholesky::solve_upper(Eigen::VectorXd &x) const
+  {
+    solve(CHOLMOD_Lt, x);
+    solve(CHOLMOD_Pt, x);
+  }
+
+  void Cholesky::solve(const int system, Eigen::VectorXd &x) const
   {
     cholmod_dense b{};
     b.nrow = b.d = b.nzmax = x.size();
@@ -144,7 +204,7 @@ namespace slipstick::tfeti
     b.xtype                = CHOLMOD_REAL;
     b.dtype                = CHOLMOD_DOUBLE;
     const std::unique_ptr<cholmod_dense, DenseDeleter> solution(
-      cholmod_solve(CHOLMOD_A, factor.get(), &b, &session->common),
+      cholmod_solve(system, factor.get(), &b, &session->common),
       DenseDeleter{session});
     std::copy_n(static_cast<const double *>(solution->x), x.size(), x.data());
   }

@@ -1,38 +1,26 @@
 #include <slipstick/base/exceptions.h>
+#include <slipstick/tfeti/cholesky.h>
 #include <slipstick/tfeti/coarse_solver.h>
 
 #include <deal.II/base/mpi.h>
-
-#include <boost/serialization/vector.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#include <Amesos2.hpp>
-#include <Teuchos_DefaultSerialComm.hpp>
-#include <Tpetra_CrsMatrix.hpp>
-#include <Tpetra_Map.hpp>
-#include <Tpetra_MultiVector.hpp>
-#pragma GCC diagnostic pop
-
-#include <Eigen/Sparse>
-
 namespace slipstick::tfeti
 {
   namespace
   {
-    using Map         = Tpetra::Map<int, long long>;
-    using Matrix      = Tpetra::CrsMatrix<double, int, long long>;
-    using MultiVector = Tpetra::MultiVector<double, int, long long>;
-    using Solver      = Amesos2::Solver<Matrix, MultiVector>;
-
-    // Staying unknowns are eliminated when the changing ones are no more than this times the square root of all: then the
-    // dense factors of the complement cost less than sparse ones of the whole matrix (2.6 ms at 768 unknowns).
+    // The Schur complement in the changing unknowns is a dense matrix when these are no more than this times the square root
+    // of all (that bounds it by 16 n numbers): then its factors cost less than sparse ones of the whole matrix.
     constexpr double most_changing = 4;
+    // Pivots below this part of their diagonal entry are rounding.
+    constexpr double smallest_pivot = 1e-15;
+
+    const std::string       name_of_matrix   = "the coarse matrix G G'";
+    const Cholesky::Failure of_coarse_matrix = {" is not positive definite",
+                                                "some body is free to move: add a support or a contact that holds it"};
 
     /// The entries of all ranks on every rank, in the order of the ranks.
     CoarseSolver::Entries gather(const CoarseSolver::Entries &entries, const MPI_Comm comm)
@@ -60,212 +48,249 @@ namespace slipstick::tfeti
       return all;
     }
 
-    /// Compressed rows on one process; entries of one position are added in their order.
-    Teuchos::RCP<Matrix> make_matrix(const CoarseSolver::Entries &entries, const Teuchos::RCP<const Map> &map)
+    /// Lower triangle and diagonal of a symmetric matrix; zeros are kept.
+    struct LowerTriangle
     {
-      const std::size_t        n = map->getGlobalNumElements();
-      std::vector<std::size_t> first(n + 1, 0);
-      for (const auto &entry : entries)
-        ++first[entry.row + 1];
-      std::partial_sum(first.begin(), first.end(), first.begin());
-      std::vector<std::size_t>            next(first.begin(), first.end() - 1);
-      std::vector<std::pair<int, double>> by_row(entries.size());
-      for (const auto &entry : entries)
-        by_row[next[entry.row]++] = {static_cast<int>(entry.column), entry.value};
+      LowerTriangle(const std::size_t n, const CoarseSolver::Entries &entries, const CoarseSolver::Entries &more = {})
+        : matrix(n, n)
+        , diagonal(Eigen::VectorXd::Zero(n))
+      {
+        std::vector<Eigen::Triplet<double>> triplets;
+        triplets.reserve(entries.size() + more.size());
+        for (const auto *part : {&entries, &more})
+          for (const auto &entry : *part)
+            if (entry.row >= entry.column)
+              triplets.emplace_back(entry.row, entry.column, entry.value);
+        for (std::size_t i = 0; i < n; ++i)
+          triplets.emplace_back(i, i, 0.);
+        matrix.setFromTriplets(triplets.begin(), triplets.end());
+        for (std::size_t i = 0; i < n; ++i)
+          diagonal[i] = matrix.valuePtr()[matrix.outerIndexPtr()[i]]; // first of the column, which is sorted
+      }
 
-      Teuchos::ArrayRCP<std::size_t> begin(n + 1);
-      Teuchos::ArrayRCP<int>         columns(entries.size());
-      Teuchos::ArrayRCP<double>      values(entries.size());
-      std::size_t                    size = 0;
-      begin[0]                            = 0;
-      for (std::size_t row = 0; row < n; ++row)
-        {
-          std::stable_sort(by_row.begin() + first[row],
-                           by_row.begin() + first[row + 1],
-                           [](const auto &a, const auto &b) { return a.first < b.first; });
-          for (std::size_t k = first[row]; k < first[row + 1]; ++k)
-            if (size > begin[row] && columns[size - 1] == by_row[k].first)
-              values[size - 1] += by_row[k].second;
-            else
-              {
-                columns[size]  = by_row[k].first;
-                values[size++] = by_row[k].second;
-              }
-          begin[row + 1] = size;
-        }
-      columns.resize(size);
-      values.resize(size);
-      const auto matrix = Teuchos::rcp(new Matrix(map, map, begin, columns, values));
-      matrix->expertStaticFillComplete(map, map);
-      return matrix;
-    }
+      /// A_ij s_i s_j with s = 1 / sqrt of the diagonal, where that is positive; 1 elsewhere.
+      /// @return s
+      Eigen::VectorXd scale()
+      {
+        const Eigen::VectorXd s = (diagonal.array() > 0).select(diagonal.array().rsqrt(), 1.);
+        for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+          for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, j); entry; ++entry)
+            entry.valueRef() *= s[entry.row()] * s[j];
+        return s;
+      }
+
+      Eigen::SparseMatrix<double> matrix;
+      Eigen::VectorXd             diagonal;
+    };
   } // namespace
 
-  /// LU factors of a matrix that every rank has, of positions 0 .. n-1.
+  /// Of one matrix A + C; the same on every rank.
   class CoarseSolver::Factor
   {
   public:
-    Factor(const std::size_t n, const Entries &entries)
-      : map(Teuchos::rcp(new Map(n, 0, Teuchos::rcp(new Teuchos::SerialComm<int>()))))
-      , solution(Teuchos::rcp(new MultiVector(map, 1)))
-      , right_hand_side(Teuchos::rcp(new MultiVector(map, 1)))
-    {
-      if (n == 0)
-        return;
-      try
-        {
-          solver = Amesos2::create<Matrix, MultiVector>("KLU2", make_matrix(entries, map), solution, right_hand_side);
-          solver->symbolicFactorization().numericFactorization();
-        }
-      catch (const std::exception &error) // on all ranks alike
-        {
-          throw NumericalError(std::string("the coarse matrix G G' cannot be factorised: ") + error.what(),
-                               "some body is free to move: add a support or a contact that holds it");
-        }
-    }
+    virtual ~Factor() = default;
 
-    Eigen::VectorXd solve(const Eigen::VectorXd &b) const
-    {
-      if (b.size() == 0)
-        return b;
-      std::copy_n(b.data(), b.size(), right_hand_side->getDataNonConst(0).getRawPtr());
-      solver->solve();
-      return Eigen::Map<const Eigen::VectorXd>(solution->getData(0).getRawPtr(), b.size());
-    }
+    /// x := (A + C)^-1 x, all unknowns.
+    virtual void solve(Eigen::VectorXd &x) const = 0;
 
-  private:
-    Teuchos::RCP<const Map>   map;
-    Teuchos::RCP<MultiVector> solution, right_hand_side;
-    Teuchos::RCP<Solver>      solver;
+    virtual std::size_t n_nonzeros() const = 0;
   };
 
-  /// With s the staying and c the changing unknowns: x_c = (A_cc + C - A_cs W)^-1 (b_c - A_cs y), x_s = y - W x_c where
-  /// y = A_ss^-1 b_s, W = A_ss^-1 A_sc. The same on every rank.
+  /// What the factors of A + C have in common. The same on every rank.
   class CoarseSolver::Elimination
   {
   public:
     Elimination(const Entries &own_entries, const std::vector<bool> &changes, const MPI_Comm comm_)
       : comm(comm_)
       , n_owned(changes.size())
+      , session(std::make_shared<CholmodSession>(Ordering::nested_dissection))
     {
-      const auto  of_ranks = dealii::Utilities::MPI::all_gather(comm, changes);
-      std::size_t n_all = 0, n_that_change = 0;
-      for (const auto &of_rank : of_ranks)
+      std::vector<unsigned int> changing;
+      for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, changes))
         {
-          n_all += of_rank.size();
-          n_that_change += std::count(of_rank.begin(), of_rank.end(), true);
-        }
-      const bool eliminates = n_that_change <= most_changing * std::sqrt(n_all);
-      for (const auto &of_rank : of_ranks)
-        {
-          first_of_rank.push_back(static_cast<int>(position.size()));
+          first_of_rank.push_back(n);
           n_of_rank.push_back(static_cast<int>(of_rank.size()));
           for (const bool changes_itself : of_rank)
             {
-              const bool is_changing = changes_itself || !eliminates;
-              (is_changing ? changing : staying).push_back(static_cast<int>(position.size()));
-              position.push_back(static_cast<int>((is_changing ? changing : staying).size()) - 1);
-              changes_at.push_back(is_changing);
+              if (changes_itself)
+                changing.push_back(n);
+              ++n;
             }
         }
-      Entries                             inner;
-      std::vector<Eigen::Triplet<double>> coupling;
-      for (const Entry &entry : gather(own_entries, comm))
-        {
-          const Entry at{position[entry.row], position[entry.column], entry.value};
-          if (!changes_at[entry.row] && !changes_at[entry.column])
-            inner.push_back(at);
-          else if (changes_at[entry.row] && changes_at[entry.column])
-            complement.push_back(at);
-          else if (changes_at[entry.row])
-            coupling.emplace_back(at.row, at.column, at.value);
-        }
-      factor = std::make_unique<Factor>(staying.size(), inner);
-      A_cs.resize(changing.size(), staying.size());
-      A_cs.setFromTriplets(coupling.begin(), coupling.end());
-      eliminate_staying();
+      Entries all = gather(own_entries, comm);
+      if (changing.size() <= most_changing * std::sqrt(n))
+        eliminate_all_but(changing, all);
+      else
+        entries = std::move(all);
     }
 
-    /// Entries of C besides, by position among the changing unknowns.
-    Entries complement_with(const Entries &own_entries) const
-    {
-      Entries all = complement;
-      for (const Entry &entry : gather(own_entries, comm))
-        all.push_back({position[entry.row], position[entry.column], entry.value});
-      return all;
-    }
+    std::unique_ptr<const Factor> factor_with(const Entries &own_changes) const;
 
-    std::size_t n_changing() const
+    Eigen::VectorXd solve(const Eigen::VectorXd &own, const Factor &factor) const
     {
-      return changing.size();
-    }
-
-    std::size_t n() const
-    {
-      return position.size();
-    }
-
-    Eigen::VectorXd solve(const Eigen::VectorXd &own, const Factor &of_complement) const
-    {
-      Eigen::VectorXd b(n());
+      Eigen::VectorXd x(n);
       MPI_Allgatherv(own.data(),
                      static_cast<int>(n_owned),
                      MPI_DOUBLE,
-                     b.data(),
+                     x.data(),
                      n_of_rank.data(),
                      first_of_rank.data(),
                      MPI_DOUBLE,
                      comm);
-      Eigen::VectorXd x_s = factor->solve(b(staying)), x_c = b(changing);
-      if (!changing.empty())
-        {
-          x_c = of_complement.solve(x_c - A_cs * x_s);
-          x_s -= W * x_c;
-        }
-      int rank;
-      MPI_Comm_rank(comm, &rank);
-      Eigen::VectorXd x(n_owned);
-      for (unsigned int i = 0; i < n_owned; ++i)
-        {
-          const unsigned int k = first_of_rank[rank] + i;
-          x[i]                 = (changes_at[k] ? x_c : x_s)[position[k]];
-        }
-      return x;
+      if (n > 0)
+        factor.solve(x);
+      return x.segment(first_of_rank[dealii::Utilities::MPI::this_mpi_process(comm)], n_owned);
+    }
+
+    int dimension() const
+    {
+      return n;
+    }
+
+    std::size_t n_nonzeros() const
+    {
+      return of_staying ? of_staying->n_nonzeros() + L.size() + complement.size() : 0;
     }
 
   private:
-    // W, and - A_cs W as part of the complement
-    void eliminate_staying()
+    class WithComplement;
+    class Whole;
+
+    /// L L' = s (A + D) s with the changing unknowns last, where D, the diagonal of A there, makes it definite: their part
+    /// of L L' less D is the Schur complement.
+    void eliminate_all_but(const std::vector<unsigned int> &changing, const Entries &all)
     {
-      std::vector<Eigen::Triplet<double>> columns;
-      for (unsigned int j = 0; j < changing.size(); ++j)
+      LowerTriangle A(n, all);
+      scale = A.scale();
+      for (const unsigned int i : changing)
+        A.matrix.coeffRef(i, i) += 1;
+      if (n > 0)
+        of_staying = std::make_unique<Cholesky>(session, A.matrix, changing, name_of_matrix, of_coarse_matrix);
+      session->forget_analyses();
+      if (changing.empty())
+        return;
+      L          = of_staying->trailing_block();
+      complement = L.triangularView<Eigen::Lower>() * L.transpose();
+      complement.diagonal().array() -= 1;
+      place.assign(n, -1);
+      diagonal.resize(changing.size());
+      for (unsigned int k = 0; k < changing.size(); ++k)
         {
-          const Eigen::VectorXd column = A_cs.row(j).transpose();
-          if (column.squaredNorm() == 0)
-            continue;
-          const Eigen::VectorXd w = factor->solve(column), eliminated = A_cs * w;
-          for (unsigned int i = 0; i < w.size(); ++i)
-            if (w[i] != 0)
-              columns.emplace_back(i, j, w[i]);
-          for (unsigned int i = 0; i < eliminated.size(); ++i)
-            if (eliminated[i] != 0)
-              complement.push_back({i, j, -eliminated[i]});
+          const unsigned int i = of_staying->last_order()[k];
+          place[i]             = static_cast<int>(k);
+          diagonal[k]          = A.diagonal[i] * scale[i] * scale[i];
         }
-      W.resize(staying.size(), changing.size());
-      W.setFromTriplets(columns.begin(), columns.end());
     }
 
-    MPI_Comm                                     comm;
-    unsigned int                                 n_owned;
-    std::vector<int>                             first_of_rank, n_of_rank;
-    std::vector<int>                             staying, changing;
-    std::vector<int>                             position; // among those or these
-    std::vector<bool>                            changes_at;
-    std::unique_ptr<const Factor>                factor;     // of A_ss
-    Entries                                      complement; // A_cc - A_cs W
-    Eigen::SparseMatrix<double>                  W;
-    Eigen::SparseMatrix<double, Eigen::RowMajor> A_cs;
+    MPI_Comm                        comm;
+    unsigned int                    n_owned;
+    int                             n = 0;
+    std::vector<int>                first_of_rank, n_of_rank;
+    std::shared_ptr<CholmodSession> session;
+    Entries                         entries; // where there is no complement: A
+
+    std::unique_ptr<const Cholesky> of_staying;
+    Eigen::VectorXd                 scale;      // s
+    std::vector<int>                place;      // of the unknowns among the changing ones in the order of L; -1: stays
+    Eigen::MatrixXd                 L;          // the changing unknowns' part
+    Eigen::MatrixXd                 complement; // of s A s
+    Eigen::VectorXd                 diagonal;   // of s A s, the changing unknowns
   };
+
+  /// S = Schur complement of s (A + C) s: with y = L^-1 b the changing unknowns are x_c = S^-1 L_c y_c, and L' x = y with
+  /// L_c'x_c in the place of y_c has the others.
+  class CoarseSolver::Elimination::WithComplement : public CoarseSolver::Factor
+  {
+  public:
+    WithComplement(const Elimination &common, const Entries &changes)
+      : common(common)
+    {
+      if (common.L.size() == 0)
+        return;
+      Eigen::MatrixXd S        = common.complement;
+      Eigen::VectorXd diagonal = common.diagonal;
+      for (const Entry &entry : changes)
+        if (entry.row >= entry.column)
+          {
+            const int    i = common.place[entry.row], j = common.place[entry.column];
+            const double value = common.scale[entry.row] * common.scale[entry.column] * entry.value;
+            S(std::max(i, j), std::min(i, j)) += value;
+            if (i == j)
+              diagonal[i] += value;
+          }
+      inner_scale = (diagonal.array() > 0).select(diagonal.array().rsqrt(), 1.);
+      S.array() *= (inner_scale * inner_scale.transpose()).array();
+      factor.compute(S);
+      if (factor.info() != Eigen::Success || !(pivots().minCoeff() > smallest_pivot))
+        throw NumericalError(name_of_matrix + of_coarse_matrix.text, of_coarse_matrix.remedy);
+    }
+
+    void solve(Eigen::VectorXd &x) const override
+    {
+      x.array() *= common.scale.array();
+      common.of_staying->solve_lower(x);
+      if (common.L.size() > 0)
+        {
+          auto            changing = x.tail(common.L.cols());
+          Eigen::VectorXd y        = common.L.triangularView<Eigen::Lower>() * changing;
+          y.array() *= inner_scale.array();
+          factor.solveInPlace(y);
+          y.array() *= inner_scale.array();
+          changing = common.L.transpose().triangularView<Eigen::Upper>() * y;
+        }
+      common.of_staying->solve_upper(x);
+      x.array() *= common.scale.array();
+    }
+
+    std::size_t n_nonzeros() const override
+    {
+      return factor.matrixLLT().size();
+    }
+
+  private:
+    Eigen::ArrayXd pivots() const
+    {
+      return factor.matrixLLT().diagonal().array().square();
+    }
+
+    const Elimination          &common;
+    Eigen::VectorXd             inner_scale;
+    Eigen::LLT<Eigen::MatrixXd> factor;
+  };
+
+  /// Sparse factor of the whole matrix, analysed with the first one of its pattern.
+  class CoarseSolver::Elimination::Whole : public CoarseSolver::Factor
+  {
+  public:
+    Whole(const Elimination &common, LowerTriangle A)
+      : scale(A.scale())
+      , factor(common.session, A.matrix, {}, name_of_matrix, of_coarse_matrix)
+    {}
+
+    void solve(Eigen::VectorXd &x) const override
+    {
+      x.array() *= scale.array();
+      factor.solve(x);
+      x.array() *= scale.array();
+    }
+
+    std::size_t n_nonzeros() const override
+    {
+      return factor.n_nonzeros();
+    }
+
+  private:
+    Eigen::VectorXd scale;
+    Cholesky        factor;
+  };
+
+  std::unique_ptr<const CoarseSolver::Factor> CoarseSolver::Elimination::factor_with(const Entries &own_changes) const
+  {
+    const Entries changes = gather(own_changes, comm);
+    if (of_staying || n == 0)
+      return std::make_unique<WithComplement>(*this, changes);
+    return std::make_unique<Whole>(*this, LowerTriangle(n, entries, changes));
+  }
 
   CoarseSolver::CoarseSolver(const unsigned int n_owned, const Entries &entries, const MPI_Comm comm)
     : CoarseSolver(eliminate(entries, std::vector<bool>(n_owned, false), comm), Entries())
@@ -280,18 +305,23 @@ namespace slipstick::tfeti
 
   CoarseSolver::CoarseSolver(std::shared_ptr<const Elimination> staying_, const Entries &changing)
     : staying(std::move(staying_))
-    , complement(std::make_unique<Factor>(staying->n_changing(), staying->complement_with(changing)))
+    , factor(staying->factor_with(changing))
   {}
 
   CoarseSolver::~CoarseSolver() = default;
 
   Eigen::VectorXd CoarseSolver::solve(const Eigen::VectorXd &b) const
   {
-    return staying->solve(b, *complement);
+    return staying->solve(b, *factor);
   }
 
   unsigned long long CoarseSolver::dimension() const
   {
-    return staying->n();
+    return staying->dimension();
+  }
+
+  std::size_t CoarseSolver::n_nonzeros() const
+  {
+    return staying->n_nonzeros() + factor->n_nonzeros();
   }
 } // namespace slipstick::tfeti

@@ -1,6 +1,6 @@
 #include <slipstick/tfeti/dual_operator.h>
 
-#include <set>
+#include <algorithm>
 
 namespace slipstick::tfeti
 {
@@ -14,11 +14,14 @@ namespace slipstick::tfeti
 
   std::pair<LocalGluing, std::vector<unsigned int>> LocalGluing::make(const std::vector<Constraints::Entry> &block)
   {
-    std::set<unsigned int> dofs;
+    std::vector<unsigned int> touched;
+    touched.reserve(block.size());
     for (const auto &entry : block)
-      dofs.insert(entry.dof);
-    const std::vector<unsigned int> touched(dofs.begin(), dofs.end());
-    LocalGluing                     gluing;
+      touched.push_back(entry.dof);
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    LocalGluing gluing;
+    gluing.entries.reserve(block.size());
     for (const auto &entry : block)
       {
         const unsigned int k = std::lower_bound(touched.begin(), touched.end(), entry.dof) - touched.begin();

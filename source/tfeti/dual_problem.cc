@@ -312,22 +312,18 @@ namespace slipstick::tfeti
     return y;
   }
 
-  // The free rows and as many of those with friction forces as hold the loose motions.
-  std::vector<bool> DualProblem::rows_that_fix(const std::vector<RigidMotion> &loose,
-                                               const DistributedVector        &x,
-                                               std::vector<bool>               free) const
+  bool DualProblem::hold(const std::vector<RigidMotion> &loose,
+                         const std::vector<bool>        &is_candidate,
+                         const std::vector<double>      &scale,
+                         std::vector<bool>              &free) const
   {
     const Eigen::MatrixXd            own = bodies->jumps(loose);
     std::vector<std::vector<double>> candidates;
     std::vector<std::uint64_t>       labels;
-    const double                     noise        = force_rounding * x.linfty_norm();
-    const auto                       is_candidate = [&](const unsigned int r) {
-      return !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
-    };
     for (unsigned int r = 0; r < free.size(); ++r)
-      if (is_candidate(r))
+      if (is_candidate[r])
         {
-          const Eigen::VectorXd share = own.row(r);
+          const Eigen::VectorXd share = scale[r] * own.row(r);
           candidates.emplace_back(share.data(), share.data() + share.size());
           labels.push_back(rows.label[r]);
         }
@@ -338,7 +334,7 @@ namespace slipstick::tfeti
       for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
         all.emplace(labels_of[rank][i], shares_of[rank][i]);
     if (all.empty()) // Eigen's decomposition of no columns reads what is not there
-      require_support(loose, names_of_bodies);
+      return false;
     Eigen::MatrixXd shares(loose.size(), all.size());
     unsigned int    column = 0;
     for (const auto &candidate : all)
@@ -347,13 +343,54 @@ namespace slipstick::tfeti
     // of unit motions: shares that are all rounding hold nothing
     pivoted.setThreshold(least_hold * std::max(1., 1 / std::max(pivoted.maxPivot(), least_hold)));
     if (pivoted.rank() < static_cast<Eigen::Index>(loose.size()))
-      require_support(loose, names_of_bodies);
+      return false;
     std::set<std::uint64_t> chosen;
     for (unsigned int i = 0; i < loose.size(); ++i)
       chosen.insert(std::next(all.begin(), pivoted.colsPermutation().indices()[i])->first);
     for (unsigned int r = 0; r < free.size(); ++r)
-      free[r] = free[r] || (is_candidate(r) && chosen.count(rows.label[r]) > 0);
-    return free;
+      free[r] = free[r] || (is_candidate[r] && chosen.count(rows.label[r]) > 0);
+    return true;
+  }
+
+  bool DualProblem::rows_that_fix(const std::vector<RigidMotion> &loose,
+                                  const DistributedVector        &x,
+                                  std::vector<bool>              &free) const
+  {
+    const double              noise = force_rounding * x.linfty_norm();
+    const std::vector<double> equal(free.size(), 1.);
+    std::vector<bool>         is_candidate(free.size());
+    for (unsigned int r = 0; r < free.size(); ++r)
+      is_candidate[r] = !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
+    if (hold(loose, is_candidate, equal, free))
+      return true;
+    if (plainest(loose).work > 0)
+      require_support(loose, names_of_bodies);
+    for (unsigned int r = 0; r < free.size(); ++r)
+      is_candidate[r] = !free[r];
+    if (!hold(loose, is_candidate, equal, free))
+      require_support(loose, names_of_bodies);
+    return false;
+  }
+
+  void DualProblem::remove_motions(const std::vector<RigidMotion> &loose, std::vector<Eigen::VectorXd> &u) const
+  {
+    const std::size_t n    = loose.size();
+    Eigen::MatrixXd   gram = Eigen::MatrixXd::Zero(n, n + 1); // the last column: of u
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        Eigen::MatrixXd motions(u[p].size(), n);
+        for (std::size_t m = 0; m < n; ++m)
+          motions.col(m) = bodies->displacements(p, loose[m].amplitudes);
+        gram.leftCols(n) += motions.transpose() * motions;
+        gram.col(n) += motions.transpose() * u[p];
+      }
+    MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, comm);
+    const Eigen::VectorXd amount     = gram.leftCols(n).completeOrthogonalDecomposition().solve(gram.col(n));
+    Eigen::VectorXd       amplitudes = Eigen::VectorXd::Zero(loose[0].amplitudes.size());
+    for (std::size_t m = 0; m < n; ++m)
+      amplitudes += amount[m] * loose[m].amplitudes;
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      u[p] -= bodies->displacements(p, amplitudes);
   }
 
   // Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of what is.
@@ -416,10 +453,11 @@ namespace slipstick::tfeti
 
   DualProblem::Recovery DualProblem::recover(const DistributedVector &x, const std::vector<bool> &free) const
   {
-    const auto        loose = bodies->free(free);
-    const auto        fixed = loose.empty() ? free : rows_that_fix(loose, x, free);
+    const auto        loose      = bodies->free(free);
+    std::vector<bool> fixed      = free;
+    const bool        is_at_rest = loose.empty() || rows_that_fix(loose, x, fixed);
     const Projector   on_free(*projector, fixed, comm, std::vector<qp::Tie>(), metric);
-    Recovery          result{{}, zero()};
+    Recovery          result{{}, zero(), {}};
     DistributedVector step{zero()};
     result.multipliers = x;
     for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
@@ -437,6 +475,11 @@ namespace slipstick::tfeti
       }
 
     fit_motions(on_free, fixed, result);
+    if (!is_at_rest)
+      {
+        remove_motions(loose, result.u);
+        result.unresisted = loose;
+      }
     if (!loose.empty())
       slide_apart(loose, free, x, result);
     return result;

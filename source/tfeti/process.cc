@@ -42,7 +42,7 @@ namespace slipstick::tfeti
         omp_set_max_active_levels(0);
     }
 
-    /// Open MPI 4 at the price of what the run needs; what the user has set wins.
+    /// Open MPI 4 and 5 at the price of what the run needs; what the user has set wins, unknown names are ignored.
     void prepare_open_mpi()
     {
       const auto set  = [](const char *name, const char *value) { setenv(name, value, 0); };
@@ -59,30 +59,34 @@ namespace slipstick::tfeti
         {
           set("OMPI_MCA_pml", "ob1");
           set("OMPI_MCA_btl", is_alone ? "self" : "^ofi,openib,uct,usnic");
+          // 5 complains on every rank where the node's interfaces do not reach each other (open-mpi/ompi#14079)
+          set("OMPI_MCA_btl_tcp_if_include", "lo");
         }
     }
   } // namespace
 
   struct Process::Libraries
   {
-    Libraries(int &argc, char **&argv)
-      : mpi(argc, argv, 1)
+    Libraries()
+      : mpi(n_arguments, arguments, 1)
       , tpetra(&n_arguments, &arguments)
     {}
 
+    // Kokkos, below Tpetra, and PETSc, below deal.II, have options of their own (and a --help), and PETSc complains of
+    // others: they get to see a name only
+    char name[10] = "slipstick", *names[2] = {name, nullptr}, **arguments = names;
+    int  n_arguments = 1;
+
     dealii::Utilities::MPI::MPI_InitFinalize mpi;
-    // Kokkos, below Tpetra, has options of its own (and a --help): it gets to see a name only
-    char               name[10] = "slipstick", *names[2] = {name, nullptr}, **arguments = names;
-    int                n_arguments = 1;
-    Tpetra::ScopeGuard tpetra;
+    Tpetra::ScopeGuard                       tpetra;
   };
 
-  Process::Process(int &argc, char **&argv, const unsigned int n_threads, const bool opens_regions_)
+  Process::Process(const unsigned int n_threads, const bool opens_regions_)
   {
     opens_regions = opens_regions_;
     use_threads(n_threads);
     prepare_open_mpi();
-    libraries = std::make_unique<Libraries>(argc, argv);
+    libraries = std::make_unique<Libraries>();
   }
 
   Process::~Process() = default;

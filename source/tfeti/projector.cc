@@ -4,6 +4,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
 #include <array>
@@ -14,17 +15,20 @@ namespace slipstick::tfeti
 {
   namespace
   {
+    constexpr unsigned int most_motions = 6; // rigid ones of a solid in space
+
     /// Column of G at one row, as far as one subdomain makes it.
     struct ColumnPart
     {
-      std::uint64_t       row   = 0; // global
-      long long           first = 0; // global number of the subdomain's first rigid motion
-      std::vector<double> values;
+      std::uint64_t                    row   = 0; // global
+      long long                        first = 0; // global number of the subdomain's first rigid motion
+      unsigned int                     size  = 0; // of the values: its rigid motions
+      std::array<double, most_motions> values{};
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)
       {
-        archive &row &first &values;
+        archive &row &first &size &values;
       }
     };
 
@@ -32,30 +36,27 @@ namespace slipstick::tfeti
     class Gram
     {
     public:
-      /// Adds the column that parts (of different subdomains, in ascending order) make up.
+      /// Adds the column that parts (of different subdomains, in ascending order) make up; with weight 0 its pattern alone.
       void add(const ColumnPart *begin, const ColumnPart *end, const double weight)
       {
         for (const ColumnPart *a = begin; a != end; ++a)
           for (const ColumnPart *b = a; b != end; ++b)
             {
               Eigen::MatrixXd &sum = block(*a, *b);
-              for (unsigned int j = 0; j < b->values.size(); ++j)
-                for (unsigned int i = 0; i < a->values.size(); ++i)
+              for (unsigned int j = 0; j < b->size; ++j)
+                for (unsigned int i = 0; i < a->size; ++i)
                   sum(i, j) += weight * a->values[i] * b->values[j];
             }
       }
 
+      /// Lower triangle.
       CoarseSolver::Entries entries() const
       {
         CoarseSolver::Entries result;
         for (const auto &[position, sum] : blocks)
           for (unsigned int i = 0; i < sum.rows(); ++i)
-            for (unsigned int j = 0; j < sum.cols(); ++j)
-              {
-                result.push_back({position.first + i, position.second + j, sum(i, j)});
-                if (position.first != position.second)
-                  result.push_back({position.second + j, position.first + i, sum(i, j)});
-              }
+            for (unsigned int j = position.first == position.second ? i : 0; j < sum.cols(); ++j)
+              result.push_back({position.second + j, position.first + i, sum(i, j)});
         return result;
       }
 
@@ -68,7 +69,7 @@ namespace slipstick::tfeti
             return *sum;
         auto &sum = blocks[position];
         if (sum.size() == 0)
-          sum = Eigen::MatrixXd::Zero(a.values.size(), b.values.size());
+          sum = Eigen::MatrixXd::Zero(a.size, b.size);
         recent[next++ % recent.size()] = {position, &sum};
         return sum;
       }
@@ -93,26 +94,27 @@ namespace slipstick::tfeti
           if (same == column.end())
             column.push_back(std::move(part));
           else
-            for (unsigned int i = 0; i < part.values.size(); ++i)
+            for (unsigned int i = 0; i < part.size; ++i)
               same->values[i] += part.values[i];
         }
       std::sort(column.begin(), column.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
       return column;
     }
 
-    /// G of a subdomain: the rigid motions' share in every row that touches it.
-    std::map<unsigned int, Eigen::VectorXd> columns_of(const SubdomainSystem &subdomain, const LocalGluing &gluing)
+    /// G of a subdomain: the rigid motions' share in every row that touches it, and those rows (local ones, ascending).
+    std::pair<std::vector<unsigned int>, Eigen::MatrixXd> columns_of(const SubdomainSystem &subdomain,
+                                                                     const LocalGluing     &gluing)
     {
-      std::map<unsigned int, Eigen::VectorXd> columns; // by local row
+      std::vector<unsigned int> rows;
       for (const auto &entry : gluing.entries)
-        {
-          const Eigen::VectorXd part =
-            entry.value * subdomain.kernel().row(subdomain.touched()[entry.touched]).transpose();
-          const auto [position, is_new] = columns.emplace(entry.row, part);
-          if (!is_new)
-            position->second += part;
-        }
-      return columns;
+        rows.push_back(entry.row);
+      std::sort(rows.begin(), rows.end());
+      rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+      Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(subdomain.kernel().cols(), rows.size());
+      for (const auto &entry : gluing.entries)
+        columns.col(std::lower_bound(rows.begin(), rows.end(), entry.row) - rows.begin()) +=
+          entry.value * subdomain.kernel().row(subdomain.touched()[entry.touched]).transpose();
+      return {std::move(rows), std::move(columns)};
     }
   } // namespace
 
@@ -182,22 +184,19 @@ namespace slipstick::tfeti
       unsigned int next = 0;
       for (unsigned int p = 0; p < subdomains.size(); ++p)
         {
-          const auto columns = columns_of(*subdomains[p], gluing[p]);
-          Block      block;
-          block.first = next;
-          block.values.resize(subdomains[p]->kernel().cols(), columns.size());
-          for (const auto &[row, column] : columns)
+          Block block;
+          block.first                        = next;
+          std::tie(block.rows, block.values) = columns_of(*subdomains[p], gluing[p]);
+          for (unsigned int k = 0; k < block.rows.size(); ++k)
             {
-              ColumnPart part;
+              const unsigned int row = block.rows[k];
+              ColumnPart         part;
               part.row   = rows->local_to_global(row);
               part.first = first + next;
-              part.values.assign(column.data(), column.data() + column.size());
-              if (row < rows->locally_owned_size())
-                parts.push_back(std::move(part));
-              else
-                to_send[owner_of_ghost[row - rows->locally_owned_size()]].push_back(std::move(part));
-              block.values.col(block.rows.size()) = column;
-              block.rows.push_back(row);
+              part.size  = block.values.rows();
+              std::copy_n(block.values.col(k).data(), part.size, part.values.begin());
+              (row < rows->locally_owned_size() ? parts : to_send[owner_of_ghost[row - rows->locally_owned_size()]])
+                .push_back(part);
             }
           next += subdomains[p]->kernel().cols();
           blocks.push_back(std::move(block));
@@ -216,9 +215,9 @@ namespace slipstick::tfeti
       find_changing_motions(rows);
     }
 
-    void add(const unsigned int row, const std::vector<double> &metric, Gram &gram) const
+    void add(const unsigned int row, const double weight, Gram &gram) const
     {
-      gram.add(parts.data() + first_part[row], parts.data() + first_part[row + 1], metric.empty() ? 1. : metric[row]);
+      gram.add(parts.data() + first_part[row], parts.data() + first_part[row + 1], weight);
     }
 
     /// The staying rows' part of G M G', eliminated; that of one metric at a time is kept.
@@ -231,7 +230,7 @@ namespace slipstick::tfeti
         {
           Gram gram;
           for (const unsigned int r : staying)
-            add(r, metric, gram);
+            add(r, metric.empty() ? 1. : metric[r], gram);
           of_staying        = CoarseSolver::eliminate(gram.entries(), changes, comm);
           metric_of_staying = metric;
         }
@@ -317,15 +316,15 @@ namespace slipstick::tfeti
       }
     Gram gram;
     for (const unsigned int r : G->changing)
-      if (indicator.local_element(r) != 0 && tied.count(r) == 0)
-        {
-          if (const auto column = with_ties.find(r); column != with_ties.end())
-            gram.add(column->second.data(),
-                     column->second.data() + column->second.size(),
-                     metric.empty() ? 1. : metric[r]);
-          else
-            G->add(r, metric, gram);
-        }
+      {
+        const double weight = indicator.local_element(r) == 0 || tied.count(r) > 0 ? 0.
+                              : metric.empty()                                     ? 1.
+                                                                                   : metric[r];
+        if (const auto column = with_ties.find(r); column != with_ties.end())
+          gram.add(column->second.data(), column->second.data() + column->second.size(), weight);
+        else
+          G->add(r, weight, gram); // without weight too: all faces have one pattern
+      }
     coarse = std::make_unique<CoarseSolver>(G->staying_part(metric, comm), gram.entries());
   }
 

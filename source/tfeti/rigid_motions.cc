@@ -11,8 +11,6 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // Eigenvalues below this part of the largest count as zero.
-    constexpr double singular_tolerance = 1e-12;
     // A component of a motion is named when it is at least this part of the largest.
     constexpr double named_part = 1e-3;
     // A motion is called a rotation when that moves the rim of the body by this part of the translation or more.
@@ -124,7 +122,7 @@ namespace slipstick::tfeti
                         Eigen::Map<const Eigen::VectorXd>(part.values.data(), part.values.size())});
   }
 
-  std::vector<RigidMotion> BodyMotions::free(const std::vector<bool> &active) const
+  std::vector<RigidMotion> BodyMotions::free(const std::vector<bool> &active, const double resistance) const
   {
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n_motions, n_motions);
     for (auto begin = shares.begin(); begin != shares.end();)
@@ -143,7 +141,7 @@ namespace slipstick::tfeti
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
     std::vector<RigidMotion>                             motions;
     for (unsigned int i = 0; i < n_motions; ++i)
-      if (eigen.eigenvalues()[i] <= singular_tolerance * std::max(eigen.eigenvalues()[n_motions - 1], 1.))
+      if (eigen.eigenvalues()[i] <= resistance * std::max(eigen.eigenvalues()[n_motions - 1], 1.))
         motions.push_back({eigen.eigenvectors().col(i), 0., frames});
     if (motions.empty()) // as nearly always: the loads are not asked
       return motions;
@@ -153,7 +151,10 @@ namespace slipstick::tfeti
         subdomain->body_modes().transpose() * (subdomain->kernel().transpose() * subdomain->load());
     MPI_Allreduce(MPI_IN_PLACE, load.data(), load.size(), MPI_DOUBLE, MPI_SUM, comm);
     for (auto &motion : motions)
-      motion.work = load.norm() > 0 ? motion.amplitudes.dot(load) / load.norm() : 0.;
+      {
+        motion.load = motion.amplitudes.dot(load);
+        motion.work = load.norm() > 0 ? motion.load / load.norm() : 0.;
+      }
     return motions;
   }
 

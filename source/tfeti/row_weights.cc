@@ -29,6 +29,13 @@ namespace slipstick::tfeti
       }
     };
 
+    /// One summand at its place among the owned rows.
+    struct Entry
+    {
+      unsigned int row, column;
+      double       value;
+    };
+
     /// Summands of W that one subdomain gives: pairs of rows that touch the same unknown.
     std::vector<Weight> weights_of(const SubdomainSystem &subdomain, const LocalGluing &gluing, const Partitioner &rows)
     {
@@ -51,6 +58,7 @@ namespace slipstick::tfeti
                          const MPI_Comm                                       comm)
   {
     std::map<unsigned int, std::vector<Weight>> to_send;
+    std::vector<Weight>                         own;
     const auto                                  owners = owners_of_ghosts(rows);
     const unsigned int                          rank   = dealii::Utilities::MPI::this_mpi_process(comm);
     const unsigned int                          n      = rows->locally_owned_size();
@@ -58,12 +66,14 @@ namespace slipstick::tfeti
       for (const auto &weight : weights_of(*subdomains[p], gluing[p], rows))
         {
           const unsigned int local = rows->global_to_local(weight.row);
-          to_send[local < n ? rank : owners[local - n]].push_back(weight);
+          (local < n ? own : to_send[owners[local - n]]).push_back(weight);
         }
+    auto received  = dealii::Utilities::MPI::some_to_some(comm, to_send);
+    received[rank] = std::move(own);
 
-    // sums, and the groups of rows that hang together
-    std::map<std::pair<unsigned int, unsigned int>, double> sums;
-    std::vector<unsigned int>                               root(n);
+    // the groups of rows that hang together, and the entries of W
+    std::vector<Entry>        entries;
+    std::vector<unsigned int> root(n), size(n, 0);
     std::iota(root.begin(), root.end(), 0);
     const auto find = [&root](unsigned int r) {
       while (root[r] != r)
@@ -71,41 +81,55 @@ namespace slipstick::tfeti
       return r;
     };
     bool is_local = true;
-    for (const auto &[from, weights] : dealii::Utilities::MPI::some_to_some(comm, to_send))
+    for (const auto &[from, weights] : received)
       for (const auto &weight : weights)
         {
           is_local = is_local && rows->in_local_range(weight.column);
           if (!rows->in_local_range(weight.column))
             continue;
-          const unsigned int r = rows->global_to_local(weight.row), c = rows->global_to_local(weight.column);
-          sums[{r, c}] += weight.value;
-          const unsigned int a = find(r), b = find(c);
+          entries.push_back({rows->global_to_local(weight.row), rows->global_to_local(weight.column), weight.value});
+          const unsigned int a = find(entries.back().row), b = find(entries.back().column);
           root[std::max(a, b)] = std::min(a, b);
         }
     if (dealii::Utilities::MPI::min(static_cast<int>(is_local), comm) == 0)
       throw NumericalError("rows that share a node are owned by different ranks",
                            "this is a bug of slipstick, please report it");
-
-    std::map<unsigned int, unsigned int>               block_of_root;
-    std::vector<std::pair<unsigned int, unsigned int>> place(n); // block, position in it
     for (unsigned int r = 0; r < n; ++r)
+      ++size[find(r)];
+
+    constexpr unsigned int    single = -1;
+    std::vector<unsigned int> block_of(n, single), position(n); // of a root; of a row in its block
+    std::vector<double>       weight_of_single(n, 0.);
+    for (unsigned int r = 0; r < n; ++r)
+      if (size[find(r)] == 1)
+        single_rows.push_back(r);
+      else
+        {
+          if (find(r) == r)
+            {
+              block_of[r] = blocks.size();
+              blocks.emplace_back();
+            }
+          auto &of_block = blocks[block_of[find(r)]].rows; // the root is the first row
+          position[r]    = of_block.size();
+          of_block.push_back(r);
+        }
+    std::vector<std::vector<Eigen::Triplet<double>>> triplets(blocks.size());
+    for (const Entry &entry : entries)
+      if (const unsigned int b = block_of[find(entry.row)]; b == single)
+        weight_of_single[entry.row] += entry.value;
+      else
+        triplets[b].emplace_back(position[entry.row], position[entry.column], entry.value);
+    for (const unsigned int r : single_rows)
       {
-        const auto [entry, is_new] = block_of_root.emplace(find(r), blocks.size());
-        if (is_new)
-          blocks.emplace_back();
-        place[r] = {entry->second, blocks[entry->second].rows.size()};
-        blocks[entry->second].rows.push_back(r);
+        single_weights.push_back(weight_of_single[r]);
+        inverse.add(r, weight_of_single[r]);
       }
-    std::vector<std::vector<Eigen::Triplet<double>>> entries(blocks.size());
-    for (const auto &[position, value] : sums)
-      entries[place[position.first].first].emplace_back(place[position.first].second,
-                                                        place[position.second].second,
-                                                        value);
     for (unsigned int b = 0; b < blocks.size(); ++b)
       {
         blocks[b].matrix.resize(blocks[b].rows.size(), blocks[b].rows.size());
-        blocks[b].matrix.setFromTriplets(entries[b].begin(), entries[b].end());
-        inverse.add(blocks[b].rows, blocks[b].matrix);
+        blocks[b].matrix.setFromTriplets(triplets[b].begin(), triplets[b].end());
+        blocks[b].is_regular = inverse.add(blocks[b].rows, blocks[b].matrix);
       }
   }
 
@@ -136,6 +160,8 @@ namespace slipstick::tfeti
     std::vector<bool> result(active.size(), false);
     for (const auto &full : blocks)
       {
+        if (full.is_regular) // and so is each part of it
+          continue;
         const Block part = restricted(full, [&active](const unsigned int row) { return active[row]; });
         if (part.rows.empty())
           continue;
@@ -155,29 +181,41 @@ namespace slipstick::tfeti
 
   std::vector<double> RowWeights::stiffnesses() const
   {
-    std::size_t n = 0;
+    std::size_t n = single_rows.size();
     for (const auto &block : blocks)
       n += block.rows.size();
     std::vector<double> result(n);
+    for (unsigned int k = 0; k < single_rows.size(); ++k)
+      result[single_rows[k]] = 1 / single_weights[k];
     for (const auto &block : blocks)
       for (unsigned int k = 0; k < block.rows.size(); ++k)
         result[block.rows[k]] = 1 / block.matrix.coeff(k, k);
     return result;
   }
 
-  void RowWeights::InverseBlocks::add(const std::vector<unsigned int> &rows, const Eigen::SparseMatrix<double> &matrix)
+  void RowWeights::InverseBlocks::add(const unsigned int row, const double weight)
+  {
+    single_rows.push_back(row);
+    single_values.push_back(1 / weight);
+  }
+
+  bool RowWeights::InverseBlocks::add(const std::vector<unsigned int> &rows, const Eigen::SparseMatrix<double> &matrix)
   {
     const unsigned int n = rows.size();
+    if (n == 1)
+      {
+        add(rows[0], matrix.coeff(0, 0));
+        return true;
+      }
     SemidefiniteFactor factor(matrix);
+    const bool         is_regular = factor.n_left_out() == 0;
     if (n > largest_dense_block)
       {
         sparse.push_back({rows, std::move(factor)});
-        return;
+        return is_regular;
       }
     Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(n, n);
-    if (n == 1)
-      inverse(0, 0) = 1 / matrix.coeff(0, 0);
-    else if (factor.n_left_out() == 0)
+    if (is_regular)
       inverse = Eigen::MatrixXd(matrix).llt().solve(inverse).eval();
     else
       for (unsigned int k = 0; k < n; ++k)
@@ -185,10 +223,13 @@ namespace slipstick::tfeti
     sizes.push_back(n);
     dense_rows.insert(dense_rows.end(), rows.begin(), rows.end());
     values.insert(values.end(), inverse.data(), inverse.data() + n * n);
+    return is_regular;
   }
 
   void RowWeights::InverseBlocks::apply(const double *x, double *y) const
   {
+    for (unsigned int k = 0; k < single_rows.size(); ++k)
+      y[single_rows[k]] = single_values[k] * x[single_rows[k]];
     const unsigned int *rows  = dense_rows.data();
     const double       *value = values.data();
     for (const unsigned int n : sizes)
@@ -226,6 +267,9 @@ namespace slipstick::tfeti
     : weights(weights_)
   {
     const auto is_active = [&active](const unsigned int row) { return active.empty() || active[row]; };
+    for (const unsigned int row : weights.single_rows)
+      if (!is_active(row))
+        inactive.push_back(row);
     for (const auto &full : weights.blocks)
       {
         if (std::all_of(full.rows.begin(), full.rows.end(), is_active))

@@ -1,7 +1,7 @@
 """Runs slipstick as a user does and reads what it leaves. Standard library only.
 
-Where things are comes from the environment: SLIPSTICK (the program), MPIEXEC, SLIPSTICK_SOURCE_DIR; without it from
-the place of this file and a build in build/.
+Where things are comes from the environment: SLIPSTICK (the program), SLIPSTICK_SOURCE_DIR; without it from the place of
+this file and a build in build/. MPIEXEC is read by scripts/mpirun.
 """
 
 import atexit
@@ -16,22 +16,13 @@ import tempfile
 
 SOURCE = pathlib.Path(os.environ.get('SLIPSTICK_SOURCE_DIR', pathlib.Path(__file__).resolve().parents[2]))
 PROGRAM = os.environ.get('SLIPSTICK', str(SOURCE / 'build' / 'slipstick'))
-MPIEXEC = os.environ.get('MPIEXEC', 'mpirun')
 # Seconds for one run: all of them end within a few, also on a busy machine; a hang is a failure. Sanitizers take longer.
 TIME_LIMIT = float(os.environ.get('SLIPSTICK_TIME_LIMIT', 60))
 
 WORK = pathlib.Path(tempfile.mkdtemp(prefix='slipstick-cases-'))
 atexit.register(shutil.rmtree, WORK, ignore_errors=True)
 
-# One thread a rank; no pinning and no busy waiting, since tests share the cores.
-ENVIRONMENT = dict(os.environ,
-                   OMP_NUM_THREADS='1',
-                   OPENBLAS_NUM_THREADS='1',
-                   OMPI_MCA_mpi_yield_when_idle='1',
-                   OMPI_MCA_hwloc_base_binding_policy='none',
-                   OMPI_MCA_rmaps_base_oversubscribe='1',
-                   OMPI_ALLOW_RUN_AS_ROOT='1',
-                   OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
+ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1')
 
 
 def shipped(name):
@@ -47,11 +38,7 @@ def new_path(name):
 def launcher(ranks):
     if ranks == 1:
         return []  # started alone
-    # --quiet: no report of mpirun itself that a rank returned a status
-    options = ['-n', str(ranks), '--quiet', '--oversubscribe']
-    if os.geteuid() == 0:
-        options.append('--allow-run-as-root')
-    return [MPIEXEC] + options
+    return [str(SOURCE / 'scripts' / 'mpirun'), '--shared-cores', '-n', str(ranks)]
 
 
 class Hang(AssertionError):

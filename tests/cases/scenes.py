@@ -18,7 +18,8 @@ def text(**kinds):
     if any('disc' == contact.get('Master') for contact in kinds.get('contacts', {}).values()):
         kinds.setdefault('obstacles', {'disc': DISC})
     lists = {'materials': 'Material', 'bodies': 'Body', 'obstacles': 'Obstacle', 'supports': 'Support',
-             'foundations': 'Foundation', 'tractions': 'Traction', 'contacts': 'Contact', 'body_forces': 'Body force'}
+             'foundations': 'Foundation', 'tractions': 'Traction', 'contacts': 'Contact', 'body_forces': 'Body force',
+             'point_loads': 'Point load'}
     lines = ['set Plane state = ' + kinds.pop('plane_state', 'plane stress')]
     sections = {}
     for kind, content in kinds.items():

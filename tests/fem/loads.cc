@@ -32,9 +32,9 @@ namespace
     for (const Cut &how : {whole(), blocks(3), metis(7)})
       for (const unsigned int degree : {1, 2})
         {
-          Scene tested                = cut(scene, how);
+          Scene tested                 = cut(scene, how);
           tested.discretization.degree = degree;
-          const auto found            = resultant(tested, t);
+          const auto found             = resultant(tested, t);
           for (const int k : {0, 1, 2})
             EXPECT_NEAR(found[k], expect[k], 1e-12 * (std::abs(expect[0]) + std::abs(expect[1]) + std::abs(expect[2])))
               << "component " << k << ", cut " << how.n << ", degree " << degree;
@@ -55,6 +55,21 @@ TEST(Loads, traction_given_as_formula)
   Scene scene = box(6);
   load(scene, 0, "top", "2 + x^2", "x*y");
   expect_resultant(scene, {{20 + 1000. / 3, 500, 10 * 1000. / 3 - 10 * (20 + 1000. / 3)}});
+}
+
+TEST(Loads, jumps_within_an_edge_are_integrated)
+{
+  Scene scene = box(6);
+  load(scene, 0, "top", "0", "-20*(x>2.3 && x<7.1)");
+  expect_resultant(scene, {{0, -96, -96 * 4.7}});
+}
+
+TEST(Loads, peaks_narrower_than_an_edge_are_found)
+{
+  const double force = 5 * std::sqrt(dealii::numbers::PI); // of 1000 exp(-((x - 4.4) / 0.005)^2)
+  Scene        scene = box(6);
+  load(scene, 0, "top", "0", "1000*exp(-((x-4.4)/0.005)^2)");
+  expect_resultant(scene, {{0, force, force * 4.4}});
 }
 
 TEST(Loads, traction_on_every_edge)

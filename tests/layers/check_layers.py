@@ -57,7 +57,7 @@ LIBRARIES = [
     ("CHOLMOD", r"(suitesparse/)?(cholmod|SuiteSparse_config|amd|colamd|camd|ccolamd)\.h$"),
     ("Trilinos", r"(trilinos/)?(Amesos2|Tpetra|Teuchos|Kokkos|Belos|Epetra|Amesos|Xpetra|Trilinos)"),
     ("zlib", r"zlib\.h$"),
-    ("POSIX", r"(sys/|unistd\.h$|fcntl\.h$|dlfcn\.h$)"),
+    ("POSIX", r"(sys/|unistd\.h$|fcntl\.h$|dlfcn\.h$|ext/stdio_filebuf\.h$)"),  # the last: a stream on a file descriptor
 ]
 
 # A matter of the build, not of a layer.

@@ -4,7 +4,11 @@
 #include "temporary_directory.h"
 
 #include <algorithm>
+#include <csignal>
 #include <stdexcept>
+
+#include <sys/resource.h>
+#include <unistd.h>
 
 using slipstick::InputError;
 using slipstick::output::OutputDirectory;
@@ -115,19 +119,44 @@ TEST_F(Directory, failing_content_leaves_the_file_from_before)
   EXPECT_EQ(n_files(root), 1);
 }
 
-TEST_F(Directory, full_disk_is_an_error_on_all_ranks)
+TEST_F(Directory, full_disk_is_bad_input_on_all_ranks_and_leaves_nothing)
 {
   const OutputDirectory directory(root, MPI_COMM_WORLD);
-  if (is_root())
-    std::filesystem::create_symlink("/dev/full", root / "x.tmp");
+  // files of at most 4 KB, which is as if the disk were full
+  rlimit before;
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small = {4096, before.rlim_max};
+  signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &small);
+  std::string message;
   try
     {
-      directory.write_from_root("x", [](std::ostream &out) { out << "content"; });
-      ADD_FAILURE() << "the full disk went unnoticed";
+      directory.write_from_root("x", [](std::ostream &out) { out << std::string(100000, 'x'); });
     }
-  catch (const std::runtime_error &error)
+  catch (const InputError &error)
     {
-      EXPECT_NE(std::string(error.what()).find("No space left"), std::string::npos) << error.what();
+      message = error.what();
     }
-  EXPECT_FALSE(std::filesystem::exists(root / "x"));
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_NE(message.find("File too large"), std::string::npos) << message;
+  EXPECT_EQ(n_files(root), 0);
+}
+
+TEST_F(Directory, links_are_not_followed_and_what_killed_runs_left_is_removed)
+{
+  const auto target = root / "elsewhere";
+  if (is_root())
+    {
+      std::ofstream(target) << "precious";
+      for (const char *name : {"x.tmp", ".slipstick-probe.tmp", "contact.csv.tmp"})
+        std::filesystem::create_symlink(target, root / name);
+      std::ofstream(root / "summary.json.999999999-0123abcd.tmp") << "half";
+      std::ofstream(root / ("summary.json." + std::to_string(getpid()) + "-0123abcd.tmp")) << "in use";
+    }
+  MPI_Barrier(MPI_COMM_WORLD);
+  const OutputDirectory directory(root, MPI_COMM_WORLD);
+  directory.write_from_root("x", [](std::ostream &out) { out << "content"; });
+  EXPECT_EQ(content(target), "precious");
+  EXPECT_EQ(content(root / "x"), "content");
+  EXPECT_EQ(n_files(root), 4); // these two, x.tmp, which is not ours, and the one of a process that lives
 }

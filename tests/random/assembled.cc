@@ -136,6 +136,9 @@ namespace slipstick::random
     }
   } // namespace
 
+  // Supports hold a contact node inside the other side when it is by more than this part of the largest body.
+  constexpr double held_inside = 1e-6;
+
   Problem assembled(scene::Scene<2> scene, const MPI_Comm comm, const bool untorn)
   {
     constexpr double t = 1;
@@ -145,9 +148,10 @@ namespace slipstick::random
     const fem::Spaces<2> spaces(mesh, scene.discretization.degree);
     fem::check_overlap(scene, mesh, spaces);
     fem::check_obstacle_pairs(scene, mesh, spaces);
-    const auto matrices    = fem::assemble(scene, mesh, spaces, t);
-    const auto constraints = fem::contact_constraints(scene, mesh, spaces, t);
-    const auto numbering   = number_nodes(mesh, matrices, constraints, scene.bodies.size());
+    const auto  matrices    = fem::assemble(scene, mesh, spaces, t);
+    const auto  all_rows    = fem::contact_rows(scene, mesh, spaces, t, std::numeric_limits<double>::infinity());
+    const auto &constraints = all_rows.active;
+    const auto  numbering   = number_nodes(mesh, matrices, constraints, scene.bodies.size());
 
     Problem problem;
     add_bodies(mesh, spaces, matrices, numbering, problem);
@@ -193,6 +197,14 @@ namespace slipstick::random
             }
           problem.nodes.push_back(node);
         }
+    for (const auto &point : all_rows.held.points)
+      {
+        const auto &contact = point.contact;
+        if (point.place == tfeti::invalid_row) // else it is there already
+          problem.nodes.push_back({contact.pair, {{contact.position[0], contact.position[1]}}, contact.traction_area});
+        if (!point.is_bonded && point.is_known && point.closing - contact.gap > held_inside * problem.size)
+          problem.is_held_inside = true;
+      }
     return problem;
   }
 } // namespace slipstick::random

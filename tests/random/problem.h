@@ -62,6 +62,7 @@ namespace slipstick::random
     std::vector<HeldDirection>   held;
     std::vector<Row>             rows;
     std::vector<ContactNode>     nodes;
-    double                       size = 0; // of the largest body
+    double                       size           = 0;     // of the largest body
+    bool                         is_held_inside = false; // a contact node in the other side, by supports alone
   };
 } // namespace slipstick::random

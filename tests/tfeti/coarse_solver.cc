@@ -94,7 +94,8 @@ TEST(CoarseSolver, eliminates_what_stays_once_for_several_changes_elsewhere)
       std::vector<bool>  changes(n_owned);
       for (unsigned int i = 0; i < n_owned; ++i)
         changes[i] = (first + i) % every == 1;
-      A(1, 1) -= 2; // A alone need not be definite where it changes
+      A.row(1).setZero(); // A alone need not be definite where it changes
+      A.col(1).setZero();
       const auto staying = CoarseSolver::eliminate(share_of(A), changes, MPI_COMM_WORLD);
       for (const unsigned int seed : {1, 2, 3})
         {
@@ -108,12 +109,53 @@ TEST(CoarseSolver, eliminates_what_stays_once_for_several_changes_elsewhere)
                 if (rank() == (i + j) % n_ranks())
                   change.push_back({i, j, value});
               }
-          const CoarseSolver    solver(staying, change);
+          const CoarseSolver    solver(staying, change), fresh(n_owned, share_of(B), MPI_COMM_WORLD);
           const Eigen::VectorXd b = random_vector(n, seed), x = B.ldlt().solve(b);
-          EXPECT_LT((solver.solve(b.segment(first, n_owned)) - x.segment(first, n_owned)).norm(), 1e-12 * x.norm())
-            << every;
+          const auto            own = [&](const Eigen::VectorXd &all) { return all.segment(first, n_owned); };
+          const Eigen::VectorXd y   = solver.solve(own(b));
+          EXPECT_LT((y - own(x)).norm(), 1e-12 * x.norm()) << every;
+          EXPECT_LT((y - fresh.solve(own(b))).norm(), 1e-12 * x.norm()) << every;
         }
     }
+}
+
+TEST(CoarseSolver, units_of_the_unknowns_do_not_matter)
+{
+  const unsigned int    n_owned = 20, n = n_owned * n_ranks(), first = n_owned * rank();
+  const Eigen::MatrixXd A     = sparse_matrix(n);
+  const Eigen::VectorXd units = Eigen::pow(10., 9 * random_vector(n, 5).array());
+  std::vector<bool>     changes(n_owned);
+  changes[2] = true;
+  const auto staying =
+    CoarseSolver::eliminate(share_of(units.asDiagonal() * A * units.asDiagonal()), changes, MPI_COMM_WORLD);
+  const Eigen::VectorXd b = random_vector(n, 1), x = A.ldlt().solve(b);
+  const Eigen::VectorXd y = CoarseSolver(staying, {}).solve(units.cwiseProduct(b).segment(first, n_owned));
+  EXPECT_LT((y.cwiseProduct(units.segment(first, n_owned)) - x.segment(first, n_owned)).norm(), 1e-12 * x.norm());
+}
+
+TEST(CoarseSolver, factors_of_a_grid_hold_n_log_n_numbers_and_what_changes_adds_n)
+{
+  const unsigned int    m = 40, n = m * m;
+  CoarseSolver::Entries laplacian;
+  const auto            add = [&](const unsigned int i, const unsigned int j, const double value) {
+    if (rank() == 0)
+      laplacian.push_back({std::max(i, j), std::min(i, j), value});
+  };
+  for (unsigned int i = 0; i < n; ++i)
+    {
+      add(i, i, 4.1);
+      if (i % m > 0)
+        add(i, i - 1, -1);
+      if (i >= m)
+        add(i, i - m, -1);
+    }
+  std::vector<bool> changes(rank() == 0 ? n : 0);
+  std::fill_n(changes.begin(), rank() == 0 ? m : 0, true); // one side
+  const auto         staying = CoarseSolver::eliminate(laplacian, changes, MPI_COMM_WORLD);
+  const CoarseSolver one(staying, {}), both(rank() == 0 ? n : 0, laplacian, MPI_COMM_WORLD);
+  EXPECT_LT(both.n_nonzeros(), 3 * n * std::log2(n)); // the band of a row by row ordering has m n = 3.8 of them
+  // three dense matrices of m^2 = n numbers, and the fill of a side that comes last; columns of A^-1 would be m n = 40 n
+  EXPECT_LT(one.n_nonzeros(), both.n_nonzeros() + 8 * n);
 }
 
 TEST(CoarseSolver, matrix_without_rows_is_no_error)
@@ -123,13 +165,19 @@ TEST(CoarseSolver, matrix_without_rows_is_no_error)
   EXPECT_EQ(solver.solve(Eigen::VectorXd(0)).size(), 0);
 }
 
-TEST(CoarseSolver, singular_matrix_is_an_error_on_all_ranks)
+TEST(CoarseSolver, singular_and_indefinite_matrices_are_errors_on_all_ranks)
 {
-  const Eigen::VectorXd v        = random_vector(6, 3);
-  const bool            is_owner = rank() == 0;
-  message_on_all_ranks<NumericalError>([&] {
-    Eigen::MatrixXd A = Eigen::MatrixXd::Identity(6, 6);
-    A(3, 3)           = 0;
-    CoarseSolver(is_owner ? 6 : 0, share_of(A), MPI_COMM_WORLD);
-  });
+  const bool is_owner = rank() == 0;
+  for (const double pivot : {0., -0.1})
+    for (const bool changes : {false, true}) // where all changes, and where what stays is eliminated
+      for (const bool where_it_changes : {false, true})
+        message_on_all_ranks<NumericalError>([&] {
+          Eigen::MatrixXd A = Eigen::MatrixXd::Identity(60, 60);
+          A(30, 31) = A(31, 30) = 0.5;
+          A(30, 30)             = pivot + (pivot == 0 ? 0.25 : 0.); // less 0.25, once 31 is eliminated
+          std::vector<bool> changing(is_owner ? 60 : 0, changes);
+          if (is_owner && where_it_changes)
+            changing[30] = true;
+          const CoarseSolver solver(CoarseSolver::eliminate(share_of(A), changing, MPI_COMM_WORLD), {});
+        });
 }

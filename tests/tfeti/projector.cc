@@ -133,6 +133,33 @@ TEST(Projector, agrees_with_a_dense_one_on_active_rows)
       }
 }
 
+TEST(Projector, restrictions_of_one_projector_agree_with_dense_ones_in_any_order)
+{
+  const auto no_friction = [](const tfeti::RowKind kind) { return kind != tfeti::RowKind::tangential; };
+  const auto all         = [](const tfeti::RowKind) { return true; };
+  for (const auto &[name, scene] : scenes())
+    {
+      const Projection      tested(scene, equality);
+      const Dense           whole(tested.torn);
+      const Eigen::VectorXd x = tested.random(1);
+      for (const auto &takes_part : std::vector<std::function<bool(tfeti::RowKind)>>{all, equality, no_friction, all})
+        {
+          std::vector<bool> active;
+          for (const auto kind : tested.torn.constraints.kind)
+            active.push_back(takes_part(kind));
+          Eigen::MatrixXd G = whole.G;
+          for (unsigned int r = 0; r < whole.kind.size(); ++r)
+            if (!takes_part(whole.kind[r]))
+              G.col(r).setZero();
+          const tfeti::Projector restricted(*tested.all, active, MPI_COMM_WORLD);
+          auto                   y = tested.dual->zero();
+          restricted.project_range(distributed(x, *tested.dual), y);
+          const Eigen::VectorXd Qx = G.transpose() * (G * G.transpose()).ldlt().solve(G * x);
+          EXPECT_LT((gathered(y, MPI_COMM_WORLD) - Qx).norm(), 1e-12 * x.norm()) << name;
+        }
+    }
+}
+
 TEST(Projector, particular_solution_is_the_smallest_one)
 {
   for (const auto &[name, scene] : scenes())

@@ -16,6 +16,7 @@ namespace slipstick::app
     std::vector<std::string>         overrides;        // "Section/Sub/Name=value"
     std::string                      output_directory; // default: output/<name of the case>
     bool                             check   = false;
+    bool                             force   = false;
     bool                             quiet   = false;
     bool                             verbose = false;
     std::optional<scene::ListFormat> list_parameters;

@@ -58,6 +58,11 @@ namespace slipstick::app
     {
       return *the_dual;
     }
+    /// Contact nodes of this rank whose gap supports prescribe.
+    const tfeti::HeldContacts &held_contacts() const
+    {
+      return held;
+    }
     /// Of the step solved last.
     const contact::DualSolution &solution() const
     {
@@ -125,12 +130,14 @@ namespace slipstick::app
     std::unique_ptr<fem::Spaces<dim>>   the_spaces;
     std::unique_ptr<tfeti::DualProblem> the_dual;
     tfeti::Constraints                  pruned; // normal rows of the contact nodes without multipliers
+    tfeti::HeldContacts                 held;   // contact nodes whose gap supports prescribe
     double                              kept_part;
     double                              factorization = 0;    // [s]
     double                              discretization_error; // last estimate in the step [sqrt(N mm)]
     contact::DualSolution               the_solution;
     std::unique_ptr<Answer>             accepted; // by the test of accuracy, in the step
     std::vector<Eigen::VectorXd>        u;        // of the last step
+    double                              largest_displacement = 0; // of the steps before [mm]
     std::vector<output::ConvergenceRow> rows;
   };
 } // namespace slipstick::app

@@ -62,21 +62,27 @@ namespace slipstick::contact
   struct CheckedContact
   {
     Checks                                    checks;
-    std::vector<ContactNode>                  nodes; // whose rows this rank owns
-    std::vector<std::array<std::uint64_t, 2>> keys;  // the mesh's names of these nodes
+    std::vector<ContactNode>                  nodes;       // whose rows this rank owns
+    std::vector<std::array<std::uint64_t, 2>> keys;        // the mesh's names of these nodes
+    std::vector<std::array<double, 3>>        held_forces; // on the HeldContacts::points of this rank [N]
   };
+
+  /// What the rows do not say of a contact node: its place.
+  ContactNode node_at(const tfeti::ContactPoint &point);
 
   /// @param u displacements of this rank's subdomains [mm].
   /// @param multipliers [N], balanced with u as DualProblem::recover returns them.
   /// @param slip_bound of every owned row [N].
   /// @param free owned rows whose multiplier is strictly inside its bounds: tells open from closed, stick from slip.
+  /// @param displacement_before the largest of the load steps before [mm]: what rounding leaves of it counts as none.
   /// Collective.
   CheckedContact check(const tfeti::DualProblem           &dual,
                        const tfeti::DistributedVector     &multipliers,
                        const std::vector<Eigen::VectorXd> &u,
                        const std::vector<double>          &slip_bound,
                        const std::vector<bool>            &free,
-                       const unsigned int                  n_bodies);
+                       const unsigned int                  n_bodies,
+                       const double                        displacement_before = 0);
 
   /// Sums over the nodes of all pairs, from the nodes of all ranks.
   std::vector<PairResult> pair_results(const std::vector<ContactNode> &nodes,

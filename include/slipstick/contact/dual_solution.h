@@ -1,10 +1,12 @@
 // What a solve of the dual problem returns, and what it is watched by.
 #pragma once
 
+#include <slipstick/qp/direction_store.h>
 #include <slipstick/qp/types.h>
 #include <slipstick/tfeti/dual_problem.h>
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,9 @@ namespace slipstick::contact
     unsigned int             fallbacks           = 0;
     unsigned int             friction_iterations = 0; // updates of the slip bounds
     double                   bound_change        = 0; // their last relative change
+
+    /// What is known of F from this solve and those that it started from: of use for any other with the same rows.
+    std::shared_ptr<qp::DirectionStore<tfeti::DistributedVector>> directions;
   };
 
   /// Asked about iterates, of which multipliers (within their bounds), slip bounds and free rows are filled: is the answer

@@ -5,6 +5,8 @@
 // tangential displacement of the slave relative to the other side. Traction acts on the slave body.
 #pragma once
 
+#include <slipstick/base/resultant.h>
+
 #include <array>
 #include <string>
 #include <vector>
@@ -53,6 +55,7 @@ namespace slipstick::contact
   struct PairResult
   {
     std::string pair;
+    Resultant   on_slave;             // of the tractions, at the slave nodes
     double      normal_force     = 0; // sum of pressure times area [N]
     double      tangential_force = 0; // [N]
     double      moment_mismatch  = 0; // sum of the moments on both sides [N mm]: the linearised gap leaves gap times

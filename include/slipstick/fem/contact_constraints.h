@@ -11,8 +11,9 @@ namespace slipstick::fem
   /// The rows of B, and those of the contact nodes that are left without any because they are far apart.
   struct ContactRows
   {
-    tfeti::Constraints active;
-    tfeti::Constraints pruned; // rows, blocks, kind, c of their normal rows
+    tfeti::Constraints  active;
+    tfeti::Constraints  pruned; // rows, blocks, kind, c of their normal rows
+    tfeti::HeldContacts held;
   };
 
   /// As contact_constraints(), but without rows for contact nodes whose gap exceeds the smallest one of their pair by

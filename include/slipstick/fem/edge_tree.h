@@ -3,6 +3,7 @@
 
 #include <slipstick/fem/surface.h>
 
+#include <boost/geometry/algorithms/distance.hpp>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>

@@ -16,14 +16,15 @@ namespace slipstick::fem
     /// A direction in which the displacement is prescribed.
     struct Held
     {
-      std::array<double, dim> direction{}; // unit length
-      double                  value = 0;   // [mm]
-      unsigned int            which = 0;   // component, or dim + k for the k-th along a normal
+      std::array<double, dim>   direction{}; // unit length
+      double                    value = 0;   // [mm]
+      unsigned int              which = 0;   // component, or dim + k for the k-th along a normal
+      std::vector<unsigned int> by; // who says so: as Side::condition, behind them contact pairs (bonds to obstacles)
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)
       {
-        archive &direction &value &which;
+        archive &direction &value &which &by;
       }
     };
 
@@ -82,6 +83,9 @@ namespace slipstick::fem
     {
       return !held.empty() || !areas.empty() || is_paired || !sides.empty();
     }
+
+    /// The smallest displacement with the values that are prescribed [mm].
+    dealii::Tensor<1, dim> held_displacement() const;
 
     /// The part of a displacement that supports leave free.
     dealii::Tensor<1, dim> free_part(const dealii::Tensor<1, dim> &direction) const;

@@ -5,13 +5,15 @@
 
 namespace slipstick::fem
 {
-  /// Prescribes the displacement along @p direction, unless the directions held already imply it.
+  /// Prescribes the displacement along @p direction, unless the directions held already imply it: then the force in the
+  /// nearest of these is shared with those that it is held @p by (as InterfaceNode::Held says).
   /// @throws InputError when they imply another value.
   template <int dim>
-  void hold(InterfaceNode<dim>           &node,
-            const dealii::Tensor<1, dim> &direction,
-            const double                  value,
-            const unsigned int            which);
+  void hold(InterfaceNode<dim>              &node,
+            const dealii::Tensor<1, dim>    &direction,
+            const double                     value,
+            const unsigned int               which,
+            const std::vector<unsigned int> &by);
 
   /// Turns the sides of a node that is complete into held directions and springs.
   /// @throws InputError as hold() does.

@@ -58,12 +58,14 @@ namespace slipstick::fem
     /// Nodes of pair k with a gap above limits[k] get no rows (where can_be_pruned()); they go to `pruned`.
     void limit_gaps(std::vector<double> limits);
 
-    /// Fills kind, c, compliance, label, contact points, interface_held and counts of the constraints.
+    /// Fills kind, c, compliance, label, contact points, reactions, interface_held and counts of the constraints.
     void build();
 
     std::vector<RowEntry> entries;
     tfeti::Constraints    pruned;         // kind and c of the normal rows of pruned nodes ...
     std::vector<RowEntry> pruned_entries; // ... and their entries
+    tfeti::HeldContacts   held;           // the same of nodes whose gap is prescribed
+    std::vector<RowEntry> held_entries;
     std::uint64_t         n_interface = 0;
 
   private:
@@ -84,14 +86,29 @@ namespace slipstick::fem
 
     std::vector<Touch> touches_of(const unsigned int node) const;
     bool touch_obstacle(const unsigned int node, const unsigned int pair, const double area, Touch &touch) const;
+    /// Gap, normal and area, of bonds too; false beyond the Reach.
+    bool place_on_obstacle(const unsigned int node, const unsigned int pair, const double area, Touch &touch) const;
+    /// What any touch of a node says of the node itself.
+    void complete(const unsigned int node, Touch &touch) const;
     bool touch_body(const unsigned int node, const unsigned int pair, const MortarRow<dim> &row, Touch &touch) const;
     void add_contact(const unsigned int node);
     void find_bonds();
     /// Row of a bond along the normal (0) or the tangent (1).
     Vector bond(const Touch &touch, const unsigned int direction) const;
     bool   is_pruned(const Touch &touch) const;
-    void   add_pruned(const Touch &touch, const Vector &coefficients);
-    void   choose_tangents(std::vector<Touch> &touches) const;
+    /// Do supports hold it apart, and does its law act where contact is closed alone?
+    bool is_held_open(const tfeti::HeldContacts::Point &point) const;
+    /// Adds @p coefficients to @p to as row @p row.
+    void fill(const unsigned int row, const Vector &coefficients, std::vector<RowEntry> &to) const;
+    void add_pruned(const Touch &touch, const Vector &coefficients);
+    void add_held(const unsigned int node, const Touch &touch, const Vector &coefficients);
+    void add_bonds_to_obstacles(const unsigned int node);
+    void add_held_rows(const unsigned int node);
+    void add_reaction(const unsigned int               node,
+                      const unsigned int               row,
+                      const Tensor                    &direction,
+                      const std::vector<unsigned int> &holders);
+    void choose_tangents(std::vector<Touch> &touches) const;
 
     /// Jump of the displacement along @p direction, slave less master.
     Vector jump(const Touch &touch, const Tensor &direction) const;

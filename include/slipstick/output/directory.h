@@ -14,7 +14,8 @@ namespace slipstick::output
   class OutputDirectory
   {
   public:
-    /// Creates @p path and its parents where missing and tries a file in it. Collective over @p comm: rank 0
+    /// Creates @p path and its parents where missing, removes what runs that were killed left half written there, and tries
+    /// a file in it. Collective over @p comm: rank 0
     /// does the work.
     /// @throws InputError on all ranks alike: empty path, a file in its place, no permission, a full or read-only disk.
     OutputDirectory(const std::string &path, const MPI_Comm comm);
@@ -27,7 +28,8 @@ namespace slipstick::output
 
     /// Writes the file @p name on this rank alone: @p content fills a stream beside it, then the file takes its name.
     /// A file of that name from before is replaced; when anything fails it stays, and nothing else is left behind.
-    /// @throws Error on this rank alone when the disk does not take it; what @p content throws passes through.
+    /// The file beside it is new, under a random name: nothing is written through a link that stands in its place.
+    /// @throws InputError on this rank alone when the disk does not take it; what @p content throws passes through.
     void write(const std::string &name, const std::function<void(std::ostream &)> &content) const;
 
     /// As write(), on rank 0 alone, and all ranks throw alike. @p content runs on rank 0 and must not communicate.

@@ -80,12 +80,27 @@ namespace slipstick::output
     double algebraic_relative       = 0;
   };
 
+  /// What one load, support or foundation exerts on the bodies.
+  struct NamedResultant
+  {
+    std::string name;
+    std::string kind; // "traction", "body force", "point load", "support", "foundation"
+    Resultant   sum;
+  };
+
+  /// In the order of the .prm.
+  struct ForceSummary
+  {
+    std::vector<NamedResultant> loads, supports, foundations;
+  };
+
   struct ResultSummary
   {
     double                           max_displacement = 0; // [mm]
     double                           max_von_mises    = 0; // [MPa]
     double                           strain_energy    = 0; // [N mm]
     std::vector<contact::PairResult> contact;
+    ForceSummary                     forces;
   };
 
   /// Wall clock of rank 0, which waits for the others where they meet [s]. The stages add up to the total.
@@ -120,6 +135,7 @@ namespace slipstick::output
     double                           max_displacement        = 0; // [mm]
     double                           strain_energy           = 0; // [N mm]
     std::vector<contact::PairResult> contact;
+    ForceSummary                     forces;
   };
 
   /// Counts are sums over the load steps, residuals the worst of them, results those of the last.

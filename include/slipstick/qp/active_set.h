@@ -1,62 +1,55 @@
-// The active set of semismooth Newton: which entries are at their bounds, and with bounds that follow the solution, where
-// these are. How the sets are used: semismooth_newton.h.
+// Which entries are at their bounds, where these are when they follow the solution, and by how much a point misses the
+// conditions of the solution. How the sets are used: semismooth_newton.h.
 #pragma once
 
 #include <slipstick/qp/box.h>
-#include <slipstick/qp/options.h>
-#include <slipstick/qp/pcpg.h>
+#include <slipstick/qp/kernels.h>
 #include <slipstick/qp/pressure_bounds.h>
 
 #include <cmath>
-#include <optional>
+#include <utility>
 #include <vector>
 
 namespace slipstick::qp
 {
-  /// Bounds that the method differentiates itself; all processes together have some or none of them.
-  struct CoupledBounds
+  /// Where multipliers may be: in a box, tangential ones within bounds that may follow normal ones (they are set in the
+  /// box as x moves). All refer to entries of this process.
+  template <typename Vector>
+  struct AdmissibleSet
   {
-    std::vector<PressureBound> bounds; // of owned entries
-    bool                       are_coupled = false;
+    Box<Vector>                box;
+    std::vector<PressureBound> pressure_bounds;
   };
 
   namespace detail
   {
-    // Entries as far beyond their bounds as the farthest, up to rounding, change with it.
-    constexpr double same_distance = 1 - 1e-9;
-    // The distance beyond which so many entries change is bisected so often, after steps by this factor.
-    constexpr unsigned int bisections      = 20;
-    constexpr double       first_reduction = 0.1;
-
     /// Of every owned entry: -1 at the lower bound, 1 at the upper, 0 free.
     using Sides = std::vector<signed char>;
 
+    /// The natural map x -> proj(x - s g) of an admissible set, and the set of entries that it puts on bounds. s: `step`
+    /// over the norm of F, times the weight of the entry, so that s g is a force of the size that closes g.
     template <typename Vector, typename Problem>
     class ActiveSet
     {
     public:
-      /// All are referred to.
-      ActiveSet(const Problem       &problem_,
-                const double         norm_,
-                const Box<Vector>   &box_,
-                const NewtonOptions &options_,
-                const CoupledBounds &coupled_)
+      /// @param problem is referred to. @param norm |PFP|.
+      ActiveSet(const Problem &problem_, const double norm_, AdmissibleSet<Vector> set_, const double step_)
         : problem(problem_)
         , norm(norm_)
-        , given_box(box_)
-        , options(options_)
-        , coupled(coupled_)
-        , moving_box(coupled_.are_coupled ? std::make_optional(box_) : std::nullopt)
-      {}
+        , step(step_)
+        , set(std::move(set_))
+        , weights(residual_weights(problem_, 0))
+        , active(local_size(set.box.lower))
+      {
+        for (std::size_t i = 0; i < active.size(); ++i)
+          bounded.push_back(set.box.lower.begin()[i] > -HUGE_VAL || set.box.upper.begin()[i] < HUGE_VAL);
+        for (const PressureBound &bound : set.pressure_bounds)
+          bounded[bound.tangential] = true;
+      }
 
       const Sides &sides() const
       {
         return active;
-      }
-
-      void become(Sides next)
-      {
-        active = std::move(next);
       }
 
       std::vector<bool> free() const
@@ -69,181 +62,187 @@ namespace slipstick::qp
 
       const Box<Vector> &box() const
       {
-        return moving_box ? *moving_box : given_box;
+        return set.box;
       }
 
-      // -1 at the lower bound, 1 at the upper, 0 free: of x - g / |PFP|. Entries with l = u are never free.
-      Sides next(const Vector &x, const Vector &g)
+      /// The set becomes that of x - s g. @return whether it is another one, on any process.
+      bool predict(const Vector &x, const Vector &g)
       {
-        Sides         set(local_size(x));
-        const auto    xi = x.begin(), gi = g.begin();
-        const double *weights = residual_weights(problem, 0);
-        const auto    place   = [&](const std::size_t i) {
-          const double t = xi[i] - options.set_step * (weights ? weights[i] : 1.) * gi[i] / norm;
-          set[i]         = t <= box().lower.begin()[i] ? -1 : t >= box().upper.begin()[i] ? 1 : 0;
-        };
-        for (std::size_t i = 0; i < set.size(); ++i)
-          place(i);
-        move_bounds(x, g, set, options.set_step / norm);
-        for (const PressureBound &bound : coupled.bounds)
-          place(bound.tangential);
-        return set;
+        const Sides before = active;
+        map(x, g, [](const std::size_t, const double, const double) {});
+        for (std::size_t i = 0; i < active.size(); ++i)
+          if (active[i] * before[i] < 0 && set.box.lower.begin()[i] < set.box.upper.begin()[i])
+            active[i] = 0; // from one bound to the other by way of the inside: s g is cut to the width
+        return problem.reduction().min(active == before ? 1. : 0.) < 1;
       }
 
-      // Of the changes to the next set those farthest beyond their bounds, at most `most` (and what rounding takes for as far
-      // as the farthest). Sets that change as a whole may cycle; one by one they do not for a given face's strictly convex
-      // problem but for ties (Murty 1988; Judice, Pires 1994), and the cycles seen end.
-      void keep_largest_changes(const Vector &x, const Vector &g, const double most, Sides &next) const
+      /// |x - proj(x - s g)| / s of the entries with bounds and |g| of the others, weighted: a residual as those of faces.
+      double natural_residual(const Vector &x, const Vector &g)
       {
-        const auto          l = box().lower.begin(), u = box().upper.begin();
-        const auto          xi = x.begin(), gi = g.begin();
-        const double       *weights = residual_weights(problem, 0);
-        std::vector<double> beyond(next.size(), 0.);
-        double              largest = 0;
-        for (std::size_t i = 0; i < next.size(); ++i)
-          if (next[i] != active[i])
+        const Sides before = active;
+        double      sum    = 0;
+        for (std::size_t i = 0; i < active.size(); ++i)
+          if (!bounded[i])
             {
-              const double t     = xi[i] - options.set_step * (weights ? weights[i] : 1.) * gi[i] / norm;
-              const double bound = (active[i] == 0 ? next[i] : active[i]) < 0 ? l[i] : u[i];
-              beyond[i]          = std::abs(t - bound);
-              largest            = std::max(largest, beyond[i]);
+              const double r = weight(i) * g.begin()[i];
+              sum += r * r;
             }
-        largest             = -problem.reduction().min(-largest);
-        const auto n_beyond = [&](const double distance) {
-          double n = 0;
-          for (std::size_t i = 0; i < next.size(); ++i)
-            n += next[i] != active[i] && beyond[i] >= distance;
-          return problem.reduction().sum(std::array<double, 1>{{n}})[0];
-        };
-        double below = 0, least = same_distance * largest; // bisected in the logarithm, to within some changes
-        if (most > 1)
-          for (unsigned int k = 0; k < bisections && n_beyond(least) < most; ++k)
-            {
-              const double middle = below > 0 ? std::sqrt(below * least) : first_reduction * least;
-              if (n_beyond(middle) <= most)
-                least = middle;
-              else
-                below = middle;
-            }
-        for (std::size_t i = 0; i < next.size(); ++i)
-          if (beyond[i] < least)
-            next[i] = active[i];
+        map(x, g, [&](const std::size_t, const double xi, const double projected) {
+          const double r = norm * (xi - projected) / step;
+          sum += r * r;
+        });
+        active = before;
+        return std::sqrt(problem.reduction().sum(std::array<double, 1>{{sum}})[0]);
       }
 
-      bool same_free(const Sides &next) const
+      /// |gP| (weighted), and |PFP| times the distance of x from its bounds, or from the bound that it should be at: as
+      /// much, at most, does |gP| rise when x is moved there.
+      std::array<double, 2> residuals(const Vector &x, const Vector &g)
       {
-        bool same = true;
-        for (std::size_t i = 0; i < next.size(); ++i)
-          same = same && (next[i] == 0) == (active[i] == 0);
-        return problem.reduction().min(same ? 1. : 0.) > 0;
-      }
-
-      // How many entries change; counts the present set besides.
-      double count_changes(const Sides &next)
-      {
-        const auto            l = box().lower.begin(), u = box().upper.begin();
-        std::array<double, 4> s{{0, 0, 0, 0}};
-        for (std::size_t i = 0; i < next.size(); ++i)
+        move_bounds(x);
+        std::array<double, 2> sum{{0, 0}};
+        for (std::size_t i = 0; i < active.size(); ++i)
           {
-            s[0] += next[i] != active[i] && l[i] < u[i];
-            s[1] += l[i] > -HUGE_VAL || u[i] < HUGE_VAL;
-            s[2] += active[i] < 0;
-            s[3] += active[i] > 0;
+            const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i], xi = x.begin()[i],
+                         gi = g.begin()[i];
+            const double gp = active[i] == 0 ? gi : !(l < u) ? 0. : active[i] < 0 ? std::min(gi, 0.) : std::max(gi, 0.);
+            const double out = xi - (active[i] < 0 ? l : active[i] > 0 ? u : clip(xi, l, u));
+            sum[0] += weight(i) * weight(i) * gp * gp;
+            sum[1] += out * out; // F out is as much smaller as the weight is larger
           }
-        s            = problem.reduction().sum(s);
-        inequalities = s[1];
-        lower        = s[2];
-        upper        = s[3];
-        return s[0];
+        sum = problem.reduction().sum(sum);
+        return {{std::sqrt(sum[0]), norm * std::sqrt(sum[1])}};
       }
 
-      // Over all processes, when changes were counted last.
-      double n_inequalities() const
+      /// Entries at their lower bounds, at their upper ones; over all processes.
+      std::array<double, 2> count() const
       {
-        return inequalities;
-      }
-      double n_lower() const
-      {
-        return lower;
-      }
-      double n_upper() const
-      {
-        return upper;
+        std::array<double, 2> n{{0, 0}};
+        for (std::size_t i = 0; i < active.size(); ++i)
+          {
+            n[0] += active[i] < 0;
+            n[1] += active[i] > 0;
+          }
+        return problem.reduction().sum(n);
       }
 
-      // Slipping entries whose bound moves with a free one.
+      /// Slipping entries whose bound moves with a free one.
       std::vector<Tie> ties() const
       {
         std::vector<Tie> result;
-        for (const PressureBound &bound : coupled.bounds)
+        for (const PressureBound &bound : set.pressure_bounds)
           if (active[bound.tangential] != 0 && active[bound.normal] == 0 && bound.coefficient > 0)
             result.push_back({bound.tangential, bound.normal, active[bound.tangential] * bound.coefficient});
         return result;
       }
 
-      bool all_stick() const
+      bool has_ties() const
       {
-        return problem.reduction().min(ties().empty() ? 1. : 0.) > 0;
+        return problem.reduction().min(ties().empty() ? 1. : 0.) < 1;
       }
 
-      void free_two_sided()
+      /// The values of p that vanish for steps on the present face: entries at bounds, and what ties are missed by.
+      std::vector<double> conditions(const Vector &p, const std::vector<Tie> &ties) const
       {
-        const auto l = box().lower.begin(), u = box().upper.begin();
+        std::vector<double> result;
         for (std::size_t i = 0; i < active.size(); ++i)
-          if (l[i] < u[i] && l[i] > -HUGE_VAL && u[i] < HUGE_VAL)
+          if (active[i] != 0)
+            result.push_back(p.begin()[i]);
+        if (ties.empty())
+          return result;
+        result.clear();
+        std::vector<double> value(p.begin(), p.end());
+        for (const Tie &tie : ties)
+          value[tie.tied] -= tie.factor * value[tie.to];
+        for (std::size_t i = 0; i < active.size(); ++i)
+          if (active[i] != 0)
+            result.push_back(value[i]);
+        return result;
+      }
+
+      /// What entries at bounds can bear: the bound of those between two, infinity with one bound, negative where the
+      /// bounds leave no room.
+      std::vector<double> capacities() const
+      {
+        std::vector<double> result(active.size());
+        for (std::size_t i = 0; i < active.size(); ++i)
+          {
+            const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i];
+            result[i] = l < u ? std::max(std::abs(l), std::abs(u)) : -1.;
+          }
+        return result;
+      }
+
+      /// Entries leave their bounds where @p free says so.
+      void release(const std::vector<bool> &free)
+      {
+        for (std::size_t i = 0; i < active.size(); ++i)
+          if (free[i])
             active[i] = 0;
       }
 
-      // Also in the coupled law: nothing is tied while all entries are free.
-      void free_all()
-      {
-        const auto l = box().lower.begin(), u = box().upper.begin();
-        for (std::size_t i = 0; i < active.size(); ++i)
-          if (l[i] < u[i])
-            active[i] = 0;
-      }
-
+      /// x to the bounds of the set, which follow x.
       void put_on_bounds(Vector &x)
       {
         move_bounds(x);
-        const auto l = box().lower.begin(), u = box().upper.begin();
-        const auto xi = x.begin();
         for (std::size_t i = 0; i < active.size(); ++i)
-          if (active[i] < 0)
-            xi[i] = l[i];
-          else if (active[i] > 0)
-            xi[i] = u[i];
-      }
-
-      // Bounds that follow the normal entries, to those of x.
-      void move_bounds(const Vector &x)
-      {
-        move_bounds(x, x, active, 0.);
+          if (active[i] != 0)
+            x.begin()[i] = active[i] < 0 ? set.box.lower.begin()[i] : set.box.upper.begin()[i];
       }
 
     private:
-      // Bounds that follow the normal entries: of x, or of the point from which the next set is read; 0 where the set is
-      // open.
-      void move_bounds(const Vector &x, const Vector &g, const Sides &set, const double gradient_part)
+      double weight(const std::size_t i) const
       {
-        const auto xi = x.begin(), gi = g.begin();
-        for (const PressureBound &bound : coupled.bounds)
-          {
-            const double pressure = std::max(xi[bound.normal] - gradient_part * gi[bound.normal], 0.);
-            const double radius   = set[bound.normal] == 0 ? bound.fixed + bound.coefficient * pressure : 0.;
-            moving_box->lower.begin()[bound.tangential] = -radius;
-            moving_box->upper.begin()[bound.tangential] = radius;
-          }
+        return weights ? weights[i] : 1.;
       }
 
-      const Problem             &problem;
-      const double               norm;
-      const Box<Vector>         &given_box;
-      const NewtonOptions       &options;
-      const CoupledBounds       &coupled;
-      std::optional<Box<Vector>> moving_box; // with coupled bounds
-      Sides                      active;
-      double                     inequalities = 0, lower = 0, upper = 0;
+      // Bounds that follow the normal entries, to those of x; 0 where the set is open, and where it is closed without the
+      // jump to 0 that the law has where the normal entry vanishes.
+      void move_bounds(const Vector &x)
+      {
+        for (const PressureBound &bound : set.pressure_bounds)
+          set_radius(bound,
+                     active[bound.normal] == 0 ? bound.fixed + bound.coefficient * std::max(x.begin()[bound.normal], 0.)
+                                               : 0.);
+      }
+
+      void set_radius(const PressureBound &bound, const double radius)
+      {
+        set.box.lower.begin()[bound.tangential] = -radius;
+        set.box.upper.begin()[bound.tangential] = radius;
+      }
+
+      // The set, and action(i, x_i, proj(x - s g)_i) for all entries with bounds. Normal entries come first: bounds of
+      // others follow the projected ones.
+      template <typename Action>
+      void map(const Vector &x, const Vector &g, const Action &action)
+      {
+        std::vector<double> projected(active.size());
+        const auto          place = [&](const std::size_t i) {
+          const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i];
+          const double t = x.begin()[i] - step / norm * weight(i) * g.begin()[i];
+          active[i]      = t <= l ? -1 : t >= u ? 1 : 0;
+          projected[i]   = clip(t, l, u);
+        };
+        for (std::size_t i = 0; i < active.size(); ++i)
+          if (bounded[i])
+            place(i);
+        for (const PressureBound &bound : set.pressure_bounds)
+          {
+            set_radius(bound, bound.radius(projected[bound.normal]));
+            place(bound.tangential);
+          }
+        for (std::size_t i = 0; i < active.size(); ++i)
+          if (bounded[i])
+            action(i, x.begin()[i], projected[i]);
+      }
+
+      const Problem        &problem;
+      const double          norm, step;
+      AdmissibleSet<Vector> set;
+      const double         *weights;
+      std::vector<bool>     bounded;
+      Sides                 active;
     };
   } // namespace detail
 } // namespace slipstick::qp

@@ -15,7 +15,7 @@ namespace slipstick::qp
   {
     Expansion    expansion      = Expansion::boundary_then_projection;
     double       proportioning  = 1.0;   // Gamma > 0, Dostal 2009, section 5.8
-    double       step_length    = 1.5;   // alpha times |A|, in (0, 2]; see doc/decisions.md
+    double       step_length    = 1.5;   // alpha times |A|, in (0, 2]; see doc/decisions/0005
     unsigned int max_iterations = 10000; // per call
 
     double sufficient_decrease = 0.01;   // of a projected step, over the most on its way; else it is cut (own choice)
@@ -64,34 +64,30 @@ namespace slipstick::qp
     double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
   };
 
-  /// Options of GCR (own choice).
-  struct GcrOptions
+  /// Options of the linear problems of faces (own choice).
+  struct FaceSolverOptions
   {
     unsigned int max_iterations = 300;
-    double       rounding = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
-    double       progress = 0.999; // a step that leaves more than this part of the residual ...
+    double smallest_curvature   = 1e-15; // p'Fp over p'p and the largest such quotient so far: below it F is singular
+    double rounding       = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
+    double progress       = 0.999; // a step that leaves more than this part of the residual ...
     unsigned int patience = 10;    // ... so often in a row ends the solve
   };
 
-  /// Options of the semismooth Newton method (own choice; method.md section 7).
+  /// Options of the semismooth Newton method (own choice; doc/method.md).
   struct NewtonOptions
   {
-    double       start_tolerance = 0.3; // of the SMALBE steps that give the first active set
-    double       set_step        = 0.1; // the next set is that of x - this times (weights) g / |PFP|
-    double       descent_step = 0.3; // along M r with the step onto a new set: below 2 / the largest eigenvalue of F M
-    double       face_reduction    = 0.5;  // of the residual by the linear solve of a new set
-    double       first_forcing     = 1e-2; // residual over the reference, at first, of solves of a set that stands
-    double       forcing_reduction = 0.1;  // of it, whenever the set hardly changed
-    double       last_forcing      = 0.6;  // times the tolerance: never below
-    double       settled_part      = 0.05; // of the inequalities may change for the set to have hardly changed
-    double       progress          = 0.99; // residual + changes must fall below this times their best ...
-    unsigned int patience          = 15;   // ... within so many outer steps
-    double       bound_reduction   = 0.5;  // of the residual of the solves with every update of such bounds, at least
-    double       bound_accuracy    = 0.1;  // bounds that depend on x are updated at residuals below this times their
-                                           // last relative change
-    unsigned int max_freed            = 5; // sets that do not hold the bodies, in whose place all entries are freed
-    unsigned int max_outer_iterations = 300;
-    GcrOptions   gcr;
+    double            start_tolerance      = 0.3;  // of the SMALBE steps that give the first active set
+    double            set_step             = 3;    // s of the natural residual times |PFP| over the weight
+    double            forcing              = 0.1;  // residual that faces are solved to, over the natural residual
+    double            last_forcing         = 0.6;  // times the tolerance: never below
+    unsigned int      memory               = 6;    // a step must end below the largest natural residual of so many ...
+    double            sufficient_decrease  = 1e-2; // ... by this part times its length, ...
+    double            backtracking         = 0.5;  // ... or is cut by this factor ...
+    double            shortest_step        = 1e-3; // ... down to this part of itself
+    unsigned int      max_outer_iterations = 100;
+    unsigned int      n_directions         = 200; // kept with their products
+    FaceSolverOptions face;
   };
 
   /// Options of the point nearest to zero within the bounds and the equalities (own choice).

@@ -1,9 +1,10 @@
-// Semismooth Newton (primal-dual active set) for bounds and equalities, with inexact projected conjugate gradients on
-// the free entries. Hintermueller, Ito, Kunisch 2003; on the multipliers of FETI: method.md section 7.
+// Semismooth Newton on the natural residual of bounds and equalities, with a line search on its norm.
 //
-// Bounds that follow the solution (Coulomb friction) are differentiated too: a slipping entry is tied to its normal one,
-// x_T = +-(fixed + coefficient x_N), within each linear problem (Alart, Curnier 1991, on the multipliers), which GCR
-// solves since ties make it unsymmetric. Or they are followed in an outer loop (BoundUpdate).
+// The solution is where x = proj(x - s g), g = F x - d + G'a, G x = e, on the entries with bounds, and g = 0 on the others
+// (Hintermueller, Ito, Kunisch 2003; bounds that follow the solution, Coulomb friction: Alart, Curnier 1991). A Newton step
+// solves the linear problem of the face that the projection tells: entries at bounds held there, slipping ones tied to
+// their normal force. F x is known at both ends of a step, so the norm of the residual is known along it without a
+// multiplication: the line search (nonmonotone: Grippo, Lampariello, Lucidi 1986) costs vector operations only.
 //
 // Besides the Problem of types.h it needs
 //   `auto face(const std::vector<bool> &free, const std::vector<Tie> &ties) const`   the problem on the free entries
@@ -13,13 +14,16 @@
 //       `project_kernel(p)`     the same for G p = 0; then sets the tied entries to factor times theirs
 //       `multiplier_shift(v, y)` y = G'a on ALL entries, with a such that v - G'a is least on the free ones
 //       `precondition(r, z)`    z = M r on the free entries, 0 on the others; symmetric positive semidefinite
-//       the Problem and its faces may have residual_weights (pcpg.h): they scale the step to the next set too
+//       the Problem and its faces may have residual_weights (kernels.h)
 //       `is_regular()`          false when the free entries alone do not determine a
+//   `settle(free, capacity, x, g, is_weak) const`   what entries at bounds do where the free ones leave a motion open:
+//       { free, shift, is_loose }, see tfeti::DualProblem
 #pragma once
 
 #include <slipstick/qp/active_set.h>
-#include <slipstick/qp/gcr.h>
+#include <slipstick/qp/face_solver.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -27,16 +31,6 @@
 
 namespace slipstick::qp
 {
-  /// Bounds that depend on the solution (Coulomb friction), followed in an outer loop: called with x when the active set
-  /// of the present bounds stands and its residual is small against their last change. Changes the box that the solver
-  /// was given, or leaves it when the change is below `tolerance`; returns the relative change, or none to give up.
-  template <typename Vector>
-  struct BoundUpdate
-  {
-    std::function<std::optional<double>(const Vector &x)> update; // empty: the bounds are fixed
-    double                                                tolerance = 0;
-  };
-
   /// The point that tells the first active set: entries at their bounds, or, with the gradient F x - d + G'a, those that
   /// a step along it takes there.
   template <typename Vector>
@@ -44,10 +38,13 @@ namespace slipstick::qp
   {
     Vector                x;
     std::optional<Vector> gradient = std::nullopt;
+
+    /// Directions of earlier solves with the same F and G, and where this one leaves its own; none: its own.
+    std::shared_ptr<DirectionStore<Vector>> directions = nullptr;
   };
 
-  /// Ends the method before its goal is reached: called with x and its gradient F x - d + G'a after every solve of a set,
-  /// on every process with the same result.
+  /// Ends the method before its goal is reached: called with x on its bounds and its gradient F x - d + G'a after every
+  /// step, on every process with the same result.
   template <typename Vector>
   using Acceptance = std::function<bool(const Vector &x, const Vector &gradient)>;
 
@@ -63,367 +60,306 @@ namespace slipstick::qp
 
   namespace detail
   {
-    // Outer steps without progress, after which the set counts as cycling and changes by single entries ...
-    constexpr unsigned int cycling = 6;
-    // ... so often at most.
-    constexpr unsigned int most_single_changes = 60;
-    // Residual reduction by the linear solves of such sets.
-    constexpr double cautious_reduction = 1e-2;
-
     template <typename Vector, typename Problem>
     class SemismoothNewton
     {
     public:
-      SemismoothNewton(const Problem             &problem_,
-                       const double               norm_,
-                       const Vector              &d_,
-                       const Box<Vector>         &box_,
-                       NewtonStart<Vector>        start,
-                       const Goal                &goal,
-                       const NewtonOptions       &options_,
-                       const PcpgOptions         &pcpg_options_,
-                       const Observer            &observer_,
-                       const BoundUpdate<Vector> &bounds_,
-                       const CoupledBounds       &coupled_,
-                       const Acceptance<Vector>  &accepts_)
+      SemismoothNewton(const Problem            &problem_,
+                       const double              norm_,
+                       const Vector             &d_,
+                       AdmissibleSet<Vector>     admissible,
+                       NewtonStart<Vector>       start,
+                       const Goal               &goal_,
+                       const NewtonOptions      &options_,
+                       const Observer           &observer_,
+                       const Acceptance<Vector> &accepts_)
         : problem(problem_)
-        , norm(norm_)
         , d(d_)
+        , goal(goal_)
         , options(options_)
-        , pcpg_options(pcpg_options_)
         , observer(observer_)
-        , bounds(bounds_)
-        , coupled(coupled_)
         , accepts(accepts_)
-        , set(problem_, norm_, box_, options_, coupled_)
+        , set(problem_, norm_, std::move(admissible), options.set_step)
+        , directions(start.directions ? std::move(start.directions)
+                                      : std::make_shared<DirectionStore<Vector>>(options_.n_directions))
+        , store(*directions)
         , x(std::move(start.x))
-        , Fx(zero_like(d))
-        , g(start.gradient ? std::move(*start.gradient) : zero_like(d))
-        , w(d)
-        , reference(goal.reference)
-        , eps(goal.tolerance)
-        , forcing(options.first_forcing)
+        , Fx(zero_like(d_))
+        , g(start.gradient ? std::move(*start.gradient) : zero_like(d_))
+        , y(zero_like(d_))
+        , Fy(zero_like(d_))
+        , gy(zero_like(d_))
       {
-        bound_change = bounds.update ? 1. : 0.;
-        has_gradient = problem.reduction().sum(std::array<double, 1>{{local_dot(g, g)}})[0] > 0;
-        set.become(set.next(x, g));
+        set.predict(x, g);
       }
 
       NewtonResult<Vector> run()
       {
         const Status status = iterate();
+        if (status != Status::converged && best)
+          {
+            x = std::move(*best);
+            set.predict(x, zero_like(x));
+          }
         set.put_on_bounds(x); // ties to the last bit
         project(set.box(), x);
         return {status, std::move(x), set.free(), residual, counts};
       }
 
     private:
-      Status iterate()
-      {
-        double       best  = HUGE_VAL;
-        unsigned int stuck = 0, alone = 0; // outer steps without progress, those with one change of the set or none
-        for (;;)
-          {
-            if (!solve_on_face())
-              return Status::infeasible;
-            auto         next    = set.next(x, g);
-            const double changed = set.count_changes(next);
-            report();
-            if (!(residual < HUGE_VAL))
-              return Status::stagnated;
-            if (!bounds.update && residual + violation <= eps)
-              return Status::converged;
-            if (accepts && !bounds.update && is_accepted())
-              return Status::converged;
-            // ties that were left out (a set that does not hold the bodies) leave entries off the bounds that follow x
-            const bool off_bounds = coupled.are_coupled && violation > eps;
-            if (changed == 0 && !off_bounds &&
-                residual <= std::max(eps, std::min(options.first_forcing, options.bound_accuracy * bound_change)))
-              {
-                if (bounds.update)
-                  {
-                    const auto change = bounds.update(x);
-                    if (!change)
-                      return Status::iteration_limit;
-                    bound_change = *change;
-                  }
-                if (residual <= eps && bound_change <= bounds.tolerance)
-                  return Status::converged;
-                if (bound_change > bounds.tolerance)
-                  {
-                    tighten();
-                    forcing =
-                      std::max(options.last_forcing * eps, std::min(forcing, options.bound_reduction * solved_to));
-                    solved_to   = forcing;
-                    next        = set.next(x, g);
-                    set_stands  = set.same_free(next);
-                    set_changed = true;
-                    set.become(std::move(next));
-                    best  = HUGE_VAL;
-                    stuck = alone = 0;
-                    continue;
-                  }
-              }
-            // progress: the residual or the number of changes falls below the best so far
-            const double merit = residual + changed;
-            stuck              = merit < options.progress * best ? 0 : stuck + 1;
-            best               = std::min(best, merit);
-            // single changes are of no help when they are all that there is
-            alone = stuck == 0 ? 0 : alone + (changed <= 1);
-            if (alone >= options.patience || stuck >= options.patience + most_single_changes)
-              return Status::stagnated;
-            is_cautious = stuck >= cycling;
-            if (is_cautious)
-              set.keep_largest_changes(x, g, std::floor(changed * std::pow(0.5, stuck - cycling + 1.)), next);
-            if (counts.outer_iterations >= options.max_outer_iterations)
-              return Status::iteration_limit;
-            if (changed <= options.settled_part * set.n_inequalities())
-              tighten();
-            set_changed = changed > 0 || off_bounds;
-            set_stands  = coupled.are_coupled ? changed == 0 && !off_bounds : set.same_free(next);
-            set.become(std::move(next));
-          }
-      }
-
-      // Smaller residuals for the solves to come; bounds that move are not worth more than a part of their last change.
-      void tighten()
-      {
-        const bool   follows = bounds.update && bound_change > bounds.tolerance;
-        const double next    = follows ? std::max(options.last_forcing * forcing,
-                                               options.last_forcing * options.bound_accuracy * bound_change)
-                                       : options.forcing_reduction * forcing;
-        forcing              = std::max(options.last_forcing * eps, std::min(forcing, next));
-      }
-
       using Face = decltype(std::declval<Problem>().face(std::vector<bool>(), std::vector<Tie>()));
 
-      // The linear problem of the present set; entries that are not free at their bounds.
-      bool solve_on_face()
+      Status iterate()
       {
-        std::optional<Face> face;
-        face.emplace(problem.face(set.free(), set.ties()));
-        if (!face->is_regular())
+        if (!begin())
+          return Status::infeasible;
+        while (counts.outer_iterations < options.max_outer_iterations)
           {
-            // entries between two bounds are freed: what they hold in the solution is not known yet
-            set_stands  = false;
-            set_changed = true;
-            set.free_two_sided();
-            face.emplace(problem.face(set.free(), {}));
-            if (!face->is_regular())
+            const auto face = regular_face();
+            if (!face)
+              return Status::infeasible;
+            solve(*face);
+            ++counts.outer_iterations;
+            const auto [gradient, violation] = set.residuals(y, gy);
+            residual                         = gradient / goal.reference;
+            report();
+            if (!std::isfinite(residual))
+              return Status::stagnated;
+            if (residual + violation / goal.reference <= goal.tolerance || is_accepted())
               {
-                // then all of them: the set that follows keeps those that press
-                if (++n_freed > options.max_freed)
-                  return false;
-                set.free_all();
-                face.emplace(problem.face(set.free(), {}));
-                if (!face->is_regular())
-                  return false;
+                std::swap(x, y);
+                return Status::converged;
               }
+            if (!step())
+              return Status::stagnated;
           }
-        if (!set_stands)
+        return Status::iteration_limit;
+      }
+
+      // The face of the set. Where that leaves a motion open, or nearly, bodies first settle at present forces, and the
+      // entries that are at rest then leave their bounds.
+      std::optional<Face> regular_face()
+      {
+        if (holds_weak)
+          hold(true);
+        for (unsigned int attempt = 0; attempt < 2; ++attempt)
           {
-            history.reset();
-            residual_history.reset();
+            ties = set.ties();
+            std::optional<Face> face;
+            face.emplace(problem.face(set.free(), ties));
+            if (face->is_regular())
+              return face;
+            hold(false);
           }
-        if (set_changed)
-          {
-            const std::optional<Vector> step = has_gradient ? std::make_optional(descent(*face)) : std::nullopt;
-            set.put_on_bounds(x);
-            face->balance(x);
-            if (step)
-              add(-std::min(options.descent_step, last_step), *step, x);
-            problem.multiply(x, Fx);
-            ++counts.hessian_multiplications;
-          }
-        const double reduction =
-          is_cautious ? std::min(options.face_reduction, cautious_reduction) : options.face_reduction;
-        wanted =
-          std::max(options.last_forcing * eps, std::min(set_changed ? 1. : forcing, reduction * residual_on(*face)));
-        if (coupled.are_coupled && !set.all_stick())
-          solve_unsymmetric(*face);
-        else
-          solve_symmetric(*face);
-        ++counts.outer_iterations;
-        combine(1.0, Fx, 0.0, g);
-        add(-1.0, d, g);
-        face->multiplier_shift(g, w);
-        add(-1.0, w, g);
-        has_gradient = true;
-        measure();
+        return {};
+      }
+
+      void hold(const bool is_weak)
+      {
+        auto settled = problem.settle(set.free(), set.capacities(), x, g, is_weak);
+        if (!settled.is_loose)
+          return;
+        add(1., g, settled.shift);
+        set.predict(x, settled.shift);
+        set.release(problem.settle(set.free(), set.capacities(), x, settled.shift, is_weak).free);
+      }
+
+      // x to its bounds and to where G x = e, F x, gradient and set.
+      bool begin()
+      {
+        auto face = regular_face();
+        if (!face)
+          return false;
+        set.put_on_bounds(x);
+        face->balance(x);
+        problem.multiply(x, Fx);
+        ++counts.hessian_multiplications;
+        gradient_on(*face, Fx, g);
+        merits.push_back(set.natural_residual(x, g));
+        set.predict(x, g);
         return true;
       }
 
-      // The preconditioned gradient of the face before entries that have left it are put on their bounds. A short step
-      // along it goes with that one since F is multiplied with x anyway.
-      Vector descent(const Face &face)
+      // g = F x - d + G'a with the a that makes it least on the free entries.
+      void gradient_on(const Face &face, const Vector &product, Vector &gradient) const
       {
-        Vector r(g), z(g);
-        face.project_range(g, w);
-        add(-1.0, w, r);
-        face.precondition(r, z);
-        ++counts.preconditioner_applications;
-        project_kernel(face, z, w, 0);
-        return z;
+        combine(1.0, product, 0.0, gradient);
+        add(-1.0, d, gradient);
+        Vector shift(gradient);
+        face.multiplier_shift(gradient, shift);
+        add(-1.0, shift, gradient);
       }
 
-      // |P(d - F x)| over the reference, of the face.
-      double residual_on(const Face &face)
+      // y, F y, and gradient of y: the solution on the face, up to a part of the present residual.
+      void solve(const Face &face)
       {
-        combine(1.0, d, 0.0, g);
-        add(-1.0, Fx, g);
-        face.project_range(g, w);
-        add(-1.0, w, g);
-        const double *weights = residual_weights(problem, 0);
-        return std::sqrt(problem.reduction().sum(std::array<double, 1>{{local_weighted_dot(weights, g, g)}})[0]) /
-               reference;
-      }
-
-      void solve_symmetric(const Face &face)
-      {
-        if (!history)
-          history = std::make_shared<DirectionHistory<Vector>>();
-        auto result = pcpg(face,
-                           d,
-                           PcpgStart<Vector>{std::move(x), std::move(Fx), history},
-                           Goal(wanted, reference),
-                           pcpg_options,
-                           [&face](const Vector &r, Vector &z) { face.precondition(r, z); });
-        x           = std::move(result.x);
-        Fx          = std::move(result.product);
+        y = x;
+        set.put_on_bounds(y);
+        face.balance(y);
+        step_to_start();
+        FaceSolver<Vector, Face> solver(
+          face,
+          d,
+          store,
+          [this](const Vector &p) { return set.conditions(p, ties); },
+          options.face);
+        const double first  = solver.start(std::move(y), std::move(Fy));
+        const double target = std::max(options.last_forcing * goal.tolerance * goal.reference,
+                                       options.forcing * std::min(first, merits.back()));
+        auto         result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
         counts += result.counts;
-        if (result.first_step > 0)
-          last_step = result.first_step;
+        y  = std::move(result.x);
+        Fy = std::move(result.product);
+        gradient_on(face, Fy, gy);
       }
 
-      void solve_unsymmetric(const Face &face)
+      // on any process
+      bool has_ties() const
       {
-        if (!residual_history)
-          residual_history.emplace();
-        auto result = gcr(face,
-                          d,
-                          std::move(x),
-                          std::move(Fx),
-                          *residual_history,
-                          Goal(wanted, reference),
-                          options.gcr,
-                          [&face](const Vector &r, Vector &z) { face.precondition(r, z); });
-        x           = std::move(result.x);
-        Fx          = std::move(result.product);
-        counts += result.counts;
-        if (result.first_step > 0)
-          last_step = result.first_step;
+        return problem.reduction().min(ties.empty() ? 1. : 0.) < 1;
       }
 
-      // Asks with entries on their bounds to the last bit.
+      // F y by the product with the step from x, which is a direction as all others; steps of rounding are none.
+      void step_to_start()
+      {
+        constexpr double rounding = 1e-13;
+        Vector           step(y), product(y);
+        add(-1., x, step);
+        const auto s = problem.reduction().sum(std::array<double, 2>{{local_dot(step, step), local_dot(y, y)}});
+        std::copy(Fx.begin(), Fx.end(), Fy.begin());
+        if (s[0] <= rounding * rounding * s[1])
+          return;
+        problem.multiply(step, product);
+        ++counts.hessian_multiplications;
+        add(1., product, Fy);
+        if (s[0] > 1e-12 * s[1]) // else G step = 0 holds to few digits
+          store.push(std::move(step), std::move(product), problem.reduction());
+      }
+
+      // Along the step; where the residual does not fall along it the bodies that the face hardly held settle first.
+      bool step()
+      {
+        const auto   solved = set.free();
+        const double t      = line_search();
+        if (t == 0)
+          {
+            const bool is_hopeless = holds_weak;
+            holds_weak             = true;
+            set.predict(x, g);
+            return !is_hopeless;
+          }
+        holds_weak = false;
+        Vector known(g); // what is left on free entries after a whole step says nothing of the set
+        if (t == 1)
+          for (std::size_t i = 0; i < solved.size(); ++i)
+            known.begin()[i] = solved[i] ? 0. : known.begin()[i];
+        set.predict(x, known);
+        return true;
+      }
+
+      // x moves towards y as far as the natural residual falls below the largest of the last steps. @return how
+      // far; 0: not at all.
+      double line_search()
+      {
+        double            merit     = set.natural_residual(y, gy);
+        const std::size_t n         = std::min<std::size_t>(merits.size(), options.memory);
+        const double      reference = *std::max_element(merits.end() - n, merits.end());
+        double            t         = 1;
+        Vector            xt(y), gt(gy);
+        while (!(merit <= (1 - options.sufficient_decrease * t) * reference))
+          {
+            t *= options.backtracking;
+            if (t < options.shortest_step)
+              return 0;
+            combine(t, y, 0., xt);
+            add(1 - t, x, xt);
+            combine(t, gy, 0., gt);
+            add(1 - t, g, gt);
+            merit = set.natural_residual(xt, gt);
+          }
+        if (t < 1)
+          {
+            std::swap(y, xt);
+            std::swap(gy, gt);
+            combine(1 - t, Fx, t, Fy);
+          }
+        if (merit < *std::min_element(merits.begin(), merits.end()))
+          best = y;
+        merits.push_back(merit);
+        std::swap(x, y);
+        std::swap(Fx, Fy);
+        std::swap(g, gy);
+        return t;
+      }
+
       bool is_accepted()
       {
-        Vector before = x;
-        set.put_on_bounds(x);
-        if (accepts(x, g))
-          return true;
-        x = std::move(before);
-        return false;
-      }
-
-      // |gP|, and how far x is out of its bounds: as much, at most, does |gP| rise when x is moved there.
-      void measure()
-      {
-        set.move_bounds(x);
-        const auto            l = set.box().lower.begin(), u = set.box().upper.begin();
-        const auto            xi = x.begin(), gi = g.begin();
-        const auto           &active  = set.sides();
-        const double         *weights = residual_weights(problem, 0);
-        std::array<double, 2> sum{{0, 0}};
-        for (std::size_t i = 0; i < active.size(); ++i)
-          {
-            const double gp = active[i] == 0   ? gi[i]
-                              : !(l[i] < u[i]) ? 0.0
-                              : active[i] < 0  ? std::min(gi[i], 0.0)
-                                               : std::max(gi[i], 0.0);
-            // entries at a bound must be there: bounds that follow x may have left them
-            const double out    = xi[i] - (active[i] < 0 ? l[i] : active[i] > 0 ? u[i] : clip(xi[i], l[i], u[i]));
-            const double weight = weights ? weights[i] : 1.;
-            sum[0] += weight * weight * gp * gp;
-            sum[1] += out * out; // F out is as much smaller as the weight is larger
-          }
-        sum       = problem.reduction().sum(sum);
-        residual  = std::sqrt(sum[0]) / reference;
-        violation = norm * std::sqrt(sum[1]) / reference;
+        if (!accepts)
+          return false;
+        Vector at = y;
+        set.put_on_bounds(at);
+        return accepts(at, gy);
       }
 
       void report() const
       {
-        if (observer)
-          observer({counts.outer_iterations,
-                    counts.hessian_multiplications,
-                    residual,
-                    0.0,
-                    static_cast<std::size_t>(set.n_lower()),
-                    static_cast<std::size_t>(set.n_upper())});
+        if (!observer)
+          return;
+        const auto n = set.count();
+        observer({counts.outer_iterations,
+                  counts.hessian_multiplications,
+                  residual,
+                  0.0,
+                  static_cast<std::size_t>(n[0]),
+                  static_cast<std::size_t>(n[1])});
       }
 
-      const Problem             &problem;
-      const double               norm;
-      const Vector              &d;
-      const NewtonOptions       &options;
-      const PcpgOptions         &pcpg_options;
-      const Observer            &observer;
-      const BoundUpdate<Vector> &bounds;
-      const CoupledBounds       &coupled;
-      const Acceptance<Vector>  &accepts;
+      const Problem            &problem;
+      const Vector             &d;
+      const Goal                goal;
+      const NewtonOptions      &options;
+      const Observer           &observer;
+      const Acceptance<Vector> &accepts;
 
-      ActiveSet<Vector, Problem> set;
+      ActiveSet<Vector, Problem>                    set;
+      const std::shared_ptr<DirectionStore<Vector>> directions;
+      DirectionStore<Vector>                       &store;
+      std::vector<Tie>                              ties; // of the present face
 
-      Vector       x, Fx, g, w;
-      const double reference, eps;
-      double       forcing, wanted = 0;
-      double       solved_to    = 1; // forcing at the last update of the bounds
-      double       residual     = HUGE_VAL;
-      double       violation    = HUGE_VAL; // of the bounds by x, over the reference, in terms of the residual
-      double       bound_change = 0;        // the last one
-      double       last_step = HUGE_VAL; // the first one of the last solve of a face, along its preconditioned residual
-      bool         has_gradient;         // g is that of x
-      bool         is_cautious = false;  // the set changes by one entry at a time
-      bool         set_changed = true;   // x is not on its bounds, or does not balance: F x is not known
-      bool         set_stands  = false;  // the free entries are those of the last solve
-      unsigned int n_freed     = 0;      // sets that left some motion open, so that all entries were freed
-      std::shared_ptr<DirectionHistory<Vector>> history;
-      std::optional<ResidualHistory<Vector>>    residual_history;
-      Counts                                    counts;
+      Vector                x, Fx, g;  // where the method is
+      Vector                y, Fy, gy; // where the present step leads
+      std::vector<double>   merits;    // natural residuals of all x so far
+      std::optional<Vector> best;      // where the natural residual is least
+      double                residual   = HUGE_VAL;
+      bool                  holds_weak = false; // the next face must hold all bodies well
+      Counts                counts;
     };
   } // namespace detail
 
-  /// Minimise 1/2 x'Fx - x'd over the box and G x = e.
-  /// `norm` is |PFP|; goal.reference must be given (|P(d - F x~)|). Converged: x is within its bounds, |gP| and |PFP| |G x - e| are
-  /// at most goal.tolerance times goal.reference (with bounds followed in an outer loop the active set stands besides),
-  /// or @p accepts said so (it is not asked while bounds are followed).
-  /// status: infeasible if the free entries of some set leave the equalities singular, stagnated if neither residual nor
-  /// changes of the set fall any more; MPGP with SMALBE goes on from there.
+  /// Minimise 1/2 x'Fx - x'd over the admissible set and G x = e; with bounds that follow the solution the equilibrium
+  /// in place of the minimum. `norm` is |PFP|; goal.reference must be given (|P(d - F x~)|). Converged: x is within its
+  /// bounds, |gP| and |PFP| |G x - e| are at most goal.tolerance times goal.reference, or @p accepts said so.
+  /// status: infeasible if no entry at a bound leaves the equalities singular all the same; stagnated if the natural
+  /// residual does not fall along a step.
   template <typename Vector, typename Problem>
-  NewtonResult<Vector> semismooth_newton(const Problem             &problem,
-                                         const double               norm,
-                                         const Vector              &d,
-                                         const Box<Vector>         &box,
-                                         NewtonStart<Vector>        start,
-                                         const Goal                &goal,
-                                         const NewtonOptions       &options      = {},
-                                         const PcpgOptions         &pcpg_options = {},
-                                         const Observer            &observer     = {},
-                                         const BoundUpdate<Vector> &bounds       = {},
-                                         const CoupledBounds       &coupled      = {},
-                                         const Acceptance<Vector>  &accepts      = {})
+  NewtonResult<Vector> semismooth_newton(const Problem            &problem,
+                                         const double              norm,
+                                         const Vector             &d,
+                                         AdmissibleSet<Vector>     admissible,
+                                         NewtonStart<Vector>       start,
+                                         const Goal               &goal,
+                                         const NewtonOptions      &options  = {},
+                                         const Observer           &observer = {},
+                                         const Acceptance<Vector> &accepts  = {})
   {
     return detail::SemismoothNewton<Vector, Problem>(problem,
                                                      norm,
                                                      d,
-                                                     box,
+                                                     std::move(admissible),
                                                      std::move(start),
                                                      goal,
                                                      options,
-                                                     pcpg_options,
                                                      observer,
-                                                     bounds,
-                                                     coupled,
                                                      accepts)
       .run();
   }

@@ -14,6 +14,13 @@
 
 namespace slipstick::scene
 {
+  /// The largest size of numbers in a scene, and the smallest of those that must be positive: products of four of them are far
+  /// from overflow, and no units need more.
+  constexpr double smallest_number = 1e-30, largest_number = 1e30;
+
+  /// Whether a number is finite and no larger.
+  bool is_usable(const double value);
+
   /// Numbers between two limits; an open limit is excluded itself. Infinite numbers are never inside.
   struct Interval
   {

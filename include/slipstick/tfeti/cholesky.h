@@ -11,12 +11,19 @@
 
 namespace slipstick::tfeti
 {
+  /// Of the unknowns that are not last.
+  enum class Ordering
+  {
+    minimum_degree,   // AMD, CAMD: quick to find, for small matrices
+    nested_dissection // METIS: least fill of large ones in the plane, n log n
+  };
+
   /// CHOLMOD's workspace, shared by the factorisations of a rank, and the analyses of their patterns: matrices of one
   /// pattern are analysed once.
   class CholmodSession
   {
   public:
-    CholmodSession();
+    explicit CholmodSession(const Ordering ordering = Ordering::minimum_degree);
     ~CholmodSession();
     CholmodSession(const CholmodSession &)            = delete;
     CholmodSession &operator=(const CholmodSession &) = delete;
@@ -36,12 +43,15 @@ namespace slipstick::tfeti
     cholmod_common common;
 
   private:
+    cholmod_factor *analyse(cholmod_sparse &A, const std::vector<unsigned int> &last);
+
     struct Analysis
     {
       std::vector<int>          columns, rows; // compressed columns of the pattern
       std::vector<unsigned int> last;
       cholmod_factor           *factor;
     };
+    Ordering              ordering;
     std::vector<Analysis> analyses;
   };
 
@@ -50,15 +60,28 @@ namespace slipstick::tfeti
   class Cholesky
   {
   public:
+    /// What a matrix is that turns out not to be positive definite, behind its name, and what to do then.
+    struct Failure
+    {
+      std::string text, remedy;
+    };
+    static const Failure of_stiffness; // of a subdomain
+
     /// @param lower lower triangle of A, compressed columns, sorted.
     /// @throws NumericalError when A is not positive definite; @p name says whose matrix it is.
     Cholesky(const std::shared_ptr<CholmodSession> &session,
              const Eigen::SparseMatrix<double>     &lower,
              const std::vector<unsigned int>       &last,
-             const std::string                     &name);
+             const std::string                     &name,
+             const Failure                         &failure = of_stiffness);
 
     /// x := A^-1 x; n entries.
     void solve(Eigen::VectorXd &x) const;
+
+    /// The two halves of solve(): x := L^-1 x with the unknowns in the order of L, the last ones last and as in
+    /// `last_order`; then x := L^-T x, in the order of A again.
+    void solve_lower(Eigen::VectorXd &x) const;
+    void solve_upper(Eigen::VectorXd &x) const;
 
     /// Dense lower triangular factor of the Schur complement of A on the last unknowns, in the order of `last_order`.
     Eigen::MatrixXd trailing_block() const;
@@ -83,6 +106,9 @@ namespace slipstick::tfeti
       std::shared_ptr<CholmodSession> session;
       void                            operator()(cholmod_dense *dense) const;
     };
+
+    /// One of CHOLMOD's systems.
+    void solve(const int system, Eigen::VectorXd &x) const;
 
     std::shared_ptr<CholmodSession>                session;
     std::unique_ptr<cholmod_factor, FactorDeleter> factor;

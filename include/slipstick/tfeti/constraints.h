@@ -55,6 +55,16 @@ namespace slipstick::tfeti
     unsigned int                 interface_dof  = 0; // owned number of the node's first interface unknown
   };
 
+  /// What holds a node in one direction, from outside: supports, foundations, bonds to obstacles.
+  struct Reaction
+  {
+    unsigned int          row = invalid_row; // owned; the force on the node is -multiplier times direction
+    std::array<double, 3> direction{{0, 0, 0}};
+    std::array<double, 3> position{{0, 0, 0}};
+    std::vector<unsigned int>
+      holders; // equal sharers: numbers of supports, behind them foundations, then contact pairs
+  };
+
   /// B, c and the contact nodes, distributed: every row has one owner; a rank whose subdomains a row touches has it as
   /// a ghost. Interface unknowns are the displacements of nodes that rows touch, one for all copies of a node.
   struct Constraints
@@ -87,9 +97,29 @@ namespace slipstick::tfeti
     std::vector<std::uint64_t>               label;      // of the owned rows, the same for every number of ranks
     std::vector<ContactPoint>                contact_points; // whose rows this rank owns
     std::vector<ContactPoint>                bonded_points;  // the same of bonded rows: of normal and tangent
+    std::vector<Reaction>                    reactions;      // whose rows this rank owns
     Partitioner                              interface_dofs;
     std::vector<std::vector<InterfaceEntry>> interface_blocks; // of the subdomains of this rank
     std::vector<bool> interface_held; // owned unknowns: does an outside force act (support, contact)?
     Counts            counts;         // over all ranks
+  };
+
+  /// Contact nodes whose gap supports (and bonds) prescribe, so that they have no normal row: nodes bonded to obstacles too.
+  struct HeldContacts
+  {
+    struct Point
+    {
+      ContactPoint              contact; // without rows
+      bool                      is_bonded = false;
+      unsigned int              holder    = 0; // of a bond: itself, as in Reaction
+      std::vector<unsigned int> reactions;     // at the node, numbers in Constraints::reactions; obstacles only
+      std::vector<unsigned int> holders;       // of all nodes of the row, as in Reaction
+      unsigned int              place    = invalid_row; // in Constraints::contact_points, if it has a tangential row
+      bool                      is_known = false;       // do supports alone prescribe the gap?
+      double                    closing  = 0;           // then: by how much they close it [mm]
+    };
+
+    std::vector<Point> points;
+    Constraints        gaps; // rows, blocks, kind, c of one row a point: b u = closing of the gap, c = gap
   };
 } // namespace slipstick::tfeti

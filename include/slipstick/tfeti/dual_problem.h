@@ -7,6 +7,8 @@
 #include <slipstick/tfeti/reduction.h>
 #include <slipstick/tfeti/rigid_motions.h>
 
+#include <optional>
+
 namespace slipstick::tfeti
 {
   /// Forces of no more than this part of the largest are what rounding leaves of none: they hold nothing.
@@ -24,6 +26,7 @@ namespace slipstick::tfeti
     {
       std::vector<Eigen::VectorXd> u;           // of this rank's subdomains [mm]
       DistributedVector            multipliers; // [N]
+      std::vector<RigidMotion>     unresisted;  // motions that nothing resists and no load drives: they are set to zero
     };
 
     /// Energies of displacements that close jumps.
@@ -95,6 +98,35 @@ namespace slipstick::tfeti
 
     /// The problem on the free rows (owned ones), the others held, or tied to free ones. Collective.
     Face face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties = {}) const;
+
+    /// Rows that hold bodies which a set leaves loose, and how these bodies move until friction balances their loads.
+    struct Settled
+    {
+      std::vector<bool> free;     // with those that hold
+      DistributedVector shift;    // of the gradient F x - d + G'a, by the motion
+      bool              is_loose; // else nothing was to be done
+    };
+
+    /// Loose bodies move to where the forces at their rows, at present bounds, balance the loads: the least of
+    /// sum_i r_i |g_i + S_i a| + e'a, S the jumps of their motions. The rows that are at rest there hold them.
+    /// @param capacity r_i: the bound of a row between two bounds [N]; negative: the row cannot leave its bound; infinity:
+    ///        a row with one bound, g_i + S_i a >= 0. @param is_weak asks for motions that free rows hardly resist, too.
+    /// A motion of bodies for which friction at present bounds is too weak.
+    struct Overload
+    {
+      RigidMotion motion;
+      double      held = 0; // the part of the load along it that friction bears, below 1
+    };
+
+    /// @param free rows that hold: gluing, supports, closed contact. @param capacity, x as of settle(). Collective.
+    std::optional<Overload> overload(const std::vector<bool>   &free,
+                                     const std::vector<double> &capacity) const;
+
+    Settled settle(const std::vector<bool>   &free,
+                   const std::vector<double> &capacity,
+                   const DistributedVector   &x,
+                   const DistributedVector   &g,
+                   const bool                 is_weak) const;
 
     /// |P F P| [mm/N].
     double norm() const
@@ -181,13 +213,24 @@ namespace slipstick::tfeti
     }
 
   private:
-    std::vector<bool> rows_that_fix(const std::vector<RigidMotion> &loose,
-                                    const DistributedVector        &x,
-                                    std::vector<bool>               free) const;
-    void              slide_apart(const std::vector<RigidMotion> &loose,
-                                  const std::vector<bool>        &free,
-                                  const DistributedVector        &x,
-                                  Recovery                       &at) const;
+    /// Takes the loose motions out of u.
+    void remove_motions(const std::vector<RigidMotion> &loose, std::vector<Eigen::VectorXd> &u) const;
+
+    /// Of the candidates, as many as hold the loose motions are added to the free rows: those whose shares, times their
+    /// scale, are largest. @return whether they do.
+    bool hold(const std::vector<RigidMotion> &loose,
+              const std::vector<bool>        &is_candidate,
+              const std::vector<double>      &scale,
+              std::vector<bool>              &free) const;
+    /// The free rows and some of those with friction forces that hold the loose motions, or, where nothing drives these,
+    /// of all rows. @return whether they are rows with forces.
+    bool rows_that_fix(const std::vector<RigidMotion> &loose,
+                       const DistributedVector        &x,
+                       std::vector<bool>              &free) const;
+    void slide_apart(const std::vector<RigidMotion> &loose,
+                     const std::vector<bool>        &free,
+                     const DistributedVector        &x,
+                     Recovery                       &at) const;
 
     /// u += R a: a least squares fit of the free rows, which the projector is restricted to.
     void fit_motions(const Projector &on_free, const std::vector<bool> &free, Recovery &at) const;

@@ -9,7 +9,7 @@
 
 namespace slipstick::tfeti
 {
-  /// What the dense block of one subdomain costs and saves, by rates measured (doc/decisions.md, "Explicit or implicit").
+  /// What the dense block of one subdomain costs and saves, by rates measured (doc/decisions/0023).
   struct BlockEstimate
   {
     std::size_t bytes  = 0; // of F_p, and S_p with the Dirichlet preconditioner

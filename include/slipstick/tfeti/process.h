@@ -6,14 +6,14 @@
 namespace slipstick::tfeti
 {
   /// One in main(), before anything else: BLAS on one thread (more would fight with the ranks for the cores), MPI
-  /// and Kokkos, with nothing looked for that the run does not need. Ends MPI when destroyed.
+  /// and Kokkos, with nothing looked for that the run does not need. They do not see the command line. Ends MPI when
+  /// destroyed.
   class Process
   {
   public:
-    /// @param argc, argv: those of main(); what MPI takes is removed.
     /// @param n_threads of BLAS.
     /// @param opens_regions whether OpenMP regions (of CHOLMOD) are those of libgomp; else they are calls.
-    Process(int &argc, char **&argv, const unsigned int n_threads = 1, const bool opens_regions = false);
+    explicit Process(const unsigned int n_threads = 1, const bool opens_regions = false);
     ~Process();
 
   private:

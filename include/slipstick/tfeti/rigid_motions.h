@@ -11,6 +11,7 @@ namespace slipstick::tfeti
     Eigen::VectorXd        amplitudes; // 3 a body, of unit length
     double                 work = 0;   // of the loads along it, over |loads| [-]
     std::vector<BodyFrame> frames;     // of the bodies
+    double                 load = 0;   // along it [N]
   };
 
   /// What the rows of B (gluing aside, which moves with its body) see of the rigid motions of whole bodies.
@@ -26,7 +27,11 @@ namespace slipstick::tfeti
 
     /// Motions that no active row of B resists. Collective.
     /// @param active rows (owned by this rank) that take part; empty: all.
-    std::vector<RigidMotion> free(const std::vector<bool> &active) const;
+    /// @param resistance below which a motion counts as free: squared jumps of the rows under a unit motion, over the
+    ///        largest of all motions. Rounding by default.
+    std::vector<RigidMotion> free(const std::vector<bool> &active, const double resistance = rounding_of_resistance) const;
+
+    static constexpr double rounding_of_resistance = 1e-12;
 
     /// Jumps B u of all rows that this rank owns (0 for gluing) under motions; rows x motions.
     Eigen::MatrixXd jumps(const std::vector<RigidMotion> &motions) const;

@@ -17,8 +17,11 @@ namespace slipstick::tfeti
     class InverseBlocks
     {
     public:
-      /// @param matrix W of some rows.
-      void add(const std::vector<unsigned int> &rows, const Eigen::SparseMatrix<double> &matrix);
+      /// @param matrix W of some rows. @return whether none of them depends on the others.
+      bool add(const std::vector<unsigned int> &rows, const Eigen::SparseMatrix<double> &matrix);
+
+      /// A row that shares no unknown with others.
+      void add(const unsigned int row, const double weight);
 
       /// y = W^-1 x on the rows added; the others of y are left alone.
       void apply(const double *x, double *y) const;
@@ -29,6 +32,8 @@ namespace slipstick::tfeti
         std::vector<unsigned int> rows;
         SemidefiniteFactor        factor;
       };
+      std::vector<unsigned int> single_rows;
+      std::vector<double>       single_values;
       // dense ones, one after another: numbers of rows, the rows, n x n numbers
       std::vector<unsigned int> sizes, dense_rows;
       std::vector<double>       values;
@@ -70,12 +75,15 @@ namespace slipstick::tfeti
     {
       std::vector<unsigned int>   rows; // owned
       Eigen::SparseMatrix<double> matrix;
+      bool                        is_regular = true; // no row depends on the others
     };
 
     /// W on the active rows of a block, and these rows.
     static Block restricted(const Block &full, const std::function<bool(unsigned int)> &is_active);
 
-    std::vector<Block> blocks;
-    InverseBlocks      inverse; // with all rows active
+    std::vector<unsigned int> single_rows; // nearly all: they share no unknown with others
+    std::vector<double>       single_weights;
+    std::vector<Block>        blocks;
+    InverseBlocks             inverse; // with all rows active
   };
 } // namespace slipstick::tfeti

@@ -1,0 +1,23 @@
+// Contact nodes that supports hold, in an answer.
+#pragma once
+
+#include <slipstick/contact/held.h>
+#include <slipstick/fem/held_contact.h>
+
+namespace slipstick::app
+{
+  /// Adds them to the nodes of an answer. Collective.
+  void add_held_nodes(const scene::Scene<2>              &scene,
+                      const tfeti::DualProblem           &dual,
+                      const tfeti::HeldContacts          &held,
+                      const tfeti::DistributedVector     &multipliers,
+                      const std::vector<Eigen::VectorXd> &u,
+                      contact::CheckedContact            &contact);
+
+  /// Nodes where an obstacle and a support push alike, so that nothing but the sum of both forces is determined: a
+  /// warning for every pair with such nodes, by "held" and its name. Collective.
+  std::map<std::string, std::string> doubts_of_held_nodes(const scene::Scene<2>         &scene,
+                                                          const tfeti::HeldContacts     &held,
+                                                          const contact::CheckedContact &contact,
+                                                          const MPI_Comm                 comm);
+} // namespace slipstick::app

@@ -1,0 +1,146 @@
+// Directions of all solves so far with their products, of which every face uses the combinations that it admits: total
+// reuse of Krylov spaces (Gosselet, Rey, Pebay 2013), with the bounds of contact as conditions on the combinations.
+//
+// A product F p holds for every face: only which p a face admits depends on it. So a face that differs from those before
+// by a few entries at bounds loses a few combinations, and starts with all else that is known of F.
+#pragma once
+
+#include <slipstick/qp/kernels.h>
+#include <slipstick/qp/small_dense.h>
+
+#include <deque>
+#include <utility>
+#include <vector>
+
+namespace slipstick::qp
+{
+  /// Sums over all processes of any number of values, `batch` in a reduction.
+  template <typename Reduction>
+  void sum_all(std::vector<double> &values, const Reduction &reduction)
+  {
+    constexpr std::size_t batch = 32; // latency against wasted length
+    for (std::size_t first = 0; first < values.size(); first += batch)
+      {
+        const std::size_t         n = std::min(batch, values.size() - first);
+        std::array<double, batch> part{};
+        std::copy_n(values.begin() + first, n, part.begin());
+        part = reduction.sum(part);
+        std::copy_n(part.begin(), n, values.begin() + first);
+      }
+  }
+
+  /// Directions p, G p = 0, with F p, the latest ones; and p'F p of all pairs.
+  template <typename Vector>
+  class DirectionStore
+  {
+  public:
+    struct Direction
+    {
+      Vector              p, Fp;
+      std::vector<double> pFp; // with all directions that were there when this one came, itself the last
+    };
+
+    /// @param capacity the oldest directions go when there are more.
+    explicit DirectionStore(const std::size_t capacity_)
+      : capacity(capacity_)
+    {}
+
+    std::size_t size() const
+    {
+      return directions.size();
+    }
+    const Direction &operator[](const std::size_t j) const
+    {
+      return directions[j];
+    }
+    /// p_i'F p_j
+    double energy(const std::size_t i, const std::size_t j) const
+    {
+      const auto &later = directions[std::max(i, j)].pFp;
+      return later[later.size() - 1 - (std::max(i, j) - std::min(i, j))];
+    }
+
+    template <typename Reduction>
+    void push(Vector p, Vector Fp, const Reduction &reduction)
+    {
+      if (directions.size() == capacity)
+        directions.pop_front();
+      std::vector<double> pFp;
+      for (const Direction &other : directions)
+        pFp.push_back(local_dot(other.p, Fp));
+      pFp.push_back(local_dot(p, Fp));
+      sum_all(pFp, reduction);
+      directions.push_back({std::move(p), std::move(Fp), std::move(pFp)});
+    }
+
+  private:
+    const std::size_t     capacity;
+    std::deque<Direction> directions;
+  };
+
+  /// Combinations of directions that obey the linear conditions of a face: coefficients, one vector a combination.
+  using Combinations = std::vector<std::vector<double>>;
+
+  /// The combinations for which conditions(p), the values of this process that must vanish, do so up to rounding. The
+  /// latest directions come first: they were made for a face like this one.
+  template <typename Vector, typename Conditions, typename Reduction>
+  Combinations admissible_combinations(const DirectionStore<Vector> &store,
+                                       const Conditions             &conditions,
+                                       const Reduction              &reduction)
+  {
+    // A remainder below this part of the violation counts as none ...
+    constexpr double rounding = 1e-13;
+    // ... and one below this part is too small to correct others with.
+    constexpr double least_pivot = 1e-4;
+
+    const std::size_t                n = store.size();
+    std::vector<std::vector<double>> violation(n);
+    std::vector<double>              squares(2 * n);
+    for (std::size_t j = 0; j < n; ++j)
+      {
+        violation[j]   = conditions(store[j].p);
+        squares[j]     = local_dot(violation[j], violation[j]);
+        squares[n + j] = local_dot(store[j].p, store[j].p);
+      }
+    sum_all(squares, reduction);
+    struct Pivot
+    {
+      std::vector<double> direction, coefficients; // unit violation, of that combination
+    };
+    std::vector<Pivot> pivots;
+    Combinations       result;
+    for (std::size_t j = n; j-- > 0;)
+      {
+        std::vector<double> coefficients(n, 0.);
+        coefficients[j] = 1;
+        if (squares[j] > rounding * rounding * squares[n + j])
+          {
+            std::vector<double> v = violation[j];
+            for (unsigned int pass = 0; pass < 2; ++pass) // twice is enough
+              {
+                std::vector<double> along;
+                for (const Pivot &pivot : pivots)
+                  along.push_back(local_dot(pivot.direction, v));
+                sum_all(along, reduction);
+                for (std::size_t i = 0; i < pivots.size(); ++i)
+                  {
+                    add(-along[i], pivots[i].direction, v);
+                    add(-along[i], pivots[i].coefficients, coefficients);
+                  }
+              }
+            const double left = norm(v, reduction), before = std::sqrt(squares[j]);
+            if (left > least_pivot * before)
+              {
+                combine(1 / left, v, 0., v);
+                combine(1 / left, coefficients, 0., coefficients);
+                pivots.push_back({std::move(v), std::move(coefficients)});
+                continue;
+              }
+            if (left > rounding * std::sqrt(squares[n + j]))
+              continue;
+          }
+        result.push_back(std::move(coefficients));
+      }
+    return result;
+  }
+} // namespace slipstick::qp

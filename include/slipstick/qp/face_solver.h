@@ -1,0 +1,425 @@
+// The linear problem of a face: P(d - F x) = 0 on the free entries, bounds, ties and G x as in the start. Directions of
+// all earlier faces are used as far as this one admits them (direction_store.h).
+//
+// Without ties conjugate gradients (Farhat, Crivelli, Roux 1994, with full orthogonalisation); ties make the operator
+// unsymmetric, and generalised conjugate residuals take their place (Eisenstat, Elman, Schultz 1983).
+#pragma once
+
+#include <slipstick/qp/direction_store.h>
+#include <slipstick/qp/kernels.h>
+#include <slipstick/qp/options.h>
+#include <slipstick/qp/types.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace slipstick::qp
+{
+  namespace detail
+  {
+    // Directions whose energies (residuals) are combinations of others' up to this part of their square are left out.
+    constexpr double dependent_direction = 1e-12;
+
+    /// The combinations of the store that a face admits, and what is solved by them.
+    template <typename Vector>
+    class Recycled
+    {
+    public:
+      Recycled(const DirectionStore<Vector> &store_, Combinations combinations_)
+        : store(store_)
+        , combinations(std::move(combinations_))
+      {}
+
+      std::size_t size() const
+      {
+        return combinations.size();
+      }
+
+      /// of[j] of the directions summed up for every combination.
+      std::vector<double> combined(const std::vector<double> &of) const
+      {
+        std::vector<double> result;
+        for (const auto &c : combinations)
+          result.push_back(local_dot(c, of)); // not distributed
+        return result;
+      }
+
+      /// Coefficients of the directions, of amounts of the combinations.
+      std::vector<double> coefficients(const std::vector<double> &amounts) const
+      {
+        std::vector<double> result(store.size(), 0.);
+        for (std::size_t i = 0; i < combinations.size(); ++i)
+          if (amounts[i] != 0)
+            add(amounts[i], combinations[i], result);
+        return result;
+      }
+
+      /// Factors of A(c_i, c_j) of all pairs of combinations, of A(j, k) of the directions. Combinations that cancel to
+      /// rounding are left out.
+      template <typename Energy>
+      PivotedCholesky factor(const Energy &of) const
+      {
+        const std::size_t   n = store.size(), m = combinations.size();
+        SmallSymmetric      result(m);
+        std::vector<double> row(n);
+        for (std::size_t i = 0; i < m; ++i)
+          {
+            for (std::size_t k = 0; k < n; ++k)
+              {
+                row[k] = 0;
+                for (std::size_t j = 0; j < n; ++j)
+                  if (combinations[i][j] != 0)
+                    row[k] += combinations[i][j] * of(j, k);
+              }
+            for (std::size_t j = 0; j < m; ++j)
+              result(i, j) = local_dot(combinations[j], row);
+          }
+        std::vector<double> sizes(m, 0.);
+        for (std::size_t i = 0; i < m; ++i)
+          for (std::size_t j = 0; j < n; ++j)
+            sizes[i] += combinations[i][j] * combinations[i][j] * of(j, j);
+        return PivotedCholesky(std::move(result), sizes, dependent_direction);
+      }
+
+      /// x += sum of factor times coefficient times what `part` takes of each direction.
+      template <typename Part>
+      void add_combination(const double               factor,
+                           const std::vector<double> &coefficients,
+                           const Part                &part,
+                           Vector                    &x) const
+      {
+        for (std::size_t j = 0; j < store.size(); ++j)
+          if (coefficients[j] != 0)
+            add(factor * coefficients[j], part(j), x);
+      }
+
+      const DirectionStore<Vector> &store;
+
+    private:
+      Combinations combinations;
+    };
+  } // namespace detail
+
+  template <typename Vector>
+  struct FaceSolution
+  {
+    Status status;
+    Vector x, product; // F x
+    double residual;   // weighted |P(d - F x)|
+    Counts counts;
+  };
+
+  /// Solves a face by directions made and stored on the way.
+  template <typename Vector, typename Face>
+  class FaceSolver
+  {
+  public:
+    /// @param face, d, store, options are referred to. @param conditions as in admissible_combinations().
+    template <typename Conditions>
+    FaceSolver(const Face              &face_,
+               const Vector            &d_,
+               DirectionStore<Vector>  &store_,
+               const Conditions        &conditions,
+               const FaceSolverOptions &options_)
+      : face(face_)
+      , d(d_)
+      , store(store_)
+      , options(options_)
+      , reduction(face_.reduction())
+      , weights(residual_weights(face_, 0))
+      , recycled(store_, admissible_combinations(store_, conditions, reduction))
+      , n_recycled(store_.size())
+      , x(d_)
+      , Fx(d_)
+      , r(d_)
+      , w(d_)
+    {}
+
+    /// @param product F x. @return the weighted residual |P(d - F x)|.
+    double start(Vector x_, Vector product)
+    {
+      x  = std::move(x_);
+      Fx = std::move(product);
+      update_residual();
+      return norm_r;
+    }
+
+    /// By conjugate gradients from the start until the weighted residual is at most @p target.
+    FaceSolution<Vector> solve_symmetric(const double target)
+    {
+      std::optional<PivotedCholesky> known;
+      if (recycled.size() > 0 && norm_r > target)
+        {
+          known.emplace(
+            recycled.factor([this](const std::size_t i, const std::size_t j) { return store.energy(i, j); }));
+          for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
+            {
+              const auto c = recycled.coefficients(known->solve(recycled.combined(dots(r, &Direction::p))));
+              recycled.add_combination(
+                1.,
+                c,
+                [this](const std::size_t j) -> const Vector & { return store[j].p; },
+                x);
+              recycled.add_combination(
+                1.,
+                c,
+                [this](const std::size_t j) -> const Vector & { return store[j].Fp; },
+                Fx);
+              update_residual();
+            }
+        }
+      std::vector<std::pair<Vector, Vector>> own; // F-orthogonal, with products
+      std::vector<double>                    energies;
+      double                                 largest = 0;
+      while (norm_r > target)
+        {
+          if (counts.cg_steps == options.max_iterations)
+            return ended(Status::iteration_limit);
+          Vector p = preconditioned();
+          if (known)
+            {
+              const auto c = recycled.coefficients(known->solve(recycled.combined(dots(p, &Direction::Fp))));
+              recycled.add_combination(
+                -1.,
+                c,
+                [this](const std::size_t j) -> const Vector & { return store[j].p; },
+                p);
+            }
+          std::vector<double> along;
+          for (const auto &[q, Fq] : own)
+            along.push_back(local_dot(p, Fq));
+          sum_all(along, reduction);
+          for (std::size_t j = 0; j < own.size(); ++j)
+            add(-along[j] / energies[j], own[j].first, p);
+          Vector Fp(p);
+          multiply(p, Fp);
+          const auto [pr, pFp, pp] =
+            reduction.sum(std::array<double, 3>{{local_dot(p, r), local_dot(p, Fp), local_dot(p, p)}});
+          if (!std::isfinite(pr) || !std::isfinite(pFp) || !(pr > 0))
+            return ended(Status::stagnated);
+          if (pFp <= options.smallest_curvature * largest * pp)
+            return ended(Status::infeasible);
+          largest = std::max(largest, pFp / pp);
+          add(pr / pFp, p, x);
+          add(pr / pFp, Fp, Fx);
+          const double before = norm_r;
+          update_residual();
+          ++counts.cg_steps;
+          own.emplace_back(p, Fp);
+          energies.push_back(pFp);
+          keep(std::move(p), std::move(Fp));
+          if (stagnates(before))
+            return ended(Status::stagnated);
+        }
+      return ended(Status::converged);
+    }
+
+    /// The same by generalised conjugate residuals.
+    FaceSolution<Vector> solve_unsymmetric(const double target)
+    {
+      std::vector<Vector>            images; // weighted P F p of the directions of the store
+      std::optional<PivotedCholesky> known;
+      if (recycled.size() > 0 && norm_r > target)
+        {
+          for (std::size_t j = 0; j < n_recycled; ++j)
+            images.push_back(image(store[j].Fp));
+          const SmallSymmetric all = gram(images);
+          known.emplace(recycled.factor([&all](const std::size_t i, const std::size_t j) { return all(i, j); }));
+          for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
+            {
+              const auto c = recycled.coefficients(known->solve(recycled.combined(dots(weighted(r), images))));
+              recycled.add_combination(
+                1.,
+                c,
+                [this](const std::size_t j) -> const Vector & { return store[j].p; },
+                x);
+              recycled.add_combination(
+                1.,
+                c,
+                [this](const std::size_t j) -> const Vector & { return store[j].Fp; },
+                Fx);
+              update_residual();
+            }
+        }
+      struct Own
+      {
+        Vector p, Fp, q;
+      };
+      std::vector<Own> own; // q orthonormal
+      while (norm_r > target)
+        {
+          if (counts.cg_steps == options.max_iterations)
+            return ended(Status::iteration_limit);
+          Vector p = preconditioned();
+          Vector Fp(p);
+          multiply(p, Fp);
+          Vector       q     = image(Fp);
+          const double first = norm(q, reduction);
+          for (unsigned int pass = 0; pass < 2; ++pass) // twice is enough
+            {
+              if (known)
+                {
+                  const auto c = recycled.coefficients(known->solve(recycled.combined(dots(q, images))));
+                  recycled.add_combination(
+                    -1.,
+                    c,
+                    [this](const std::size_t j) -> const Vector & { return store[j].p; },
+                    p);
+                  recycled.add_combination(
+                    -1.,
+                    c,
+                    [this](const std::size_t j) -> const Vector & { return store[j].Fp; },
+                    Fp);
+                  recycled.add_combination(
+                    -1.,
+                    c,
+                    [&images](const std::size_t j) -> const Vector & { return images[j]; },
+                    q);
+                }
+              std::vector<double> along;
+              for (const Own &other : own)
+                along.push_back(local_dot(q, other.q));
+              sum_all(along, reduction);
+              for (std::size_t j = 0; j < own.size(); ++j)
+                {
+                  add(-along[j], own[j].p, p);
+                  add(-along[j], own[j].Fp, Fp);
+                  add(-along[j], own[j].q, q);
+                }
+            }
+          const double length = norm(q, reduction);
+          if (!(length > options.rounding * first))
+            return ended(Status::stagnated);
+          for (Vector *v : {&p, &Fp, &q})
+            combine(1. / length, *v, 0., *v);
+          const double rq = dot(weighted(r), q, reduction);
+          add(rq, p, x);
+          add(rq, Fp, Fx);
+          const double before = norm_r;
+          update_residual();
+          ++counts.cg_steps;
+          own.push_back({p, Fp, std::move(q)});
+          keep(std::move(p), std::move(Fp));
+          if (stagnates(before))
+            return ended(Status::stagnated);
+        }
+      return ended(Status::converged);
+    }
+
+  private:
+    using Direction = typename DirectionStore<Vector>::Direction;
+
+    FaceSolution<Vector> ended(const Status status)
+    {
+      for (auto &[p, Fp] : made)
+        store.push(std::move(p), std::move(Fp), reduction);
+      return {status, std::move(x), std::move(Fx), norm_r, counts};
+    }
+
+    // Into the store at the end: until then its numbering is that of the combinations.
+    void keep(Vector p, Vector Fp)
+    {
+      made.emplace_back(std::move(p), std::move(Fp));
+    }
+
+    bool stagnates(const double before)
+    {
+      n_stuck = norm_r > options.progress * before ? n_stuck + 1 : 0;
+      return !std::isfinite(norm_r) || n_stuck >= options.patience;
+    }
+
+    void multiply(const Vector &v, Vector &Fv)
+    {
+      face.multiply(v, Fv);
+      ++counts.hessian_multiplications;
+    }
+
+    // r = P(d - F x)
+    void update_residual()
+    {
+      std::copy(d.begin(), d.end(), r.begin());
+      add(-1.0, Fx, r);
+      face.project_range(r, w);
+      add(-1.0, w, r);
+      norm_r = std::sqrt(reduction.sum(std::array<double, 1>{{local_weighted_dot(weights, r, r)}})[0]);
+    }
+
+    Vector preconditioned()
+    {
+      Vector p(r);
+      face.precondition(static_cast<const Vector &>(r), p);
+      ++counts.preconditioner_applications;
+      face.project_kernel(p);
+      return p;
+    }
+
+    Vector weighted(const Vector &v) const
+    {
+      Vector result(v);
+      if (weights)
+        for (std::size_t i = 0; i < local_size(v); ++i)
+          result.begin()[i] *= weights[i];
+      return result;
+    }
+
+    Vector image(const Vector &Fp)
+    {
+      Vector q(Fp);
+      face.project_range(Fp, w);
+      add(-1.0, w, q);
+      return weighted(q);
+    }
+
+    std::vector<double> dots(const Vector &v, Vector Direction::*part) const
+    {
+      std::vector<double> result;
+      for (std::size_t j = 0; j < n_recycled; ++j)
+        result.push_back(local_dot(v, store[j].*part));
+      sum_all(result, reduction);
+      return result;
+    }
+
+    std::vector<double> dots(const Vector &v, const std::vector<Vector> &images) const
+    {
+      std::vector<double> result;
+      for (const Vector &q : images)
+        result.push_back(local_dot(v, q));
+      sum_all(result, reduction);
+      return result;
+    }
+
+    SmallSymmetric gram(const std::vector<Vector> &images) const
+    {
+      std::vector<double> products;
+      for (std::size_t i = 0; i < images.size(); ++i)
+        for (std::size_t j = 0; j <= i; ++j)
+          products.push_back(local_dot(images[i], images[j]));
+      sum_all(products, reduction);
+      SmallSymmetric result(images.size());
+      std::size_t    next = 0;
+      for (std::size_t i = 0; i < images.size(); ++i)
+        for (std::size_t j = 0; j <= i; ++j)
+          result(i, j) = result(j, i) = products[next++];
+      return result;
+    }
+
+    using ReductionType = std::decay_t<decltype(std::declval<Face>().reduction())>;
+
+    const Face              &face;
+    const Vector            &d;
+    DirectionStore<Vector>  &store;
+    const FaceSolverOptions &options;
+    const ReductionType     &reduction;
+    const double            *weights;
+    detail::Recycled<Vector> recycled;
+    const std::size_t        n_recycled;
+
+    Vector                                 x, Fx, r, w;
+    double                                 norm_r  = 0;
+    unsigned int                           n_stuck = 0;
+    std::vector<std::pair<Vector, Vector>> made;
+    Counts                                 counts;
+  };
+} // namespace slipstick::qp

@@ -1,0 +1,62 @@
+#include <slipstick/app/held_nodes.h>
+#include <slipstick/app/report.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    // Of the forces of a pair: less at held nodes, such as one at the corner, is not worth a warning.
+    constexpr double part_that_counts = 0.05;
+  } // namespace
+
+  void add_held_nodes(const scene::Scene<2>              &scene,
+                      const tfeti::DualProblem           &dual,
+                      const tfeti::HeldContacts          &held,
+                      const tfeti::DistributedVector     &multipliers,
+                      const std::vector<Eigen::VectorXd> &u,
+                      contact::CheckedContact            &contact)
+  {
+    const auto   gaps  = contact::gaps_of(held, u);
+    const double noise = check_limit(scene.solver.tolerance) * contact.checks.max_displacement;
+    fem::refuse_held_penetration(scene, held, gaps, noise, dual.communicator());
+    std::vector<bool> touches, sticks;
+    for (unsigned int i = 0; i < held.points.size(); ++i)
+      {
+        const auto &point = held.points[i];
+        touches.push_back(point.is_bonded ||
+                          gaps[i] <= fem::held_contact_tolerance(point) + (point.is_known ? 0. : noise));
+        sticks.push_back(scene.contacts[point.contact.pair].law != scene::ContactLaw::frictionless);
+      }
+    contact::add_held_nodes(dual, held, multipliers, gaps, touches, sticks, contact);
+  }
+
+  std::map<std::string, std::string> doubts_of_held_nodes(const scene::Scene<2>         &scene,
+                                                          const tfeti::HeldContacts     &held,
+                                                          const contact::CheckedContact &contact,
+                                                          const MPI_Comm                 comm)
+  {
+    std::vector<double> forces(scene.contacts.size()), all(scene.contacts.size());
+    for (const auto &node : contact.nodes)
+      all[node.pair] += std::abs(node.pressure) * node.area;
+    for (unsigned int i = 0; i < held.points.size(); ++i)
+      if (!held.points[i].is_bonded)
+        forces[held.points[i].contact.pair] += std::hypot(contact.held_forces[i][0], contact.held_forces[i][1]);
+    std::map<std::string, std::string> texts;
+    for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+      if (const double force = dealii::Utilities::MPI::sum(forces[k], comm);
+          force > part_that_counts * dealii::Utilities::MPI::sum(all[k], comm))
+        texts["held " + scene.contacts[k].name] = format(
+          "Contact %s: supports hold some of its nodes just where they touch, so that only the sum of both forces there is "
+          "determined; %.4g N of it, an equal share, are taken for contact (without friction under Coulomb's law); leave "
+          "the supported boundary out of the contact, or free the support along the normal",
+          scene.contacts[k].name.c_str(),
+          force);
+    return texts;
+  }
+} // namespace slipstick::app

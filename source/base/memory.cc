@@ -1,0 +1,33 @@
+#include <slipstick/base/memory.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include <sys/resource.h>
+
+namespace slipstick
+{
+  double free_memory_mb(const unsigned int n_ranks)
+  {
+    double        free = std::numeric_limits<double>::infinity();
+    std::ifstream info("/proc/meminfo");
+    std::string   word;
+    double        kilobytes;
+    while (info >> word)
+      if (word == "MemAvailable:" && info >> kilobytes)
+        free = kilobytes / 1024;
+    for (const std::string group : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"})
+      {
+        std::ifstream limit(group);
+        double        bytes;
+        if (limit >> bytes) // "max": none
+          free = std::min(free, bytes / 1048576);
+      }
+    rlimit limit;
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+      free = std::min(free, n_ranks * (limit.rlim_cur / 1048576.));
+    return free;
+  }
+} // namespace slipstick

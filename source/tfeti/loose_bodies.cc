@@ -1,0 +1,235 @@
+#include <slipstick/base/collective.h>
+#include <slipstick/tfeti/dual_problem.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <cmath>
+#include <map>
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    // Motions that free rows resist by less than this part of the best held one count as weakly held.
+    constexpr double weak_resistance = 1e-3;
+    // Rows with one bound resist by this times all two-sided ones and the loads.
+    constexpr double barrier = 10;
+    // |t| is smoothed to sqrt(t^2 + eps^2), eps from the largest |g| down by this factor ...
+    constexpr double smoothing_reduction = 0.1;
+    // ... to this part of it, ...
+    constexpr double least_smoothing = 1e-6;
+    // ... each minimised by so many Newton steps at most.
+    constexpr unsigned int max_newton_steps = 30;
+
+    /// A row of a loose body.
+    struct LooseRow
+    {
+      double          g, capacity; // capacity infinite: one-sided
+      Eigen::VectorXd share;
+    };
+
+    /// The motion a at which sum r |g + S a| + e'a is least.
+    class Settling
+    {
+    public:
+      Settling(std::vector<LooseRow> rows_, Eigen::VectorXd loads_)
+        : rows(std::move(rows_))
+        , loads(std::move(loads_))
+      {
+        double all = loads.norm();
+        for (const LooseRow &row : rows)
+          {
+            largest = std::max(largest, std::abs(row.g));
+            all += std::isfinite(row.capacity) ? row.capacity : 0.;
+          }
+        if (largest == 0)
+          largest = 1; // any length
+        for (LooseRow &row : rows)
+          if (!std::isfinite(row.capacity))
+            {
+              row.capacity = barrier * all;
+              one_sided.push_back(true);
+            }
+          else
+            one_sided.push_back(false);
+      }
+
+      /// What the rows bear of the loads along a, at least; one-sided rows must not be moved against.
+      double held_part(const Eigen::VectorXd &a) const
+      {
+        double bears = 0;
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          bears +=
+            rows[i].capacity * (one_sided[i] ? std::max(0., -rows[i].share.dot(a)) : std::abs(rows[i].share.dot(a)));
+        const double drives = -loads.dot(a);
+        return drives > 0 ? bears / drives : HUGE_VAL;
+      }
+
+      Eigen::VectorXd motion() const
+      {
+        Eigen::VectorXd a = Eigen::VectorXd::Zero(loads.size());
+        for (double eps = largest; eps >= least_smoothing * largest && eps > 0; eps *= smoothing_reduction)
+          for (unsigned int k = 0; k < max_newton_steps; ++k)
+            {
+              Eigen::VectorXd       slope;
+              Eigen::MatrixXd       curvature;
+              const double          value = evaluate(a, eps, &slope, &curvature);
+              const Eigen::VectorXd step  = -curvature.completeOrthogonalDecomposition().solve(slope);
+              const double          along = slope.dot(step);
+              if (!(along < 0))
+                break;
+              double t = 1;
+              while (t > 1e-10 && !(evaluate(a + t * step, eps) <= value + 1e-4 * t * along))
+                t /= 2;
+              a += t * step;
+              if (-along <= 1e-12 * std::abs(value) || t <= 1e-10)
+                break;
+            }
+        return a;
+      }
+
+    private:
+      double evaluate(const Eigen::VectorXd &a,
+                      const double           eps,
+                      Eigen::VectorXd       *slope     = nullptr,
+                      Eigen::MatrixXd       *curvature = nullptr) const
+      {
+        double value = loads.dot(a);
+        if (slope)
+          {
+            *slope     = loads;
+            *curvature = Eigen::MatrixXd::Zero(loads.size(), loads.size());
+          }
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          {
+            const double t = rows[i].g + rows[i].share.dot(a), smooth = std::hypot(t, eps);
+            const double factor = one_sided[i] ? rows[i].capacity / 2 : rows[i].capacity;
+            value += factor * (smooth - (one_sided[i] ? t : 0.));
+            if (slope)
+              {
+                *slope += factor * (t / smooth - (one_sided[i] ? 1. : 0.)) * rows[i].share;
+                *curvature +=
+                  factor * eps * eps / (smooth * smooth * smooth) * rows[i].share * rows[i].share.transpose();
+              }
+          }
+        return value;
+      }
+
+      std::vector<LooseRow> rows;
+      std::vector<bool>     one_sided;
+      Eigen::VectorXd       loads;
+      double                largest = 0;
+    };
+
+    /// The rows of loose bodies, of all ranks in an order that no number of ranks changes.
+    std::vector<LooseRow> gathered(const std::vector<std::uint64_t>       &labels,
+                                   const std::vector<std::vector<double>> &numbers, // g, capacity, share
+                                   const MPI_Comm                          comm)
+    {
+      std::map<std::uint64_t, LooseRow> all;
+      const auto                        labels_of  = dealii::Utilities::MPI::all_gather(comm, labels);
+      const auto                        numbers_of = dealii::Utilities::MPI::all_gather(comm, numbers);
+      for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
+        for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
+          {
+            const auto &row = numbers_of[rank][i];
+            all.emplace(labels_of[rank][i],
+                        LooseRow{row[0], row[1], Eigen::Map<const Eigen::VectorXd>(row.data() + 2, row.size() - 2)});
+          }
+      std::vector<LooseRow> result;
+      for (const auto &[label, row] : all)
+        result.push_back(row);
+      return result;
+    }
+  } // namespace
+
+  DualProblem::Settled DualProblem::settle(const std::vector<bool>   &free,
+                                           const std::vector<double> &capacity,
+                                           const DistributedVector   &x,
+                                           const DistributedVector   &g,
+                                           const bool                 is_weak) const
+  {
+    Settled    result{free, zero(), false};
+    const auto loose = bodies->free(free, is_weak ? weak_resistance : BodyMotions::rounding_of_resistance);
+    if (loose.empty())
+      return result;
+    result.is_loose           = true;
+    const Eigen::MatrixXd own = bodies->jumps(loose);
+    const std::size_t     n   = loose.size();
+
+    std::vector<std::vector<double>> numbers; // g, capacity, share
+    std::vector<std::uint64_t>       labels;
+    Eigen::VectorXd                  loads = Eigen::VectorXd::Zero(n);
+    for (unsigned int r = 0; r < free.size(); ++r)
+      if (!free[r])
+        {
+          loads += x.local_element(r) * own.row(r).transpose();
+          if (capacity[r] < 0 || own.row(r).isZero(0.))
+            continue;
+          numbers.push_back({g.local_element(r), capacity[r]});
+          for (std::size_t m = 0; m < n; ++m)
+            numbers.back().push_back(own(r, m));
+          labels.push_back(rows.label[r]);
+        }
+    MPI_Allreduce(MPI_IN_PLACE, loads.data(), n, MPI_DOUBLE, MPI_SUM, comm);
+    const auto            in_order = gathered(labels, numbers, comm);
+    const Eigen::VectorXd a        = Settling(in_order, loads).motion();
+
+    double typical = 0;
+    for (const LooseRow &row : in_order)
+      typical = std::max(typical, std::abs(row.g + row.share.dot(a)));
+    std::vector<bool>   is_candidate(free.size());
+    std::vector<double> scale(free.size(), 1.);
+    for (unsigned int r = 0; r < free.size(); ++r)
+      if (!free[r])
+        {
+          result.shift.local_element(r) = own.row(r).dot(a);
+          is_candidate[r]               = capacity[r] >= 0;
+          const double rest             = std::abs(g.local_element(r) + result.shift.local_element(r));
+          scale[r]                      = 1 / (1e-6 + (typical > 0 ? rest / typical : 0.));
+        }
+    hold(loose, is_candidate, scale, result.free);
+    return result;
+  }
+
+  std::optional<DualProblem::Overload> DualProblem::overload(const std::vector<bool>   &free,
+                                                             const std::vector<double> &capacity) const
+  {
+    const auto loose = bodies->free(free, weak_resistance);
+    if (loose.empty())
+      return {};
+    const Eigen::MatrixXd            own = bodies->jumps(loose);
+    std::vector<std::vector<double>> numbers;
+    std::vector<std::uint64_t>       labels;
+    Eigen::VectorXd                  loads(loose.size());
+    for (std::size_t m = 0; m < loose.size(); ++m)
+      loads[m] = loose[m].load;
+    for (unsigned int r = 0; r < free.size(); ++r)
+      if (!free[r])
+        {
+          if (capacity[r] < 0 || own.row(r).isZero(0.))
+            continue;
+          const double unit = 1; // any gap: what counts is how the sum grows far away
+          numbers.push_back({std::isfinite(capacity[r]) ? 0. : unit, capacity[r]});
+          for (std::size_t m = 0; m < loose.size(); ++m)
+            numbers.back().push_back(own(r, m));
+          labels.push_back(rows.label[r]);
+        }
+    const auto all = gathered(labels, numbers, comm);
+    if (all.empty())
+      return {};
+    const Settling        settling(all, loads);
+    const Eigen::VectorXd a = settling.motion();
+    if (!(a.norm() > 0))
+      return {};
+    const double held = settling.held_part(a);
+    if (!(held < 1))
+      return {};
+    RigidMotion motion = loose.front();
+    motion.amplitudes.setZero();
+    for (std::size_t m = 0; m < loose.size(); ++m)
+      motion.amplitudes -= a[m] * loose[m].amplitudes; // bodies move against G'a
+    motion.amplitudes.normalize();
+    return Overload{motion, held};
+  }
+} // namespace slipstick::tfeti

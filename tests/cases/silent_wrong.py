@@ -1,0 +1,261 @@
+"""Scenes that once gave a wrong answer with status 0 and without a word: the right figure now, or a refusal that names what is
+wrong. And what loads, supports and contact pairs come to."""
+
+import math
+import re
+import unittest
+
+import scenes
+from program import converged, run, shipped, solve
+
+STEEL = {'Young modulus': '2.1e5'}
+BAR = {'Size': '10, 4', 'Cells': '10, 4', 'Material': 'elastic'}
+FLOOR = {'Shape': 'half plane', 'Point': '0, 0', 'Normal': '0, 1'}
+TOUCH = {'Slave': 'bar/bottom', 'Master': 'floor', 'Law': 'frictionless'}
+PRESSED = {'Boundary': 'bar/top', 'Traction y': '-1'}  # 10 N
+NONE = {'Method': 'none'}
+
+
+def bar(**kinds):
+    kinds = {'materials': {'elastic': STEEL}, 'bodies': {'bar': BAR}, 'Decomposition': NONE,
+             'contacts': {'touch': TOUCH}, **kinds}
+    if any(contact['Master'] == 'floor' for contact in kinds['contacts'].values()):
+        kinds.setdefault('obstacles', {'floor': FLOOR})
+    return scenes.box('bar', **kinds)
+
+
+def two_bars(upper=None, **kinds):
+    """Another bar on top of the first, both held on their far sides."""
+    held = {'Displacement x': '0', 'Displacement y': '0'}
+    return bar(**{'bodies': {'bar': BAR, 'lid': {**BAR, 'Origin': '0, 4', **(upper or {})}},
+                  'supports': {'below': {'Boundary': 'bar/bottom', **held}, 'above': {'Boundary': 'lid/top', **held}},
+                  'contacts': {'joint': {'Slave': 'bar/top', 'Master': 'lid/bottom'}}, **kinds})
+
+
+def disc_on_plate(reach):
+    held = {'Displacement x': '0', 'Displacement y': '0'}
+    return scenes.box('disc', materials={'elastic': STEEL}, Decomposition=NONE, bodies={
+        'disc': {'Shape': 'half disc', 'Center': '0, 10', 'Radius': '10', 'Cells along arc': '64', 'Material': 'elastic'},
+        'plate': {'Origin': '-10, -5', 'Size': '20, 5', 'Cells': '40, 6', 'Material': 'elastic'}},
+        supports={'push': {'Boundary': 'disc/flat', **held, 'Displacement y': '-0.5'},
+                  'base': {'Boundary': 'plate/bottom', **held}},
+        contacts={'joint': {'Slave': 'disc/arc', 'Master': 'plate/top', 'Reach': reach}})
+
+
+def only(found):
+    assert len(found) == 1, found
+    return found[0]
+
+
+def force(result, kind='contact', name=0):
+    return result.summary['results'][kind][name]['force']
+
+
+class Case(unittest.TestCase):
+
+    def refused(self, case, status, *words, ranks=1):
+        result = solve(case, ranks=ranks)
+        self.assertEqual(result.status, status, result)
+        for word in words:
+            self.assertIn(word, result.stderr)
+        self.assertIn('remedy: ', result.stderr)
+        return result
+
+    def near(self, found, expected, part=1e-9):
+        for a, b in zip(found, expected):
+            self.assertAlmostEqual(a, b, delta=part * max(map(abs, expected)), msg='{} {}'.format(found, expected))
+
+    def warned(self, result, *words):
+        text = [text for text in result.summary['warnings'] if words[0] in text]
+        self.assertTrue(text, result.summary['warnings'])
+        for word in words:
+            self.assertIn(word, text[0])
+
+
+class Held(Case):
+    """Contact nodes whose normal motion supports prescribe."""
+
+    def test_prescribed_penetration_is_refused(self):
+        down = {'Displacement x': '0', 'Displacement y': '-0.1'}
+        for support in ({'Boundary': 'bar/bottom', **down}, {'Boundary': 'bar/bottom', 'Displacement normal': '0.1'},
+                        {'Body': 'bar', 'Point': '3, 0', **down}):
+            self.refused(bar(supports={'push': support}), 4, 'Support push', 'Contact touch', '0.1 mm inside')
+
+    def test_on_several_ranks_and_in_the_check_alone(self):
+        case = bar(supports={'push': {'Boundary': 'bar/bottom', 'Displacement x': '0', 'Displacement y': '-0.1'}})
+        self.refused(case, 4, 'Support push', ranks=2)
+        self.assertEqual(run(case, '--check').status, 4)
+
+    def test_two_clamped_sides_with_interference_are_refused(self):
+        clamp = {'Displacement x': '0', 'Displacement y': '0'}
+        case = two_bars(supports={'one': {'Boundary': 'bar/top', **clamp}, 'two': {'Boundary': 'lid/bottom', **clamp}},
+                        contacts={'joint': {'Slave': 'bar/top', 'Master': 'lid/bottom', 'Offset': '-0.01'}})
+        self.refused(case, 4, 'Support one', 'Support two', 'Contact joint', '0.01 mm inside')
+
+    def test_in_a_later_load_step(self):
+        case = bar(supports={'push': {'Boundary': 'bar/bottom', 'Displacement x': '0', 'Displacement y': '1e-3*(1.5-t)'}},
+                   tractions={'pressed': PRESSED}, **{'Load steps': {'Factors': '1, 2'}})
+        self.refused(case, 4, 'Support push', '0.0005 mm inside')
+
+    def test_where_both_agree_the_reaction_is_shared(self):
+        case = bar(supports={'rest': {'Boundary': 'bar/bottom', 'Displacement x': '0', 'Displacement y': '0'}},
+                   tractions={'pressed': PRESSED})
+        result = converged(case, ranks=2)
+        self.near(force(result), [0, 5])
+        self.near(force(result, 'supports'), [0, 5])
+        self.assertEqual(only(result.summary['results']['contact'])['contact_nodes'], 11)
+        self.assertEqual({row['gap'] for row in result.contact}, {0})
+        self.warned(result, 'Contact touch', 'only the sum')
+
+    def test_held_apart_it_is_open(self):
+        case = bar(supports={'lift': {'Boundary': 'bar/bottom', 'Displacement x': '0', 'Displacement y': '0.1'}},
+                   tractions={'pressed': PRESSED})
+        result = converged(case)
+        self.near(force(result, 'supports'), [0, 10])
+        self.assertEqual({(row['gap'], row['status']) for row in result.contact}, {(0.1, 'open')})
+
+
+class Bonded(Case):
+
+    def test_a_bond_to_an_obstacle_reports_its_force(self):
+        for ranks in (1, 2):
+            result = converged(bar(tractions={'pressed': {**PRESSED, 'Traction x': '0.5'}},
+                                   contacts={'touch': {**TOUCH, 'Law': 'bonded'}}), ranks=ranks)
+            pair = only(result.summary['results']['contact'])
+            self.near(pair['force'], [-5, 10])
+            self.near([pair['moment']], [50 + 4 * 5])
+            self.near([pair['normal_force'], pair['contact_nodes']], [10, 11])
+            self.assertEqual(len(result.contact), 11)
+
+
+class SharedSides(Case):
+
+    def test_one_surface_in_two_pairs(self):
+        self.refused(bar(tractions={'pressed': PRESSED},
+                         contacts={'c': TOUCH, 'd': {**TOUCH, 'Slave': 'bar/*'}}), 2, 'Contact c', 'Contact d')
+        self.refused(two_bars(contacts={'c': {'Slave': 'bar/top', 'Master': 'lid/bottom'},
+                                        'd': {'Slave': 'lid/*', 'Master': 'bar/top'}}), 2, 'Contact c', 'Contact d')
+
+    def test_neighbours_are_no_such_pairs(self):
+        sides = {side: {'Boundary': 'bar/' + side, 'Displacement x': '0'} for side in ('left', 'right')}
+        converged(bar(supports=sides, tractions={'pressed': PRESSED},
+                      obstacles={'floor': FLOOR, 'wall': {'Shape': 'half plane', 'Point': '0, 0', 'Normal': '1, 0'}},
+                      contacts={'c': TOUCH, 'd': {**TOUCH, 'Slave': 'bar/left', 'Master': 'wall'}}))
+
+
+class AfterLoading(Case):
+    """Geometry that no row of contact watches."""
+
+    def test_a_reach_that_is_too_small(self):
+        result = self.refused(disc_on_plate('0.05'), 3, 'Contact joint', 'farther away than the Reach of 0.05 mm')
+        wider = re.search(r'Reach to (\S+) mm', result.stderr).group(1)
+        self.assertIs(result.summary['converged'], False)
+        right = converged(disc_on_plate('auto'))
+        self.assertAlmostEqual(force(right)[1], 42424, delta=100)
+        self.near(force(converged(disc_on_plate(wider))), force(right), 1e-3)
+
+    def test_an_obstacle_between_two_nodes(self):
+        push = {'push': {'Boundary': 'bar/top', 'Displacement x': '0', 'Displacement y': '-0.2'}}
+        for obstacle, depth in (({'Center': '4.5, -0.3', 'Radius': '0.3'}, '0.2'),
+                                ({'Shape': 'polyline', 'Points': '-9 -3; 1.5 -3; 4.5 0; 7.5 -3; 20 -3'}, '0.2'),
+                                ({'Shape': 'function', 'Height': 'exp(-((x-4.5)/0.1)^2) - 1'}, '')):
+            case = bar(supports=push, obstacles={'thorn': obstacle}, contacts={'c': {**TOUCH, 'Master': 'thorn'}})
+            self.warned(solve(case), 'obstacle thorn is ' + depth, 'inside body bar at (4.5, 0)', 'refine')
+
+    def test_refined_it_touches(self):
+        case = bar(supports={'push': {'Boundary': 'bar/top', 'Displacement x': '0', 'Displacement y': '-0.2'}},
+                   bodies={'bar': {**BAR, 'Cells': '80, 32'}},
+                   obstacles={'thorn': {'Center': '4.5, -0.3', 'Radius': '0.3'}},
+                   contacts={'c': {**TOUCH, 'Master': 'thorn'}})
+        result = converged(case)
+        self.assertGreater(force(result)[1], 1000)
+        self.assertFalse([text for text in result.summary['warnings'] if 'thorn is' in text])
+
+    def test_bodies_that_no_pair_joins(self):
+        case = two_bars(contacts={}, tractions={'pressed': {'Boundary': 'bar/left', 'Traction x': '1000'}})
+        self.warned(solve(case), 'inside body', 'no contact pair joins the two')
+
+
+class Loads(Case):
+
+    def resultant(self, load, **kinds):
+        result = converged(bar(tractions={'pressed': {'Boundary': 'bar/top', **load}},
+                               contacts={'touch': {**TOUCH, 'Law': 'bonded'}}, **kinds))
+        sums = only(result.summary['results']['loads'])
+        self.near(force(result), [-f for f in sums['force']], 1e-8)
+        return sums
+
+    def test_jumps_are_integrated(self):
+        for degree in (1, 2):
+            sums = self.resultant({'Traction y': '-20*(x>2.3 && x<7.1)'}, Discretization={'Degree': degree})
+            self.near(sums['force'] + [sums['moment']], [0, -96, -96 * 4.7])
+
+    def test_a_peak_within_an_edge(self):
+        for place in ('4.5', '4.37', '4.013'):
+            sums = self.resultant({'Pressure': '1000*exp(-((x-{})/0.005)^2)'.format(place)})
+            self.near(sums['force'], [0, -5 * math.sqrt(math.pi)], 1e-6)
+
+    def test_a_formula_without_end_is_warned_of(self):
+        case = bar(tractions={'pressed': {'Boundary': 'bar/top', 'Traction y': '-1 + sin(1e7*x)*sin(3e6*x)'}},
+                   contacts={'touch': {**TOUCH, 'Law': 'bonded'}})
+        self.warned(solve(case), 'traction pressed', 'changes faster')
+
+    def test_body_forces_with_jumps_are_warned_of(self):
+        for fy, is_rough in (('-(x>2.3 && x<7.1)', True), ('-1-sin(pi*x/10)', False)):
+            result = converged(bar(body_forces={'weight': {'Force y': fy}}, contacts={'touch': {**TOUCH, 'Law': 'bonded'}}))
+            if is_rough:
+                self.warned(result, 'body force weight', 'changes faster')
+            else:
+                self.assertEqual(result.summary['warnings'], [])
+
+
+class Names(Case):
+
+    def test_all_and_the_star_are_reserved(self):
+        self.refused(scenes.box(bodies={'all': scenes.BOX}), 2, "'all' is reserved")
+
+
+class Resultants(Case):
+
+    def test_every_load_support_foundation_and_pair(self):
+        case = bar(materials={'elastic': {**STEEL, 'Density': '1e-3'}},
+                   tractions={'side': {'Boundary': 'bar/left', 'Pressure': '2'}},
+                   body_forces={'weight': {'Acceleration y': '-100'}},
+                   point_loads={'pull': {'Body': 'bar', 'Point': '10, 4', 'Force x': '3', 'Force y': '1'}},
+                   supports={'right': {'Boundary': 'bar/right', 'Displacement x': '0'}},
+                   foundations={'bed': {'Boundary': 'bar/top', 'Normal stiffness': '1'}})
+        for ranks in (1, 2):
+            result = converged(case, {'Solver/Tolerance': 1e-10, 'Decomposition/Method': 'METIS',
+                                      'Decomposition/Subdomains': 4}, ranks=ranks)
+            found = result.summary['results']
+            loads = {load['load']: load for load in found['loads']}
+            self.near(loads['side']['force'] + [loads['side']['moment']], [8, 0, -16])
+            self.near(loads['weight']['force'] + [loads['weight']['moment']], [0, -4, -20])
+            self.near(loads['pull']['force'] + [loads['pull']['moment']], [3, 1, 10 - 12])
+            self.assertEqual([load['kind'] for load in found['loads']], ['traction', 'body force', 'point load'])
+            support, bed, pair = only(found['supports']), only(found['foundations']), only(found['contact'])
+            self.near(support['force'], [-11, 0])
+            self.assertAlmostEqual(bed['force'][1] + pair['force'][1], 3, delta=1e-7)
+            self.assertNotEqual(bed['force'][1], 0)
+            self.assertAlmostEqual(support['moment'] + bed['moment'] + pair['moment'], 16 + 20 + 2, delta=1e-6)
+            self.assertIn('traction side', result.stdout)
+
+    def test_history_has_a_row_for_every_step(self):
+        result = converged(shipped('cattaneo_mindlin'))
+        rows, steps = result.rows('history.csv'), result.summary['steps']
+        self.assertEqual([row['t'] for row in rows], [step['load_factor'] for step in steps])
+        self.assertGreater(len(rows), 1)
+        for row, step in zip(rows, steps):
+            for kind, noun in (('supports', 'support'), ('contact', 'pair')):
+                for entry in step[kind]:
+                    name = {'pair': 'contact'}.get(noun, noun) + ' ' + entry[noun]
+                    self.assertEqual([row[name + ' Fx'], row[name + ' Fy'], row[name + ' moment']],
+                                     entry['force'] + [entry['moment']])
+            total = [sum(entry['force'][d] for kind in ('loads', 'supports') for entry in step[kind]) for d in (0, 1)]
+            largest = max(abs(f) for entry in step['loads'] for f in entry['force'])
+            for d in (0, 1):
+                self.assertAlmostEqual(total[d] / largest, 0, delta=1e-8)
+
+
+if __name__ == '__main__':
+    unittest.main()
