@@ -3,7 +3,7 @@
 
 #include <slipstick/fem/echelon.h>
 #include <slipstick/base/exceptions.h>
-#include <slipstick/fem/body_mesh.h>
+#include <slipstick/fem/make_body.h>
 
 #include <filesystem>
 #include <fstream>

@@ -1,6 +1,7 @@
 #include "mesh_quality.h"
 #include "torn.h"
 
+#include <slipstick/fem/make_body.h>
 #include <slipstick/fem/refinement.h>
 #include <slipstick/fem/shapes.h>
 

@@ -3,6 +3,7 @@
 
 #include <slipstick/fem/refinement.h>
 #include <slipstick/fem/smooth_outline.h>
+#include <slipstick/fem/triangulate.h>
 
 #include <gtest/gtest.h>
 

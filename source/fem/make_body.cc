@@ -1,7 +1,7 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/base/text.h>
-#include <slipstick/fem/body_mesh.h>
+#include <slipstick/fem/make_body.h>
 #include <slipstick/fem/refinement.h>
 #include <slipstick/fem/smooth_outline.h>
 
