@@ -1,4 +1,4 @@
-"""Contact of arcs: shrink fits and gear flanks, nodes that do not match, against Lame and Hertz."""
+"""Contact of arcs: shrink fits, a pin with clearance and gear flanks, nodes that do not match, against Lame and Hertz."""
 
 import math
 import unittest
@@ -197,6 +197,15 @@ class Curves(unittest.TestCase):
             self.assertIn(part, warnings[0])
         smooth = converged(case)
         self.assertFalse([text for text in smooth.summary['warnings'] if 'leave out an arc' in text])
+
+    def test_chords_are_not_taken_for_bodies_inside_each_other(self):
+        text = FIT.format(hub=self.ring(40, 6), shaft=32).replace('20.02', '19.99')
+        text = text.replace('Supports = centre', 'Supports = bearing, centre')
+        text = text.replace('Point = 0, 0\n  set Displacement x = 0', 'Point = 0, 0\n  set Displacement x = 0.05')
+        text += 'subsection Support bearing\n set Boundary = hub/outer\n set Displacement x = 0\n set Displacement y = 0\nend'
+        result = converged(write('pin.prm', text))
+        self.assertGreater(max(row['pressure'] for row in result.contact), 1)
+        self.assertFalse([text for text in result.summary['warnings'] if 'inside body' in text])
 
     def hertz_error(self, degree, refinements, second_order=False):
         """Error of the pressure in L2 and of its largest value against Hertz with the force that was found."""
