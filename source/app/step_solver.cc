@@ -321,7 +321,8 @@ namespace slipstick::app
   {
     try
       {
-        return the_dual->recover(the_solution.multipliers, the_solution.free);
+        // what a later step of a history leaves without load stays where it is
+        return the_dual->recover(the_solution.multipliers, the_solution.free, !u.empty());
       }
     catch (const UndeterminedPosition &)
       {

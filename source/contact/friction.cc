@@ -92,7 +92,9 @@ namespace slipstick::contact
             set_bounds(law.bounds(feasible));
           }
         follow_bounds(feasible);
-        if (solution.status != qp::Status::converged)
+        const bool follows =
+          law.depends_on_pressure() && solution.friction_iterations > 0; // not a limit of SMALBE alone
+        if (solution.status == qp::Status::stagnated || (solution.status == qp::Status::iteration_limit && follows))
           finish_by_newton(feasible);
         return finished();
       }

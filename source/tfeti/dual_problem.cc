@@ -354,6 +354,7 @@ namespace slipstick::tfeti
 
   bool DualProblem::rows_that_fix(const std::vector<RigidMotion> &loose,
                                   const DistributedVector        &x,
+                                  const bool                      keeps_still,
                                   std::vector<bool>              &free) const
   {
     const double              noise = force_rounding * x.linfty_norm();
@@ -363,7 +364,7 @@ namespace slipstick::tfeti
       is_candidate[r] = !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
     if (hold(loose, is_candidate, equal, free))
       return true;
-    if (plainest(loose).work > 0)
+    if (!keeps_still || plainest(loose).work > 0)
       require_support(loose, names_of_bodies);
     for (unsigned int r = 0; r < free.size(); ++r)
       is_candidate[r] = !free[r];
@@ -451,11 +452,13 @@ namespace slipstick::tfeti
       at.u[p] += bodies->displacements(p, amplitudes);
   }
 
-  DualProblem::Recovery DualProblem::recover(const DistributedVector &x, const std::vector<bool> &free) const
+  DualProblem::Recovery DualProblem::recover(const DistributedVector &x,
+                                             const std::vector<bool> &free,
+                                             const bool               keeps_still) const
   {
     const auto        loose      = bodies->free(free);
     std::vector<bool> fixed      = free;
-    const bool        is_at_rest = loose.empty() || rows_that_fix(loose, x, fixed);
+    const bool        is_at_rest = loose.empty() || rows_that_fix(loose, x, keeps_still, fixed);
     const Projector   on_free(*projector, fixed, comm, std::vector<qp::Tie>(), metric);
     Recovery          result{{}, zero(), {}};
     DistributedVector step{zero()};

@@ -68,7 +68,7 @@ namespace slipstick::tfeti
       Eigen::VectorXd motion() const
       {
         Eigen::VectorXd a = Eigen::VectorXd::Zero(loads.size());
-        for (double eps = largest; eps >= least_smoothing * largest && eps > 0; eps *= smoothing_reduction)
+        for (double eps = largest; std::isfinite(largest) && eps > least_smoothing * largest; eps *= smoothing_reduction)
           for (unsigned int k = 0; k < max_newton_steps; ++k)
             {
               Eigen::VectorXd       slope;

@@ -102,7 +102,7 @@ class Supports(Extremes):
                 self.ends(4, table, 'frictionless, cut {}, {}'.format(seed, algorithm), disc(
                     3.843, 20, {'Young modulus': 49112, 'Poisson ratio': 0.44}, -0.4515, -1.1295,
                     {'Shape': 'function', 'Height': '-0.02306*(1-cos(0.3903*x))'}, {'Law': 'frictionless'}),
-                    'balance the loads, which move body disc: translation along (-1, ',
+                    'body disc: translation along (-',  # the direction is that of an iterate: doc/status.md
                     overrides={'Discretization/Degree': 2, 'Decomposition/Method': 'METIS', 'Decomposition/Subdomains': 2,
                                'Decomposition/Seed': seed, 'Solver/Algorithm': algorithm, 'Solver/Tolerance': 1e-10})
         for algorithm in ('semismooth newton', 'smalbe'):
@@ -150,7 +150,7 @@ class Supports(Extremes):
 
     def test_pairs(self):
         table = Table('pairs of contact')
-        reference = self.converges(table, 'one pair', two())
+        self.converges(table, 'one pair', two())
         self.ends(2, table, 'declared twice', two(contacts={'joint': JOINT, 'again': JOINT}),
                   'Contact joint joins the same two sides')
         self.ends(2, table, 'declared twice, sides exchanged',
@@ -159,10 +159,8 @@ class Supports(Extremes):
         for what, again in (('as the whole outline', {'Slave': 'box/*', 'Master': 'base/*'}),
                             ('half as the whole outline', {'Slave': 'box/bottom', 'Master': 'base/*'}),
                             ('exchanged, as the whole outline', {'Slave': 'base/*', 'Master': 'box/*'})):
-            result = self.converges(table, 'declared twice, ' + what, two(contacts={'joint': JOINT, 'again': {**JOINT, **again}}))
-            carried = sum(one['normal_force'] for one in result.summary['results']['contact'])
-            self.near(carried, 100, 1e-6)
-            self.near(result.summary['results']['strain_energy'], reference.summary['results']['strain_energy'], 1e-6)
+            self.ends(2, table, 'declared twice, ' + what, two(contacts={'joint': JOINT, 'again': {**JOINT, **again}}),
+                      'join the same two sides')
 
     def test_three_bodies_around_a_point(self):
         """Three blocks that stick to each other where they meet: their forces on each other are determined up to a cycle, and

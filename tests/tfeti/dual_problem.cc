@@ -175,7 +175,7 @@ TEST(DualProblem, recovered_displacements_fit_the_rows_that_hold)
     }
 }
 
-TEST(DualProblem, recovery_names_the_body_that_the_held_rows_leave_free)
+TEST(DualProblem, recovery_keeps_still_what_nothing_resists_and_no_load_drives_and_names_it)
 {
   for (const Cut &how : cuts)
     {
@@ -191,8 +191,32 @@ TEST(DualProblem, recovery_names_the_body_that_the_held_rows_leave_free)
       for (unsigned int r = 0; r < free.size(); ++r)
         if (!free[r])
           x.local_element(r) = 0;
-      const std::string text = message_on_all_ranks<NoEquilibrium>([&] { dual->recover(x, free); });
+      EXPECT_THROW(dual->recover(x, free), UndeterminedPosition);
+      const auto recovered = dual->recover(x, free, true);
+      ASSERT_EQ(recovered.unresisted.size(), 1u);
+      const std::string text = describe(recovered.unresisted[0], dual->body_names());
       EXPECT_NE(text.find("body box: rotation about (5, -20)"), std::string::npos) << text;
+    }
+}
+
+TEST(DualProblem, recovery_names_the_body_that_loads_drive_and_the_held_rows_leave_free)
+{
+  for (const Cut &how : cuts)
+    {
+      Scene scene = box(8);
+      touch(scene, 0, "bottom", {5, -20}, 20, "100");
+      load(scene, 0, "top", "0.1", "-1");
+      const Torn        torn(cut(scene, how));
+      const auto        dual = torn.dual();
+      std::vector<bool> free;
+      for (const auto kind : torn.constraints.kind)
+        free.push_back(kind != tfeti::RowKind::tangential);
+      auto x = dual->particular();
+      for (unsigned int r = 0; r < free.size(); ++r)
+        if (!free[r])
+          x.local_element(r) = 0;
+      const std::string text = message_on_all_ranks<NoEquilibrium>([&] { dual->recover(x, free); });
+      EXPECT_NE(text.find("body box: rotation about (5, -20), where the loads push"), std::string::npos) << text;
     }
 }
 

@@ -140,7 +140,12 @@ namespace slipstick::qp
             double left = residual + violation / goal.reference;
             if (left <= goal.tolerance)
               left += norm * imbalance(*face) / goal.reference;
-            if (left <= goal.tolerance || is_accepted())
+            if (is_accepted())
+              {
+                std::swap(x, y);
+                return Status::converged;
+              }
+            if (left <= goal.tolerance)
               {
                 best = y;
                 if (!is_right || left <= options.least_part * goal.tolerance || is_right(y, error_on(*face)))

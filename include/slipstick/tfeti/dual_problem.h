@@ -119,8 +119,7 @@ namespace slipstick::tfeti
     };
 
     /// @param free rows that hold: gluing, supports, closed contact. @param capacity, x as of settle(). Collective.
-    std::optional<Overload> overload(const std::vector<bool>   &free,
-                                     const std::vector<double> &capacity) const;
+    std::optional<Overload> overload(const std::vector<bool> &free, const std::vector<double> &capacity) const;
 
     Settled settle(const std::vector<bool>   &free,
                    const std::vector<double> &capacity,
@@ -151,7 +150,8 @@ namespace slipstick::tfeti
     /// hold with equality) fit in the sense of least squares. Bodies that slide on all their contacts are put where every
     /// slip follows its force and no gap is negative, as near as can be to where they just stop sticking. Collective.
     /// @throws NoEquilibrium naming the body when neither free rows nor rows with friction forces fix a.
-    Recovery recover(const DistributedVector &x, const std::vector<bool> &free) const;
+    /// @param keeps_still motions that nothing resists and no load drives stay at zero; else they are an error.
+    Recovery recover(const DistributedVector &x, const std::vector<bool> &free, const bool keeps_still = false) const;
 
     /// u += -K+ B'step + R a, x += step, with the a that makes the free rows fit in the sense of least squares. G step = 0
     /// is taken for granted. What stood in u stays: rounding of x, which a slender subdomain bends by far more than u, does
@@ -226,6 +226,7 @@ namespace slipstick::tfeti
     /// of all rows. @return whether they are rows with forces.
     bool rows_that_fix(const std::vector<RigidMotion> &loose,
                        const DistributedVector        &x,
+                       const bool                      keeps_still,
                        std::vector<bool>              &free) const;
     void slide_apart(const std::vector<RigidMotion> &loose,
                      const std::vector<bool>        &free,
