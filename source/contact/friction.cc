@@ -318,13 +318,20 @@ namespace slipstick::contact
             solution.weighted_reference = dual.residual_norm(homogenised_load(dual, feasible));
             ++solution.counts.hessian_multiplications;
           }
+        try_newton();
+      }
+
+      /// Newton's method from the present point, which stays when that does not converge. @return convergence.
+      bool try_newton()
+      {
         const auto before = solution;
         if (newton(before.multipliers, true))
-          return;
+          return true;
         const auto counts = solution.counts;
         solution          = before;
         solution.counts   = counts;
         set_bounds(before.slip_bound);
+        return false;
       }
 
       /// The problem with its present bounds, from a point that balances the loads within them: by SMALBE-M, or, where
@@ -335,6 +342,12 @@ namespace slipstick::contact
             newton(from, false))
           return;
         solution.multipliers = smalbe(from, accuracy, counted(), may_end_early);
+      }
+
+      /// Newton's method is tried again after 1, 2, 4, 8, ... rounds: a part of the cost of these, whatever they are.
+      bool is_due(const unsigned int rounds) const
+      {
+        return options.algorithm == scene::Algorithm::semismooth_newton && (rounds & (rounds - 1)) == 0;
       }
 
       /// Fixed point of the bounds.
@@ -356,6 +369,8 @@ namespace slipstick::contact
             solution.bound_change = change_of_bounds(next, solution.multipliers);
             if (solution.status != qp::Status::converged ||
                 (solution.bound_change <= friction.tolerance && accuracy <= options.tolerance))
+              return;
+            if (is_due(solution.friction_iterations + 1) && try_newton())
               return;
             if (solution.friction_iterations >= friction.max_iterations)
               {
