@@ -25,10 +25,8 @@ namespace
     add_body(scene, "upper", {0, 15}, {10, 10}, {{5, 5}});
     support(scene, 0, "bottom", "0", "0");
     support(scene, 2, "top", "0", "-1e-3");
-    touch(scene, {1, "bottom"}, {0, "top"}, scene::ContactLaw::tresca);
-    touch(scene, {1, "top"}, {2, "bottom"}, scene::ContactLaw::tresca);
-    for (auto &pair : scene.contacts)
-      pair.slip_bound = field("100");
+    touch(scene, {1, "bottom"}, {0, "top"}, scene::make_law<2>("Tresca", {"100"}));
+    touch(scene, {1, "top"}, {2, "bottom"}, scene::make_law<2>("Tresca", {"100"}));
     return scene;
   }
 
