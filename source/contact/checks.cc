@@ -1,4 +1,5 @@
 #include <slipstick/contact/checks.h>
+#include <slipstick/contact/node_law.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -224,19 +225,6 @@ namespace slipstick::contact
       return (point.position[0] - point.master_position[0]) * fy - (point.position[1] - point.master_position[1]) * fx;
     }
 
-    /// What a row at a bound does that the law does not allow [mm]: penetration; slip that the friction drives.
-    /// @param jump B u - c, @param x multiplier, @param bound of it, if tangential, @param noise forces that are rounding.
-    double inadmissible_jump(const tfeti::RowKind kind,
-                             const double         jump,
-                             const double         x,
-                             const double         bound,
-                             const double         noise)
-    {
-      if (kind == tfeti::RowKind::tangential && bound <= noise)
-        return 0;
-      return kind == tfeti::RowKind::tangential && x > 0 ? std::min(jump, 0.) : std::max(jump, 0.);
-    }
-
     /// One contact node from the force on it and the jump of displacement there.
     ContactNode contact_node(const tfeti::DualProblem  &dual,
                              const tfeti::ContactPoint &point,
@@ -252,23 +240,15 @@ namespace slipstick::contact
           node.gap      = dual.constraints().c[point.normal_row] - jumps.local_element(point.normal_row);
         }
       node.is_closed    = point.normal_row == tfeti::invalid_row || free[point.normal_row];
-      node.status       = node.is_closed ? ContactStatus::stick : ContactStatus::open;
+      node.status       = status_of(node.is_closed, 0., false);
       double tangential = 0;
-      if (point.tangential_row == tfeti::invalid_row)
-        {
-          // without friction what touches is free to slide
-          if (node.is_closed)
-            node.status = ContactStatus::slip;
-        }
-      else
+      if (point.tangential_row != tfeti::invalid_row)
         {
           tangential               = multipliers.local_element(point.tangential_row);
           node.tangential_traction = -tangential / node.area; // on the slave body
           node.slip       = jumps.local_element(point.tangential_row) - dual.constraints().c[point.tangential_row];
           node.slip_bound = slip_bound[point.tangential_row] / node.area;
-          // a bound that acts on open nodes too (Tresca on the whole boundary) makes them slip as well
-          if (!free[point.tangential_row] && (node.slip_bound > 0 || node.is_closed))
-            node.status = ContactStatus::slip;
+          node.status     = status_of(node.is_closed, node.slip_bound, free[point.tangential_row]);
         }
       node.moment_mismatch = moment_mismatch(point, node.pressure * node.area, tangential);
       return node;
@@ -440,7 +420,7 @@ namespace slipstick::contact
             // a bound far above all forces would turn the rounding of what sticks into work
             const double capped = std::max(std::abs(T), std::min(bound, bounds_that_count * largest_contact));
             all_bounds += capped;
-            work += std::abs(capped * std::abs(node.slip) + T * node.slip);
+            work += missing_friction_work(capped, T, node.slip);
           }
         checks.complementarity += work;
         largest[complementarity].take(work, place);

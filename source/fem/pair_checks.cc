@@ -282,7 +282,7 @@ namespace slipstick::fem
   template <>
   void check_obstacle_pairs(const scene::Scene<2> &scene, const Mesh<2> &mesh, const Spaces<2> &spaces)
   {
-    const auto is_checked = [](const auto &pair) { return !pair.master && pair.law != scene::ContactLaw::bonded; };
+    const auto        is_checked = [](const auto &pair) { return !pair.master && !pair.law.is_bonded; };
     std::vector<bool> wanted(scene.bodies.size(), false);
     for (const auto &pair : scene.contacts)
       if (is_checked(pair))

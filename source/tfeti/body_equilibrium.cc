@@ -84,12 +84,12 @@ namespace slipstick::tfeti
                                                               const std::vector<double>                  &k,
                                                               const qp::AdmissibleSet<DistributedVector> &bounds) const
   {
-    constexpr unsigned int width = 8;
+    constexpr unsigned int width = 9;
     std::vector<double>    numbers;
     for (const unsigned int r : own)
       {
         const double l = bounds.box.lower.local_element(r), u = bounds.box.upper.local_element(r);
-        numbers.insert(numbers.end(), {double(place_of[r]), t[r], k[r], l, u, -1., 0., 0.});
+        numbers.insert(numbers.end(), {double(place_of[r]), t[r], k[r], l, u, -1., 0., 0., 0.});
       }
     std::map<unsigned int, unsigned int> at;
     for (unsigned int i = 0; i < own.size(); ++i)
@@ -99,15 +99,16 @@ namespace slipstick::tfeti
         {
           double *row = numbers.data() + width * i->second;
           row[5]      = place_of[bound.normal];
-          row[6]      = bound.fixed;
-          row[7]      = bound.coefficient;
+          row[6]      = bound.forces.fixed;
+          row[7]      = bound.forces.coefficient;
+          row[8]      = bound.forces.cap;
         }
     std::vector<Row> result(shares.rows());
     for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
       for (std::size_t i = 0; i < of_rank.size(); i += width)
         {
           const double *n                        = of_rank.data() + i;
-          result[static_cast<std::size_t>(n[0])] = {n[1], n[2], n[3], n[4], static_cast<int>(n[5]), n[6], n[7]};
+          result[static_cast<std::size_t>(n[0])] = {n[1], n[2], n[3], n[4], static_cast<int>(n[5]), {n[6], n[7], n[8]}};
         }
     return result;
   }
@@ -120,7 +121,7 @@ namespace slipstick::tfeti
         {
           const Row   &normal = rows[row.follows];
           const double force  = qp::clip(normal.t - normal.k * slips[row.follows], normal.lower, normal.upper);
-          row.upper           = qp::PressureBound{0, 0, row.fixed, row.coefficient}.radius(force);
+          row.upper           = row.forces.radius(force);
           row.lower           = -row.upper;
         }
   }
@@ -219,7 +220,7 @@ namespace slipstick::tfeti
         if (t > row.lower && t < row.upper)
           entries.emplace_back(i, i, -row.k);
         else if (row.follows >= 0 && forces[row.follows] > 0) // normal rows come before those that follow them
-          entries.emplace_back(i, row.follows, -(t > 0 ? 1. : -1.) * row.coefficient * rows[row.follows].k);
+          entries.emplace_back(i, row.follows, -(t > 0 ? 1. : -1.) * row.forces.slope(row.upper) * rows[row.follows].k);
       }
     size = loads.norm() + (shares.cwiseAbs().transpose() * forces.cwiseAbs()).norm();
     if (derivative)

@@ -33,7 +33,7 @@ RULES = {
     "qp": Rule(),
     "tfeti": Rule(layers={"base", "qp"}, dealii={"base", "lac"},
                   libraries={"MPI", "Boost", "Eigen", "Trilinos", "CHOLMOD", "POSIX"}),
-    "scene": Rule(layers={"base"}, headers={"qp/options.h", "tfeti/options.h"}, dealii={"base"},
+    "scene": Rule(layers={"base"}, headers={"qp/node_set.h", "qp/options.h", "tfeti/options.h"}, dealii={"base"},
                   libraries={"MPI", "Boost", "muParser"}),
     "fem": Rule(layers={"base", "scene"},
                 # of tfeti the plain data that fem fills

@@ -27,10 +27,8 @@ namespace
     add_body(scene, "upper", {0, 15}, {10, 10}, {{5, 5}});
     support(scene, 0, "bottom", "0", "0");
     support(scene, 2, "top", "0", "-1e-3");
-    touch(scene, {1, "bottom"}, {0, "top"}, scene::ContactLaw::tresca);
-    touch(scene, {1, "top"}, {2, "bottom"}, scene::ContactLaw::tresca);
-    for (auto &pair : scene.contacts)
-      pair.slip_bound = field("100");
+    touch(scene, {1, "bottom"}, {0, "top"}, scene::make_law<2>("Tresca", {"100"}));
+    touch(scene, {1, "top"}, {2, "bottom"}, scene::make_law<2>("Tresca", {"100"}));
     return scene;
   }
 
@@ -71,7 +69,7 @@ namespace
         }
       for (const auto &point : rows.contact_points)
         if (friction > 0 && point.tangential_row != tfeti::invalid_row)
-          bounds.pressure_bounds.push_back({point.tangential_row, point.normal_row, 0., friction});
+          bounds.pressure_bounds.push_back({point.tangential_row, point.normal_row, {0., friction}});
       dual->balance_bodies(stiffness, bounds, moved);
 
       auto forces = dual->zero();
@@ -82,7 +80,7 @@ namespace
             : qp::clip(moved[r], bounds.box.lower.local_element(r), bounds.box.upper.local_element(r));
       for (const auto &bound : bounds.pressure_bounds)
         {
-          const double radius                    = bound.radius(forces.local_element(bound.normal));
+          const double radius                    = bound.forces.radius(forces.local_element(bound.normal));
           forces.local_element(bound.tangential) = qp::clip(moved[bound.tangential], -radius, radius);
         }
       size = forces.l1_norm();

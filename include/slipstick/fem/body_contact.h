@@ -5,10 +5,6 @@
 
 namespace slipstick::fem
 {
-  /// May nodes of the pair that are far apart go without rows? Not where a law acts on open nodes.
-  template <int dim>
-  bool can_be_pruned(const scene::ContactPair<dim> &pair);
-
   /// All pairs of bodies, known to every rank.
   template <int dim>
   struct BodyContacts

@@ -55,7 +55,7 @@ namespace slipstick::fem
     /// Of every pair, as far as this rank owns its slave nodes.
     std::vector<PairExtent> extents() const;
 
-    /// Nodes of pair k with a gap above limits[k] get no rows (where can_be_pruned()); they go to `pruned`.
+    /// Nodes of pair k with a gap above limits[k] get no rows (where ContactLaw::acts_where_closed_alone()); they go to `pruned`.
     void limit_gaps(std::vector<double> limits);
 
     /// Fills kind, c, compliance, label, contact points, reactions, interface_held and counts of the constraints.

@@ -148,8 +148,9 @@ namespace slipstick::qp
       {
         std::vector<Tie> result;
         for (const PressureBound &bound : set.pressure_bounds)
-          if (active[bound.tangential] != 0 && active[bound.normal] == 0 && bound.coefficient > 0)
-            result.push_back({bound.tangential, bound.normal, active[bound.tangential] * bound.coefficient});
+          if (const double slope = bound.forces.slope(set.box.upper.begin()[bound.tangential]);
+              active[bound.tangential] != 0 && active[bound.normal] == 0 && slope > 0)
+            result.push_back({bound.tangential, bound.normal, active[bound.tangential] * slope});
         return result;
       }
 
@@ -211,9 +212,7 @@ namespace slipstick::qp
       void move_bounds(const Vector &x)
       {
         for (const PressureBound &bound : set.pressure_bounds)
-          set_radius(bound,
-                     active[bound.normal] == 0 ? bound.fixed + bound.coefficient * std::max(x.begin()[bound.normal], 0.)
-                                               : 0.);
+          set_radius(bound, active[bound.normal] == 0 ? bound.forces.closed_radius(x.begin()[bound.normal]) : 0.);
       }
 
       void set_radius(const PressureBound &bound, const double radius)
@@ -244,7 +243,7 @@ namespace slipstick::qp
             place(i);
         for (const PressureBound &bound : set.pressure_bounds)
           {
-            set_radius(bound, bound.radius(projected[bound.normal]));
+            set_radius(bound, bound.forces.radius(projected[bound.normal]));
             place(bound.tangential);
           }
         for (std::size_t i = 0; i < active.size(); ++i)

@@ -34,9 +34,9 @@ namespace slipstick::tfeti
   private:
     struct Row
     {
-      double t, k, lower, upper;
-      int    follows = -1; // the row that its bounds follow
-      double fixed = 0, coefficient = 0;
+      double      t, k, lower, upper;
+      int         follows = -1; // the row that its bounds follow
+      qp::NodeSet forces;       // its admissible forces
     };
 
     std::vector<Row> gathered(const std::vector<double>                  &t,
