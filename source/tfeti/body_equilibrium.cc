@@ -17,7 +17,7 @@ namespace slipstick::tfeti
     // A step must lower what is out of balance by this part times its length, or is halved, down to the shortest.
     constexpr double least_decrease = 1e-4, shortest_step = 1e-6;
     // Rounds of Newton's method with bounds as they are, then with bounds that follow.
-    constexpr unsigned int max_rounds = 10;
+    constexpr unsigned int max_rounds = 5;
     // Forces are out of balance by less than this part of all of them: rounding.
     constexpr double balanced = 1e-12;
     // Motions that no row inside its bounds resists are resisted by this part of what all rows would.
@@ -160,7 +160,7 @@ namespace slipstick::tfeti
       return s0;
     const double s1 = low < kinks.size() ? kinks[low] : s0 + std::max(1., s0), f1 = slope(s1);
     if (!(f1 > f0))
-      return s0; // no bounds beyond, and nothing that resists: loads that friction does not bear
+      return HUGE_VAL; // nothing resists any more: loads that friction does not bear
     return s0 - f0 * (s1 - s0) / (f1 - f0);
   }
 
@@ -193,7 +193,7 @@ namespace slipstick::tfeti
         if (!(down < 0) || !p.allFinite())
           return false;
         const double s = line_minimum(rows, slips, shares * p, loads.dot(p));
-        if (!(s > 0))
+        if (!(s > 0) || std::isinf(s))
           return false;
         a += s * p;
       }
@@ -274,8 +274,8 @@ namespace slipstick::tfeti
     for (unsigned int round = 0; round < max_rounds; ++round)
       {
         follow_pressures(a, rows);
-        minimise(rows, a);
-        if (follow(rows, a))
+        const bool is_bounded = minimise(rows, a);
+        if (follow(rows, a) || !is_bounded)
           break;
       }
     const Eigen::VectorXd slips = shares * a;
