@@ -69,6 +69,8 @@ namespace slipstick::tfeti
       }
     shares.resize(all.size(), n);
     shares.setFromTriplets(entries.begin(), entries.end());
+    by_columns = shares;
+    magnitudes = shares.cwiseAbs();
     for (std::size_t i = 0; i < own.size(); ++i)
       place_of[own[i]] = place.at(labels[i]);
   }
@@ -166,31 +168,31 @@ namespace slipstick::tfeti
 
   bool BodyEquilibrium::minimise(const std::vector<Row> &rows, Eigen::VectorXd &a) const
   {
-    const std::size_t n = loads.size();
+    Eigen::VectorXd stiffness(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      stiffness[i] = rows[i].k;
+    const Eigen::VectorXd least = regularization * (shares.cwiseAbs2().transpose() * stiffness);
+    double                size  = 0;
     for (unsigned int step = 0; step < max_newton_steps; ++step)
       {
         const Eigen::VectorXd slips = shares * a;
-        Eigen::VectorXd       forces(rows.size()), inside(rows.size()), all(rows.size());
+        Eigen::VectorXd       forces(rows.size()), inside(rows.size());
         for (std::size_t i = 0; i < rows.size(); ++i)
           {
             const double t = rows[i].t - rows[i].k * slips[i];
             forces[i]      = qp::clip(t, rows[i].lower, rows[i].upper);
-            all[i]         = rows[i].k;
             inside[i]      = t > rows[i].lower && t < rows[i].upper ? rows[i].k : 0.;
           }
         const Eigen::VectorXd slope = loads - shares.transpose() * forces;
-        const double          size  = loads.norm() + (shares.cwiseAbs().transpose() * forces.cwiseAbs()).norm();
+        size                        = std::max(size, sum_of_magnitudes(forces));
         if (slope.norm() <= balanced * size)
           return true;
-        const Eigen::SparseMatrix<double> by_columns = shares;
-        Eigen::SparseMatrix<double>       H          = by_columns.transpose() * inside.asDiagonal() * by_columns;
-        const Eigen::SparseMatrix<double> R          = by_columns.transpose() * all.asDiagonal() * by_columns;
-        for (std::size_t m = 0; m < n; ++m)
-          H.coeffRef(m, m) += regularization * R.coeff(m, m) + std::numeric_limits<double>::min();
+        Eigen::SparseMatrix<double> H = by_columns.transpose() * inside.asDiagonal() * by_columns;
+        for (Eigen::Index m = 0; m < a.size(); ++m)
+          H.coeffRef(m, m) += least[m] + std::numeric_limits<double>::min();
         const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(H);
-        const Eigen::VectorXd                                    p    = -factor.solve(slope);
-        const double                                             down = p.dot(slope);
-        if (!(down < 0) || !p.allFinite())
+        const Eigen::VectorXd                                    p = -factor.solve(slope);
+        if (!(p.dot(slope) < 0) || !p.allFinite())
           return false;
         const double s = line_minimum(rows, slips, shares * p, loads.dot(p));
         if (!(s > 0) || std::isinf(s))
@@ -198,6 +200,11 @@ namespace slipstick::tfeti
         a += s * p;
       }
     return false;
+  }
+
+  double BodyEquilibrium::sum_of_magnitudes(const Eigen::VectorXd &forces) const
+  {
+    return loads.norm() + (magnitudes.transpose() * forces.cwiseAbs()).norm();
   }
 
   // Out of balance, of all forces; and with the bounds that follow, its derivative.
@@ -222,13 +229,12 @@ namespace slipstick::tfeti
         else if (row.follows >= 0 && forces[row.follows] > 0) // normal rows come before those that follow them
           entries.emplace_back(i, row.follows, -(t > 0 ? 1. : -1.) * row.forces.slope(row.upper) * rows[row.follows].k);
       }
-    size = loads.norm() + (shares.cwiseAbs().transpose() * forces.cwiseAbs()).norm();
+    size = sum_of_magnitudes(forces);
     if (derivative)
       {
         Eigen::SparseMatrix<double> by_slips(rows.size(), rows.size());
         by_slips.setFromTriplets(entries.begin(), entries.end());
-        const Eigen::SparseMatrix<double> by_columns = shares;
-        *derivative                                  = -(by_columns.transpose() * by_slips * by_columns);
+        *derivative = -(by_columns.transpose() * by_slips * by_columns);
       }
     return loads - shares.transpose() * forces;
   }
@@ -236,10 +242,11 @@ namespace slipstick::tfeti
   // Newton's method for the bounds that follow, on which the potential does not depend.
   bool BodyEquilibrium::follow(std::vector<Row> &rows, Eigen::VectorXd &a) const
   {
-    double                      size;
+    double                      size, largest = 0;
     Eigen::SparseMatrix<double> derivative;
     Eigen::VectorXd             r = imbalance(rows, a, size, &derivative);
-    for (unsigned int step = 0; step < max_newton_steps && r.norm() > balanced * size; ++step)
+    for (unsigned int step = 0; step < max_newton_steps && r.norm() > balanced * (largest = std::max(largest, size));
+         ++step)
       {
         const double scale = derivative.coeffs().size() ? derivative.coeffs().cwiseAbs().maxCoeff() : 0.;
         for (Eigen::Index m = 0; m < a.size(); ++m)
@@ -262,7 +269,7 @@ namespace slipstick::tfeti
         a += part * p;
         r = imbalance(rows, a, size, &derivative);
       }
-    return r.norm() <= balanced * size;
+    return r.norm() <= balanced * std::max(largest, size);
   }
 
   std::vector<double> BodyEquilibrium::shift(const std::vector<double>                  &t,

@@ -206,7 +206,7 @@ namespace slipstick::tfeti
       return {};
     const Settling        settling(all, loads);
     const Eigen::VectorXd a = settling.motion();
-    if (!(a.norm() > 0))
+    if (!a.allFinite() || a.isZero(0.))
       return {};
     const double held = settling.held_part(a);
     if (!(held < 1))

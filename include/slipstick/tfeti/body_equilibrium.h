@@ -48,6 +48,7 @@ namespace slipstick::tfeti
                                double                      &size,
                                Eigen::SparseMatrix<double> *derivative) const;
     bool             follow(std::vector<Row> &rows, Eigen::VectorXd &a) const;
+    double           sum_of_magnitudes(const Eigen::VectorXd &forces) const;
     bool             minimise(const std::vector<Row> &rows, Eigen::VectorXd &a) const;
     double           line_minimum(const std::vector<Row> &rows,
                                   const Eigen::VectorXd  &slips,
@@ -57,8 +58,10 @@ namespace slipstick::tfeti
     MPI_Comm                                     comm;
     std::vector<RigidMotion>                     motions;
     Eigen::VectorXd                              loads;
-    std::vector<unsigned int>                    own;      // owned rows that see the motions
-    std::vector<int>                             place_of; // of owned rows among all that do; -1
-    Eigen::SparseMatrix<double, Eigen::RowMajor> shares;   // of all ranks' rows, ordered by their labels
+    std::vector<unsigned int>                    own;        // owned rows that see the motions
+    std::vector<int>                             place_of;   // of owned rows among all that do; -1
+    Eigen::SparseMatrix<double, Eigen::RowMajor> shares;     // of all ranks' rows, ordered by their labels ...
+    Eigen::SparseMatrix<double>                  by_columns; // ... the same ...
+    Eigen::SparseMatrix<double>                  magnitudes; // ... and their absolute values
   };
 } // namespace slipstick::tfeti
