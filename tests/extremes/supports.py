@@ -102,7 +102,7 @@ class Supports(Extremes):
                 self.ends(4, table, 'frictionless, cut {}, {}'.format(seed, algorithm), disc(
                     3.843, 20, {'Young modulus': 49112, 'Poisson ratio': 0.44}, -0.4515, -1.1295,
                     {'Shape': 'function', 'Height': '-0.02306*(1-cos(0.3903*x))'}, {'Law': 'frictionless'}),
-                    'body disc: translation along (-',  # the direction is that of an iterate: doc/status.md
+                    'body disc: ',  # the motion is that of an iterate: doc/status.md
                     overrides={'Discretization/Degree': 2, 'Decomposition/Method': 'METIS', 'Decomposition/Subdomains': 2,
                                'Decomposition/Seed': seed, 'Solver/Algorithm': algorithm, 'Solver/Tolerance': 1e-10})
         for algorithm in ('semismooth newton', 'smalbe'):
