@@ -39,6 +39,8 @@ namespace slipstick::contact
     constexpr double negligible_pair = 1e-3;
     // Loads below this part of those of earlier steps are what rounding leaves of none.
     constexpr double rounding_of_loads = 1e-12;
+    // Multiplications after which Newton's method and its fallback give up.
+    constexpr unsigned int longest_fallback = 5000;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
 
@@ -372,7 +374,9 @@ namespace slipstick::contact
               return;
             if (is_due(solution.friction_iterations + 1) && try_newton())
               return;
-            if (solution.friction_iterations >= friction.max_iterations)
+            if (solution.friction_iterations >= friction.max_iterations ||
+                (options.algorithm == scene::Algorithm::semismooth_newton &&
+                 solution.counts.hessian_multiplications > longest_fallback))
               {
                 solution.status = qp::Status::iteration_limit;
                 return;
