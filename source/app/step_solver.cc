@@ -4,7 +4,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/contact/refinement.h>
 #include <slipstick/fem/assembly.h>
-#include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/contact_search.h>
 #include <slipstick/fem/decomposition.h>
 #include <slipstick/fem/loads.h>
@@ -165,16 +164,19 @@ namespace slipstick::app
   void StepSolver::make_dual(const double t)
   {
     clock.enter("assembly");
-    auto matrices = fem::assemble(scene, *the_mesh, *the_spaces, t);
-    auto rows     = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
-    pruned        = std::move(rows.pruned);
-    held          = std::move(rows.held);
+    if (subdomains)
+      subdomains->set_loads(fem::assemble_loads(scene, *the_mesh, *the_spaces, t));
+    else
+      subdomains = std::make_shared<tfeti::Subdomains>(fem::assemble(scene, *the_mesh, *the_spaces, t));
+    auto rows = contact_rows(t);
+    pruned    = std::move(rows.pruned);
+    held      = std::move(rows.held);
     fem::refuse_held_penetration(scene, held, comm);
     print_constraints(log, rows.active);
 
     clock.enter("dual setup");
     the_dual.reset();
-    the_dual = std::make_unique<tfeti::DualProblem>(std::move(matrices),
+    the_dual = std::make_unique<tfeti::DualProblem>(subdomains,
                                                     std::move(rows.active),
                                                     options.dual,
                                                     names_of(scene.bodies),
@@ -183,11 +185,18 @@ namespace slipstick::app
     print_dual(log, *the_dual);
   }
 
+  fem::ContactRows StepSolver::contact_rows(const double t)
+  {
+    if (!contacts)
+      contacts = fem::pair_bodies(scene, *the_mesh, *the_spaces);
+    return fem::contact_rows(scene, *the_mesh, *the_spaces, *contacts, t, kept_part);
+  }
+
   bool StepSolver::advance(const double t)
   {
     clock.enter("assembly");
     std::vector<Eigen::VectorXd> loads = fem::assemble_loads(scene, *the_mesh, *the_spaces, t);
-    auto                         rows  = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
+    auto                         rows  = contact_rows(t);
     const bool                   is_same =
       dealii::Utilities::MPI::min(rows.active.label == the_dual->constraints().label ? 1 : 0, comm) > 0;
     if (is_same) // gaps that follow the load factor may prune other nodes
