@@ -4,7 +4,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/contact/refinement.h>
 #include <slipstick/fem/assembly.h>
-#include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/contact_search.h>
 #include <slipstick/fem/decomposition.h>
 #include <slipstick/fem/loads.h>
@@ -179,14 +178,22 @@ namespace slipstick::app
   void StepSolver::make_dual(const double t)
   {
     clock.enter("assembly");
-    auto                         matrices = fem::assemble(scene, *the_mesh, *the_spaces, t);
-    std::vector<Eigen::VectorXd> loads;
-    for (const auto &subdomain : matrices)
-      loads.push_back(subdomain.load);
-    drop_rounding(loads);
-    for (unsigned int p = 0; p < matrices.size(); ++p)
-      matrices[p].load = std::move(loads[p]);
-    auto rows = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
+    if (subdomains)
+      {
+        auto loads = fem::assemble_loads(scene, *the_mesh, *the_spaces, t);
+        drop_rounding(loads);
+        subdomains->set_loads(std::move(loads));
+      }
+    else
+      {
+        auto                         matrices = fem::assemble(scene, *the_mesh, *the_spaces, t);
+        std::vector<Eigen::VectorXd> loads;
+        for (const auto &subdomain : matrices)
+          loads.push_back(subdomain.load);
+        drop_rounding(loads); // the first ones: the measure of later ones
+        subdomains = std::make_shared<tfeti::Subdomains>(std::move(matrices));
+      }
+    auto rows = contact_rows(t);
     pruned    = std::move(rows.pruned);
     held      = std::move(rows.held);
     fem::refuse_held_penetration(scene, held, comm);
@@ -194,7 +201,7 @@ namespace slipstick::app
 
     clock.enter("dual setup");
     the_dual.reset();
-    the_dual = std::make_unique<tfeti::DualProblem>(std::move(matrices),
+    the_dual = std::make_unique<tfeti::DualProblem>(subdomains,
                                                     std::move(rows.active),
                                                     options.dual,
                                                     names_of(scene.bodies),
@@ -203,11 +210,18 @@ namespace slipstick::app
     print_dual(log, *the_dual);
   }
 
+  fem::ContactRows StepSolver::contact_rows(const double t)
+  {
+    if (!contacts)
+      contacts = fem::pair_bodies(scene, *the_mesh, *the_spaces);
+    return fem::contact_rows(scene, *the_mesh, *the_spaces, *contacts, t, kept_part);
+  }
+
   bool StepSolver::advance(const double t)
   {
     clock.enter("assembly");
     auto loads = fem::assemble_loads(scene, *the_mesh, *the_spaces, t);
-    auto rows  = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
+    auto rows  = contact_rows(t);
     drop_rounding(loads);
     const bool is_same =
       dealii::Utilities::MPI::min(rows.active.label == the_dual->constraints().label ? 1 : 0, comm) > 0;

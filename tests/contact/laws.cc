@@ -41,13 +41,19 @@ namespace
     return scene;
   }
 
+  Scene resolved(Scene scene)
+  {
+    scene.solver = contact::resolved_options(scene);
+    return scene;
+  }
+
   struct Answer
   {
     explicit Answer(const Scene &scene)
-      : torn(scene)
+      : torn(resolved(scene))
       , dual(torn.dual())
       , law(scene, *dual, 1.)
-      , solution(contact::solve(*dual, law, contact::resolved_options(scene), scene.friction, {}))
+      , solution(contact::solve(*dual, law, torn.scene.solver, scene.friction, {}))
       , recovery(dual->recover(solution.multipliers, solution.free))
       , contact(
           contact::check(*dual, recovery.multipliers, recovery.u, law.bounds(recovery.multipliers), solution.free, 1))

@@ -149,7 +149,12 @@ namespace slipstick::random
     fem::check_overlap(scene, mesh, spaces);
     fem::check_obstacle_pairs(scene, mesh, spaces);
     const auto  matrices    = fem::assemble(scene, mesh, spaces, t);
-    const auto  all_rows    = fem::contact_rows(scene, mesh, spaces, t, std::numeric_limits<double>::infinity());
+    const auto  all_rows    = fem::contact_rows(scene,
+                                            mesh,
+                                            spaces,
+                                            fem::pair_bodies(scene, mesh, spaces),
+                                            t,
+                                            std::numeric_limits<double>::infinity());
     const auto &constraints = all_rows.active;
     const auto  numbering   = number_nodes(mesh, matrices, constraints, scene.bodies.size());
 

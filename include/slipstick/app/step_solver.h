@@ -4,7 +4,7 @@
 #include <slipstick/base/log.h>
 #include <slipstick/contact/checks.h>
 #include <slipstick/contact/friction.h>
-#include <slipstick/fem/spaces.h>
+#include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/stress.h>
 #include <slipstick/output/convergence.h>
 #include <slipstick/scene/scene.h>
@@ -87,6 +87,9 @@ namespace slipstick::app
     /// Loads of this rank's subdomains that are what rounding leaves of those of earlier steps become zero.
     void drop_rounding(std::vector<Eigen::VectorXd> &loads);
 
+    /// The rows of contact at load factor t, as far as they are not pruned.
+    fem::ContactRows contact_rows(const double t);
+
     /// Loads and right-hand sides of a later step; slip starts from where the step before ended.
     /// @return whether the multipliers of the step before fit the rows.
     bool advance(const double t);
@@ -128,6 +131,10 @@ namespace slipstick::app
     StageClock          &clock;
     const MPI_Comm       comm;
     scene::SolverOptions options;
+
+    // the same in all load steps
+    std::optional<fem::BodyContacts<dim>> contacts;
+    std::shared_ptr<tfeti::Subdomains>    subdomains;
 
     std::unique_ptr<fem::Mesh<dim>>     the_mesh;
     std::unique_ptr<fem::Spaces<dim>>   the_spaces;

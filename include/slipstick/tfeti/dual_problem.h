@@ -7,6 +7,7 @@
 #include <slipstick/tfeti/projector.h>
 #include <slipstick/tfeti/reduction.h>
 #include <slipstick/tfeti/rigid_motions.h>
+#include <slipstick/tfeti/subdomains.h>
 
 #include <optional>
 
@@ -48,6 +49,14 @@ namespace slipstick::tfeti
     /// @throws NoEquilibrium naming body and motion when the rows of B leave a rigid motion of a body free.
     /// @throws NumericalError when a subdomain cannot be factorised.
     DualProblem(std::vector<SubdomainMatrices>  matrices,
+                Constraints                     constraints,
+                const DualOptions              &options,
+                const std::vector<std::string> &body_names,
+                const MPI_Comm                  comm);
+
+    /// The same; of @p subdomains whose rows were others before only those are factorised that are touched elsewhere. No other
+    /// problem may have them at the same time.
+    DualProblem(std::shared_ptr<Subdomains>     subdomains,
                 Constraints                     constraints,
                 const DualOptions              &options,
                 const std::vector<std::string> &body_names,
@@ -233,23 +242,23 @@ namespace slipstick::tfeti
 
     double lanczos(const DualOptions &options) const;
     void   apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
-    void   update_dual_load();
-    void   set_dual_load(const std::vector<Eigen::VectorXd> &u); // u = K+ f; e too
+    void   set_dual_load();                                                 // e too
 
-    MPI_Comm                                      comm;
-    MpiReduction                                  reduce;
-    Constraints                                   rows;
-    Partitioner                                   owned_rows; // without ghosts
-    std::vector<std::string>                      names_of_bodies;
-    std::vector<LocalGluing>                      gluing;
-    std::vector<std::unique_ptr<SubdomainSystem>> systems;
-    std::unique_ptr<DualOperator>                 F;
-    std::unique_ptr<BodyMotions>                  bodies;
-    std::unique_ptr<BodyEquilibrium>              held_by_contact; // bodies that nothing else holds
-    std::unique_ptr<Projector>                    projector;
-    std::unique_ptr<RowPreconditioner>            preconditioner;
-    std::vector<double>                           metric; // stiffnesses of the owned rows
-    bool               projects_twice = false;            // rounding of one projection would show in the stiffest rows
+    MPI_Comm                                             comm;
+    MpiReduction                                         reduce;
+    Constraints                                          rows;
+    Partitioner                                          owned_rows; // without ghosts
+    std::vector<std::string>                             names_of_bodies;
+    std::vector<LocalGluing>                             gluing;
+    std::shared_ptr<Subdomains>                          parts;
+    const std::vector<std::unique_ptr<SubdomainSystem>> &systems; // theirs
+    std::unique_ptr<DualOperator>                        F;
+    std::unique_ptr<BodyMotions>                         bodies;
+    std::unique_ptr<BodyEquilibrium>                     held_by_contact; // bodies that nothing else holds
+    std::unique_ptr<Projector>                           projector;
+    std::unique_ptr<RowPreconditioner>                   preconditioner;
+    std::vector<double>                                  metric; // stiffnesses of the owned rows
+    bool               projects_twice = false; // rounding of one projection would show in the stiffest rows
     DistributedVector  dual_load;
     Eigen::VectorXd    resultants; // e of this rank's subdomains in turn
     DistributedVector  correction; // (F - F~) x, taken off the dual load
