@@ -26,14 +26,15 @@ namespace slipstick::app
             return format;
           words.push_back(name);
         }
-      throw InputError("--list-parameters " + word + ": there is no such format", suggest_name(word, words));
+      throw InputError("--list-parameters " + word + ": unknown format", suggest_name(word, words));
     }
 
     /// Arguments that CLI11 did not know: options, or case files after the first.
     InputError unknown_argument(const std::string &argument, const CLI::App &app)
     {
       if (argument.empty() || argument[0] != '-')
-        return InputError("'" + argument + "' is one case file too many", "give one case file: " + usage);
+        return InputError("'" + argument + "' is a second case file; only one can be given",
+                          "give one case file: " + usage);
       std::vector<std::string> names;
       for (const CLI::Option *option : app.get_options())
         for (const std::string &name : option->get_lnames())
@@ -46,10 +47,10 @@ namespace slipstick::app
     {
       for (const std::string &text : line.overrides)
         if (text.find('=') == std::string::npos || text.find('=') == 0)
-          throw InputError("'--set " + text + "' does not say which value which parameter gets",
+          throw InputError("'--set " + text + "' does not have the form NAME=VALUE",
                            "write: --set 'Section/Sub/Name=value', for example --set 'Solver/Tolerance=1e-6'");
       if (line.quiet && line.verbose)
-        throw InputError("--quiet and --verbose exclude each other", "leave one of them out");
+        throw InputError("--quiet and --verbose cannot be combined", "leave one of them out");
       if (line.case_file.empty() && !line.list_parameters)
         throw InputError("no case file is given", usage);
     }
@@ -61,7 +62,7 @@ namespace slipstick::app
     std::string list_format;
 
     CLI::App app("slipstick: frictional contact of elastic bodies by Total FETI.\n"
-                 "Runs alone or under mpirun -n N / srun; results agree for every N.");
+                 "Runs by itself or under mpirun -n N or srun; results agree for every N.");
     app.name("slipstick");
     app.allow_extras();
     app.set_version_flag("--version", "slipstick " SLIPSTICK_VERSION, "print the version and exit");
@@ -109,7 +110,8 @@ namespace slipstick::app
             remaining.erase(remaining.begin());
           }
         if (!remaining.empty())
-          throw InputError("'" + remaining.front() + "' is one case file too many", "give one case file: " + usage);
+          throw InputError("'" + remaining.front() + "' is a second case file; only one can be given",
+                           "give one case file: " + usage);
       }
     if (!remaining.empty())
       throw unknown_argument(remaining.front(), app);

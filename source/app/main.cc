@@ -33,10 +33,10 @@ namespace
 {
   using namespace slipstick;
 
-  // OpenBLAS takes a buffer at its first product of matrices and tries for ever where it gets none.
-  constexpr std::size_t least_free_space = 256u << 20; // bytes of address space: the buffer, and what stands around it
+  // OpenBLAS allocates a buffer at its first product of matrices, and tries forever if it cannot get one.
+  constexpr std::size_t least_free_space = 256u << 20; // bytes of address space: the buffer and its surroundings
 
-  /// Where the address space is limited (ulimit -v): that the buffer is there before all else.
+  /// Where the address space is limited (ulimit -v): allocates the buffer before anything else.
   void check_address_space()
   {
     rlimit limit;
@@ -63,7 +63,7 @@ namespace
         std::cerr << "error: " << for_terminal(error.what()) << std::endl;
       return static_cast<int>(status);
     };
-    // these errors come to all ranks alike, see base/collective.h
+    // these errors are raised on all ranks, see base/collective.h
     try
       {
         collectively(comm, check_address_space);

@@ -1,4 +1,4 @@
-#include <slipstick/app/doubts.h>
+#include <slipstick/app/answer_warnings.h>
 #include <slipstick/app/geometry_checks.h>
 #include <slipstick/app/held_nodes.h>
 #include <slipstick/app/report.h>
@@ -61,7 +61,7 @@ namespace slipstick::app
       return time;
     }
 
-    /// What can be said of a run that ended without equilibrium.
+    /// The summary of a run that ended without equilibrium.
     output::Summary summary_without_equilibrium(const scene::Scene<dim> &scene, const MPI_Comm comm)
     {
       output::Summary summary = empty_summary(scene, comm);
@@ -74,7 +74,7 @@ namespace slipstick::app
       return {dealii::Utilities::MPI::max(peak_memory_mb(), comm), dealii::Utilities::MPI::sum(peak_memory_mb(), comm)};
     }
 
-    /// What the load steps leave behind.
+    /// Results of the load steps.
     class Run
     {
     public:
@@ -93,7 +93,7 @@ namespace slipstick::app
       ExitStatus solve_and_write()
       {
         solver.build();
-        directory.remove_results(); // the scene is accepted: what an earlier run left is no longer true
+        directory.remove_results(); // the scene is accepted: results of an earlier run are no longer valid
         output::Summary summary;
         for (unsigned int step = 0; step < scene.load_factors.size(); ++step)
           {
@@ -115,7 +115,7 @@ namespace slipstick::app
         return summary.status == output::RunStatus::converged ? ExitStatus::converged : ExitStatus::not_converged;
       }
 
-      /// After a step without equilibrium: what the steps before it left stays, marked.
+      /// After a step without equilibrium: the results of the steps before it are kept and marked.
       void write_without_equilibrium()
       {
         if (!finished_steps)
@@ -134,7 +134,7 @@ namespace slipstick::app
       }
 
     private:
-      /// What is doubtful about the answer, once a kind and pair.
+      /// Warnings about the answer, one for each kind and pair.
       void warn(const std::map<std::string, std::string> &texts)
       {
         for (const auto &[about, text] : texts)
@@ -160,7 +160,7 @@ namespace slipstick::app
         print_checks(log, contact.checks, tolerance);
         if (!passes(solution, contact.checks, tolerance))
           print_failure(log, scene, solution, contact.checks, tolerance);
-        warn(doubts(scene, solver.mesh(), solver.spaces(), solver.dual(), solution.free, contact.nodes, u));
+        warn(answer_warnings(scene, solver.mesh(), solver.spaces(), solver.dual(), solution.free, contact.nodes, u));
         warn(doubts_of_held_nodes(scene, solver.held_contacts(), contact, comm));
 
         if (!answer->recovery.unresisted.empty())

@@ -71,7 +71,7 @@ namespace slipstick::fem
       if (!distance) // of empty sides too
         refuse_pair(scene, pair, sides, 0.);
       const double near = pair.reach ? *pair.reach : automatic_reach(sides.slave, sides.master, *distance);
-      // nodes that are farther apart have no rows at first, but are looked at again when the solution is known
+      // nodes that are farther apart have no rows at first, but are checked again when the solution is known
       const double reach =
         pair.reach || !can_be_pruned(pair) ? near : std::max(near, widest_reach(sides.slave, sides.master, *distance));
       auto rows = mortar_rows(sides.slave, sides.master, {reach, near}, pair.discretization, pair.name);
@@ -81,7 +81,7 @@ namespace slipstick::fem
       return rows;
     }
 
-    /// Nodes that hang together.
+    /// Connected nodes.
     class Groups
     {
     public:

@@ -62,7 +62,7 @@ namespace slipstick::scene
                 smalbe.max_outer_iterations,
                 1,
                 max_iterations,
-                "multiplier updates before giving up");
+                "largest number of multiplier updates");
       add_count(prm,
                 "Max inner iterations",
                 smalbe.inner.max_iterations,
@@ -112,8 +112,8 @@ namespace slipstick::scene
                  Choices<DualOperatorKind>{{"auto", DualOperatorKind::automatic},
                                            {"explicit", DualOperatorKind::explicit_blocks},
                                            {"implicit", DualOperatorKind::implicit}},
-                 "F as dense blocks (explicit) or by a forward and backward solve per multiplication (implicit); auto: "
-                 "explicit where the blocks fit in the memory and pay");
+                 "F by dense blocks (explicit) or by a forward and backward solve per multiplication (implicit); auto: "
+                 "explicit where the blocks fit into memory and save time");
       const Choices<Precision> precisions{{"double", Precision::double_precision},
                                           {"single", Precision::single_precision}};
       add_choice(prm,
@@ -199,12 +199,12 @@ namespace slipstick::scene
                          {"smalbe", Algorithm::smalbe},
                          {"semismooth newton", Algorithm::semismooth_newton},
                          {"pcg", Algorithm::pcg}},
-      "smalbe, semismooth newton: scenes with contact; pcg: linear scenes; auto: semismooth newton or pcg, as fits");
+      "smalbe, semismooth newton: scenes with contact; pcg: linear scenes; auto: semismooth newton or pcg, by the scene");
     declare_tolerance(prm, solver);
     add_flag(prm,
              "Prune contact",
              solver.prune_contact,
-             "leave contact nodes that are far apart without multipliers, unless the solution makes them penetrate");
+             "no multipliers for contact nodes that are far apart, unless the solution makes them penetrate");
     declare_dual(prm, solver.dual);
     declare_smalbe(prm, solver.smalbe);
     prm.enter_subsection("PCG");
@@ -221,7 +221,7 @@ namespace slipstick::scene
                friction.tolerance,
                "-",
                Interval::inside(0, 1),
-               "relative change of the slip bounds at which they count as found (Coulomb; Tresca where closed)");
+               "relative change of the slip bounds at which their iteration ends (Coulomb; Tresca where closed)");
     add_count(prm, "Max iterations", friction.max_iterations, 1, max_iterations, "updates of the slip bounds");
     prm.leave_subsection();
   }
@@ -248,8 +248,8 @@ namespace slipstick::scene
       "Factors",
       text,
       "",
-      "load factors t of the steps, one after the other; slip is measured from the end of the step before",
-      "numbers separated by commas, rising",
+      "load factors t of the steps, in order; slip is measured from the end of the previous step",
+      "increasing numbers, separated by commas",
       [parse](const std::string &list) {
         const auto numbers = parse(list);
         return !numbers.empty() &&

@@ -13,7 +13,7 @@ namespace slipstick::scene
 {
   namespace
   {
-    // What stands for every body, or the whole outline, in the place of a name.
+    // Stands for every body, or the whole outline, instead of a name.
     const std::vector<std::string> reserved_names = {"all", "*"};
 
     /// "a/b/c" -> "a/b", "c"
@@ -175,7 +175,7 @@ namespace slipstick::scene
   {
     for (const auto &path : {std::filesystem::path(file).parent_path() / name, std::filesystem::path(name)})
       {
-        std::error_code error; // a path that cannot be looked at is no file
+        std::error_code error; // a path that cannot be examined is not a file
         if (std::filesystem::is_regular_file(path, error))
           return std::filesystem::absolute(path).lexically_normal().string();
       }
@@ -210,8 +210,8 @@ namespace slipstick::scene
         name = collapse_blanks(name);
         if (name.empty() || name.find_first_of("/=") != std::string::npos)
           throw error(kind.list,
-                      "'" + name + "' is no valid name",
-                      "separate names by commas; use no / and no = in them");
+                      "'" + name + "' is not a valid name",
+                      "separate names by commas; names must not contain / or =");
         if (std::find(reserved_names.begin(), reserved_names.end(), name) != reserved_names.end())
           throw error(kind.list,
                       "'" + name + "' is reserved: where names may stand it means all of them",
@@ -259,7 +259,7 @@ namespace slipstick::scene
           if (std::none_of(settings.begin(), settings.end(), [&section](const Setting &setting) {
                 return setting.path == section || setting.path.compare(0, section.size() + 1, section + "/") == 0;
               }))
-            throw error(kind.list, "nothing describes '" + name + "'", "add a subsection " + section);
+            throw error(kind.list, "no subsection describes '" + name + "'", "add a subsection " + section);
         }
   }
 } // namespace slipstick::scene

@@ -124,7 +124,7 @@ namespace slipstick::scene
                                    {"engineering", Accuracy::engineering},
                                    {"reference", Accuracy::reference}},
                  "preset of Tolerance, Operator precision and Prune contact of the solver, Friction/Tolerance and "
-                 "Discretization/Degree; each of them that the scene sets itself wins");
+                 "Discretization/Degree; values that the scene sets take precedence");
       for (const NamedKind &kind : named_kinds)
         add_entry(
           prm,

@@ -78,7 +78,7 @@ namespace
     Verdict     worst;
     const char *reason;
   };
-  // Of other seeds 316, 626, 667, 686 (not converged), 866 and 867 (called loose) do not end as they should: doc/status.md.
+  // Of other seeds 316, 626, 667, 686 (not converged), 866 and 867 (not converged) do not end as they should: doc/status.md.
   const std::map<unsigned int, Known> known = {
     {243,
      {Verdict::failed,

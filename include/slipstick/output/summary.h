@@ -154,7 +154,7 @@ namespace slipstick::output
     MemorySummary   memory_mb;
 
     std::vector<StepSummary> steps;
-    std::vector<std::string> warnings; // what is doubtful about input or answer
+    std::vector<std::string> warnings; // warnings about the input or the answer
   };
 
   /// The text of summary.json. A number that is not finite becomes null, bytes that are not UTF-8 become U+FFFD.
