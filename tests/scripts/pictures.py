@@ -1,6 +1,8 @@
-"""scripts/render on the folder of a small run. Status 77 (skipped) where what it needs is not installed."""
+"""scripts/render and scripts/report on the folder of a small run. Status 77 (skipped) where what it needs is not installed."""
 
 import pathlib
+import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -10,7 +12,7 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / 'scripts'
 sys.path.insert(0, str(SCRIPTS))
 try:
     import numpy
-    from results import contact_plot, fields, film, folder, formula, pictures
+    from results import contact_plot, fields, film, folder, formula, pictures, report_page
 except ImportError as error:
     print('skipped: {}; scripts/setup --render'.format(error))
     sys.exit(77)
@@ -127,6 +129,44 @@ class Films(WithRun):
         files, remark = film.make(painter, 2, self.place / 'film')
         self.assertEqual([file.name for file in files], ['film.gif'])
         self.assertIn('ffmpeg', remark)
+
+
+class Report(WithRun):
+    def rows(self, text):
+        return [re.sub('<[^>]*>', ' ', row).split() for row in re.findall('<tr.*?</tr>', text)]
+
+    def test_everything_is_on_the_page(self):
+        text = report_page.page(self.run_of())
+        self.assertEqual(re.findall('(?:src|href)="(?!data:image/png;base64,)', text), [])  # no other file
+        self.assertEqual(text.count('<img '), 5)  # scene, history, two fields, contact
+        self.assertIn('Contact joint: &lt;something&gt; &amp; more', text)
+        rows = self.rows(text)
+        for row in ('traction pull 60 0 -42', 'support wall -60 0 42', 'sum 0 0 0', 'joint 100 5 100 1 2 2 0 0', 'solve 0.75 s'):
+            self.assertIn(row.split(), rows)
+        self.assertIn('5 %', text)  # the estimated error
+
+    def test_forces_that_do_not_balance_show(self):
+        run = self.run_of()
+        run.summary['results']['supports'][0]['force'][0] = -59
+        self.assertIn('sum 1 0 0'.split(), self.rows(report_page.page(run)))
+
+    def test_what_is_no_solution_is_marked(self):
+        run = self.run_of()
+        run.summary.update(status='not converged', converged=False)
+        self.assertIn('the results below are not a solution', report_page.page(run))
+
+    def test_in_a_browser(self):
+        browser = shutil.which('chromium') or shutil.which('google-chrome')
+        if not browser:
+            self.skipTest('no Chromium')
+        run = run_folder.write(self.place / 'run')
+        result = subprocess.run([sys.executable, str(SCRIPTS / 'report'), str(run)], stdout=subprocess.PIPE, text=True, timeout=120)
+        self.assertEqual((result.returncode, result.stdout), (0, 'report: {}\n'.format(run / 'report.html')))
+        result = subprocess.run([browser, '--headless', '--no-sandbox', '--disable-gpu', '--user-data-dir={}'.format(self.place / 'profile'),
+                                 '--dump-dom', (run / 'report.html').as_uri()], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                                text=True, timeout=120)
+        self.assertIn('Balance of loads and reactions', result.stdout)
+        self.assertEqual(result.stdout.count('</table>'), 4)  # none is left open
 
 
 class CommandLine(WithRun):
