@@ -51,7 +51,7 @@ class ContactPainter:
             handles.update(zip(*reversed(axes.get_legend_handles_labels())))
         title = self.run.summary.get("case", "")
         if len(self.steps) > 1:
-            title += f", step {step} of 0 to {self.steps[-1]}, t = {self.run.factor(step):g}"
+            title += f", step {step} (0 to {self.steps[-1]}), t = {self.run.factor(step):g}"
         bands.add(figure, [title] if title else [], list(handles.values()), legend_above=True)
         return figure
 

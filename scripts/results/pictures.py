@@ -111,7 +111,7 @@ class Painter:
         name = self.run.summary.get("case", "")
         lines = [": ".join(part for part in (name, self.title) if part)]
         if several:
-            lines[0] += f", step {step} of 0 to {len(self.grids) - 1}, t = {t:g}"
+            lines[0] += f", step {step} (0 to {len(self.grids) - 1}), t = {t:g}"
         if found:
             x, y = found[1] + 0.0
             signed = self.limits[0] < 0

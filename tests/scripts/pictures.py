@@ -85,7 +85,7 @@ class Pictures(WithRun):
 
     def test_title_says_step_and_t_and_where_the_largest_value_is(self):
         first, second, third = self.painter().lines_of_title(0)
-        self.assertIn('step 0 of 0 to 1, t = 0.5', first)
+        self.assertIn('step 0 (0 to 1), t = 0.5', first)
         self.assertEqual(second, 'largest 6 MPa at (2, 0)')
         self.assertEqual(third, 'displacements in true scale')
 
