@@ -99,10 +99,10 @@ class Run:
         self.folder = folder
         self.scene = Scene.of(folder)
         self.grid_files = self.files_of_steps(folder / "solution.pvd")
-        self.factors = self.scene.load_factors()
         self.conditions = self.table("conditions.csv")
         file = folder / "summary.json"
         self.summary = json.loads(file.read_text(encoding="utf-8", errors="replace")) if file.is_file() else {}
+        self.factors = [step["load_factor"] for step in self.summary.get("steps", [])] or self.scene.load_factors()
         self._contact = None
 
     @staticmethod

@@ -46,7 +46,16 @@ class Scene:
         return None if text in ("", "free", "geometry") else formula.value(text, x, y, t)
 
     def load_factors(self):
-        return self.numbers("Load steps/Factors", (1.,)) or [1.]
+        """Numbers, and ranges FIRST:STEP:LAST."""
+        factors = []
+        try:
+            for part in self.get("Load steps/Factors", "1").split(","):
+                numbers = [float(number) for number in part.split(":")]
+                n = int((numbers[2] - numbers[0]) / numbers[1] * (1 + 1e-12) + 1e-9) if len(numbers) == 3 else 0
+                factors += [numbers[0] + k * numbers[1] for k in range(n + 1)] if n else numbers[:1]
+        except ValueError:
+            pass
+        return factors or [1.]
 
     def has_given_gaps(self):
         """Whether gaps of contact pairs are other than those between the bodies as they are drawn."""

@@ -1,4 +1,5 @@
 #include <slipstick/app/command_line.h>
+#include <slipstick/app/new_scene.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/nearest_name.h>
 
@@ -51,7 +52,7 @@ namespace slipstick::app
                            "write: --set 'Section/Sub/Name=value', for example --set 'Solver/Tolerance=1e-6'");
       if (line.quiet && line.verbose)
         throw InputError("--quiet and --verbose cannot be combined", "leave one of them out");
-      if (line.case_file.empty() && !line.list_parameters)
+      if (line.case_file.empty() && !line.list_parameters && !line.new_scene)
         throw InputError("no case file is given", usage);
     }
   } // namespace
@@ -79,6 +80,10 @@ namespace slipstick::app
       app.add_option("--list-parameters", list_format, "list all parameters as text (default), prm, json or latex")
         ->expected(0, 1)
         ->type_name("FORMAT");
+    std::string        new_scene;
+    const CLI::Option *start =
+      app.add_option("--new", new_scene, "write a commented scene to start from: " + join_names(new_scene_names()))
+        ->type_name("NAME");
     app.add_flag("--quiet", line.quiet, "print errors only");
     app.add_flag("--verbose", line.verbose, "print every iteration");
 
@@ -117,12 +122,15 @@ namespace slipstick::app
       throw unknown_argument(remaining.front(), app);
     if (list->count() > 0)
       line.list_parameters = read_list_format(list_format.empty() ? "text" : list_format);
+    if (start->count() > 0)
+      line.new_scene = new_scene;
     check(line);
     if (output->count() > 0 && line.output_directory.empty())
       throw InputError("--output: the name of the directory is empty",
                        "name a directory, for example --output /tmp/run");
     const std::string name = std::filesystem::path(line.case_file).stem().string();
-    if (output->count() == 0 && !line.list_parameters && (name.empty() || name == "." || name == ".."))
+    if (output->count() == 0 && !line.list_parameters && !line.new_scene &&
+        (name.empty() || name == "." || name == ".."))
       throw InputError("the case file '" + line.case_file + "' gives no name to an output directory",
                        "name the directory, for example --output output/case, or the file otherwise");
     if (output->count() == 0)

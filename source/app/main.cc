@@ -1,4 +1,5 @@
 #include <slipstick/app/command_line.h>
+#include <slipstick/app/new_scene.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/base/collective.h>
 #include <slipstick/base/printable.h>
@@ -77,6 +78,17 @@ namespace
             if (prints && !std::cout.flush())
               throw InputError("the text could not be written to standard output",
                                "see where it leads to, and whether there is space");
+            return static_cast<int>(ExitStatus::converged);
+          }
+        if (command_line.new_scene)
+          {
+            std::string told;
+            collectively(comm, [&] {
+              if (prints)
+                told = app::write_new_scene(*command_line.new_scene);
+            });
+            if (prints)
+              std::cout << told << std::flush;
             return static_cast<int>(ExitStatus::converged);
           }
         const auto scene = scene::read_scene(command_line.case_file, command_line.overrides);

@@ -1,12 +1,14 @@
 #include <slipstick/app/answer_warnings.h>
 #include <slipstick/app/geometry_checks.h>
 #include <slipstick/app/held_nodes.h>
+#include <slipstick/app/interruption.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/app/step_solver.h>
 #include <slipstick/contact/resultants.h>
 #include <slipstick/fem/arc_length.h>
 #include <slipstick/fem/loads.h>
+#include <slipstick/output/conditions.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/fields.h>
 #include <slipstick/output/history.h>
@@ -24,6 +26,9 @@ namespace slipstick::app
   namespace
   {
     constexpr int dim = 2;
+
+    // Tables are written again after this multiple of the time that writing them took.
+    constexpr double pause_over_writing = 10;
 
     /// Contact nodes of all ranks on rank 0, with their arc lengths.
     output::ContactStep gather_contact(const scene::Scene<dim>       &scene,
@@ -94,13 +99,16 @@ namespace slipstick::app
       {
         solver.build();
         directory.remove_results(); // the scene is accepted: results of an earlier run are no longer valid
+        output::write_conditions(directory, scene, solver.mesh(), solver.spaces());
         output::Summary summary;
         for (unsigned int step = 0; step < scene.load_factors.size(); ++step)
           {
+            announce(step);
             summary        = load_step(step, summary);
             finished_steps = summary;
             if (summary.status != output::RunStatus::converged)
               break;
+            keep(step, summary);
           }
         clock.enter("output");
         write_tables(summary);
@@ -111,6 +119,8 @@ namespace slipstick::app
         output::write_summary(directory, summary);
         log.line("");
         print_forces(log, scene, summary.results);
+        if (prints())
+          do_not_tell_when_interrupted();
         print_result(log, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
         return summary.status == output::RunStatus::converged ? ExitStatus::converged : ExitStatus::not_converged;
       }
@@ -134,6 +144,45 @@ namespace slipstick::app
       }
 
     private:
+      bool prints() const
+      {
+        return dealii::Utilities::MPI::this_mpi_process(comm) == 0;
+      }
+
+      /// What is said when the user interrupts load step @p step.
+      void announce(const unsigned int step) const
+      {
+        if (prints())
+          tell_when_interrupted(
+            format("in load step %u of %zu; ", step + 1, scene.load_factors.size()) +
+            (kept_steps > 0 ? format("summary.json, history.csv and contact.csv in %s hold the results of the first %u",
+                                     directory.path("").c_str(),
+                                     kept_steps)
+                            : std::string("there are no results")));
+      }
+
+      /// Writes the tables of the steps so far while others are still to come, for a run that does not live to see its end;
+      /// less often where writing takes longer than solving. Collective.
+      void keep(const unsigned int step, output::Summary summary)
+      {
+        using dealii::Utilities::MPI::broadcast;
+        if (step + 1 == scene.load_factors.size() ||
+            !broadcast(comm, clock.total() - kept_at > pause_over_writing * writing_time))
+          return;
+        clock.enter("output");
+        const double begin = clock.total();
+        write_tables(summary);
+        summary.status    = output::RunStatus::unfinished;
+        summary.time_s    = times(clock, solver.factorization_seconds());
+        summary.memory_mb = memory(comm);
+        summary.warnings  = warnings;
+        output::write_summary(directory, summary);
+        kept_steps   = step + 1;
+        kept_at      = clock.total();
+        writing_time = kept_at - begin;
+        clock.leave();
+      }
+
       /// Warnings about the answer, one for each kind and pair.
       void warn(const std::map<std::string, std::string> &texts)
       {
@@ -264,7 +313,10 @@ namespace slipstick::app
       std::vector<output::ContactStep> contact_steps;
       std::vector<std::string>         warnings;
       std::set<std::string>            warned_about;
-      std::optional<output::Summary>   finished_steps; // of all load steps that have ended
+      std::optional<output::Summary>   finished_steps;   // of all load steps that have ended
+      unsigned int                     kept_steps   = 0; // in the tables on the disk
+      double                           kept_at      = 0; // when they were written [s]
+      double                           writing_time = 0; // that this took [s]
     };
   } // namespace
 

@@ -1,3 +1,4 @@
+#include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/sections.h>
@@ -226,16 +227,51 @@ namespace slipstick::scene
     prm.leave_subsection();
   }
 
+  namespace
+  {
+    // Load steps of one range: more are a slip of the pen.
+    constexpr double most_steps = 100000;
+
+    /// The number that @p text spells; none if it is not one, or not finite.
+    std::vector<double> single_number(const std::string &text)
+    {
+      const auto number = parse_number(text);
+      return number && std::isfinite(*number) ? std::vector<double>{*number} : std::vector<double>();
+    }
+
+    /// "FIRST:STEP:LAST", of which LAST is met when a whole number of steps leads there within rounding; none if it is not
+    /// a range of increasing numbers.
+    std::vector<double> range(const std::string &text)
+    {
+      std::vector<double> ends;
+      for (const std::string &part : split_list(text, ':'))
+        {
+          const auto number = single_number(part);
+          ends.insert(ends.end(), number.begin(), number.end());
+        }
+      if (ends.size() != 3 || std::count(text.begin(), text.end(), ':') != 2 || !(ends[1] > 0) || ends[2] < ends[0])
+        return {};
+      const double n_steps = (ends[2] - ends[0]) / ends[1], whole = std::round(n_steps);
+      const bool   meets = std::abs(n_steps - whole) < 1e-9 * std::max(1., whole);
+      if (!(n_steps < most_steps))
+        return {};
+      std::vector<double> numbers;
+      for (unsigned int k = 0; k <= (meets ? whole : std::floor(n_steps)); ++k) // 0.3, not 0.30000000000000004
+        numbers.push_back(meets && k == whole ? ends[2] : parse_number(format("%.12g", ends[0] + k * ends[1])).value());
+      return numbers;
+    }
+  } // namespace
+
   void declare_load_steps(dealii::ParameterHandler &prm, std::vector<double> &factors)
   {
     const auto parse = [](const std::string &text) {
       std::vector<double> numbers;
       for (const std::string &part : split_list(text))
         {
-          const auto number = parse_number(part);
-          if (!number || !std::isfinite(*number))
+          const auto some = part.find(':') == std::string::npos ? single_number(part) : range(part);
+          if (some.empty())
             return std::vector<double>();
-          numbers.push_back(*number);
+          numbers.insert(numbers.end(), some.begin(), some.end());
         }
       return numbers;
     };
@@ -249,7 +285,7 @@ namespace slipstick::scene
       text,
       "",
       "load factors t of the steps, in order; slip is measured from the end of the previous step",
-      "increasing numbers, separated by commas",
+      "increasing numbers, separated by commas, or ranges FIRST:STEP:LAST such as 0:0.1:1",
       [parse](const std::string &list) {
         const auto numbers = parse(list);
         return !numbers.empty() &&

@@ -164,6 +164,13 @@ namespace slipstick::scene
     return setting != nullptr && !setting->is_section;
   }
 
+  bool Parameters::has_section(const std::string &path) const
+  {
+    return std::any_of(settings.begin(), settings.end(), [&path](const Setting &setting) {
+      return setting.path == path || setting.path.compare(0, path.size() + 1, path + "/") == 0;
+    });
+  }
+
   std::optional<std::string> Parameters::value(const std::string &path) const
   {
     if (!is_set(path))
@@ -256,9 +263,7 @@ namespace slipstick::scene
       for (const std::string &name : names(kind))
         {
           const std::string section = kind.kind + " " + name;
-          if (std::none_of(settings.begin(), settings.end(), [&section](const Setting &setting) {
-                return setting.path == section || setting.path.compare(0, section.size() + 1, section + "/") == 0;
-              }))
+          if (std::find(kind.known.begin(), kind.known.end(), name) == kind.known.end() && !has_section(section))
             throw error(kind.list, "no subsection describes '" + name + "'", "add a subsection " + section);
         }
   }

@@ -63,6 +63,12 @@ class Pictures(WithRun):
         self.assertEqual(self.painter('displacement', small).factor, 200)
         self.assertEqual(self.painter('displacement', small, scale=3).factor, 3)
 
+    def test_load_factors_of_ranges(self):
+        run = self.run_of()
+        run.scene.values['Load steps/Factors'] = '0:0.25:1, 2'
+        self.assertEqual(run.scene.load_factors(), [0, 0.25, 0.5, 0.75, 1, 2])
+        self.assertEqual(run.factors, [0.5, 1])  # of the steps that there are
+
     def test_gaps_that_are_given_are_not_magnified(self):
         run = self.run_of()
         run.scene.values['Contact joint/Offset'] = '-0.1'

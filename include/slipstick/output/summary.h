@@ -14,10 +14,11 @@ namespace slipstick::output
   {
     converged,
     not_converged,
-    no_equilibrium
+    no_equilibrium,
+    unfinished // load steps are still to come; what is left of a run that was interrupted
   };
 
-  /// "converged", "not converged", "no equilibrium"
+  /// "converged", "not converged", "no equilibrium", "unfinished"
   std::string to_string(const RunStatus status);
 
   struct DualSummary

@@ -1,0 +1,10 @@
+# The scenes that `slipstick --new NAME` writes, as text in a file that source/app/new_scene.cc includes.
+set(scenes prm/new/block.prm prm/hertz.prm prm/incline.prm prm/new/pin.prm prm/new/shrink.prm)
+set(entries "")
+foreach(scene ${scenes})
+  get_filename_component(name ${scene} NAME_WE)
+  file(READ ${CMAKE_SOURCE_DIR}/${scene} text)
+  string(APPEND entries "{\"${name}\", R\"prm(${text})prm\"},\n")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${scene})
+endforeach()
+file(CONFIGURE OUTPUT generated/new_scenes.inc CONTENT "${entries}" @ONLY)
