@@ -4,33 +4,20 @@
 
 #include <filesystem>
 #include <fstream>
-#include <utility>
 
 namespace slipstick::app
 {
-  namespace
-  {
-    // Their texts, put there by cmake/new_scenes.cmake from prm/.
-    const std::vector<std::pair<std::string, std::string>> &scenes()
-    {
-      static const std::vector<std::pair<std::string, std::string>> list = {
-#include "new_scenes.inc"
-      };
-      return list;
-    }
-  } // namespace
-
   std::vector<std::string> new_scene_names()
   {
     std::vector<std::string> names;
-    for (const auto &scene : scenes())
+    for (const auto &scene : new_scene_texts())
       names.push_back(scene.first);
     return names;
   }
 
   std::string write_new_scene(const std::string &name)
   {
-    for (const auto &[known, text] : scenes())
+    for (const auto &[known, text] : new_scene_texts())
       if (known == name)
         {
           const std::string file = name + ".prm";

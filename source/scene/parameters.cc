@@ -3,6 +3,7 @@
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/listing.h>
 #include <slipstick/scene/parameters.h>
+#include <slipstick/scene/variables.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -148,7 +149,9 @@ namespace slipstick::scene
     : file(file_name)
     , kinds(named_kinds)
     , settings(read_settings(file_name, overrides))
-  {}
+  {
+    expand_variables(settings);
+  }
 
   const Setting *Parameters::find(const std::string &path) const
   {

@@ -3,7 +3,6 @@
 #include <slipstick/base/printable.h>
 #include <slipstick/base/text.h>
 #include <slipstick/scene/prm_file.h>
-#include <slipstick/scene/variables.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -242,7 +241,6 @@ namespace slipstick::scene
     Reader(file, "", 0, n_files, settings);
     for (const std::string &text : overrides)
       settings.push_back(read_override(text));
-    expand_variables(settings);
     return settings;
   }
 } // namespace slipstick::scene

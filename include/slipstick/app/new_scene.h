@@ -2,10 +2,14 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace slipstick::app
 {
+  /// Names and texts, from prm/ (cmake/new_scenes.cmake).
+  std::vector<std::pair<std::string, std::string>> new_scene_texts();
+
   /// Names of the scenes that can be written.
   std::vector<std::string> new_scene_names();
 

@@ -28,7 +28,7 @@ namespace slipstick::scene
   class Parameters
   {
   public:
-    /// @throws InputError as read_settings() does.
+    /// @throws InputError as read_settings() and expand_variables() do.
     Parameters(const std::string              &file,
                const std::vector<std::string> &overrides,
                const std::vector<NamedKind>   &named_kinds);

@@ -15,8 +15,7 @@ namespace slipstick::scene
     bool        is_section = false;
   };
 
-  /// The settings of a .prm file in their order, then those of the overrides "Section/Sub/Name=value", with variables
-  /// replaced by their values (variables.h). The syntax
+  /// The settings of a .prm file in their order, then those of the overrides "Section/Sub/Name=value". The syntax
   /// is deal.II's: `set Name = value`, `subsection Name` ... `end`, `include FILE` (relative to the including
   /// file), comments from # on, a backslash at the end of a line continues it.
   /// @throws InputError for a file that cannot be read, wrong syntax, and a parameter that one file sets twice.
