@@ -29,7 +29,7 @@ namespace slipstick::app
     // ... and all beyond this part.
     constexpr double largest_kept_part = 1;
 
-    // A solution whose checks fail is taken further so often ...
+    // A solution whose checks fail is continued at most this many times ...
     constexpr unsigned int max_tightenings = 4;
     // ... by the factor that the worst check is above its limit, and this one more, ...
     constexpr double margin_of_tightening = 2;
@@ -39,9 +39,9 @@ namespace slipstick::app
     constexpr double largest_tightening = 1e4;
     // ... down to what double precision reaches nearly everywhere.
     constexpr double least_tolerance = 1e-13;
-    // Below this one rounding of the multipliers may show, which is gone around first ...
+    // Below this tolerance rounding of the multipliers may show; gaps are then closed in the displacement first ...
     constexpr double tolerance_of_rounding = 1e-10;
-    // ... so often, as long as the worst check falls by this factor.
+    // ... at most this many times, as long as the worst check falls by this factor.
     constexpr unsigned int max_closings     = 4;
     constexpr double       closing_progress = 0.5;
     // Tolerance = auto: the algebraic error may be this part of the discretisation error. The two are orthogonal, nearly, so
@@ -249,7 +249,7 @@ namespace slipstick::app
     the_dual->set_right_hand_side(std::move(c));
   }
 
-  void StepSolver::look_at(Answer &answer, const contact::DualSolution &from, const double t) const
+  void StepSolver::evaluate(Answer &answer, const contact::DualSolution &from, const double t) const
   {
     const contact::SlipLaw law(scene, *the_dual, t);
     const auto            &x = answer.recovery.multipliers;
@@ -273,7 +273,7 @@ namespace slipstick::app
       {
         Answer answer;
         answer.recovery = the_dual->recover(iterate.multipliers, iterate.free);
-        look_at(answer, iterate, t);
+        evaluate(answer, iterate, t);
         const auto &checks           = answer.contact->checks;
         discretization_error         = std::sqrt(answer.stress->error_squared);
         const double algebraic_error = std::sqrt(checks.error_energy);
@@ -344,14 +344,14 @@ namespace slipstick::app
             reason = "no equilibrium without the contact nodes that are far apart";
           }
         kept_part = kept_part < largest_kept_part ? growth_of_kept_part * kept_part : infinity;
-        log.line("pruning      " + reason + ": solved again with more of them");
+        log.line("pruning      " + reason + ": solving again with more of them");
         make_dual(t);
         if (step > 0)
           start_slip_from_here();
       }
   }
 
-  // Where the solution did not converge, loads along a free motion prove nothing: all rows hold then.
+  // If the solution did not converge, work of the loads along a free motion proves nothing; all rows are then taken to hold.
   tfeti::DualProblem::Recovery StepSolver::recovered() const
   {
     try
@@ -374,7 +374,7 @@ namespace slipstick::app
   std::unique_ptr<StepSolver::Answer> StepSolver::checked(std::unique_ptr<Answer> answer, const double t) const
   {
     if (!answer->stress)
-      look_at(*answer, the_solution, t);
+      evaluate(*answer, the_solution, t);
     return answer;
   }
 
@@ -390,14 +390,14 @@ namespace slipstick::app
           std::min(options.tolerance, std::max(the_solution.projected_gradient, the_solution.equality));
         if (worst.value <= limit || worst.is_balance)
           break;
-        // an answer that is no number, too
+        // also if the answer is not a number
         const double excess = std::min(largest_tightening, std::max(least_tightening, worst.value / limit));
         options.tolerance   = std::max(reached / (margin_of_tightening * excess), least_tolerance);
-        if (options.tolerance < tolerance_of_rounding && close(*answer, step, limit))
+        if (options.tolerance < tolerance_of_rounding && close_gaps(*answer, step, limit))
           break;
         if (reached <= least_tolerance)
           break;
-        log.line(format("checks       %s is %.1e, allowed is %.1e: solved on to a tolerance of %.1e",
+        log.line(format("checks       %s is %.1e, allowed is %.1e: continuing with a tolerance of %.1e",
                         worst.name,
                         worst.value,
                         limit,
@@ -420,7 +420,7 @@ namespace slipstick::app
     return answer;
   }
 
-  bool StepSolver::close(Answer &answer, const unsigned int step, const double limit)
+  bool StepSolver::close_gaps(Answer &answer, const unsigned int step, const double limit)
   {
     double worst = answer.contact->checks.worst().second;
     for (unsigned int n = 0; n < max_closings && worst > limit; ++n)
@@ -428,7 +428,7 @@ namespace slipstick::app
         Answer next;
         next.recovery = answer.recovery;
         the_solution.counts += contact::close_gaps(*the_dual, the_solution.free, options.pcpg, next.recovery);
-        look_at(next, the_solution, scene.load_factors[step]);
+        evaluate(next, the_solution, scene.load_factors[step]);
         const double left = next.contact->checks.worst().second;
         log.line(
           format("checks       gaps closed by a correction of the displacement: largest %.1e, was %.1e", left, worst));

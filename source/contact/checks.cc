@@ -25,10 +25,10 @@ namespace slipstick::contact
     constexpr double part_of_history = 1e-2;
     // A body on which less than this part of the largest forces on a body acts counts as one with this part.
     constexpr double negligible_load = 1e-3;
-    // Slip bounds above this multiple of the largest contact force say no more than that nodes stick.
+    // Slip bounds above this multiple of the largest contact force only mean that nodes stick.
     constexpr double bounds_that_count = 2;
 
-    /// The largest of some numbers (none of them: 0; one that is no number stays) and where it is.
+    /// The largest of some numbers (0 if there are none; a NaN persists) and where it is.
     struct Largest
     {
       double value = 0;
@@ -44,7 +44,7 @@ namespace slipstick::contact
         return true;
       }
 
-      /// The first rank of those with the largest tells all. Collective.
+      /// The first of the ranks with the largest value broadcasts it. Collective.
       void over_all_ranks(const MPI_Comm comm)
       {
         const std::vector<double> own{value,
@@ -91,7 +91,7 @@ namespace slipstick::contact
       return {true, subdomain.body(), subdomain.position(unknown), true, pair.has_value(), pair.value_or(0)};
     }
 
-    /// Is this the first of the ranks that say so? Collective.
+    /// Is this the first rank on which it is true? Collective.
     bool is_first(const bool says_so, const MPI_Comm comm)
     {
       const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(comm);
@@ -142,7 +142,7 @@ namespace slipstick::contact
       return scale > 0 ? value / scale : value;
     }
 
-    /// What displacements are beyond rigid motions of their subdomains, which no force resists: in products with K these
+    /// Displacements without the rigid motions of their subdomains, which no force resists: in products with K these
     /// would leave rounding alone.
     std::vector<Eigen::VectorXd> deformations(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
     {
@@ -174,7 +174,7 @@ namespace slipstick::contact
       double          largest = 0; // nodal: largest load, contact force or reaction
     };
 
-    /// @param on_node gets what is left at a node of this rank.
+    /// @param on_node gets the residual force at a node of this rank.
     Balance balance(const tfeti::DualProblem           &dual,
                     const std::vector<Eigen::VectorXd> &nodal_forces,
                     const DistributedVector            &multipliers,

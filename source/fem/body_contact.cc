@@ -55,7 +55,7 @@ namespace slipstick::fem
       if (!distance) // of empty sides too
         refuse_pair(scene, pair, sides, 0.);
       const double near = pair.reach ? *pair.reach : automatic_reach(sides.slave, sides.master, *distance);
-      // nodes that are farther apart have no rows at first, but are looked at again when the solution is known
+      // nodes that are farther apart have no rows at first, but are checked again when the solution is known
       const double reach = pair.reach || !pair.law.acts_where_closed_alone()
                              ? near
                              : std::max(near, widest_reach(sides.slave, sides.master, *distance));
@@ -66,7 +66,7 @@ namespace slipstick::fem
       return rows;
     }
 
-    /// Nodes that hang together.
+    /// Connected nodes.
     class Groups
     {
     public:

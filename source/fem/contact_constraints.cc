@@ -11,7 +11,7 @@ namespace slipstick::fem
 {
   namespace
   {
-    // Contact nodes that are farther apart than the nearest ones by less than so many mesh sizes keep their rows.
+    // Contact nodes that are farther apart than the nearest ones by less than this many mesh sizes keep their rows.
     constexpr double mesh_sizes = 2;
 
     tfeti::Partitioner make_partitioner(const std::uint64_t                           first,

@@ -119,13 +119,13 @@ namespace slipstick::scene
              gap,
              "mm",
              "geometry, " + field_format,
-             "initial distance along the normal: that of the geometry, or given in its place");
+             "initial distance along the normal: that of the geometry, or a given one instead");
     add_text(prm,
              "Reach",
              reach,
              "mm",
              "auto, or a number > 0",
-             "what is farther apart along the normal is not paired; auto: two bodies from distance and mesh, obstacles "
+             "nodes farther apart along the normal are not paired; auto: two bodies from distance and mesh, obstacles "
              "without limit");
     add_choice(prm,
                "Discretization",
@@ -133,7 +133,7 @@ namespace slipstick::scene
                Choices<ContactDiscretization>{{"auto", ContactDiscretization::automatic},
                                               {"node to node", ContactDiscretization::node_to_node},
                                               {"mortar", ContactDiscretization::mortar}},
-               "two bodies: auto is node to node where all nodes meet a node, else mortar");
+               "two bodies: auto is node to node where every slave node has a master node opposite, otherwise mortar");
     prm.leave_subsection();
   }
 
@@ -151,14 +151,14 @@ namespace slipstick::scene
       {
         pair.obstacle = std::find(obstacles.begin(), obstacles.end(), master) - obstacles.begin();
         if (pair.obstacle == obstacles.size())
-          throw parameters.error(path, "there is no such obstacle", suggest_name(master, obstacles));
+          throw parameters.error(path, "unknown obstacle", suggest_name(master, obstacles));
         return;
       }
     pair.master = read_boundary(master, path, parameters, scene.bodies);
     if (pair.master->body == pair.slave.body &&
         (pair.master->boundary == pair.slave.boundary || pair.master->boundary == "*" || pair.slave.boundary == "*"))
       throw parameters.error(path,
-                             "is a part of the slave boundary: no boundary can be in contact with itself",
+                             "is part of the slave boundary: a boundary cannot be in contact with itself",
                              "choose two different boundaries of body '" + scene.bodies[pair.slave.body].name + "'");
   }
 

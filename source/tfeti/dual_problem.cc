@@ -324,14 +324,14 @@ namespace slipstick::tfeti
     for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
       for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
         all.emplace(labels_of[rank][i], shares_of[rank][i]);
-    if (all.empty()) // Eigen's decomposition of no columns reads what is not there
+    if (all.empty()) // Eigen's decomposition of a matrix without columns reads out of bounds
       return false;
     Eigen::MatrixXd shares(loose.size(), all.size());
     unsigned int    column = 0;
     for (const auto &candidate : all)
       shares.col(column++) = Eigen::Map<const Eigen::VectorXd>(candidate.second.data(), loose.size());
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted(shares);
-    // of unit motions: shares that are all rounding hold nothing
+    // of unit motions; shares that are only rounding hold nothing
     pivoted.setThreshold(least_hold * std::max(1., 1 / std::max(pivoted.maxPivot(), least_hold)));
     if (pivoted.rank() < static_cast<Eigen::Index>(loose.size()))
       return false;
@@ -385,7 +385,7 @@ namespace slipstick::tfeti
       u[p] -= bodies->displacements(p, amplitudes);
   }
 
-  // Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of what is.
+  // Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of the violations.
   void DualProblem::slide_apart(const std::vector<RigidMotion> &loose,
                                 const std::vector<bool>        &free,
                                 const DistributedVector        &x,

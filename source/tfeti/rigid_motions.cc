@@ -50,7 +50,7 @@ namespace slipstick::tfeti
       return frames;
     }
 
-    /// Share of one subdomain in what a row sees of its body's motions.
+    /// Contribution of one subdomain to the jumps of a row under the motions of its body.
     struct RowPart
     {
       std::uint64_t       row  = 0; // global
@@ -210,7 +210,7 @@ namespace slipstick::tfeti
     for (unsigned int b = 0; b < body_names.size(); ++b)
       {
         const Eigen::VectorXd part = (motion.amplitudes.segment(b * k, k).array().abs() < named_part * largest)
-                                       .select(0., motion.amplitudes.segment(b * k, k)); // rounding left away
+                                       .select(0., motion.amplitudes.segment(b * k, k)); // without rounding
         if (part.cwiseAbs().maxCoeff() < named_part * largest)
           continue;
         const Eigen::VectorXd translation = part.head(k - 1);

@@ -78,7 +78,7 @@ TEST(contact_sections, defaults_of_a_pair)
 TEST(contact_sections, wrong_pairs_are_refused)
 {
   refused(with(two_bodies, {"Contact both/Master=wedge/lfet"}), {"'wedge/lfet'", "did you mean 'left'?"});
-  refused(with(two_bodies, {"Contact both/Master=dics"}), {"no such obstacle", "disc"});
+  refused(with(two_bodies, {"Contact both/Master=dics"}), {"unknown obstacle", "disc"});
   refused(with(two_bodies, {"Contact both/Master=box/right"}), {"box/right", "itself", "different"});
   refused(with(two_bodies, {"Contact both/Master=box/*"}), {"itself"});
   refused(with(two_bodies, {"Contact both/Law=Coulomb"}), {"Friction coefficient is not set"});
@@ -122,7 +122,7 @@ TEST(contact_sections, obstacles_of_all_shapes)
   EXPECT_NEAR(plane.normal[0], 0.6, 1e-15);
   EXPECT_NEAR(plane.normal[1], 0.8, 1e-15);
   refused(with(half, {"Obstacle o/Normal=0, 0"}), {"no length"});
-  refused(with(half, {"Obstacle o/Radius=3"}), {"Obstacle o/Radius", "means nothing"});
+  refused(with(half, {"Obstacle o/Radius=3"}), {"Obstacle o/Radius", "has no meaning"});
 
   const std::vector<std::string> line = {"Obstacles=disc, o", "Obstacle o/Shape=polyline"};
   EXPECT_EQ(box(with(line, {"Obstacle o/Points=0 0; 1 0; 2 1"})).obstacles[1].points[2], dealii::Point<2>(2, 1));

@@ -16,7 +16,7 @@
 
 namespace slipstick::app
 {
-  /// Mesh, dual problem and solver of a scene. Members are collective unless they only tell what is known.
+  /// Mesh, dual problem and solver of a scene. Members are collective, except those that only return known values.
   class StepSolver
   {
   public:
@@ -94,14 +94,14 @@ namespace slipstick::app
     /// @return whether the multipliers of the step before fit the rows.
     bool advance(const double t);
 
-    /// Slip counts from the displacement at the end of the step before.
+    /// Slip is measured from the displacement at the end of the previous step.
     void start_slip_from_here();
 
     /// The displacement of the solution.
     tfeti::DualProblem::Recovery recovered() const;
 
-    /// Checks and stresses of what was recovered from @p from.
-    void look_at(Answer &answer, const contact::DualSolution &from, const double t) const;
+    /// Computes checks and stresses of an answer that was recovered from @p from.
+    void evaluate(Answer &answer, const contact::DualSolution &from, const double t) const;
 
     /// Is the algebraic error of an iterate a small part of its discretisation error, and does it pass the checks? A step
     /// looks at its last estimate first, which errors of the iterates so far can only have made too large, and recovers
@@ -116,15 +116,15 @@ namespace slipstick::app
 
     std::unique_ptr<Answer> checked(std::unique_ptr<Answer> answer, const double t) const;
 
-    /// Goes on from a solution whose checks fail, to smaller residuals: those that are asked for are relative to |Pd|,
-    /// which may be far above what is left of it in the displacement (slender parts). Ends where that does not help.
+    /// Continues from a solution whose checks fail, to smaller residuals: the tolerance is relative to |Pd|,
+    /// which may be far above the corresponding part of the displacement (slender parts). Ends when that does not help.
     std::unique_ptr<Answer> tighten(const unsigned int      step,
                                     const std::uint64_t     multiplications_before,
                                     std::unique_ptr<Answer> answer);
 
     /// Corrects the displacement of an answer, on its set, until its checks are within the limit or do not fall any more.
     /// @return whether they are.
-    bool close(Answer &answer, const unsigned int step, const double limit);
+    bool close_gaps(Answer &answer, const unsigned int step, const double limit);
 
     scene::Scene<dim>    scene;
     const Log           &log;

@@ -55,7 +55,7 @@ namespace slipstick::contact
     /// The relative checks with their names and places.
     std::array<Entry, n_entries> entries() const;
 
-    /// The worst of them; a number that is none is.
+    /// The worst of them; a value that is not a number counts as worse than any other.
     Entry worst_entry() const;
 
     /// Its name and value.

@@ -1,4 +1,4 @@
-// What a solve of the dual problem returns, and what it is watched by.
+// Result of a solve of the dual problem, and its observers.
 #pragma once
 
 #include <slipstick/qp/direction_store.h>

@@ -11,7 +11,7 @@ namespace slipstick::fem
   {
     std::vector<std::vector<MortarRow<dim>>> rows; // by contact pair; none for obstacles
 
-    /// Subdomain whose rank owns the rows of a node: one for all nodes that hang together through rows, so that rows
+    /// Subdomain whose rank owns the rows of a node: one for all nodes that are connected through rows, so that rows
     /// which share a node are on one rank. Nodes that are not here may be owned by anyone.
     std::map<NodeKey, unsigned int> owner;
   };

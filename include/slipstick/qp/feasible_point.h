@@ -193,7 +193,7 @@ namespace slipstick::qp
       Status least_squares(const Status failure)
       {
         is_nearest = false;
-        // far out, where y runs to if there is no such point, rounding is larger than what is looked for
+        // if there is no such point y diverges, and far out rounding exceeds the residual sought
         const bool is_far = norm(y, reduction) > options.certificate_radius * reference;
         std::copy(is_far ? Qx_e.begin() : y.begin(), is_far ? Qx_e.end() : y.end(), x.begin());
         project(box, x);
@@ -231,7 +231,7 @@ namespace slipstick::qp
       }
 
       // x := least 1/2 x'Ax - x'b within bounds, down to rounding. It has a minimum: where rounding in directions that A does
-      // not see passes for a way down without end, MPGP starts anew.
+      // not see looks like a direction of unbounded descent, MPGP is restarted.
       template <typename Operator>
       void minimize(const Operator &A, const double norm_A, const Vector &b, const Box<Vector> &bounds)
       {

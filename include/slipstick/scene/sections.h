@@ -57,6 +57,7 @@ namespace slipstick::scene
     explicit MaterialSection(const std::string &name);
 
     std::string name;
+    std::string library = "none";
     Material    material;
 
     void     declare(dealii::ParameterHandler &prm);

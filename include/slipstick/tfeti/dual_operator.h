@@ -40,7 +40,7 @@ namespace slipstick::tfeti
     /// y = F x; x: multipliers [N], y: displacement jumps [mm], owned entries. Collective. Farhat, Roux 1991.
     void apply(const DistributedVector &x, DistributedVector &y) const;
 
-    /// The same by sparse solves, whatever the blocks are stored in. Collective.
+    /// The same by sparse solves, in any storage of the blocks. Collective.
     void apply_by_solves(const DistributedVector &x, DistributedVector &y) const;
 
     /// B' x on subdomain p of this rank: forces at the touched unknowns; x needs its ghosts.

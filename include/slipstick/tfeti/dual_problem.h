@@ -13,7 +13,7 @@
 
 namespace slipstick::tfeti
 {
-  /// Forces of no more than this part of the largest are what rounding leaves of none: they hold nothing.
+  /// Forces up to this part of the largest one are rounding of zero and hold nothing.
   constexpr double force_rounding = 1e-13;
 
   /// min 1/2 x'F x - x'd  s.t.  G x = e and bounds on x (which the contact layer knows). x: multipliers [N], one a row

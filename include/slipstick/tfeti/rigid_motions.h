@@ -14,7 +14,7 @@ namespace slipstick::tfeti
     double                 load = 0;   // along it [N]
   };
 
-  /// What the rows of B (gluing aside, which moves with its body) see of the rigid motions of whole bodies.
+  /// Jumps of the rows of B under rigid motions of whole bodies (except gluing rows, which move with their body).
   class BodyMotions
   {
   public:
@@ -29,7 +29,8 @@ namespace slipstick::tfeti
     /// @param active rows (owned by this rank) that take part; empty: all.
     /// @param resistance below which a motion counts as free: squared jumps of the rows under a unit motion, over the
     ///        largest of all motions. Rounding by default.
-    std::vector<RigidMotion> free(const std::vector<bool> &active, const double resistance = rounding_of_resistance) const;
+    std::vector<RigidMotion> free(const std::vector<bool> &active,
+                                  const double             resistance = rounding_of_resistance) const;
 
     static constexpr double rounding_of_resistance = 1e-12;
 
