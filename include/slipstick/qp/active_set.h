@@ -39,6 +39,19 @@ namespace slipstick::qp
     template <typename Problem, typename Set>
     void balance_bodies(const Problem &, const std::vector<double> &, const Set &, std::vector<double> &, long)
     {}
+    template <typename Problem>
+    auto has_loose_bodies(const Problem &problem, int) -> decltype(problem.has_loose_bodies())
+    {
+      return problem.has_loose_bodies();
+    }
+    template <typename Problem>
+    bool has_loose_bodies(const Problem &, long)
+    {
+      return false;
+    }
+
+    // Bodies that move until s g balances their loads rest on the fewer points the stiffer s is: no larger than this then.
+    constexpr double step_with_loose_bodies = 1;
 
     /// The natural map x -> proj(x - s g) of an admissible set, and the set of entries that it puts on bounds. s: `step`
     /// over the norm of F, times the weight of the entry, so that s g is a force of the size that closes g.
@@ -50,7 +63,7 @@ namespace slipstick::qp
       ActiveSet(const Problem &problem_, const double norm_, AdmissibleSet<Vector> set_, const double step_)
         : problem(problem_)
         , norm(norm_)
-        , step(step_)
+        , step(has_loose_bodies(problem_, 0) ? std::min(step_, step_with_loose_bodies) : step_)
         , set(std::move(set_))
         , weights(residual_weights(problem_, 0))
         , active(local_size(set.box.lower))

@@ -18,7 +18,8 @@
 //       `is_regular()`          false when the free entries alone do not determine a
 //   `hold(free, gaps, well) const`   the free entries and as many others, with small gaps, as make the face regular if that
 //       can be; or, if that is asked for, far from singular
-// It may have `balance_bodies(stiffness, set, moved) const`, which moves bodies that nothing but entries with bounds holds,
+// It may have `has_loose_bodies() const` and
+//     `balance_bodies(stiffness, set, moved) const`, which moves bodies that nothing but entries with bounds holds,
 //       moved -= stiffness times their jumps, so that proj(moved) balances their loads: the least of the potential of the
 //       projected forces. So sets are predicted that can bear the loads.
 #pragma once

@@ -131,6 +131,12 @@ namespace slipstick::tfeti
                         const qp::AdmissibleSet<DistributedVector> &bounds,
                         std::vector<double>                        &moved) const;
 
+    /// Are there bodies that nothing but contact holds?
+    bool has_loose_bodies() const
+    {
+      return !held_by_contact->empty();
+    }
+
     /// |P F P| [mm/N].
     double norm() const
     {
