@@ -1,3 +1,4 @@
+#include <slipstick/app/curve_doubts.h>
 #include <slipstick/app/doubts.h>
 #include <slipstick/base/log.h>
 #include <slipstick/fem/deformation.h>
@@ -172,6 +173,7 @@ namespace slipstick::app
     const auto                         pairs = peaks_of_pairs(scene, dual.constraints(), nodes, mesh.comm);
     if (const std::string text = doubt_of_split(scene, dual, free); !text.empty())
       texts["split"] = text;
+    texts.merge(doubts_of_curves(scene, mesh, spaces, dual.constraints().contact_points, nodes));
     for (unsigned int k = 0; k < pairs.size(); ++k)
       {
         const auto        &pair = pairs[k];

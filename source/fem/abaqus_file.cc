@@ -282,8 +282,10 @@ namespace slipstick::fem
             if (found == node_index.end())
               fail("element " + std::to_string(data[0]) + " has node " + std::to_string(data[k + 1]) +
                    ", which is not there");
-            if (k < element.corners.size())
+            if (k < element.n || dim == 1)
               element.corners[k] = found->second;
+            else
+              mesh.keep_middle(element, k, found->second);
           }
         if (dim == 1 && n_nodes == 3) // the middle comes second, or last: it is the one between the others
           {

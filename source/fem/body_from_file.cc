@@ -53,11 +53,12 @@ namespace slipstick::fem
         check_faces();
         name_boundaries();
         name_points();
+        keep_middles();
         check_connected();
         check_conformity();
-        if (file.is_curved)
+        if (file.is_curved && mesh.middles.empty())
           mesh.remarks.push_back("body " + body.name + ": only the corners of the curved cells in " + file.file +
-                                 " are used, edges become straight");
+                                 " are used (mid nodes are kept of cells of second order in Gmsh and Abaqus files)");
         return std::move(mesh);
       }
 
@@ -82,6 +83,7 @@ namespace slipstick::fem
       void check_faces();
       void name_boundaries();
       void name_points();
+      void keep_middles();
       void check_connected();
       void check_conformity();
       void note_left_out_lines(const std::map<Face, std::set<std::string>> &names);
@@ -379,6 +381,24 @@ namespace slipstick::fem
             fail("has a node inside of an edge at " + place + ", which is not joined to it: " + of, remedy);
           case ConformityFault<dim>::Kind::twin_nodes:
             fail("has two nodes at " + place + " that are not joined: " + of, remedy);
+        }
+    }
+
+    template <int dim>
+    void Extraction<dim>::keep_middles()
+    {
+      if (file.middles.empty())
+        return;
+      std::vector<unsigned int> node_of_vertex(vertex_of_node.size());
+      for (const auto &[node, vertex] : vertex_of_node)
+        node_of_vertex[vertex] = node;
+      for (const auto &face : mesh.piece.boundary_faces)
+        {
+          const auto ends  = std::minmax(node_of_vertex[face.vertices[0]], node_of_vertex[face.vertices[1]]);
+          const auto found = file.middles.find({ends.first, ends.second});
+          if (found != file.middles.end())
+            mesh.middles[face.vertices] =
+              body.scale * dealii::Point<dim>(file.nodes[found->second][0], file.nodes[found->second][1]);
         }
     }
 

@@ -59,7 +59,7 @@ namespace slipstick::fem
         {
           std::vector<Tensor> normals, means;
           for (const auto &[e, i] : places)
-            normals.push_back(curve[e].normal(Edge::node_coordinate(i)));
+            normals.push_back(curve[e].outline_normal(Edge::node_coordinate(i)));
           const auto         side  = smooth_normals(normals, means);
           const unsigned int first = nodes.size();
           for (unsigned int g = 0; g < means.size(); ++g)

@@ -1,10 +1,11 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/text.h>
-#include <slipstick/fem/body_mesh.h>
 #include <slipstick/fem/decomposition.h>
+#include <slipstick/fem/make_body.h>
 #include <slipstick/fem/shapes.h>
 #include <slipstick/fem/size_check.h>
+#include <slipstick/fem/triangulate.h>
 
 #include <deal.II/base/mpi.h>
 

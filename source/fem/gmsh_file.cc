@@ -391,6 +391,9 @@ namespace slipstick::fem
                     "write the file again with Gmsh");
           if (k < element.corners.size() && k < type.n_corners)
             element.corners[k] = found->second;
+          else if (type.dim == 2 &&
+                   (type.n_nodes == 6 || type.n_nodes == 8 || (type.n_nodes == 9 && type.n_corners == 4)))
+            mesh.keep_middle(element, k, found->second);
         }
       mesh.is_curved = mesh.is_curved || (type.dim == 2 && type.n_nodes > type.n_corners);
       mesh.elements.push_back(element);

@@ -1,8 +1,5 @@
 #include <slipstick/fem/mesh_piece.h>
 
-#include <deal.II/grid/grid_tools.h>
-#include <deal.II/grid/manifold_lib.h>
-
 #include <metis.h>
 
 #include <cmath>
@@ -16,15 +13,15 @@ namespace slipstick::fem
 
     /// Sub-piece of the given cells.
     template <int dim>
-    MeshPiece<dim> extract(const MeshPiece<dim>                                                      &whole,
-                           const std::vector<unsigned int>                                           &cells,
-                           const std::map<typename MeshPiece<dim>::Face, dealii::types::boundary_id> &boundary)
+    MeshPiece<dim> extract(
+      const MeshPiece<dim>                                                                 &whole,
+      const std::vector<unsigned int>                                                      &cells,
+      const std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> &boundary)
     {
       MeshPiece<dim>                       piece;
       std::map<unsigned int, unsigned int> local;
-      piece.body        = whole.body;
-      piece.ordered     = whole.ordered;
-      piece.arc_centers = whole.arc_centers;
+      piece.body    = whole.body;
+      piece.ordered = whole.ordered;
       for (const unsigned int c : cells)
         {
           auto cell = whole.cells[c];
@@ -32,7 +29,7 @@ namespace slipstick::fem
             {
               const auto found = boundary.find(face_of_cell<dim>(cell, f));
               if (found != boundary.end())
-                piece.boundary_faces.push_back({found->first, found->second});
+                piece.boundary_faces.push_back(found->second);
             }
           for (unsigned int k = 0; k < n_corners<dim>(cell); ++k)
             {
@@ -77,6 +74,23 @@ namespace slipstick::fem
         ids[key] = face.id;
       }
     return ids;
+  }
+
+  template <int dim>
+  std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> boundary_by_vertices(
+    const MeshPiece<dim> &piece)
+  {
+    std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> faces;
+    for (auto face : piece.boundary_faces)
+      {
+        if (face.vertices[0] > face.vertices[1])
+          {
+            std::swap(face.vertices[0], face.vertices[1]);
+            face.curve = face.curve.reversed();
+          }
+        faces[face.vertices] = face;
+      }
+    return faces;
   }
 
   template <int dim>
@@ -146,8 +160,8 @@ namespace slipstick::fem
     };
     for (auto &x : piece.vertices)
       move(x);
-    for (auto &arc : piece.arc_centers)
-      move(arc.second);
+    for (auto &face : piece.boundary_faces)
+      face.curve.move(move);
     if (placement.mirror_x != placement.mirror_y)
       for (auto &cell : piece.cells)
         std::swap(cell[1], cell[2]); // of a quadrilateral in lexicographic order, and of a triangle
@@ -175,7 +189,7 @@ namespace slipstick::fem
           root[std::max(a, b)] = std::min(a, b);
         }
 
-    const auto                                                                 boundary = ids_of_faces(whole);
+    const auto                                                                 boundary = boundary_by_vertices(whole);
     std::map<std::pair<unsigned int, unsigned int>, std::vector<unsigned int>> cells_of_piece; // by part and root
     for (unsigned int c = 0; c < n_cells; ++c)
       cells_of_piece[{part[c], find(c)}].push_back(c);
@@ -244,55 +258,15 @@ namespace slipstick::fem
     return part;
   }
 
-  template <int dim>
-  std::unique_ptr<SubdomainMesh<dim>> triangulate(const MeshPiece<dim> &piece)
-  {
-    std::vector<dealii::CellData<dim>> cells(piece.cells.size());
-    for (std::size_t c = 0; c < cells.size(); ++c)
-      {
-        Assert(n_corners<dim>(piece.cells[c]) == n_corners<dim>(piece.cells[0]),
-               dealii::ExcMessage("cells of one subdomain are of one kind"));
-        cells[c].vertices.assign(piece.cells[c].begin(), piece.cells[c].begin() + n_corners<dim>(piece.cells[c]));
-      }
-    if (!piece.ordered && !is_simplex<dim>(piece.cells[0]))
-      dealii::GridTools::consistently_order_cells(cells);
-
-    auto mesh             = std::make_unique<SubdomainMesh<dim>>();
-    mesh->subdomain       = piece.subdomain;
-    mesh->body            = piece.body;
-    mesh->global_vertices = piece.global_vertices;
-    mesh->triangulation.create_triangulation(piece.vertices, cells, dealii::SubCellData());
-
-    // every face starts as a cut, the boundaries are marked from their vertices
-    const auto boundary = ids_of_faces(piece);
-    for (const auto &cell : mesh->triangulation.active_cell_iterators())
-      for (const auto &face : cell->face_iterators())
-        if (face->at_boundary())
-          {
-            typename MeshPiece<dim>::Face key;
-            for (unsigned int v = 0; v < key.size(); ++v)
-              key[v] = face->vertex_index(v);
-            std::sort(key.begin(), key.end());
-            const auto found = boundary.find(key);
-            const auto id    = found == boundary.end() ? cut_id : found->second;
-            face->set_boundary_id(id);
-            if (piece.arc_centers.count(id) > 0)
-              face->set_manifold_id(id);
-          }
-    for (const auto &[id, center] : piece.arc_centers)
-      mesh->triangulation.set_manifold(id, dealii::SphericalManifold<dim>(center));
-    return mesh;
-  }
-
   template struct MeshPiece<2>;
   template std::vector<std::pair<MeshPiece<2>::Face, unsigned int>> faces_with_cells(const MeshPiece<2> &);
   template std::map<MeshPiece<2>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<2> &);
+  template std::map<MeshPiece<2>::Face, MeshPiece<2>::BoundaryFace> boundary_by_vertices(const MeshPiece<2> &);
   template MeshPiece<2>                                             rectangle_piece<2>(const scene::Body<2> &,
                                            const std::array<unsigned int, 2> &,
                                            const std::array<unsigned int, 2> &,
                                            const std::array<unsigned int, 2> &);
   template void                                                     place(MeshPiece<2> &, const scene::Placement<2> &);
-  template std::vector<MeshPiece<2>>         cut(const MeshPiece<2> &, const std::vector<unsigned int> &);
-  template std::vector<unsigned int>         metis_parts(const MeshPiece<2> &, const unsigned int, const unsigned int);
-  template std::unique_ptr<SubdomainMesh<2>> triangulate(const MeshPiece<2> &);
+  template std::vector<MeshPiece<2>> cut(const MeshPiece<2> &, const std::vector<unsigned int> &);
+  template std::vector<unsigned int> metis_parts(const MeshPiece<2> &, const unsigned int, const unsigned int);
 } // namespace slipstick::fem

@@ -16,6 +16,8 @@ namespace slipstick::fem
     constexpr double smallest_cover = 1e-10;
     // An edge is covered as a whole when no more than this part is missing.
     constexpr double whole_edge = 1e-9;
+    // Nodes lie on their curve when they are off by no more than this part of the edge.
+    constexpr double on_curve = 1e-12;
     // Weights that are no more than rounding.
     constexpr double smallest_weight = 1e-11;
     // Master nodes lie across slave nodes when they are off by no more than this part of the tributary length ...
@@ -37,6 +39,10 @@ namespace slipstick::fem
         , gauss(n_gauss)
         , sums(pairing.nodes().size())
       {
+        for (const auto *side : {&slave, &master})
+          for (const auto &edge : *side)
+            for (unsigned int i = 0; i < edge.n_nodes; ++i)
+              places[edge.keys[i]] = {&edge, Edge::node_coordinate(i)};
         for (const auto &edge : master)
           for (unsigned int i = 0; i < edge.n_nodes; ++i)
             master_positions[edge.keys[i]] = edge.node(i);
@@ -58,7 +64,9 @@ namespace slipstick::fem
     private:
       struct Sums
       {
-        double                    length = 0;    // D_i
+        double                    length = 0; // D_i
+        Tensor                    rise;       // <phi_i (rise of the master - rise of the slave) n>
+        double                    left_out = 0;
         std::map<NodeKey, double> slave, master; // D_ik, M_ij
       };
 
@@ -75,10 +83,12 @@ namespace slipstick::fem
         const unsigned int n_test    = covered > 1 - whole_edge ? edge.n_nodes : 2;
         const bool         is_linear = n_test == 2;
 
-        Eigen::MatrixXd                    mass    = Eigen::MatrixXd::Zero(n_test, n_test);       // <T_a T_b>
-        Eigen::MatrixXd                    slave_  = Eigen::MatrixXd::Zero(n_test, edge.n_nodes); // <T_a N_k>
-        Eigen::VectorXd                    lengths = Eigen::VectorXd::Zero(n_test);               // <T_a>
-        std::map<NodeKey, Eigen::VectorXd> other;                                                 // <T_a N_j(y)>
+        Eigen::MatrixXd                    mass     = Eigen::MatrixXd::Zero(n_test, n_test);       // <T_a T_b>
+        Eigen::MatrixXd                    slave_   = Eigen::MatrixXd::Zero(n_test, edge.n_nodes); // <T_a N_k>
+        Eigen::VectorXd                    lengths  = Eigen::VectorXd::Zero(n_test);               // <T_a>
+        Eigen::MatrixXd                    rises    = Eigen::MatrixXd::Zero(n_test, 2);            // <T_a rise n>
+        double                             left_out = 0;
+        std::map<NodeKey, Eigen::VectorXd> other; // <T_a N_j(y)>
         for (const auto &part : parts)
           for (unsigned int q = 0; q < gauss.size(); ++q)
             {
@@ -97,6 +107,13 @@ namespace slipstick::fem
               mass += dx * test * test.transpose();
               slave_ += dx * test * Eigen::Map<const Eigen::RowVectorXd>(N.data(), edge.n_nodes);
               lengths += dx * test;
+              left_out = std::max(left_out, edge.curve.left_out + to.curve.left_out);
+              if (edge.curve || to.curve)
+                {
+                  const Tensor n    = pairing.direction(e, s);
+                  const Tensor rise = (to.rise(r, n) - edge.rise(s, n)) * n;
+                  rises += dx * test * Eigen::RowVector2d(rise[0], rise[1]);
+                }
               for (unsigned int j = 0; j < to.n_nodes; ++j)
                 {
                   auto &sum = other.emplace(to.keys[j], Eigen::VectorXd::Zero(n_test)).first->second;
@@ -108,11 +125,14 @@ namespace slipstick::fem
         const Eigen::MatrixXd scaled = scale.asDiagonal() * mass * scale.asDiagonal();
         const Eigen::MatrixXd dual =
           lengths.asDiagonal() * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal()).eval();
-        const Eigen::MatrixXd D = dual * slave_;
+        const Eigen::MatrixXd D = dual * slave_, of_curves = dual * rises;
         for (unsigned int i = 0; i < n_test; ++i)
           {
             Sums &node = sums[pairing.nodes_of(e)[i]];
             node.length += lengths[i];
+            for (unsigned int d = 0; d < 2; ++d)
+              node.rise[d] += of_curves(i, d);
+            node.left_out = std::max(node.left_out, left_out);
             for (unsigned int k = 0; k < edge.n_nodes; ++k)
               if (!(n_test == edge.n_nodes && i != k)) // biorthogonal
                 node.slave[edge.keys[k]] += n_test == edge.n_nodes ? lengths[i] : D(i, k);
@@ -153,7 +173,9 @@ namespace slipstick::fem
         row.full_length    = node.covered;
         row.slave_weights  = normalised(sum.slave, sum.length);
         row.master_weights = normalised(sum.master, sum.length);
+        row.left_out       = sum.left_out;
         measure(row);
+        row.gap += row.normal * sum.rise / sum.length;
         return row;
       }
 
@@ -168,6 +190,15 @@ namespace slipstick::fem
         for (const auto &[key, weight] : row.master_weights)
           row.master_position += weight * Tensor(master_positions.at(key));
         row.gap = row.normal * (row.master_position - x);
+      }
+
+      /// How far the curve is above the edges at a node, along the normal of a row: nothing but for midside nodes of straight
+      /// edges and nodes of edges that could not be bent.
+      double rise(const MortarRow<2> &row, const NodeKey &key) const
+      {
+        const auto &[edge, s] = places.at(key);
+        const double distance = edge->rise(s, row.normal);
+        return std::abs(distance) > on_curve * edge->chord() ? distance : 0.;
       }
 
       /// The master node across a slave node, and how far off it is to the side.
@@ -189,6 +220,8 @@ namespace slipstick::fem
       const dealii::QGauss<1>             gauss;
       std::vector<Sums>                   sums; // by node of the pairing
       std::map<NodeKey, dealii::Point<2>> slave_positions, master_positions;
+
+      std::map<NodeKey, std::pair<const Edge *, double>> places; // an edge of every node, and where it is there
     };
 
     /// Nearest point of the chord of an edge.
@@ -252,6 +285,7 @@ namespace slipstick::fem
         row.slave_weights  = {{row.slave, 1.}};
         row.master_weights = {{key, 1.}};
         integrals.measure(row);
+        row.gap += integrals.rise(row, key) - integrals.rise(row, row.slave);
       }
     return to_nodes;
   }

@@ -159,19 +159,25 @@ namespace slipstick::fem
         }
     }
 
-    /// The nearest of some edges, and how far away.
-    std::pair<unsigned int, double> nearest(const ClosedOutline &outline, const Point &x)
+    struct Nearest
     {
-      std::pair<unsigned int, double> best{0, std::numeric_limits<double>::max()};
+      unsigned int edge     = 0;
+      double       s        = 0; // where on its chord
+      double       distance = std::numeric_limits<double>::max();
+    };
+
+    Nearest nearest(const ClosedOutline &outline, const Point &x)
+    {
+      Nearest best;
       outline.tree.for_each_by_distance(
         x,
-        [&] { return best.second; },
+        [&] { return best.distance; },
         [&](const unsigned int e) {
           const auto   a = outline.edges[e].node(0), b = outline.edges[e].node(1);
           const double s        = std::min(1., std::max(0., (x - a) * (b - a) / (b - a).norm_square()));
           const double distance = x.distance(a + s * (b - a));
-          if (distance < best.second)
-            best = {e, distance};
+          if (distance < best.distance)
+            best = {e, s, distance};
           return true;
         });
       return best;
@@ -200,9 +206,10 @@ namespace slipstick::fem
         for (const auto &corner : obstacle.points)
           if (body.contains(corner))
             {
-              const auto [e, depth] = nearest(body, corner);
-              if (mesh.on_boundary(pair.slave, body.edges[e].boundary))
-                take(deepest, depth - pair.offset.value(corner, t), corner, body.edges[e].chord(), 0.);
+              const auto  at_corner = nearest(body, corner);
+              const auto &edge      = body.edges[at_corner.edge];
+              if (mesh.on_boundary(pair.slave, edge.boundary))
+                take(deepest, at_corner.distance - pair.offset.value(corner, t), corner, edge.chord(), 0.);
             }
     }
 
@@ -236,18 +243,43 @@ namespace slipstick::fem
       Point               low, high;
     };
 
+    /// How far the outline lies inside of the chord of an edge, @p before and @p now: hollow sides, whose chords reach into what
+    /// they touch.
+    double hollow(const Edge &before, const Edge &now, const double s)
+    {
+      const Point  on_chord = now.node(0) + s * (now.node(1) - now.node(0));
+      const double bend     = (at(now, s) - on_chord) * now.normal(s);
+      return std::max(0., -bend - before.rise(s, before.normal(s)));
+    }
+
+    /// Depth of the outline at s inside a body below its outline, 0 when it is not inside.
+    Penetration depth_in(const ClosedOutline &outline,
+                         const Edges         &before,
+                         const Edge          &edge_before,
+                         const Edge          &edge,
+                         const double         s)
+    {
+      const Point x = at(edge, s);
+      if (!outline.contains(x))
+        return {};
+      const auto  there = nearest(outline, x);
+      const auto &other = outline.edges[there.edge];
+      // x is that of a bent edge already, the curve of a straight one may be farther inside
+      const double own   = std::max(0., -edge_before.rise(s, edge_before.normal(s)));
+      const double depth = there.distance - hollow(before[there.edge], other, there.s) - own;
+      return {std::max(0., depth), {}, other.chord(), 0.};
+    }
+
     void find_in_body(const Body &a, const Body &b, std::optional<Penetration> &deepest)
     {
       for (unsigned int e = 0; e < a.now.size(); ++e)
         for (const double s : {0., 0.5})
-          if (const Point x = at(a.now[e], s); b.is_in_box(x) && b.outline_now.contains(x))
-            {
-              const auto [other, depth] = nearest(b.outline_now, x);
-              const Point  x_before     = at(a.before[e], s);
-              const double depth_before =
-                b.outline_before.contains(x_before) ? nearest(b.outline_before, x_before).second : 0.;
-              take(deepest, depth - depth_before, x_before, std::min(a.now[e].chord(), b.now[other].chord()), 0.);
-            }
+          if (b.is_in_box(at(a.now[e], s)))
+            if (const auto now = depth_in(b.outline_now, b.before, a.before[e], a.now[e], s); now.depth > 0)
+              {
+                const auto before = depth_in(b.outline_before, b.before, a.before[e], a.before[e], s);
+                take(deepest, now.depth - before.depth, at(a.before[e], s), std::min(a.now[e].chord(), now.edge), 0.);
+              }
     }
   } // namespace
 

@@ -17,12 +17,11 @@ namespace slipstick::fem
 
       explicit Refiner(const MeshPiece<dim> &coarse)
         : coarse(coarse)
-        , ids(ids_of_faces(coarse))
+        , boundary(boundary_by_vertices(coarse))
       {
-        fine.subdomain   = coarse.subdomain;
-        fine.body        = coarse.body;
-        fine.arc_centers = coarse.arc_centers;
-        fine.vertices    = coarse.vertices;
+        fine.subdomain = coarse.subdomain;
+        fine.body      = coarse.body;
+        fine.vertices  = coarse.vertices;
       }
 
       void add(const Cell &cell)
@@ -74,17 +73,20 @@ namespace slipstick::fem
         std::map<Face, std::vector<std::pair<double, unsigned int>>> points_of; // along the face
         for (const auto &[key, vertex] : edge_vertices)
           points_of[{{key[0], key[1]}}].emplace_back(double(key[2]) / key[3], vertex);
-        for (const auto &[face, id] : ids)
+        for (const auto &[face, whole] : boundary)
           {
             auto points = points_of[face];
             std::sort(points.begin(), points.end());
+            points.emplace_back(1., face[1]);
             unsigned int last = face[0];
+            double       from = 0;
             for (const auto &[s, vertex] : points)
               {
-                fine.boundary_faces.push_back({{{last, vertex}}, id});
+                const auto curve = points.size() == 1 ? whole.curve : whole.curve.part(from, s);
+                fine.boundary_faces.push_back({{{last, vertex}}, whole.id, curve, whole.bends_cell});
                 last = vertex;
+                from = s;
               }
-            fine.boundary_faces.push_back({{{last, face[1]}}, id});
           }
         fine.global_vertices.resize(fine.vertices.size());
         std::iota(fine.global_vertices.begin(), fine.global_vertices.end(), GlobalVertex(0));
@@ -92,28 +94,19 @@ namespace slipstick::fem
       }
 
     private:
-      /// At @p s in [0, 1] from @p a to @p b, a < b; on the arc if the edge lies on one.
+      /// At @p s in [0, 1] from @p a to @p b, a < b; on the curve of the edge if it has one.
       dealii::Point<dim> edge_point(const unsigned int a, const unsigned int b, const double s) const
       {
-        const auto &x = coarse.vertices[a], &y = coarse.vertices[b];
-        if (!coarse.arc_centers.empty())
-          {
-            const auto id  = ids.find({{a, b}});
-            const auto arc = id == ids.end() ? coarse.arc_centers.end() : coarse.arc_centers.find(id->second);
-            if (arc != coarse.arc_centers.end())
-              {
-                const dealii::Tensor<1, dim> from = x - arc->second, to = y - arc->second;
-                const double angle = std::acos(std::clamp(from * to / (from.norm() * to.norm()), -1., 1.));
-                return arc->second + (std::sin((1 - s) * angle) * from + std::sin(s * angle) * to) / std::sin(angle);
-              }
-          }
-        return x + s * (y - x);
+        const auto face = boundary.find({{a, b}});
+        if (face != boundary.end() && face->second.curve && face->second.bends_cell)
+          return face->second.curve.point(s);
+        return coarse.vertices[a] + s * (coarse.vertices[b] - coarse.vertices[a]);
       }
 
-      const MeshPiece<dim>                               &coarse;
-      const std::map<Face, dealii::types::boundary_id>    ids;
-      MeshPiece<dim>                                      fine;
-      std::map<std::array<unsigned int, 4>, unsigned int> edge_vertices; // by edge, k, n
+      const MeshPiece<dim>                                       &coarse;
+      const std::map<Face, typename MeshPiece<dim>::BoundaryFace> boundary; // by vertices
+      MeshPiece<dim>                                              fine;
+      std::map<std::array<unsigned int, 4>, unsigned int>         edge_vertices; // by edge, k, n
     };
 
     template <int dim>

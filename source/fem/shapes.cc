@@ -34,6 +34,21 @@ namespace slipstick::fem
       std::iota(piece.global_vertices.begin(), piece.global_vertices.end(), GlobalVertex(0));
     }
 
+    /// Gives the faces on boundary @p id their arcs, or notes what is missing when the outline is to be the polygon.
+    void bend(MeshPiece<2> &piece, const scene::Body<2> &body, const dealii::types::boundary_id id)
+    {
+      for (auto &face : piece.boundary_faces)
+        if (face.id == id)
+          {
+            const auto arc =
+              EdgeCurve<2>::arc(piece.vertices[face.vertices[0]], piece.vertices[face.vertices[1]], body.center);
+            if (body.has_smooth_outline)
+              face.curve = arc;
+            else
+              face.curve.left_out = sagitta(arc);
+          }
+    }
+
     /// A whole ring, or its quarter between the positive axes: inner 0, outer 1, start 2, end 3.
     MeshPiece<2> ring(const scene::Body<2> &body, const unsigned int refinements)
     {
@@ -70,7 +85,8 @@ namespace slipstick::fem
           piece.boundary_faces.push_back({{{vertex(0, j), vertex(0, j + 1)}}, 2});
           piece.boundary_faces.push_back({{{vertex(around, j), vertex(around, j + 1)}}, 3});
         }
-      piece.arc_centers = {{0, body.center}, {1, body.center}};
+      bend(piece, body, 0);
+      bend(piece, body, 1);
       return piece;
     }
 
@@ -180,7 +196,7 @@ namespace slipstick::fem
             for (const unsigned int l : {0u, n_loop})
               piece.boundary_faces.push_back({{{layer(l, k), layer(l, k + 1)}}, 1});
         }
-      piece.arc_centers = {{0, body.center}};
+      bend(piece, body, 0);
       return piece;
     }
   } // namespace

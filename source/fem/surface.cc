@@ -14,6 +14,17 @@ namespace slipstick::fem
     // Gauss, three points on [0, 1]: exact for straight edges of both degrees
     const std::array<double, 3> gauss_points  = {{0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)}};
     const std::array<double, 3> gauss_weights = {{5. / 18, 8. / 18, 5. / 18}};
+
+    /// Unit normal on the right of a way.
+    template <int dim>
+    dealii::Tensor<1, dim> right_of(const dealii::Tensor<1, dim> &way)
+    {
+      static_assert(dim == 2, "the normal of a curve");
+      dealii::Tensor<1, dim> n;
+      n[0] = way[1];
+      n[1] = -way[0];
+      return n / n.norm();
+    }
   } // namespace
 
   template <int dim>
@@ -55,12 +66,13 @@ namespace slipstick::fem
   template <int dim>
   dealii::Tensor<1, dim> SurfaceEdge<dim>::normal(const double s) const
   {
-    static_assert(dim == 2, "the normal of a curve");
-    const auto             t = tangent(s);
-    dealii::Tensor<1, dim> n;
-    n[0] = t[1];
-    n[1] = -t[0];
-    return n / n.norm();
+    return right_of(tangent(s));
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim> SurfaceEdge<dim>::outline_normal(const double s) const
+  {
+    return right_of(curve ? curve.tangent(s) : tangent(s));
   }
 
   template <int dim>
@@ -97,11 +109,15 @@ namespace slipstick::fem
                                   edge.at[edge.n_nodes][d] = x[d];
                                 ++edge.n_nodes;
                               });
+    const unsigned int a = face->vertex_index(0), b = face->vertex_index(1);
+    if (const auto found = subdomain.curves.find({{std::min(a, b), std::max(a, b)}}); found != subdomain.curves.end())
+      edge.curve = a < b ? found->second : found->second.reversed();
     const auto along = edge.node(1) - edge.node(0), inward = cell->center() - edge.node(0);
     if (cross(along, inward) < 0)
       {
         std::swap(edge.keys[0], edge.keys[1]);
         std::swap(edge.at[0], edge.at[1]);
+        edge.curve = edge.curve.reversed();
       }
     return edge;
   }

@@ -36,6 +36,7 @@ namespace slipstick::scene
       {"File", {Shape::mesh}},
       {"Part", {Shape::mesh}},
       {"Scale", {Shape::mesh}},
+      {"Corner angle", {Shape::mesh}},
     };
 
     std::string name_of(const Shape shape)
@@ -123,6 +124,19 @@ namespace slipstick::scene
              "a physical name of surfaces in the file, or its number",
              "mesh: which cells make the body; empty: all");
     add_number(prm, "Scale", body.scale, "-", Interval::above(0), "mesh: factor on its coordinates, 1000 for metres");
+    add_choice(prm,
+               "Outline",
+               body.has_smooth_outline,
+               Choices<bool>{{"smooth", true}, {"polygon", false}},
+               "what edges stand for in gaps and normals of contact, where refinement puts new nodes, and of cells of "
+               "degree 2: smooth: arcs of built-in shapes; of meshes the curves through the mid nodes of the file, or "
+               "splines through the nodes; polygon: straight edges, which leave out their sagitta");
+    add_number(prm,
+               "Corner angle",
+               body.corner_angle,
+               "degrees",
+               Interval::inside(0, 90),
+               "mesh: a smooth outline has corners where edges meet at this angle or a larger one");
     add_choice(prm,
                "Mirror",
                mirror,

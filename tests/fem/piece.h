@@ -3,7 +3,7 @@
 
 #include "torn.h"
 
-#include <slipstick/fem/mesh_piece.h>
+#include <slipstick/fem/triangulate.h>
 
 namespace slipstick::test
 {

@@ -1,7 +1,7 @@
 #include "torn.h"
 
 #include <slipstick/base/exceptions.h>
-#include <slipstick/fem/mesh_piece.h>
+#include <slipstick/fem/triangulate.h>
 
 using namespace slipstick;
 using namespace slipstick::test;

@@ -16,13 +16,14 @@ namespace slipstick::fem
     std::map<std::string, dealii::types::boundary_id>                          boundary_ids; // by name
     std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>> combined_ids; // as in Mesh
     std::map<std::string, unsigned int>                                        points;       // by name: local vertex
-    std::vector<std::string>                                                   remarks;
+    std::map<typename MeshPiece<dim>::Face, dealii::Point<dim>> middles; // mid nodes of the outline in the file
+    std::vector<std::string>                                    remarks;
 
     // by name: why the boundary or point cannot be used, as parts of it are not of the outline or it is several points
     std::map<std::string, std::string> incomplete_boundaries, ambiguous_points;
   };
 
-  /// The cells of @p file that make the body, scaled, not yet placed or refined: those of Body::part, or all. Lines
+  /// The cells of @p file that make the body, scaled, not yet placed, refined or smoothed: those of Body::part, or all. Lines
   /// with physical names that bound the body are its boundaries; those with lines that do not are listed.
   /// @throws InputError for a part that is not there; for a file that is not of plane cells; for cells that are
   /// turned over (unless all are), degenerate, cross themselves or lie on top of each other; for edges of three cells;
@@ -37,12 +38,4 @@ namespace slipstick::fem
   /// The mesh of a body of built-in shape (see shapes.h), refined @p refinements times, not yet placed.
   template <int dim>
   BodyMesh<dim> body_from_shape(const scene::Scene<dim> &scene, const scene::Body<dim> &body);
-
-  /// The complete mesh of body number @p b: read or made, refined, placed. @p files keeps what was read, by path.
-  /// A body of triangles and quadrilaterals is turned into quadrilaterals when it is refined towards a boundary or
-  /// when its parts of one kind are many and small.
-  /// @throws InputError as body_from_file() does, and when a boundary or point that the scene uses is not there, or not
-  /// whole.
-  template <int dim>
-  BodyMesh<dim> make_body(const scene::Scene<dim> &scene, const unsigned int b, std::map<std::string, MeshFile> &files);
 } // namespace slipstick::fem

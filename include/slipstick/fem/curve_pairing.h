@@ -70,6 +70,13 @@ namespace slipstick::fem
     /// Where the ray from slave edge e at s meets master edge m.
     std::optional<Hit> hit(const unsigned int e, const double s, const unsigned int m) const;
 
+    /// Unit vector along that ray.
+    Tensor direction(const unsigned int e, const double s) const
+    {
+      const Tensor n = field(e, s);
+      return n / n.norm();
+    }
+
     /// Distance of y from that ray, positive on its left, times a factor that is the same for all y.
     double side(const unsigned int e, const double s, const dealii::Point<2> &y) const;
 

@@ -1,6 +1,7 @@
 // The torn mesh: one deal.II triangulation a subdomain, each rank holding its own subdomains only.
 #pragma once
 
+#include <slipstick/fem/edge_curve.h>
 #include <slipstick/scene/scene.h>
 
 #include <deal.II/grid/tria.h>
@@ -29,6 +30,9 @@ namespace slipstick::fem
     unsigned int               body      = 0; // index into Scene::bodies
     dealii::Triangulation<dim> triangulation;
     std::vector<GlobalVertex>  global_vertices; // of every vertex of the triangulation
+
+    /// Curves of boundary edges that have one, by their two vertices in ascending order; they run from the first.
+    std::map<std::array<unsigned int, 2>, EdgeCurve<dim>> curves;
   };
 
   /// A point that a mesh file names.

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/point.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <set>
@@ -29,10 +30,23 @@ namespace slipstick::fem
     std::vector<Element>                             elements;
     std::vector<std::vector<int>>                    groups;            // sets of physical numbers that elements carry
     std::map<std::pair<int, int>, std::string>       names;             // by dimension and physical number
-    bool                                             is_curved = false; // had nodes besides the corners, left out here
+    bool                                             is_curved = false; // had nodes besides the corners
     std::map<std::string, std::vector<unsigned int>> node_sets;         // by name: nodes whose edges are a boundary
     std::vector<std::string>                         remarks;           // what of the file is not used, for the log
     std::set<std::string> plane_stress_types, plane_strain_types;       // types of elements that say so
+
+    /// Mid nodes of the edges of cells of second order, by the two corners in ascending order.
+    std::map<std::pair<unsigned int, unsigned int>, unsigned int> middles;
+
+    /// Keeps node number @p k (from 0, corners first) of a cell of second order, whose corners are there, if it is the
+    /// middle of an edge.
+    void keep_middle(const Element &cell, const unsigned int k, const unsigned int node)
+    {
+      if (k < cell.n || k >= 2 * cell.n)
+        return;
+      const unsigned int a = cell.corners[k - cell.n], b = cell.corners[(k - cell.n + 1) % cell.n];
+      middles[{std::min(a, b), std::max(a, b)}] = node;
+    }
 
     /// Physical name of a number, or the number itself where it has none.
     std::string name_of(const unsigned int dim, const int physical) const;

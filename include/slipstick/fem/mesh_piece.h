@@ -35,11 +35,13 @@ namespace slipstick::fem
     {
       Face                       vertices;
       dealii::types::boundary_id id;
+      EdgeCurve<dim>             curve      = {};   // runs from the first vertex to the second
+      bool                       bends_cell = true; // new nodes lie on the curve; else on the chord
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)
       {
-        archive &vertices &id;
+        archive &vertices &id &curve &bends_cell;
       }
     };
 
@@ -51,14 +53,11 @@ namespace slipstick::fem
     std::vector<BoundaryFace>       boundary_faces;  // of the body; all others are cut
     bool                            ordered = false; // lines of neighbouring cells already run the same way
 
-    /// Boundaries that are arcs of circles, and their centres.
-    std::map<dealii::types::boundary_id, dealii::Point<dim>> arc_centers;
-
     /// For sending between ranks (Boost serialization, through deal.II's MPI utilities).
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &subdomain &body &vertices &global_vertices &cells &boundary_faces &ordered &arc_centers;
+      archive &subdomain &body &vertices &global_vertices &cells &boundary_faces &ordered;
     }
   };
 
@@ -117,6 +116,11 @@ namespace slipstick::fem
   template <int dim>
   std::map<typename MeshPiece<dim>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<dim> &piece);
 
+  /// The boundary faces by their vertices in ascending order; so are their own, and their curves run that way.
+  template <int dim>
+  std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> boundary_by_vertices(
+    const MeshPiece<dim> &piece);
+
   /// Block @p block (of n_blocks per direction) of a rectangle meshed by a lattice of equal cells, not yet placed.
   template <int dim>
   MeshPiece<dim> rectangle_piece(const scene::Body<dim>              &body,
@@ -139,9 +143,4 @@ namespace slipstick::fem
   std::vector<unsigned int> metis_parts(const MeshPiece<dim> &piece,
                                         const unsigned int    n_parts,
                                         const unsigned int    seed = 0);
-
-  /// The triangulation of a piece, whose cells are all of one kind; faces that lie on no boundary of the body get
-  /// cut_id. Faces on arcs get a SphericalManifold, so that mappings of degree 2 put their midside nodes on the arc.
-  template <int dim>
-  std::unique_ptr<SubdomainMesh<dim>> triangulate(const MeshPiece<dim> &piece);
 } // namespace slipstick::fem

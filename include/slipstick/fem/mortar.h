@@ -22,8 +22,9 @@ namespace slipstick::fem
     Weights                slave_weights;   // d_ik
     Weights                master_weights;  // m_ij
     dealii::Point<dim>     master_position; // sum_j m_ij y_j [mm]
-    double                 gap         = 0; // n_i . (sum_j m_ij y_j - sum_k d_ik x_k) [mm], negative when overlapping
+    double                 gap         = 0; // along n_i [mm], negative when overlapping
     double                 length      = 0; // D_i [mm]
+    double                 left_out    = 0; // sagitta that the edges there leave out, both sides [mm]
     double                 full_length = 0; // D_i if all edges of the slave boundary on this side were covered [mm]
   };
 
@@ -35,6 +36,9 @@ namespace slipstick::fem
   /// curved or quadratic edges that are covered in part phi_i are those of the linear shape functions: their midside nodes
   /// have no row. Equal pressures at all nodes are then equal pressure on both sides, sums of weights are 1 and forces
   /// balance; moments balance where the gap is closed, else up to the square of the mesh size.
+  /// The gap is n_i . (sum_j m_ij y_j - sum_k d_ik x_k), that of the edges, plus what the curves that they stand for
+  /// (SurfaceEdge::curve) are above them: n_i . <phi_i (rise of the master - rise of the slave) n> / D_i. So it is that of
+  /// the curves, while the weights, and with them the forces, are those of the edges.
   /// Node to node: m is 1 at the master node across, d is 1 at the slave node. `automatic` takes it where every slave
   /// node has a master node exactly across.
   /// @throws InputError, with @p name of the pair, when node to node is asked for and the meshes do not match.

@@ -1,4 +1,4 @@
-// Refinement of plain lists of cells, without hanging nodes. New vertices on arcs lie on the arc.
+// Refinement of plain lists of cells, without hanging nodes. New vertices on edges with curves lie on these.
 #pragma once
 
 #include <slipstick/fem/mesh_piece.h>

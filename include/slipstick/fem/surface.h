@@ -24,11 +24,12 @@ namespace slipstick::fem
     unsigned int                           n_nodes   = 2;
     std::array<NodeKey, 3>                 keys{};
     std::array<std::array<double, dim>, 3> at{}; // [mm]
+    EdgeCurve<dim> curve; // that the edge stands for, from node 0 to node 1; none: the edge itself
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &body &boundary &subdomain &n_nodes &keys &at;
+      archive &body &boundary &subdomain &n_nodes &keys &at &curve;
     }
 
     dealii::Point<dim> node(const unsigned int i) const
@@ -43,6 +44,15 @@ namespace slipstick::fem
     dealii::Point<dim>     point(const double s) const;
     dealii::Tensor<1, dim> tangent(const double s) const; // d point / d s
     dealii::Tensor<1, dim> normal(const double s) const;  // outward, unit length
+
+    /// Outward unit normal of the curve.
+    dealii::Tensor<1, dim> outline_normal(const double s) const;
+
+    /// How far the curve is above the edge at s along @p direction, a unit vector across both [mm].
+    double rise(const double s, const dealii::Tensor<1, dim> &direction) const
+    {
+      return curve ? curve.distance_along(point(s), direction, s) : 0.;
+    }
 
     /// Where node i is: 0, 1, 1/2.
     static double node_coordinate(const unsigned int i)

@@ -66,7 +66,9 @@ namespace slipstick::scene
     unsigned int             cells_along_arc = 32;                  // discs: edges on the arc
     std::string              file;                                  // mesh: path as found
     std::string              part;                                  // mesh: physical name of the body; empty: all cells
-    double                   scale = 1;                             // mesh: factor on coordinates, > 0 (1000: m to mm)
+    double                   scale              = 1;                // mesh: factor on coordinates, > 0 (1000: m to mm)
+    bool                     has_smooth_outline = true; // edges stand for arcs, curves through mid nodes, splines
+    double                   corner_angle       = 35;   // mesh: edges at larger angles make corners [degrees], > 0
     Placement<dim>           placement;
     unsigned int             refinements = 0;          // uniform, on top of Discretization/Refinements
     std::vector<std::string> refined_boundaries;       // cells at these boundaries are refined further ...

@@ -1,8 +1,9 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/base/text.h>
-#include <slipstick/fem/body_mesh.h>
+#include <slipstick/fem/make_body.h>
 #include <slipstick/fem/refinement.h>
+#include <slipstick/fem/smooth_outline.h>
 
 #include <algorithm>
 #include <numeric>
@@ -195,6 +196,7 @@ namespace slipstick::fem
         mesh.remarks.insert(mesh.remarks.begin(), of_file.begin(), of_file.end());
         of_file.clear();
         check_names(scene, b, mesh);
+        smooth_outline(body, mesh);
         refine_uniformly(body, body.refinements + scene.discretization.refinements, mesh);
       }
     else

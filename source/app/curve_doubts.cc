@@ -1,0 +1,107 @@
+#include <slipstick/app/curve_doubts.h>
+#include <slipstick/base/log.h>
+#include <slipstick/fem/body_contact.h>
+#include <slipstick/fem/smooth_outline.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/vector.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    // What is left out over what it is compared with. Waves of height w and the length of an edge h are pressed flat by a
+    // pressure of pi E' w / (2 h) (Johnson 1985, section 13.2), so that the pressure is wrong by about this part.
+    constexpr double largest_share = 0.1;
+
+    /// 1/E' = 1/E of one side + 1/E of the other.
+    double modulus_of_both(const scene::Scene<2> &scene, const scene::ContactPair<2> &pair)
+    {
+      const auto of = [&](const unsigned int body) {
+        return scene.materials[scene.bodies[body].material].young_modulus;
+      };
+      return 1 / (1 / of(pair.slave.body) + 1 / of(pair.master->body));
+    }
+
+    /// Largest pressures and smallest gaps of the pairs over all ranks.
+    std::vector<std::array<double, 2>> extremes(const std::size_t                        n_pairs,
+                                                const std::vector<tfeti::ContactPoint>  &points,
+                                                const std::vector<contact::ContactNode> &nodes,
+                                                const MPI_Comm                           comm)
+    {
+      std::vector<double> largest(2 * n_pairs, 0.);
+      for (unsigned int k = 0; k < n_pairs; ++k)
+        largest[2 * k + 1] = -std::numeric_limits<double>::max();
+      for (unsigned int i = 0; i < points.size(); ++i)
+        {
+          auto *const of_pair = largest.data() + 2 * points[i].pair;
+          of_pair[0]          = std::max(of_pair[0], nodes[i].pressure);
+          of_pair[1]          = std::max(of_pair[1], -std::abs(points[i].gap));
+        }
+      std::vector<double> all(largest.size());
+      dealii::Utilities::MPI::max(largest, comm, all);
+      std::vector<std::array<double, 2>> result;
+      for (unsigned int k = 0; k < n_pairs; ++k)
+        result.push_back({{all[2 * k], -all[2 * k + 1]}});
+      return result;
+    }
+
+    std::string text_of(const scene::ContactPair<2> &pair, const std::vector<double> &worst, const bool is_closed)
+    {
+      return format(
+        "Contact %s: at (%.6g, %.6g) straight edges leave out an arc %.4g mm high, which is not small against %s "
+        "of %.4g mm: pressures are those of polygons; set Outline = smooth or a larger Corner angle for the "
+        "bodies, or give a finer mesh or one of second order (for corners that are meant: Outline = polygon)",
+        pair.name.c_str(),
+        worst[1],
+        worst[2],
+        worst[3],
+        is_closed ? "the deformation" : "the gap",
+        worst[4]);
+    }
+  } // namespace
+
+  std::map<std::string, std::string> doubts_of_curves(const scene::Scene<2>                   &scene,
+                                                      const fem::Mesh<2>                      &mesh,
+                                                      const fem::Spaces<2>                    &spaces,
+                                                      const std::vector<tfeti::ContactPoint>  &points,
+                                                      const std::vector<contact::ContactNode> &nodes)
+  {
+    std::map<std::string, std::string> texts;
+    if (!fem::leaves_out_curves(mesh)) // nearly always
+      return texts;
+    std::map<std::pair<unsigned int, fem::NodeKey>, double> left_out;
+    const auto                                              contacts = fem::pair_bodies(scene, mesh, spaces);
+    for (unsigned int k = 0; k < contacts.rows.size(); ++k)
+      for (const auto &row : contacts.rows[k])
+        left_out[{k, row.slave}] = std::max(left_out[{k, row.slave}], row.left_out);
+    const auto of_pair = extremes(scene.contacts.size(), points, nodes, mesh.comm);
+    for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+      {
+        const auto &pair = scene.contacts[k];
+        if (!pair.master || pair.law.is_bonded)
+          continue;
+        const auto [pressure, gap] = of_pair[k];
+        std::vector<double> worst(5, 0.); // share, place, sagitta, what it is compared with
+        for (unsigned int i = 0; i < points.size(); ++i)
+          if (points[i].pair == k && (pressure == 0 || nodes[i].is_closed))
+            {
+              const double scale =
+                pressure > 0 ? 2 * points[i].length * pressure / (dealii::numbers::PI * modulus_of_both(scene, pair))
+                             : gap;
+              const double sagitta = left_out[{k, points[i].key}];
+              if (sagitta > largest_share * scale && sagitta / scale > worst[0])
+                worst = {sagitta / scale, points[i].position[0], points[i].position[1], sagitta, scale};
+            }
+        for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.comm, worst))
+          worst = std::max(worst, of_rank);
+        if (worst[0] > 0)
+          texts["curves " + pair.name] = text_of(pair, worst, pressure > 0);
+      }
+    return texts;
+  }
+} // namespace slipstick::app
