@@ -132,6 +132,6 @@ TEST(bodies, automatic_decomposition)
   EXPECT_EQ(read("set Shape = disc\nset Radius = 3\n").decomposition.method, DecompositionMethod::metis);
   const std::string blocks = "end\nsubsection Decomposition\nset Method = blocks\n";
   refused("set Shape = disc\nset Radius = 3\n" + blocks,
-          {"Decomposition/Method = 'blocks'", "'part' is none", "METIS or auto"});
+          {"Decomposition/Method = 'blocks'", "'part' is not one", "METIS or auto"});
   refused("set Size = 2, 1\nset Refine towards = top\nset Refine levels = 1\n" + blocks, {"equal cells only"});
 }
