@@ -148,7 +148,7 @@ class MultibodyBadInput(unittest.TestCase):
 
     def test_pair_far_apart_with_an_automatic_reach(self):
         self.refused(CYLINDERS, {'Body upper/Translation': '0, 60'}, 'Contact touch: upper/contact and lower/contact are '
-                     'out of reach', 'smallest gap is 60 mm', 'goes to 3.2', 'Contact touch/Reach')
+                     'out of reach', 'smallest gap is 60 mm', 'automatic reach is 3.2', 'Contact touch/Reach')
 
     def test_obstacle_on_the_other_side(self):
         self.refused(BOX, {'Contact circle/Slave': 'box/top'}, 'Contact circle: box/top and obstacle disc face away',
