@@ -165,8 +165,7 @@ class Outputs(unittest.TestCase):
     def test_fields_may_be_left_away(self):
         result = converged(shipped('box_on_circle'), {**SMALL, 'Output/VTU': 'false'}, ranks=2)
         self.assertEqual(result.files(), ['conditions.csv', 'contact.csv', 'contact_000.vtp', 'convergence.csv',
-                                          'history.csv',
-                                          'parameters.prm', 'summary.json'])
+                                          'history.csv', 'parameters.prm', 'summary.json'])
 
     def test_parameters_run_again_give_the_same_result(self):
         for case, overrides in (('box_on_circle', SMALL), ('box_linear', {'Traction pressed/Traction y': '-250*x/10'})):

@@ -770,9 +770,9 @@ TEST(MeshFiles, every_item_of_an_abaqus_file_is_used_refused_or_listed)
   EXPECT_SAYS(read("S3", "S5"), "a.inp:16: surface 'TOP' has side S5 of element 1");
   EXPECT_SAYS(read("S3", "SPOS"), "side SPOS");
   EXPECT_SAYS(read("Some, S3", "9, S3"), "surface 'TOP' has element 9, which is not in the file");
-  EXPECT_SAYS(read("Some, S3", "None, S3"), "'None' is no number");
+  EXPECT_SAYS(read("Some, S3", "None, S3"), "'None' is not the number");
   EXPECT_SAYS(read("*ELEMENT, TYPE=CPS4,", "*ELEMENT,"), "*ELEMENT without TYPE");
-  EXPECT_SAYS(read("TYPE=CPS4", "TYPE=QUAD4"), "type QUAD4 are not known");
+  EXPECT_SAYS(read("TYPE=CPS4", "TYPE=QUAD4"), "type QUAD4 are not supported");
   EXPECT_SAYS(read("TYPE=CPS4", "TYPE=CAX4R"), "CAX4R are axisymmetric");
   EXPECT_SAYS(read("1, 2\n*ELSET", "1, 2, 77\n*ELSET"), "set 'FOOT' has node 77, which is not in the file");
   EXPECT_SAYS(read("ELSET=Some\n1", "ELSET=Some\n1, 3"), "set 'SOME' has element 3");
