@@ -298,7 +298,7 @@ TEST(MeshFiles, bad_cells_are_refused_by_name_and_place)
   EXPECT_SAYS(some_turned, "cell 2 at (1.5, 0.5)");
   EXPECT_SAYS(some_turned, "remedy: ");
   EXPECT_SAYS(refusal([] { body_of_text(gmsh_2(square, {"3 2 1 1 1 2 4 3"})); }),
-              "cell 1 at (0.5, 0.5) crosses itself");
+              "cell 1 at (0.5, 0.5) intersects itself");
   EXPECT_SAYS(refusal([] { body_of_text(gmsh_2(square, {"2 2 1 1 1 2 5"})); }), "cell 1 at (1, 0) has no area");
   EXPECT_SAYS(refusal([] { body_of_text(gmsh_2(square, {"3 2 1 1 1 2 5 6"})); }), "180 degrees");
   EXPECT_SAYS(refusal([] { body_of_text(gmsh_2(square, {"3 2 1 1 1 2 2 4"})); }), "cell 1");
