@@ -63,7 +63,9 @@ namespace slipstick::qp
       ActiveSet(const Problem &problem_, const double norm_, AdmissibleSet<Vector> set_, const double step_)
         : problem(problem_)
         , norm(norm_)
-        , step(has_loose_bodies(problem_, 0) ? std::min(step_, step_with_loose_bodies) : step_)
+        , full_step(step_)
+        , balances(has_loose_bodies(problem_, 0))
+        , step(balances ? std::min(step_, step_with_loose_bodies) : step_)
         , set(std::move(set_))
         , weights(residual_weights(problem_, 0))
         , active(local_size(set.box.lower))
@@ -91,6 +93,18 @@ namespace slipstick::qp
       const Box<Vector> &box() const
       {
         return set.box;
+      }
+
+      /// Do bodies that contact alone holds move until s g balances their loads?
+      bool balances_bodies() const
+      {
+        return balances;
+      }
+      /// Not from here on.
+      void stop_balancing()
+      {
+        balances = false;
+        step     = full_step;
       }
 
       /// The set becomes that of x - s g. @return whether it is another one, on any process.
@@ -245,7 +259,8 @@ namespace slipstick::qp
             stiffness[i] = step / norm * weight(i);
             moved[i]     = x.begin()[i] - stiffness[i] * g.begin()[i];
           }
-        balance_bodies(problem, stiffness, set, moved, 0);
+        if (balances)
+          balance_bodies(problem, stiffness, set, moved, 0);
         const auto place = [&](const std::size_t i) {
           const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i];
           active[i]    = moved[i] <= l ? -1 : moved[i] >= u ? 1 : 0;
@@ -265,7 +280,9 @@ namespace slipstick::qp
       }
 
       const Problem        &problem;
-      const double          norm, step;
+      const double          norm, full_step;
+      bool                  balances;
+      double                step;
       AdmissibleSet<Vector> set;
       const double         *weights;
       std::vector<bool>     bounded;

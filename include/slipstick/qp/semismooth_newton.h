@@ -71,6 +71,8 @@ namespace slipstick::qp
   {
     // Of a step along M r: eigenvalues of F M are 1 to some 5 (first steps of conjugate gradients there: 0.15 to 0.5).
     constexpr double descent_step = 0.3;
+    // Steps with bodies that move until contact balances their loads; where that converges it takes some 10 to 20.
+    constexpr unsigned int balanced_steps = 25;
 
     template <typename Vector, typename Problem>
     class SemismoothNewton
@@ -160,10 +162,22 @@ namespace slipstick::qp
                 has_met_goal = true;
                 tolerance    = options.tightening * left;
               }
-            if (!step())
+            const bool falls = step();
+            if (set.balances_bodies() && (!falls || counts.outer_iterations == balanced_steps))
+              start_again_unbalanced();
+            else if (!falls)
               return ended(Status::stagnated);
           }
         return ended(Status::iteration_limit);
+      }
+
+      // Rigid bodies on many contact nodes rest on others than elastic ones: then the multipliers a of the faces tell the sets.
+      void start_again_unbalanced()
+      {
+        set.stop_balancing();
+        is_stuck = false;
+        merits   = {set.natural_residual(x, g)};
+        set.predict(x, g);
       }
 
       // Residuals below the goal that do not fall any more are at rounding.
