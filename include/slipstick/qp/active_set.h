@@ -63,9 +63,7 @@ namespace slipstick::qp
       ActiveSet(const Problem &problem_, const double norm_, AdmissibleSet<Vector> set_, const double step_)
         : problem(problem_)
         , norm(norm_)
-        , full_step(step_)
-        , balances(has_loose_bodies(problem_, 0))
-        , step(balances ? std::min(step_, step_with_loose_bodies) : step_)
+        , step(step_)
         , set(std::move(set_))
         , weights(residual_weights(problem_, 0))
         , active(local_size(set.box.lower))
@@ -95,16 +93,15 @@ namespace slipstick::qp
         return set.box;
       }
 
-      /// Do bodies that contact alone holds move until s g balances their loads?
-      bool balances_bodies() const
+      /// From here on bodies that contact alone holds move until s g balances their loads. @return whether that is new, and
+      /// there are such bodies.
+      bool start_balancing()
       {
-        return balances;
-      }
-      /// Not from here on.
-      void stop_balancing()
-      {
-        balances = false;
-        step     = full_step;
+        if (balances || !has_loose_bodies(problem, 0))
+          return false;
+        balances = true;
+        step     = std::min(step, step_with_loose_bodies);
+        return true;
       }
 
       /// The set becomes that of x - s g. @return whether it is another one, on any process.
@@ -280,9 +277,9 @@ namespace slipstick::qp
       }
 
       const Problem        &problem;
-      const double          norm, full_step;
-      bool                  balances;
+      const double          norm;
       double                step;
+      bool                  balances = false;
       AdmissibleSet<Vector> set;
       const double         *weights;
       std::vector<bool>     bounded;

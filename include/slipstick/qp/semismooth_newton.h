@@ -71,8 +71,9 @@ namespace slipstick::qp
   {
     // Of a step along M r: eigenvalues of F M are 1 to some 5 (first steps of conjugate gradients there: 0.15 to 0.5).
     constexpr double descent_step = 0.3;
-    // Steps with bodies that move until contact balances their loads; where that converges it takes some 10 to 20.
-    constexpr unsigned int balanced_steps = 25;
+    // Steps after which bodies that contact alone holds move until it balances their loads. Where many nodes hold a body, which
+    // then rests on others than the elastic one, sets are better told by the multipliers a of the faces, in 10 to 20 steps.
+    constexpr unsigned int unbalanced_steps = 20;
 
     template <typename Vector, typename Problem>
     class SemismoothNewton
@@ -163,18 +164,16 @@ namespace slipstick::qp
                 tolerance    = options.tightening * left;
               }
             const bool falls = step();
-            if (set.balances_bodies() && (!falls || counts.outer_iterations == balanced_steps))
-              start_again_unbalanced();
+            if ((!falls || counts.outer_iterations >= unbalanced_steps) && set.start_balancing())
+              start_again();
             else if (!falls)
               return ended(Status::stagnated);
           }
         return ended(Status::iteration_limit);
       }
 
-      // Rigid bodies on many contact nodes rest on others than elastic ones: then the multipliers a of the faces tell the sets.
-      void start_again_unbalanced()
+      void start_again()
       {
-        set.stop_balancing();
         is_stuck = false;
         merits   = {set.natural_residual(x, g)};
         set.predict(x, g);
