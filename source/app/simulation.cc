@@ -82,6 +82,13 @@ namespace slipstick::app
           const output::OutputDirectory &directory_,
           const Log                     &log_,
           const MPI_Comm                 comm_)
+    std::string set_to_zero(const std::string &motion)
+    {
+      return "nothing resists " + motion +
+             ", and no load acts along it: it is set to zero; add a support or a contact " +
+             "against this motion if it matters";
+    }
+
         : directory(directory_)
         , log(log_)
         , comm(comm_)
@@ -164,11 +171,9 @@ namespace slipstick::app
         warn(doubts_of_held_nodes(scene, solver.held_contacts(), contact, comm));
 
         if (!answer->recovery.unresisted.empty())
-          warn({{"unresisted",
-                 format("nothing resists %s, and no load acts along it: it is set to zero; add a support or a contact "
-                        "against this motion if it matters",
-                        tfeti::describe(tfeti::plainest(answer->recovery.unresisted), solver.dual().body_names())
-                          .c_str())}});
+          warn(
+            {{"unresisted",
+              set_to_zero(tfeti::describe(tfeti::plainest(answer->recovery.unresisted), solver.dual().body_names()))}});
         const auto geometry =
           judge(scene, fem::penetrations(scene, solver.mesh(), solver.spaces(), u, t), contact.checks.max_displacement);
         warn(geometry.warnings);
@@ -177,6 +182,8 @@ namespace slipstick::app
 
         clock.enter("output");
         auto summary =
+        if (!solver.unheld().empty())
+          warn({{"unresisted", set_to_zero(solver.unheld())}});
           make_summary(scene, solver.mesh(), solver.spaces(), solver.dual(), solution, contact.checks, stress);
         if (geometry.failure)
           summary.status = output::RunStatus::not_converged;
@@ -228,7 +235,7 @@ namespace slipstick::app
                                                   answer.contact->held_forces,
                                                   answer.recovery.multipliers,
                                                   n_holders);
-        for (unsigned int h = 0; h < n_supports; ++h)
+        for (unsigned int h = 0; h < solver.n_given_supports(); ++h) // the others bear nothing
           sums.supports.push_back({scene.supports[h].name, "support", reactions[h]});
         for (unsigned int h = n_supports; h < n_holders; ++h)
           sums.foundations.push_back({scene.foundations[h - n_supports].name, "foundation", reactions[h]});
@@ -271,9 +278,12 @@ namespace slipstick::app
   void check_scene(const scene::Scene<dim> &scene, const Log &log, const MPI_Comm comm)
   {
     StageClock clock;
-    StepSolver(scene, log, clock, comm).build();
-    log.line(
-      "the scene is complete: every subdomain has its rigid motions as kernel, every body is held by supports or contact");
+    StepSolver solver(scene, log, clock, comm);
+    solver.build();
+    if (!solver.unheld().empty())
+      log.line("warning: " + set_to_zero(solver.unheld()));
+    log.line(std::string("the scene is complete: every subdomain has its rigid motions as kernel") +
+             (solver.unheld().empty() ? ", every body is held by supports or contact" : ""));
   }
 
   ExitStatus run(const scene::Scene<dim> &scene,

@@ -10,6 +10,7 @@
 #include <slipstick/fem/loads.h>
 #include <slipstick/fem/pair_checks.h>
 #include <slipstick/fem/shared_sides.h>
+#include <slipstick/fem/still_points.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -57,6 +58,14 @@ namespace slipstick::app
       return names;
     }
 
+    std::string in_words(const std::vector<tfeti::RigidMotion> &motions, const std::vector<std::string> &body_names)
+    {
+      std::string text;
+      for (const auto &motion : tfeti::disentangled(motions))
+        text += (text.empty() ? "" : ", nor ") + tfeti::describe(motion, body_names);
+      return text;
+    }
+
     /// Observer of the solver: a line on the console and a row of convergence.csv.
     contact::ProgressObserver convergence_observer(const Log                           &log,
                                                    const scene::SolverOptions          &options,
@@ -102,6 +111,7 @@ namespace slipstick::app
     , clock(clock_)
     , comm(comm_)
     , options(contact::resolved_options(scene_))
+    , n_given(scene_.supports.size())
     , kept_part(first_kept_part)
     , discretization_error(infinity)
   {
@@ -162,7 +172,26 @@ namespace slipstick::app
     make_dual(t);
   }
 
+  // Anew for every step where something is not held: its loads may push.
   void StepSolver::make_dual(const double t)
+  {
+    scene.supports.erase(scene.supports.begin() + n_given, scene.supports.end());
+    try
+      {
+        make_dual_as_it_is(t);
+      }
+    catch (const tfeti::UnheldMotions &unheld) // on all ranks alike
+      {
+        if (pruned.rows->size() > 0) // by contact nodes that were left out, perhaps
+          throw;
+        unheld_motions = in_words(unheld.motions, names_of(scene.bodies));
+        for (auto &support : fem::still_points(*the_mesh, *the_spaces, unheld.motions))
+          scene.supports.push_back(std::move(support));
+        make_dual_as_it_is(t);
+      }
+  }
+
+  void StepSolver::make_dual_as_it_is(const double t)
   {
     clock.enter("assembly");
     auto matrices = fem::assemble(scene, *the_mesh, *the_spaces, t);
@@ -189,6 +218,7 @@ namespace slipstick::app
     std::vector<Eigen::VectorXd> loads = fem::assemble_loads(scene, *the_mesh, *the_spaces, t);
     auto                         rows  = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
     const bool                   is_same =
+      scene.supports.size() == n_given &&
       dealii::Utilities::MPI::min(rows.active.label == the_dual->constraints().label ? 1 : 0, comm) > 0;
     if (is_same) // gaps that follow the load factor may prune other nodes
       {
@@ -321,8 +351,8 @@ namespace slipstick::app
   {
     try
       {
-        // what a later step of a history leaves without load stays where it is
-        return the_dual->recover(the_solution.multipliers, the_solution.free, !u.empty());
+        // what nothing resists and no load drives stays where it is
+        return the_dual->recover(the_solution.multipliers, the_solution.free, true);
       }
     catch (const UndeterminedPosition &)
       {

@@ -63,6 +63,16 @@ namespace slipstick::app
     {
       return held;
     }
+    /// Supports of the scene as it was given: what comes after them holds motions that nothing else does.
+    unsigned int n_given_supports() const
+    {
+      return n_given;
+    }
+    /// Motions that nothing holds and no load drives, in words; empty: none. They are set to zero.
+    const std::string &unheld() const
+    {
+      return unheld_motions;
+    }
     /// Of the step solved last.
     const contact::DualSolution &solution() const
     {
@@ -83,6 +93,7 @@ namespace slipstick::app
     /// K_p, B, F at load factor t, without the rows of pruned contact nodes unless a body is held by them.
     void build_dual(const double t);
     void make_dual(const double t);
+    void make_dual_as_it_is(const double t);
 
     /// Loads and right-hand sides of a later step; slip starts from where the step before ended.
     /// @return whether the multipliers of the step before fit the rows.
@@ -129,14 +140,16 @@ namespace slipstick::app
     std::unique_ptr<fem::Mesh<dim>>     the_mesh;
     std::unique_ptr<fem::Spaces<dim>>   the_spaces;
     std::unique_ptr<tfeti::DualProblem> the_dual;
-    tfeti::Constraints                  pruned; // normal rows of the contact nodes without multipliers
-    tfeti::HeldContacts                 held;   // contact nodes whose gap supports prescribe
+    tfeti::Constraints                  pruned;  // normal rows of the contact nodes without multipliers
+    tfeti::HeldContacts                 held;    // contact nodes whose gap supports prescribe
+    unsigned int                        n_given; // supports
+    std::string                         unheld_motions;
     double                              kept_part;
     double                              factorization = 0;    // [s]
     double                              discretization_error; // last estimate in the step [sqrt(N mm)]
     contact::DualSolution               the_solution;
-    std::unique_ptr<Answer>             accepted; // by the test of accuracy, in the step
-    std::vector<Eigen::VectorXd>        u;        // of the last step
+    std::unique_ptr<Answer>             accepted;                 // by the test of accuracy, in the step
+    std::vector<Eigen::VectorXd>        u;                        // of the last step
     double                              largest_displacement = 0; // of the steps before [mm]
     std::vector<output::ConvergenceRow> rows;
   };

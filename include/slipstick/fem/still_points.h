@@ -1,0 +1,16 @@
+// Points that stay where they are, against motions that nothing holds.
+#pragma once
+
+#include <slipstick/fem/spaces.h>
+#include <slipstick/tfeti/rigid_motions.h>
+
+namespace slipstick::fem
+{
+  /// Point supports that hold @p motions, one displacement of one node for each: the one that moves most, in turn, away from
+  /// the outlines where bodies have nodes there. No load may act along the motions: then the supports bear nothing, and
+  /// which points they hold makes no difference but by a rigid motion. The same on all ranks. Collective.
+  template <int dim>
+  std::vector<scene::PrescribedDisplacement<dim>> still_points(const Mesh<dim>                       &mesh,
+                                                               const Spaces<dim>                     &spaces,
+                                                               const std::vector<tfeti::RigidMotion> &motions);
+} // namespace slipstick::fem
