@@ -6,10 +6,14 @@
 #include <slipstick/app/step_solver.h>
 #include <slipstick/contact/resultants.h>
 #include <slipstick/fem/arc_length.h>
+#include <slipstick/fem/elasticity.h>
 #include <slipstick/fem/loads.h>
+#include <slipstick/fem/probes.h>
+#include <slipstick/fem/singular_points.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/fields.h>
 #include <slipstick/output/history.h>
+#include <slipstick/output/probes.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -25,11 +29,20 @@ namespace slipstick::app
   {
     constexpr int dim = 2;
 
+    // A singular point raises the stress as far as so many diameters of the cells around the node with the largest one:
+    // stresses at nodes are means over cells, and may be largest beside it.
+    constexpr double cells_of_singularity = 1.5;
+
+    /// Of contact nodes, by pair and node: the slip of all load steps so far [mm].
+    using TotalSlip = std::map<std::pair<unsigned int, fem::NodeKey>, double>;
+
     /// Contact nodes of all ranks on rank 0, with their arc lengths.
+    /// @param total_slip gets the slip of this step added, on rank 0.
     output::ContactStep gather_contact(const scene::Scene<dim>       &scene,
                                        const fem::Mesh<dim>          &mesh,
                                        const fem::Spaces<dim>        &spaces,
-                                       const contact::CheckedContact &own)
+                                       const contact::CheckedContact &own,
+                                       TotalSlip                     &total_slip)
     {
       const auto          lengths = fem::arc_lengths(scene, mesh, spaces);
       const auto          nodes   = dealii::Utilities::MPI::gather(mesh.comm, own.nodes);
@@ -40,6 +53,7 @@ namespace slipstick::app
           {
             auto node       = nodes[rank][i];
             node.arc_length = lengths.at({node.pair, keys[rank][i]});
+            node.total_slip = total_slip[{node.pair, keys[rank][i]}] += node.slip;
             step.nodes.push_back(node);
           }
       return step;
@@ -69,6 +83,13 @@ namespace slipstick::app
       return summary;
     }
 
+    std::string set_to_zero(const std::string &motion)
+    {
+      return "nothing resists " + motion +
+             ", and no load acts along it: it is set to zero; add a support or a contact " +
+             "against this motion if it matters";
+    }
+
     output::MemorySummary memory(const MPI_Comm comm)
     {
       return {dealii::Utilities::MPI::max(peak_memory_mb(), comm), dealii::Utilities::MPI::sum(peak_memory_mb(), comm)};
@@ -82,18 +103,12 @@ namespace slipstick::app
           const output::OutputDirectory &directory_,
           const Log                     &log_,
           const MPI_Comm                 comm_)
-    std::string set_to_zero(const std::string &motion)
-    {
-      return "nothing resists " + motion +
-             ", and no load acts along it: it is set to zero; add a support or a contact " +
-             "against this motion if it matters";
-    }
-
         : directory(directory_)
         , log(log_)
         , comm(comm_)
         , solver(scene, log_, clock, comm_)
         , scene(solver.discrete_scene())
+        , probes(this->scene, solver.mesh(), solver.spaces())
         , warnings(warnings_before(scene, solver.mesh()))
       {}
 
@@ -170,6 +185,8 @@ namespace slipstick::app
         warn(doubts(scene, solver.mesh(), solver.spaces(), solver.dual(), solution.free, contact.nodes, u));
         warn(doubts_of_held_nodes(scene, solver.held_contacts(), contact, comm));
 
+        if (!solver.unheld().empty())
+          warn({{"unresisted", set_to_zero(solver.unheld())}});
         if (!answer->recovery.unresisted.empty())
           warn(
             {{"unresisted",
@@ -182,12 +199,12 @@ namespace slipstick::app
 
         clock.enter("output");
         auto summary =
-        if (!solver.unheld().empty())
-          warn({{"unresisted", set_to_zero(solver.unheld())}});
           make_summary(scene, solver.mesh(), solver.spaces(), solver.dual(), solution, contact.checks, stress);
         if (geometry.failure)
           summary.status = output::RunStatus::not_converged;
         summary.results.forces = forces(*answer, t);
+        add_places(stress, summary);
+        summary.results.probes = probe_results(u, stress);
         if (scene.output.vtu)
           {
             output::write_fields(directory, solver.mesh(), solver.spaces(), u, stress, step);
@@ -195,7 +212,7 @@ namespace slipstick::app
           }
         if (scene.has_contact())
           {
-            contact_steps.push_back(gather_contact(scene, solver.mesh(), solver.spaces(), contact));
+            contact_steps.push_back(gather_contact(scene, solver.mesh(), solver.spaces(), contact, total_slip));
             contact_steps.back().step = step;
             output::write_contact_vtp(directory, contact_steps.back());
             summary.results.contact = contact::pair_results(contact_steps.back().nodes, contact_names().pairs);
@@ -203,6 +220,54 @@ namespace slipstick::app
         clock.leave();
         add_step(so_far, t, summary);
         return summary;
+      }
+
+      /// Where stress and error are largest, and whether more than the mesh is in the way there.
+      void add_places(const fem::StressResult &stress, output::Summary &summary) const
+      {
+        const auto places   = fem::stress_places(solver.mesh(), solver.spaces(), stress);
+        const auto as_place = [&](const fem::Peak<dim> &peak) {
+          return output::Place{scene.bodies[peak.body].name, {{peak.position[0], peak.position[1]}}};
+        };
+        summary.results.max_von_mises_at = as_place(places.von_mises);
+        summary.error.largest_at         = as_place(places.error);
+        if (stress.error_squared > 0)
+          summary.error.largest_part = places.error.value * places.error.value / stress.error_squared;
+        double nearest = cells_of_singularity * places.size;
+        for (const auto &point : fem::singular_points(scene, solver.mesh(), solver.spaces(), solver.n_given_supports()))
+          if (point.body == places.von_mises.body && point.position.distance(places.von_mises.position) < nearest)
+            {
+              nearest                  = point.position.distance(places.von_mises.position);
+              summary.results.singular = point.what;
+            }
+      }
+
+      std::vector<output::ProbeResult> probe_results(const std::vector<Eigen::VectorXd> &u,
+                                                     const fem::StressResult            &stress) const
+      {
+        std::vector<output::ProbeResult> results;
+        for (const auto &points : probes.values(u, stress))
+          {
+            const auto         &probe = scene.probes[results.size()];
+            output::ProbeResult result;
+            result.name     = probe.name;
+            result.is_point = probe.ends.size() == 1;
+            for (const auto &point : points)
+              {
+                output::ProbeValues values;
+                values.distance = point.distance;
+                for (unsigned int d = 0; d < dim; ++d)
+                  {
+                    values.position[d]     = point.position[d];
+                    values.displacement[d] = point.displacement[d];
+                  }
+                values.stress    = point.stress;
+                values.von_mises = fem::von_mises(point.stress[0], point.stress[1], point.stress[2], point.stress[3]);
+                result.points.push_back(values);
+              }
+            results.push_back(std::move(result));
+          }
+        return results;
       }
 
       /// Resultants of loads and supports; warns of loads whose formulas no mesh resolves.
@@ -256,6 +321,7 @@ namespace slipstick::app
       void write_tables(const output::Summary &summary) const
       {
         output::write_history(directory, summary.steps);
+        output::write_probes(directory, summary.steps);
         output::write_convergence(directory, solver.convergence());
         directory.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
         if (scene.has_contact())
@@ -268,7 +334,9 @@ namespace slipstick::app
       StageClock                       clock;
       StepSolver                       solver;
       const scene::Scene<dim>         &scene; // with the contact pairs that are found
+      fem::Probes<dim>                 probes;
       std::vector<output::ContactStep> contact_steps;
+      TotalSlip                        total_slip;
       std::vector<std::string>         warnings;
       std::set<std::string>            warned_about;
       std::optional<output::Summary>   finished_steps; // of all load steps that have ended
@@ -279,6 +347,7 @@ namespace slipstick::app
   {
     StageClock clock;
     StepSolver solver(scene, log, clock, comm);
+    fem::Probes<dim>(scene, solver.mesh(), solver.spaces());
     solver.build();
     if (!solver.unheld().empty())
       log.line("warning: " + set_to_zero(solver.unheld()));

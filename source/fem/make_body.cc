@@ -144,6 +144,9 @@ namespace slipstick::fem
         boundary("Traction " + traction.name, traction.where);
       for (const auto &load : scene.point_loads)
         point("Point load " + load.name, load.where);
+      for (const auto &probe : scene.probes)
+        for (const auto &end : probe.ends)
+          point("Probe " + probe.name, end);
       for (const auto &contact : scene.contacts)
         {
           boundary("Contact " + contact.name + "/Slave", contact.slave);

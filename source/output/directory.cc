@@ -31,7 +31,7 @@ namespace slipstick::output
 
     const std::string result_names =
       "solution\\.pvd|solution_\\d+\\.pvtu|subdomain_\\d+_\\d+\\.vtu|contact_\\d+\\.vtp|contact\\.csv|"
-      "convergence\\.csv|history\\.csv|summary\\.json|parameters\\.prm";
+      "convergence\\.csv|history\\.csv|probes\\.csv|summary\\.json|parameters\\.prm";
 
     /// Beside @p name, with the number of the process, by which others know whether it is still written, and a random part.
     std::string temporary_name(const std::string &name)

@@ -24,6 +24,7 @@ namespace slipstick::scene
     const NamedKind point_load_kind  = {"Point load", "Point loads"};
     const NamedKind temperature_kind = {"Temperature", "Temperatures"};
     const NamedKind contact_kind     = {"Contact", "Contacts"};
+    const NamedKind probe_kind       = {"Probe", "Probes"};
 
     const std::vector<NamedKind> named_kinds = {material_kind,
                                                 body_kind,
@@ -34,7 +35,8 @@ namespace slipstick::scene
                                                 body_force_kind,
                                                 point_load_kind,
                                                 temperature_kind,
-                                                contact_kind};
+                                                contact_kind,
+                                                probe_kind};
 
     /// Names of each kind, by its list.
     using Names = std::map<std::string, std::vector<std::string>>;
@@ -66,6 +68,7 @@ namespace slipstick::scene
       std::vector<PointLoadSection<dim>>   point_loads;
       std::vector<TemperatureSection<dim>> temperatures;
       std::vector<ContactSection<dim>>     contacts;
+      std::vector<ProbeSection<dim>>       probes;
       ContactSearchSection<dim>            contact_search;
     };
 
@@ -81,6 +84,7 @@ namespace slipstick::scene
       , point_loads(names.at(point_load_kind.list).begin(), names.at(point_load_kind.list).end())
       , temperatures(names.at(temperature_kind.list).begin(), names.at(temperature_kind.list).end())
       , contacts(names.at(contact_kind.list).begin(), names.at(contact_kind.list).end())
+      , probes(names.at(probe_kind.list).begin(), names.at(probe_kind.list).end())
     {
       options.decomposition.method = DecompositionMethod::automatic;
       declare_top_level(names);
@@ -98,6 +102,7 @@ namespace slipstick::scene
       declare_all(point_loads);
       declare_all(temperatures);
       declare_all(contacts);
+      declare_all(probes);
       contact_search.declare(prm);
       declare(prm, options.discretization);
       declare(prm, options.decomposition);
@@ -175,6 +180,8 @@ namespace slipstick::scene
       for (const auto &section : contacts)
         scene.contacts.push_back(section.read(parameters, scene));
       scene.contact_search = contact_search.read(parameters);
+      for (const auto &section : probes)
+        scene.probes.push_back(section.read(parameters, scene));
       if (scene.decomposition.method == DecompositionMethod::automatic)
         scene.decomposition.method = automatic_method(scene);
       for (const Body<dim> &body : scene.bodies)
@@ -212,7 +219,8 @@ namespace slipstick::scene
                                                                     {body_force_kind.list, {"gravity"}},
                                                                     {point_load_kind.list, {"pull"}},
                                                                     {temperature_kind.list, {"warm"}},
-                                                                    {contact_kind.list, {"circle"}}});
+                                                                    {contact_kind.list, {"circle"}},
+                                                                    {probe_kind.list, {"tip"}}});
     const std::vector<std::pair<std::string, std::string>> must_be_set = {
       {"Body box/Size", "10, 10"},
       {"Body box/Material", "elastic"},
@@ -233,7 +241,9 @@ namespace slipstick::scene
       {"Material elastic/Density", "7.85e-9"},
       {"Material elastic/Thermal expansion", "1.2e-5"},
       {"Contact circle/Slave", "box/bottom"},
-      {"Contact circle/Master", "disc"}};
+      {"Contact circle/Master", "disc"},
+      {"Probe tip/Body", "box"},
+      {"Probe tip/Point", "10, 10"}};
     for (const auto &[path, value] : must_be_set)
       set_value(example.prm, path, value);
     write_parameters(out, example.prm, format);
