@@ -185,7 +185,10 @@ namespace slipstick::app
         if (pruned.rows->size() > 0) // by contact nodes that were left out, perhaps
           throw;
         unheld_motions = in_words(unheld.motions, names_of(scene.bodies));
-        for (auto &support : fem::still_points(*the_mesh, *the_spaces, unheld.motions))
+        std::vector<Eigen::VectorXd> motions;
+        for (const auto &motion : unheld.motions)
+          motions.push_back(motion.amplitudes);
+        for (auto &support : fem::still_points(*the_mesh, *the_spaces, motions, unheld.motions.front().frames))
           scene.supports.push_back(std::move(support));
         make_dual_as_it_is(t);
       }

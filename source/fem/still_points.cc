@@ -40,18 +40,16 @@ namespace slipstick::fem
     };
 
     /// Displacement component of a place of a body under every motion.
-    Eigen::VectorXd displacements(const std::vector<tfeti::RigidMotion> &motions, const Candidate<2> &at)
+    Eigen::VectorXd displacements(const std::vector<Eigen::VectorXd>  &motions,
+                                  const std::vector<tfeti::BodyFrame> &frames,
+                                  const Candidate<2>                  &at)
     {
-      const unsigned int k     = motions.front().amplitudes.size() / motions.front().frames.size();
-      const auto        &frame = motions.front().frames[at.body];
-      Eigen::VectorXd    values(motions.size());
+      constexpr unsigned int k     = 3; // amplitudes a body
+      const auto            &frame = frames[at.body];
+      const double    turn = at.component == 0 ? frame.center[1] - at.position[1] : at.position[0] - frame.center[0];
+      Eigen::VectorXd values(motions.size());
       for (unsigned int m = 0; m < motions.size(); ++m)
-        {
-          const auto a = motions[m].amplitudes.segment(at.body * k, k);
-          values[m]    = a[at.component] +
-                      a[k - 1] / frame.length *
-                        (at.component == 0 ? frame.center[1] - at.position[1] : at.position[0] - frame.center[0]);
-        }
+        values[m] = motions[m][at.body * k + at.component] + motions[m][at.body * k + k - 1] * turn / frame.length;
       return values;
     }
 
@@ -94,9 +92,10 @@ namespace slipstick::fem
   } // namespace
 
   template <int dim>
-  std::vector<scene::PrescribedDisplacement<dim>> still_points(const Mesh<dim>                       &mesh,
-                                                               const Spaces<dim>                     &spaces,
-                                                               const std::vector<tfeti::RigidMotion> &motions)
+  std::vector<scene::PrescribedDisplacement<dim>> still_points(const Mesh<dim>                     &mesh,
+                                                               const Spaces<dim>                   &spaces,
+                                                               const std::vector<Eigen::VectorXd>  &motions,
+                                                               const std::vector<tfeti::BodyFrame> &frames)
   {
     static_assert(dim == 2, "rotations in the plane");
     auto                                            nodes = nodes_of(mesh, spaces);
@@ -108,7 +107,7 @@ namespace slipstick::fem
         for (unsigned int k = 0; k < 2; ++k)
           for (auto &candidate : nodes[k])
             {
-              candidate.amount = (left.transpose() * displacements(motions, candidate)).norm();
+              candidate.amount = (left.transpose() * displacements(motions, frames, candidate)).norm();
               if (candidate.comes_before(best[k]))
                 best[k] = candidate;
             }
@@ -128,7 +127,7 @@ namespace slipstick::fem
         supports.push_back(support);
 
         // what this one leaves: combinations that do not move it
-        const Eigen::VectorXd moved = left.transpose() * displacements(motions, chosen);
+        const Eigen::VectorXd moved = left.transpose() * displacements(motions, frames, chosen);
         const Eigen::MatrixXd q     = Eigen::HouseholderQR<Eigen::MatrixXd>(moved).householderQ();
         left                        = (left * q.rightCols(left.cols() - 1)).eval();
       }
@@ -137,5 +136,6 @@ namespace slipstick::fem
 
   template std::vector<scene::PrescribedDisplacement<2>> still_points(const Mesh<2> &,
                                                                       const Spaces<2> &,
-                                                                      const std::vector<tfeti::RigidMotion> &);
+                                                                      const std::vector<Eigen::VectorXd> &,
+                                                                      const std::vector<tfeti::BodyFrame> &);
 } // namespace slipstick::fem

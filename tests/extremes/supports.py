@@ -48,7 +48,8 @@ class Supports(Extremes):
                                    ranks=ranks)
                 self.assertEqual(result.summary['status'], 'no equilibrium')
         self.set_to_zero(table, 'roller, nothing along it',
-                         scenes.box(supports={'a': ROLLER}, tractions={'s': {'Boundary': 'box/right', 'Traction x': '3'}}),
+                         scenes.box(supports={'a': ROLLER}, tractions={'s': {'Boundary': 'box/right', 'Traction x': '3'}},
+                                    Solver={'Tolerance': '1e-8'}),
                          'body box: translation along (0, 1)')
         enough = scenes.box(supports={'a': ROLLER, 'b': {'Body': 'box', 'Point': '5, 0', 'Displacement y': '0'}},
                             tractions=down, Solver={'Tolerance': '1e-8'})
@@ -85,9 +86,12 @@ class Supports(Extremes):
         elsewhere = {'side': {'Boundary': 'base/right', 'Traction x': '1'}}
         for law in ({'Law': 'Coulomb', 'Friction coefficient': '0.3'}, {'Law': 'frictionless'},
                     {'Law': 'Tresca', 'Slip bound': '1'}):
-            result = self.set_to_zero(table, 'free and unloaded, ' + law['Law'],
-                                      two(contacts={'joint': {**JOINT, **law}}, tractions=elsewhere), 'body box: ')
-            self.assertNotIn('body base', ' '.join(result.summary['warnings']))
+            result = solve(two(contacts={'joint': {**JOINT, **law}}, tractions=elsewhere))
+            table.add('free and unloaded, ' + law['Law'], result)
+            self.assertIn(result.status, (0, 3), result)  # at rest, which the solver does not always accept: doc/status.md
+            warnings = ' '.join(result.summary['warnings'])
+            self.assertIn('nothing resists body box: ', warnings)
+            self.assertNotIn('body base', warnings)
         self.ends(2, table, 'free, unloaded, no contact', two(contacts={}, tractions=elsewhere),
                   "nothing holds body 'box'")
 

@@ -20,7 +20,8 @@ namespace
 {
   using ContactLine = TemporaryDirectory;
 
-  const std::string header = "pair,slave body,x,y,s,gap,pressure,tangential_traction,slip,status,step,slip_bound,total_slip\n";
+  const std::string header =
+    "pair,slave body,x,y,s,gap,pressure,tangential_traction,slip,status,step,slip_bound,total_slip\n";
 
   ContactNode node(const unsigned int pair, const double arc_length, const double pressure)
   {
