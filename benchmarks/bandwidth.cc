@@ -64,7 +64,7 @@ namespace
     std::size_t own_bytes = 0; // without what fills up panels
     for (const auto &block : blocks)
       own_bytes += static_cast<std::size_t>(block.n_rows()) * (block.n_rows() + 1) / 2 * sizeof(double);
-    const tfeti::DualOperator F(systems, gluing, constraints.rows, std::move(blocks));
+    const tfeti::DualOperator F(systems, gluing, constraints.rows, &blocks);
     std::vector<double>       buffer(own_bytes / sizeof(double), 1.);
 
     tfeti::DistributedVector x(constraints.rows), y(constraints.rows);

@@ -193,13 +193,13 @@ namespace
                                                                            is_explicit));
               }
           }));
+          std::vector<tfeti::PackedSymmetric>  blocks;
           std::unique_ptr<tfeti::DualOperator> F;
           block_times[is_explicit].push_back(seconds([&] {
-            std::vector<tfeti::PackedSymmetric> blocks;
             if (is_explicit)
               for (const auto &system : systems)
                 blocks.push_back(system->pseudo_inverse_block(tfeti::Precision::double_precision));
-            F = std::make_unique<tfeti::DualOperator>(systems, gluing, constraints.rows, std::move(blocks));
+            F = std::make_unique<tfeti::DualOperator>(systems, gluing, constraints.rows, is_explicit ? &blocks : nullptr);
           }));
           tfeti::DistributedVector x(constraints.rows), &y = results[is_explicit];
           for (unsigned int r = 0; r < x.locally_owned_size(); ++r)

@@ -186,12 +186,13 @@ namespace
             Q(entry.dof - first, k) = entry.value;
         if (!(Q.transpose() * Q).isIdentity(1e-10))
           throw std::runtime_error("contact rows are not orthonormal");
-        directions[first / 2] = Q;
-        node.unknown          = {{first, first + 1}};
-        node.position         = point.position[0];
-        node.gap              = constraints.c[point.normal_row];
-        const auto &slip      = scene.contacts[point.pair].slip_bound;
-        node.bound            = slip.value(dealii::Point<2>(point.position[0], point.position[1]), 1.) * point.area;
+        directions[first / 2]       = Q;
+        node.unknown                = {{first, first + 1}};
+        node.position               = point.position[0];
+        node.gap                    = constraints.c[point.normal_row];
+        const auto            &pair = scene.contacts[point.pair];
+        const dealii::Point<2> x(point.position[0], point.position[1]);
+        node.bound = pair.law.admissible_forces(x, 1., point.area, pair.name).fixed;
         problem.nodes.push_back(node);
       }
     rotate(problem.lower, problem.load, directions);

@@ -29,6 +29,9 @@ _slipstick() {
         return
       done
       ;;
+    --new)
+      mapfile -t COMPREPLY < <(compgen -W "$(slipstick --help 2>/dev/null | tr '\n' ' ' | sed -n 's/.*start from: *\([a-z_, ]*[a-z_]\).*/\1/p' | tr ', ' '\n')" -- "$current")
+      ;;
     --output) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
     --list-parameters) mapfile -t COMPREPLY < <(compgen -W $'text\nprm\njson\nlatex' -- "$current") ;;
     *)

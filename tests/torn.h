@@ -95,10 +95,10 @@ namespace slipstick::test
     scene.supports.push_back(support);
   }
 
-  inline void touch(Scene                     &scene,
-                    const scene::BoundaryName &slave,
-                    const scene::BoundaryName &master,
-                    const scene::ContactLaw    law)
+  inline void touch(Scene                      &scene,
+                    const scene::BoundaryName  &slave,
+                    const scene::BoundaryName  &master,
+                    const scene::ContactLaw<2> &law)
   {
     scene::ContactPair<2> pair;
     pair.name   = "pair";
@@ -133,9 +133,8 @@ namespace slipstick::test
     pair.name     = "touches";
     pair.slave    = {body, boundary};
     pair.obstacle = scene.obstacles.size();
-    pair.law      = slip_bound.empty() ? scene::ContactLaw::frictionless : scene::ContactLaw::tresca;
     if (!slip_bound.empty())
-      pair.slip_bound = field(slip_bound);
+      pair.law = scene::make_law<2>("Tresca", {slip_bound});
     scene.obstacles.push_back(circle);
     scene.contacts.push_back(pair);
   }

@@ -1,4 +1,5 @@
 #include <slipstick/app/command_line.h>
+#include <slipstick/app/new_scene.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/nearest_name.h>
 
@@ -26,14 +27,15 @@ namespace slipstick::app
             return format;
           words.push_back(name);
         }
-      throw InputError("--list-parameters " + word + ": there is no such format", suggest_name(word, words));
+      throw InputError("--list-parameters " + word + ": unknown format", suggest_name(word, words));
     }
 
     /// Arguments that CLI11 did not know: options, or case files after the first.
     InputError unknown_argument(const std::string &argument, const CLI::App &app)
     {
       if (argument.empty() || argument[0] != '-')
-        return InputError("'" + argument + "' is one case file too many", "give one case file: " + usage);
+        return InputError("'" + argument + "' is a second case file; only one can be given",
+                          "give one case file: " + usage);
       std::vector<std::string> names;
       for (const CLI::Option *option : app.get_options())
         for (const std::string &name : option->get_lnames())
@@ -46,11 +48,11 @@ namespace slipstick::app
     {
       for (const std::string &text : line.overrides)
         if (text.find('=') == std::string::npos || text.find('=') == 0)
-          throw InputError("'--set " + text + "' does not say which value which parameter gets",
+          throw InputError("'--set " + text + "' does not have the form NAME=VALUE",
                            "write: --set 'Section/Sub/Name=value', for example --set 'Solver/Tolerance=1e-6'");
       if (line.quiet && line.verbose)
-        throw InputError("--quiet and --verbose exclude each other", "leave one of them out");
-      if (line.case_file.empty() && !line.list_parameters)
+        throw InputError("--quiet and --verbose cannot be combined", "leave one of them out");
+      if (line.case_file.empty() && !line.list_parameters && !line.new_scene)
         throw InputError("no case file is given", usage);
     }
   } // namespace
@@ -61,7 +63,7 @@ namespace slipstick::app
     std::string list_format;
 
     CLI::App app("slipstick: frictional contact of elastic bodies by Total FETI.\n"
-                 "Runs alone or under mpirun -n N / srun; results agree for every N.");
+                 "Runs by itself or under mpirun -n N or srun; results agree for every N.");
     app.name("slipstick");
     app.allow_extras();
     app.set_version_flag("--version", "slipstick " SLIPSTICK_VERSION, "print the version and exit");
@@ -78,6 +80,10 @@ namespace slipstick::app
       app.add_option("--list-parameters", list_format, "list all parameters as text (default), prm, json or latex")
         ->expected(0, 1)
         ->type_name("FORMAT");
+    std::string        new_scene;
+    const CLI::Option *start =
+      app.add_option("--new", new_scene, "write a commented scene to start from: " + join_names(new_scene_names()))
+        ->type_name("NAME");
     app.add_flag("--quiet", line.quiet, "print errors only");
     app.add_flag("--verbose", line.verbose, "print every iteration");
 
@@ -109,18 +115,22 @@ namespace slipstick::app
             remaining.erase(remaining.begin());
           }
         if (!remaining.empty())
-          throw InputError("'" + remaining.front() + "' is one case file too many", "give one case file: " + usage);
+          throw InputError("'" + remaining.front() + "' is a second case file; only one can be given",
+                           "give one case file: " + usage);
       }
     if (!remaining.empty())
       throw unknown_argument(remaining.front(), app);
     if (list->count() > 0)
       line.list_parameters = read_list_format(list_format.empty() ? "text" : list_format);
+    if (start->count() > 0)
+      line.new_scene = new_scene;
     check(line);
     if (output->count() > 0 && line.output_directory.empty())
       throw InputError("--output: the name of the directory is empty",
                        "name a directory, for example --output /tmp/run");
     const std::string name = std::filesystem::path(line.case_file).stem().string();
-    if (output->count() == 0 && !line.list_parameters && (name.empty() || name == "." || name == ".."))
+    if (output->count() == 0 && !line.list_parameters && !line.new_scene &&
+        (name.empty() || name == "." || name == ".."))
       throw InputError("the case file '" + line.case_file + "' gives no name to an output directory",
                        "name the directory, for example --output output/case, or the file otherwise");
     if (output->count() == 0)

@@ -83,7 +83,7 @@ namespace slipstick::app
     for (unsigned int k = 0; k < scene.contacts.size(); ++k)
       {
         const auto &pair = scene.contacts[k];
-        if (!pair.master || pair.law == scene::ContactLaw::bonded)
+        if (!pair.master || pair.law.is_bonded)
           continue;
         const auto [pressure, gap] = of_pair[k];
         std::vector<double> worst(5, 0.); // share, place, sagitta, what it is compared with

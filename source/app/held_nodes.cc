@@ -31,7 +31,7 @@ namespace slipstick::app
         const auto &point = held.points[i];
         touches.push_back(point.is_bonded ||
                           gaps[i] <= fem::held_contact_tolerance(point) + (point.is_known ? 0. : noise));
-        sticks.push_back(scene.contacts[point.contact.pair].law != scene::ContactLaw::frictionless);
+        sticks.push_back(scene.contacts[point.contact.pair].law.has_tangential_row());
       }
     contact::add_held_nodes(dual, held, multipliers, gaps, touches, sticks, contact);
   }

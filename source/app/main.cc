@@ -1,4 +1,5 @@
 #include <slipstick/app/command_line.h>
+#include <slipstick/app/new_scene.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/base/collective.h>
 #include <slipstick/base/printable.h>
@@ -33,10 +34,10 @@ namespace
 {
   using namespace slipstick;
 
-  // OpenBLAS takes a buffer at its first product of matrices and tries for ever where it gets none.
-  constexpr std::size_t least_free_space = 256u << 20; // bytes of address space: the buffer, and what stands around it
+  // OpenBLAS allocates a buffer at its first product of matrices, and tries forever if it cannot get one.
+  constexpr std::size_t least_free_space = 256u << 20; // bytes of address space: the buffer and its surroundings
 
-  /// Where the address space is limited (ulimit -v): that the buffer is there before all else.
+  /// Where the address space is limited (ulimit -v): allocates the buffer before anything else.
   void check_address_space()
   {
     rlimit limit;
@@ -63,7 +64,7 @@ namespace
         std::cerr << "error: " << for_terminal(error.what()) << std::endl;
       return static_cast<int>(status);
     };
-    // these errors come to all ranks alike, see base/collective.h
+    // these errors are raised on all ranks, see base/collective.h
     try
       {
         collectively(comm, check_address_space);
@@ -77,6 +78,17 @@ namespace
             if (prints && !std::cout.flush())
               throw InputError("the text could not be written to standard output",
                                "see where it leads to, and whether there is space");
+            return static_cast<int>(ExitStatus::converged);
+          }
+        if (command_line.new_scene)
+          {
+            std::string told;
+            collectively(comm, [&] {
+              if (prints)
+                told = app::write_new_scene(*command_line.new_scene);
+            });
+            if (prints)
+              std::cout << told << std::flush;
             return static_cast<int>(ExitStatus::converged);
           }
         const auto scene = scene::read_scene(command_line.case_file, command_line.overrides);

@@ -17,9 +17,9 @@ namespace slipstick::app
     // tolerance with |Pd|), but never this part of the answer.
     constexpr double check_factor  = 1000;
     constexpr double largest_limit = 0.05;
-    // Residuals below this one are left by the rounding of what the solver works with.
+    // Residuals below this one are due to rounding in the operators of the solver.
     constexpr double rounding = 1e-11;
-    // What rounding leaves differs by about this factor from one way to compute it to another.
+    // Rounding errors differ by about this factor between ways of computing the same quantity.
     constexpr double margin_of_rounding = 2;
 
     std::string line(const char *stage, const std::string &text)
@@ -180,7 +180,7 @@ namespace slipstick::app
   void print_dual(const Log &log, const tfeti::DualProblem &dual)
   {
     log.line(line("dual",
-                  format("%s F, kernel %llu, |PFP| = %.4g mm/N found with %llu multiplications",
+                  format("%s F, kernel %llu, |PFP| = %.4g mm/N estimated with %llu multiplications",
                          dual.dual_operator().is_explicit() ? "explicit" : "implicit",
                          dual.kernel_dimension(),
                          dual.norm(),
@@ -258,15 +258,15 @@ namespace slipstick::app
             return;
           }
         log.warning(
-          what + ", more of it does not help: this is rounding\n  remedy: " +
+          what + "; iterating further does not help, since this is rounding\n  remedy: " +
           (check_factor * reachable <= largest_limit
              ? format(
                  "set Solver/Tolerance to %g or more (now %g), or bring moduli, sizes and thicknesses closer together",
                  reachable,
                  tolerance)
              : std::string(
-                 "the scene is beyond the arithmetic: bring moduli, sizes and thicknesses closer together, and "
-                 "the edges of its elements")));
+                 "double precision is not sufficient for this scene: bring moduli, sizes and thicknesses closer together, and "
+                 "also the edges of its elements")));
         return;
       }
     const std::string largest =
@@ -280,7 +280,7 @@ namespace slipstick::app
                  solution.bound_change,
                  solution.friction_iterations) +
           largest +
-          "; what was reached is written and is no solution\n"
+          "; the results are written but are not a solution\n"
           "  remedy: split the load into more steps (Load steps/Factors), " +
           (is_tolerance(rounded_up(solution.bound_change))
              ? format("set Friction/Tolerance to %g or more, ", rounded_up(solution.bound_change))
@@ -294,14 +294,14 @@ namespace slipstick::app
       is_tolerance(rounded_up(reached))
         ? format("set Solver/Tolerance to %g or more, and look at the residuals in convergence.csv",
                  rounded_up(reached))
-        : "look at the residuals in convergence.csv; loads and supports that hardly balance, and moduli or sizes far apart, do this";
+        : "look at the residuals in convergence.csv; loads and supports that hardly balance, and moduli or sizes far apart, are possible causes";
     log.warning(
-      format("not converged: the solver %s: %s is %.1e of |Pd|, asked for is %g",
-             limit ? "reached its limit of iterations" : "came to a standstill",
+      format("not converged: the solver %s: %s is %.1e of |Pd|, the tolerance is %g",
+             limit ? "reached its iteration limit" : "came to a standstill",
              solution.projected_gradient >= solution.equality ? "the projected gradient" : "the violation of G x = e",
              reached,
              tolerance) +
-      largest + "; the results are no solution\n  remedy: " +
+      largest + "; the results are not a solution\n  remedy: " +
       (!limit                        ? raise
        : solution.algorithm == "pcg" ? "raise Solver/PCG/Max iterations"
                                      : "raise Solver/SMALBE/Max outer iterations or Max inner iterations"));

@@ -1,6 +1,7 @@
-#include <slipstick/app/doubts.h>
+#include <slipstick/app/answer_warnings.h>
 #include <slipstick/app/geometry_checks.h>
 #include <slipstick/app/held_nodes.h>
+#include <slipstick/app/interruption.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/app/step_solver.h>
@@ -10,6 +11,7 @@
 #include <slipstick/fem/loads.h>
 #include <slipstick/fem/probes.h>
 #include <slipstick/fem/singular_points.h>
+#include <slipstick/output/conditions.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/fields.h>
 #include <slipstick/output/history.h>
@@ -35,6 +37,8 @@ namespace slipstick::app
 
     /// Of contact nodes, by pair and node: the slip of all load steps so far [mm].
     using TotalSlip = std::map<std::pair<unsigned int, fem::NodeKey>, double>;
+    // Tables are written again after this multiple of the time that writing them took.
+    constexpr double pause_over_writing = 10;
 
     /// Contact nodes of all ranks on rank 0, with their arc lengths.
     /// @param total_slip gets the slip of this step added, on rank 0.
@@ -75,7 +79,7 @@ namespace slipstick::app
       return time;
     }
 
-    /// What can be said of a run that ended without equilibrium.
+    /// The summary of a run that ended without equilibrium.
     output::Summary summary_without_equilibrium(const scene::Scene<dim> &scene, const MPI_Comm comm)
     {
       output::Summary summary = empty_summary(scene, comm);
@@ -95,7 +99,7 @@ namespace slipstick::app
       return {dealii::Utilities::MPI::max(peak_memory_mb(), comm), dealii::Utilities::MPI::sum(peak_memory_mb(), comm)};
     }
 
-    /// What the load steps leave behind.
+    /// Results of the load steps.
     class Run
     {
     public:
@@ -115,14 +119,17 @@ namespace slipstick::app
       ExitStatus solve_and_write()
       {
         solver.build();
-        directory.remove_results(); // the scene is accepted: what an earlier run left is no longer true
+        directory.remove_results(); // the scene is accepted: results of an earlier run are no longer valid
+        output::write_conditions(directory, scene, solver.mesh(), solver.spaces());
         output::Summary summary;
         for (unsigned int step = 0; step < scene.load_factors.size(); ++step)
           {
+            announce(step);
             summary        = load_step(step, summary);
             finished_steps = summary;
             if (summary.status != output::RunStatus::converged)
               break;
+            keep(step, summary);
           }
         clock.enter("output");
         write_tables(summary);
@@ -133,11 +140,13 @@ namespace slipstick::app
         output::write_summary(directory, summary);
         log.line("");
         print_forces(log, scene, summary.results);
+        if (prints())
+          do_not_tell_when_interrupted();
         print_result(log, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
         return summary.status == output::RunStatus::converged ? ExitStatus::converged : ExitStatus::not_converged;
       }
 
-      /// After a step without equilibrium: what the steps before it left stays, marked.
+      /// After a step without equilibrium: the results of the steps before it are kept and marked.
       void write_without_equilibrium()
       {
         if (!finished_steps)
@@ -156,7 +165,46 @@ namespace slipstick::app
       }
 
     private:
-      /// What is doubtful about the answer, once a kind and pair.
+      bool prints() const
+      {
+        return dealii::Utilities::MPI::this_mpi_process(comm) == 0;
+      }
+
+      /// What is said when the user interrupts load step @p step.
+      void announce(const unsigned int step) const
+      {
+        if (prints())
+          tell_when_interrupted(
+            format("in load step %u of %zu; ", step + 1, scene.load_factors.size()) +
+            (kept_steps > 0 ? format("summary.json, history.csv and contact.csv in %s hold the results of the first %u",
+                                     directory.path("").c_str(),
+                                     kept_steps)
+                            : std::string("there are no results")));
+      }
+
+      /// Writes the tables of the steps so far while others are still to come, for a run that does not live to see its end;
+      /// less often where writing takes longer than solving. Collective.
+      void keep(const unsigned int step, output::Summary summary)
+      {
+        using dealii::Utilities::MPI::broadcast;
+        if (step + 1 == scene.load_factors.size() ||
+            !broadcast(comm, clock.total() - kept_at > pause_over_writing * writing_time))
+          return;
+        clock.enter("output");
+        const double begin = clock.total();
+        write_tables(summary);
+        summary.status    = output::RunStatus::unfinished;
+        summary.time_s    = times(clock, solver.factorization_seconds());
+        summary.memory_mb = memory(comm);
+        summary.warnings  = warnings;
+        output::write_summary(directory, summary);
+        kept_steps   = step + 1;
+        kept_at      = clock.total();
+        writing_time = kept_at - begin;
+        clock.leave();
+      }
+
+      /// Warnings about the answer, one for each kind and pair.
       void warn(const std::map<std::string, std::string> &texts)
       {
         for (const auto &[about, text] : texts)
@@ -182,7 +230,7 @@ namespace slipstick::app
         print_checks(log, contact.checks, tolerance);
         if (!passes(solution, contact.checks, tolerance))
           print_failure(log, scene, solution, contact.checks, tolerance);
-        warn(doubts(scene, solver.mesh(), solver.spaces(), solver.dual(), solution.free, contact.nodes, u));
+        warn(answer_warnings(scene, solver.mesh(), solver.spaces(), solver.dual(), solution.free, contact.nodes, u));
         warn(doubts_of_held_nodes(scene, solver.held_contacts(), contact, comm));
 
         if (!solver.unheld().empty())
@@ -339,7 +387,10 @@ namespace slipstick::app
       TotalSlip                        total_slip;
       std::vector<std::string>         warnings;
       std::set<std::string>            warned_about;
-      std::optional<output::Summary>   finished_steps; // of all load steps that have ended
+      std::optional<output::Summary>   finished_steps;   // of all load steps that have ended
+      unsigned int                     kept_steps   = 0; // in the tables on the disk
+      double                           kept_at      = 0; // when they were written [s]
+      double                           writing_time = 0; // that this took [s]
     };
   } // namespace
 

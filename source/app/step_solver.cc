@@ -4,7 +4,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/contact/refinement.h>
 #include <slipstick/fem/assembly.h>
-#include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/contact_search.h>
 #include <slipstick/fem/decomposition.h>
 #include <slipstick/fem/loads.h>
@@ -31,7 +30,7 @@ namespace slipstick::app
     // ... and all beyond this part.
     constexpr double largest_kept_part = 1;
 
-    // A solution whose checks fail is taken further so often ...
+    // A solution whose checks fail is continued at most this many times ...
     constexpr unsigned int max_tightenings = 4;
     // ... by the factor that the worst check is above its limit, and this one more, ...
     constexpr double margin_of_tightening = 2;
@@ -41,9 +40,9 @@ namespace slipstick::app
     constexpr double largest_tightening = 1e4;
     // ... down to what double precision reaches nearly everywhere.
     constexpr double least_tolerance = 1e-13;
-    // Below this one rounding of the multipliers may show, which is gone around first ...
+    // Below this tolerance rounding of the multipliers may show; gaps are then closed in the displacement first ...
     constexpr double tolerance_of_rounding = 1e-10;
-    // ... so often, as long as the worst check falls by this factor.
+    // ... at most this many times, as long as the worst check falls by this factor.
     constexpr unsigned int max_closings     = 4;
     constexpr double       closing_progress = 0.5;
     // Tolerance = auto: the algebraic error may be this part of the discretisation error. The two are orthogonal, nearly, so
@@ -149,7 +148,7 @@ namespace slipstick::app
                           checked(solve_step(step, multiplications_before, false), scene.load_factors[step]));
     if (step + 1 < scene.load_factors.size())
       u = answer->recovery.u;
-    largest_displacement     = std::max(largest_displacement, answer->contact->checks.max_displacement);
+    history.add(answer->contact->checks);
     the_solution.multipliers = answer->recovery.multipliers;
     return answer;
   }
@@ -170,6 +169,20 @@ namespace slipstick::app
         }
     kept_part = infinity;
     make_dual(t);
+  }
+
+  // A history that unloads to zero leaves the rounding of its formulas.
+  void StepSolver::drop_rounding(std::vector<Eigen::VectorXd> &loads)
+  {
+    constexpr double rounding = 1e-12; // of the largest load so far
+    double           square   = 0;
+    for (const auto &load : loads)
+      square += load.squaredNorm();
+    const double size = std::sqrt(dealii::Utilities::MPI::sum(square, comm));
+    if (size <= rounding * largest_load)
+      for (auto &load : loads)
+        load.setZero();
+    largest_load = std::max(largest_load, size);
   }
 
   // Anew for every step where something is not held: its loads may push.
@@ -197,16 +210,30 @@ namespace slipstick::app
   void StepSolver::make_dual_as_it_is(const double t)
   {
     clock.enter("assembly");
-    auto matrices = fem::assemble(scene, *the_mesh, *the_spaces, t);
-    auto rows     = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
-    pruned        = std::move(rows.pruned);
-    held          = std::move(rows.held);
+    if (subdomains)
+      {
+        auto loads = fem::assemble_loads(scene, *the_mesh, *the_spaces, t);
+        drop_rounding(loads);
+        subdomains->set_loads(std::move(loads));
+      }
+    else
+      {
+        auto                         matrices = fem::assemble(scene, *the_mesh, *the_spaces, t);
+        std::vector<Eigen::VectorXd> loads;
+        for (const auto &subdomain : matrices)
+          loads.push_back(subdomain.load);
+        drop_rounding(loads); // the first ones: the measure of later ones
+        subdomains = std::make_shared<tfeti::Subdomains>(std::move(matrices));
+      }
+    auto rows = contact_rows(t);
+    pruned    = std::move(rows.pruned);
+    held      = std::move(rows.held);
     fem::refuse_held_penetration(scene, held, comm);
     print_constraints(log, rows.active);
 
     clock.enter("dual setup");
     the_dual.reset();
-    the_dual = std::make_unique<tfeti::DualProblem>(std::move(matrices),
+    the_dual = std::make_unique<tfeti::DualProblem>(subdomains,
                                                     std::move(rows.active),
                                                     options.dual,
                                                     names_of(scene.bodies),
@@ -215,12 +242,20 @@ namespace slipstick::app
     print_dual(log, *the_dual);
   }
 
+  fem::ContactRows StepSolver::contact_rows(const double t)
+  {
+    if (!contacts)
+      contacts = fem::pair_bodies(scene, *the_mesh, *the_spaces);
+    return fem::contact_rows(scene, *the_mesh, *the_spaces, *contacts, t, kept_part);
+  }
+
   bool StepSolver::advance(const double t)
   {
     clock.enter("assembly");
-    std::vector<Eigen::VectorXd> loads = fem::assemble_loads(scene, *the_mesh, *the_spaces, t);
-    auto                         rows  = fem::contact_rows(scene, *the_mesh, *the_spaces, t, kept_part);
-    const bool                   is_same =
+    auto loads = fem::assemble_loads(scene, *the_mesh, *the_spaces, t);
+    auto rows  = contact_rows(t);
+    drop_rounding(loads);
+    const bool is_same =
       scene.supports.size() == n_given &&
       dealii::Utilities::MPI::min(rows.active.label == the_dual->constraints().label ? 1 : 0, comm) > 0;
     if (is_same) // gaps that follow the load factor may prune other nodes
@@ -247,7 +282,7 @@ namespace slipstick::app
     the_dual->set_right_hand_side(std::move(c));
   }
 
-  void StepSolver::look_at(Answer &answer, const contact::DualSolution &from, const double t) const
+  void StepSolver::evaluate(Answer &answer, const contact::DualSolution &from, const double t) const
   {
     const contact::SlipLaw law(scene, *the_dual, t);
     const auto            &x = answer.recovery.multipliers;
@@ -258,7 +293,7 @@ namespace slipstick::app
                                     law.depends_on_pressure() ? law.bounds(x) : from.slip_bound,
                                     from.free,
                                     scene.bodies.size(),
-                                    largest_displacement);
+                                    history);
     add_held_nodes(scene, *the_dual, held, x, u, *answer.contact);
     answer.stress = fem::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), u, t);
   }
@@ -271,7 +306,7 @@ namespace slipstick::app
       {
         Answer answer;
         answer.recovery = the_dual->recover(iterate.multipliers, iterate.free);
-        look_at(answer, iterate, t);
+        evaluate(answer, iterate, t);
         const auto &checks           = answer.contact->checks;
         discretization_error         = std::sqrt(answer.stress->error_squared);
         const double algebraic_error = std::sqrt(checks.error_energy);
@@ -342,14 +377,14 @@ namespace slipstick::app
             reason = "no equilibrium without the contact nodes that are far apart";
           }
         kept_part = kept_part < largest_kept_part ? growth_of_kept_part * kept_part : infinity;
-        log.line("pruning      " + reason + ": solved again with more of them");
+        log.line("pruning      " + reason + ": solving again with more of them");
         make_dual(t);
         if (step > 0)
           start_slip_from_here();
       }
   }
 
-  // Where the solution did not converge, loads along a free motion prove nothing: all rows hold then.
+  // If the solution did not converge, work of the loads along a free motion proves nothing; all rows are then taken to hold.
   tfeti::DualProblem::Recovery StepSolver::recovered() const
   {
     try
@@ -372,7 +407,7 @@ namespace slipstick::app
   std::unique_ptr<StepSolver::Answer> StepSolver::checked(std::unique_ptr<Answer> answer, const double t) const
   {
     if (!answer->stress)
-      look_at(*answer, the_solution, t);
+      evaluate(*answer, the_solution, t);
     return answer;
   }
 
@@ -388,14 +423,14 @@ namespace slipstick::app
           std::min(options.tolerance, std::max(the_solution.projected_gradient, the_solution.equality));
         if (worst.value <= limit || worst.is_balance)
           break;
-        // an answer that is no number, too
+        // also if the answer is not a number
         const double excess = std::min(largest_tightening, std::max(least_tightening, worst.value / limit));
         options.tolerance   = std::max(reached / (margin_of_tightening * excess), least_tolerance);
-        if (options.tolerance < tolerance_of_rounding && close(*answer, step, limit))
+        if (options.tolerance < tolerance_of_rounding && close_gaps(*answer, step, limit))
           break;
         if (reached <= least_tolerance)
           break;
-        log.line(format("checks       %s is %.1e, allowed is %.1e: solved on to a tolerance of %.1e",
+        log.line(format("checks       %s is %.1e, allowed is %.1e: continuing with a tolerance of %.1e",
                         worst.name,
                         worst.value,
                         limit,
@@ -418,7 +453,7 @@ namespace slipstick::app
     return answer;
   }
 
-  bool StepSolver::close(Answer &answer, const unsigned int step, const double limit)
+  bool StepSolver::close_gaps(Answer &answer, const unsigned int step, const double limit)
   {
     double worst = answer.contact->checks.worst().second;
     for (unsigned int n = 0; n < max_closings && worst > limit; ++n)
@@ -426,7 +461,7 @@ namespace slipstick::app
         Answer next;
         next.recovery = answer.recovery;
         the_solution.counts += contact::close_gaps(*the_dual, the_solution.free, options.pcpg, next.recovery);
-        look_at(next, the_solution, scene.load_factors[step]);
+        evaluate(next, the_solution, scene.load_factors[step]);
         const double left = next.contact->checks.worst().second;
         log.line(
           format("checks       gaps closed by a correction of the displacement: largest %.1e, was %.1e", left, worst));

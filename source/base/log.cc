@@ -106,7 +106,7 @@ namespace slipstick
     while (status >> word)
       if (word == "VmHWM:" && status >> kilobytes)
         return kilobytes / 1024;
-    rusage usage; // may count what stood in the process before the program
+    rusage usage; // may include memory that the process used before this program
     return getrusage(RUSAGE_SELF, &usage) == 0 ? usage.ru_maxrss / 1024. : 0;
   }
 } // namespace slipstick

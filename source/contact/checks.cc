@@ -1,10 +1,12 @@
 #include <slipstick/contact/checks.h>
+#include <slipstick/contact/node_law.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace slipstick::contact
@@ -23,10 +25,10 @@ namespace slipstick::contact
     constexpr double part_of_history = 1e-2;
     // A body on which less than this part of the largest forces on a body acts counts as one with this part.
     constexpr double negligible_load = 1e-3;
-    // Slip bounds above this multiple of the largest contact force say no more than that nodes stick.
+    // Slip bounds above this multiple of the largest contact force only mean that nodes stick.
     constexpr double bounds_that_count = 2;
 
-    /// The largest of some numbers (none of them: 0; one that is no number stays) and where it is.
+    /// The largest of some numbers (0 if there are none; a NaN persists) and where it is.
     struct Largest
     {
       double value = 0;
@@ -42,7 +44,7 @@ namespace slipstick::contact
         return true;
       }
 
-      /// The first rank of those with the largest tells all. Collective.
+      /// The first of the ranks with the largest value broadcasts it. Collective.
       void over_all_ranks(const MPI_Comm comm)
       {
         const std::vector<double> own{value,
@@ -89,7 +91,7 @@ namespace slipstick::contact
       return {true, subdomain.body(), subdomain.position(unknown), true, pair.has_value(), pair.value_or(0)};
     }
 
-    /// Is this the first of the ranks that say so? Collective.
+    /// Is this the first rank on which it is true? Collective.
     bool is_first(const bool says_so, const MPI_Comm comm)
     {
       const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(comm);
@@ -140,7 +142,7 @@ namespace slipstick::contact
       return scale > 0 ? value / scale : value;
     }
 
-    /// What displacements are beyond rigid motions of their subdomains, which no force resists: in products with K these
+    /// Displacements without the rigid motions of their subdomains, which no force resists: in products with K these
     /// would leave rounding alone.
     std::vector<Eigen::VectorXd> deformations(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
     {
@@ -172,7 +174,7 @@ namespace slipstick::contact
       double          largest = 0; // nodal: largest load, contact force or reaction
     };
 
-    /// @param on_node gets what is left at a node of this rank.
+    /// @param on_node gets the residual force at a node of this rank.
     Balance balance(const tfeti::DualProblem           &dual,
                     const std::vector<Eigen::VectorXd> &nodal_forces,
                     const DistributedVector            &multipliers,
@@ -223,19 +225,6 @@ namespace slipstick::contact
       return (point.position[0] - point.master_position[0]) * fy - (point.position[1] - point.master_position[1]) * fx;
     }
 
-    /// What a row at a bound does that the law does not allow [mm]: penetration; slip that the friction drives.
-    /// @param jump B u - c, @param x multiplier, @param bound of it, if tangential, @param noise forces that are rounding.
-    double inadmissible_jump(const tfeti::RowKind kind,
-                             const double         jump,
-                             const double         x,
-                             const double         bound,
-                             const double         noise)
-    {
-      if (kind == tfeti::RowKind::tangential && bound <= noise)
-        return 0;
-      return kind == tfeti::RowKind::tangential && x > 0 ? std::min(jump, 0.) : std::max(jump, 0.);
-    }
-
     /// One contact node from the force on it and the jump of displacement there.
     ContactNode contact_node(const tfeti::DualProblem  &dual,
                              const tfeti::ContactPoint &point,
@@ -251,23 +240,15 @@ namespace slipstick::contact
           node.gap      = dual.constraints().c[point.normal_row] - jumps.local_element(point.normal_row);
         }
       node.is_closed    = point.normal_row == tfeti::invalid_row || free[point.normal_row];
-      node.status       = node.is_closed ? ContactStatus::stick : ContactStatus::open;
+      node.status       = status_of(node.is_closed, 0., false);
       double tangential = 0;
-      if (point.tangential_row == tfeti::invalid_row)
-        {
-          // without friction what touches is free to slide
-          if (node.is_closed)
-            node.status = ContactStatus::slip;
-        }
-      else
+      if (point.tangential_row != tfeti::invalid_row)
         {
           tangential               = multipliers.local_element(point.tangential_row);
           node.tangential_traction = -tangential / node.area; // on the slave body
           node.slip       = jumps.local_element(point.tangential_row) - dual.constraints().c[point.tangential_row];
           node.slip_bound = slip_bound[point.tangential_row] / node.area;
-          // a bound that acts on open nodes too (Tresca on the whole boundary) makes them slip as well
-          if (!free[point.tangential_row] && (node.slip_bound > 0 || node.is_closed))
-            node.status = ContactStatus::slip;
+          node.status     = status_of(node.is_closed, node.slip_bound, free[point.tangential_row]);
         }
       node.moment_mismatch = moment_mismatch(point, node.pressure * node.area, tangential);
       return node;
@@ -338,13 +319,22 @@ namespace slipstick::contact
     return {entry.name, entry.value};
   }
 
+  void History::add(const Checks &step)
+  {
+    displacement = std::max(displacement, step.max_displacement);
+    force        = std::max(force, step.largest_force);
+    energies.resize(step.energies.size());
+    for (std::size_t b = 0; b < energies.size(); ++b)
+      energies[b] = std::max(energies[b], step.energies[b]);
+  }
+
   CheckedContact check(const tfeti::DualProblem           &dual,
                        const DistributedVector            &multipliers,
                        const std::vector<Eigen::VectorXd> &u,
                        const std::vector<double>          &slip_bound,
                        const std::vector<bool>            &free,
                        const unsigned int                  n_bodies,
-                       const double                        displacement_before)
+                       const History                      &history)
   {
     const MPI_Comm comm        = dual.communicator();
     const auto    &constraints = dual.constraints();
@@ -430,7 +420,7 @@ namespace slipstick::contact
             // a bound far above all forces would turn the rounding of what sticks into work
             const double capped = std::max(std::abs(T), std::min(bound, bounds_that_count * largest_contact));
             all_bounds += capped;
-            work += std::abs(capped * std::abs(node.slip) + T * node.slip);
+            work += missing_friction_work(capped, T, node.slip);
           }
         checks.complementarity += work;
         largest[complementarity].take(work, place);
@@ -442,16 +432,20 @@ namespace slipstick::contact
       }
     MPI_Allreduce(MPI_IN_PLACE, energies.data(), energies.size(), MPI_DOUBLE, MPI_SUM, comm);
     checks.energy = energies.sum();
+    checks.energies.assign(energies.data(), energies.data() + energies.size());
+    checks.largest_force = largest_contact;
     for (double *sum : {&checks.complementarity, &all_bounds})
       *sum = dealii::Utilities::MPI::sum(*sum, comm);
     const double way       = std::max(largest_gap, checks.max_displacement);
-    const double before    = part_of_history * displacement_before;
+    const double before    = part_of_history * history.displacement;
     const double no_length = std::max(negligible_part * way, before);
     const double no_strain = std::max(negligible_deformation * way, before);
-    const double no_force  = no_strain / dual.norm();
+    const double no_force  = std::max(no_strain / dual.norm(), part_of_history * history.force);
     const double length    = std::max(checks.max_displacement, no_length);
     const double force     = std::max(largest_contact, no_force);
-    const double energy    = std::max({checks.energy, no_force * no_strain, all_bounds * no_strain});
+    const double energy_before =
+      part_of_history * part_of_history * std::accumulate(history.energies.begin(), history.energies.end(), 0.);
+    const double energy    = std::max({checks.energy, no_force * no_strain, all_bounds * no_strain, energy_before});
     const auto   on_bodies = balance(dual, forces, multipliers, n_bodies, largest[nodal_equilibrium]);
     for (unsigned int b = 0; b < n_bodies; ++b)
       {
@@ -462,14 +456,16 @@ namespace slipstick::contact
       }
     checks.algebraic_error = std::sqrt(relative(checks.error_energy, energy));
     // of stiff bodies among soft ones, too, which hold little of the energy
-    const double least_energy = no_force * no_strain;
-    const double least_load   = negligible_load * on_bodies.scale.maxCoeff();
-    unsigned int worst_body   = 0;
+    const double least_load = negligible_load * on_bodies.scale.maxCoeff();
+    unsigned int worst_body = 0;
     for (unsigned int b = 0; b < n_bodies; ++b)
       {
         const double share = least_load > 0 ? std::min(1., on_bodies.scale[b] / least_load) : 1.;
         const double error = std::max(error_energies.of_body[b], 0.);
-        if (largest[energy_norm].take(share * std::sqrt(relative(error, std::max(energies[b], least_energy))), Place()))
+        const double least =
+          std::max(no_force * no_strain,
+                   history.energies.empty() ? 0. : part_of_history * part_of_history * history.energies[b]);
+        if (largest[energy_norm].take(share * std::sqrt(relative(error, std::max(energies[b], least))), Place()))
           worst_body = b;
       }
     find_place_in_body(dual, error_energies, worst_body, largest[energy_norm]);

@@ -35,10 +35,12 @@ namespace slipstick::contact
     constexpr double traction_error = 100;
     // ... and no more than this.
     constexpr double largest_traction_error = 0.05;
-    // Tractions of a pair below this part of those of the pair with the largest count as this part.
+    // Tractions of a pair below this part of the largest, of any pair in any step so far, count as this part.
     constexpr double negligible_pair = 1e-3;
     // Loads below this part of those of earlier steps are what rounding leaves of none.
     constexpr double rounding_of_loads = 1e-12;
+    // Multiplications after which Newton's method and its fallback give up.
+    constexpr unsigned int longest_fallback = 5000;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
 
@@ -71,6 +73,7 @@ namespace slipstick::contact
 
       DualSolution run(const DualSolution *start)
       {
+        largest_traction    = start ? start->largest_traction : 0.;
         const auto feasible = feasible_start(start);
         solution.algorithm  = options.algorithm == scene::Algorithm::semismooth_newton ? "semismooth newton" : "smalbe";
         set_bounds(law.bounds(feasible));
@@ -245,6 +248,20 @@ namespace slipstick::contact
       /// depends on the scene, for it is relative to all loads and gaps.
       bool tractions_are_right(const Vector &x, const Vector &error) const
       {
+        const auto squares = squares_of_tractions(x, error);
+        double     largest = largest_traction * largest_traction;
+        for (std::size_t k = 0; k < squares.size(); k += 2)
+          largest = std::max(largest, squares[k]);
+        const double part = std::min(largest_traction_error, traction_error * options.tolerance);
+        for (std::size_t k = 0; k < squares.size(); k += 2)
+          if (squares[k + 1] > part * part * std::max(squares[k], negligible_pair * negligible_pair * largest))
+            return false;
+        return true;
+      }
+
+      /// Of every pair in turn: squares of the norms in L2 of the tractions of x and of the error [N MPa].
+      std::vector<double> squares_of_tractions(const Vector &x, const Vector &error) const
+      {
         unsigned int n_pairs = 0;
         for (const auto &point : dual.constraints().contact_points)
           n_pairs = std::max(n_pairs, point.pair + 1);
@@ -258,14 +275,7 @@ namespace slipstick::contact
                   error.local_element(row) * error.local_element(row) / point.traction_area;
               }
         qp::sum_all(squares, dual.reduction());
-        double largest = 0;
-        for (std::size_t k = 0; k < squares.size(); k += 2)
-          largest = std::max(largest, squares[k]);
-        const double part = std::min(largest_traction_error, traction_error * options.tolerance);
-        for (std::size_t k = 0; k < squares.size(); k += 2)
-          if (squares[k + 1] > part * part * std::max(squares[k], negligible_pair * negligible_pair * largest))
-            return false;
-        return true;
+        return squares;
       }
 
       /// Semismooth Newton, with bounds that follow the solution or (a Tresca problem) as they are. @return convergence.
@@ -310,13 +320,20 @@ namespace slipstick::contact
             solution.weighted_reference = dual.residual_norm(homogenised_load(dual, feasible));
             ++solution.counts.hessian_multiplications;
           }
+        try_newton();
+      }
+
+      /// Newton's method from the present point, which stays when that does not converge. @return convergence.
+      bool try_newton()
+      {
         const auto before = solution;
         if (newton(before.multipliers, true))
-          return;
+          return true;
         const auto counts = solution.counts;
         solution          = before;
         solution.counts   = counts;
         set_bounds(before.slip_bound);
+        return false;
       }
 
       /// The problem with its present bounds, from a point that balances the loads within them: by SMALBE-M, or, where
@@ -327,6 +344,12 @@ namespace slipstick::contact
             newton(from, false))
           return;
         solution.multipliers = smalbe(from, accuracy, counted(), may_end_early);
+      }
+
+      /// Newton's method is tried again after 1, 2, 4, 8, ... rounds: a part of the cost of these, whatever they are.
+      bool is_due(const unsigned int rounds) const
+      {
+        return options.algorithm == scene::Algorithm::semismooth_newton && (rounds & (rounds - 1)) == 0;
       }
 
       /// Fixed point of the bounds.
@@ -349,7 +372,11 @@ namespace slipstick::contact
             if (solution.status != qp::Status::converged ||
                 (solution.bound_change <= friction.tolerance && accuracy <= options.tolerance))
               return;
-            if (solution.friction_iterations >= friction.max_iterations)
+            if (is_due(solution.friction_iterations + 1) && try_newton())
+              return;
+            if (solution.friction_iterations >= friction.max_iterations ||
+                (options.algorithm == scene::Algorithm::semismooth_newton &&
+                 solution.counts.hessian_multiplications > longest_fallback))
               {
                 solution.status = qp::Status::iteration_limit;
                 return;
@@ -452,6 +479,9 @@ namespace slipstick::contact
             n += !solution.free[r];
           }
         solution.active_constraints = dealii::Utilities::MPI::sum(n, dual.communicator());
+        solution.largest_traction   = largest_traction;
+        for (const double square : squares_of_tractions(solution.multipliers, dual.zero()))
+          solution.largest_traction = std::max(solution.largest_traction, std::sqrt(square));
         return std::move(solution);
       }
 
@@ -465,9 +495,10 @@ namespace slipstick::contact
       Box                   box;
       std::optional<Vector> gradient; // where SMALBE-M ended
       DualSolution          solution;
-      double                relaxation     = 1; // damping of the bounds
-      double                least_change   = qp::infinity;
-      unsigned int          updates_in_row = 0; // without progress
+      double                relaxation       = 1; // damping of the bounds
+      double                least_change     = qp::infinity;
+      unsigned int          updates_in_row   = 0; // without progress
+      double                largest_traction = 0; // norm in L2 of a pair's, in the steps before [sqrt(N MPa)]
     };
   } // namespace
 

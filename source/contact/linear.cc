@@ -48,7 +48,7 @@ namespace slipstick::contact
     auto         b            = homogenised_load(dual, start);
     const double reference    = dual.residual_norm(b);
     const auto   precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
-    if (goes_on) // from what is left in truth, not in the sums of an earlier solve
+    if (goes_on) // from the true residual, not from the recursion of an earlier solve
       {
         start = goes_on->multipliers;
         face.balance(start);

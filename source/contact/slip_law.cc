@@ -1,35 +1,13 @@
 #include <slipstick/base/collective.h>
-#include <slipstick/base/exceptions.h>
-#include <slipstick/base/log.h>
 #include <slipstick/contact/slip_law.h>
 
 #include <deal.II/base/mpi.h>
-
-#include <cmath>
 
 namespace slipstick::contact
 {
   namespace
   {
     using Vector = tfeti::DistributedVector;
-
-    template <int dim>
-    double value_at(const scene::Field<dim>   &field,
-                    const tfeti::ContactPoint &point,
-                    const double               t,
-                    const std::string         &pair,
-                    const char                *what,
-                    const char                *unit)
-    {
-      dealii::Point<dim> x;
-      for (unsigned int d = 0; d < dim; ++d)
-        x[d] = point.position[d];
-      const double value = field.value(x, t);
-      if (!(value >= 0 && std::isfinite(value)))
-        throw InputError(format("Contact %s/%s is %g%s at (%g, %g)", pair.c_str(), what, value, unit, x[0], x[1]),
-                         "it must be zero or positive everywhere on the slave boundary");
-      return value;
-    }
   } // namespace
 
   Box multiplier_box(const tfeti::DualProblem &dual, const std::vector<double> &slip_bound)
@@ -72,19 +50,15 @@ namespace slipstick::contact
         {
           if (point.tangential_row == tfeti::invalid_row)
             continue;
-          const auto &pair = scene.contacts[point.pair];
-          if (pair.law == scene::ContactLaw::tresca)
-            {
-              fixed[point.tangential_row] =
-                value_at(pair.slip_bound, point, t, pair.name, "Slip bound", " MPa") * point.area;
-              if (pair.only_closed && point.normal_row != tfeti::invalid_row)
-                rows.push_back({point.tangential_row, point.normal_row, 0., false});
-            }
-          else if (pair.law == scene::ContactLaw::coulomb && point.normal_row != tfeti::invalid_row)
-            rows.push_back({point.tangential_row,
-                            point.normal_row,
-                            value_at(pair.friction_coefficient, point, t, pair.name, "Friction coefficient", ""),
-                            true});
+          dealii::Point<dim> x;
+          for (unsigned int d = 0; d < dim; ++d)
+            x[d] = point.position[d];
+          const auto &pair   = scene.contacts[point.pair];
+          const auto  forces = pair.law.admissible_forces(x, t, point.area, pair.name);
+          if (pair.law.acts_when_open || point.normal_row == tfeti::invalid_row) // supports take the normal force
+            fixed[point.tangential_row] = forces.closed_radius(0);
+          else
+            rows.push_back({point.tangential_row, point.normal_row, forces});
         }
     });
     follows_pressure = dealii::Utilities::MPI::max(rows.empty() ? 0 : 1, dual.communicator()) > 0;
@@ -93,41 +67,25 @@ namespace slipstick::contact
   std::vector<double> SlipLaw::bounds(const Vector &x) const
   {
     std::vector<double> result = fixed;
-    for (const Row &row : rows)
+    for (const auto &row : rows)
+      result[row.tangential] = row.forces.radius(x.local_element(row.normal));
+    return result;
+  }
+
+  qp::ForceSet<Vector> SlipLaw::admissible(const tfeti::DualProblem &dual) const
+  {
+    qp::ForceSet<Vector> set{multiplier_box(dual, fixed), {}};
+    for (const auto &row : rows)
       {
-        const double normal = std::max(x.local_element(row.normal), 0.);
-        if (row.is_coulomb)
-          result[row.tangential] = row.coefficient * normal;
-        else if (!(normal > 0))
-          result[row.tangential] = 0;
+        const bool   is_box                         = row.forces.coefficient == 0; // the closure of the set
+        const double bound                          = is_box ? row.forces.closed_radius(0) : qp::infinity;
+        set.box.lower.local_element(row.tangential) = -bound;
+        set.box.upper.local_element(row.tangential) = bound;
+        if (is_box)
+          continue;
+        set.box.lower.local_element(row.normal) = -qp::infinity;
+        set.nodes.push_back(row);
       }
-    return result;
-  }
-
-  std::vector<qp::PressureBound> SlipLaw::pressure_bounds() const
-  {
-    std::vector<qp::PressureBound> result;
-    for (const Row &row : rows)
-      result.push_back({row.tangential,
-                        row.normal,
-                        row.is_coulomb ? 0. : fixed[row.tangential],
-                        row.is_coulomb ? row.coefficient : 0.});
-    return result;
-  }
-
-  qp::FrictionCones<Vector> SlipLaw::admissible(const tfeti::DualProblem &dual) const
-  {
-    qp::FrictionCones<Vector> set{multiplier_box(dual, fixed), {}};
-    for (const Row &row : rows)
-      if (row.is_coulomb)
-        {
-          for (const unsigned int r : {row.tangential, row.normal})
-            {
-              set.box.lower.local_element(r) = -qp::infinity;
-              set.box.upper.local_element(r) = qp::infinity;
-            }
-          set.cones.push_back({row.tangential, row.normal, row.coefficient});
-        }
     return set;
   }
 

@@ -160,7 +160,7 @@ namespace slipstick::fem
     {
       const auto value = parse_number(word);
       if (!value || *value < 0 || *value != std::floor(*value) || *value > 1e15)
-        fail("'" + word + "' is no number of a node or element");
+        fail("'" + word + "' is not the number of a node or element");
       return static_cast<unsigned long long>(*value);
     }
 
@@ -184,7 +184,7 @@ namespace slipstick::fem
     void AbaqusReader::read_nodes(const Keyword &key)
     {
       if (key.parameters.count("INPUT") > 0 || (!key["SYSTEM"].empty() && upper(key["SYSTEM"]) != "R"))
-        fail("*NODE with INPUT, or in a system other than R, cannot be read here");
+        fail("*NODE with INPUT, or in a system other than R, is not supported");
       const std::string set = key["NSET"];
       for_data([&](const std::vector<std::string> &parts) {
         if (parts.size() < 3)
@@ -194,12 +194,12 @@ namespace slipstick::fem
           {
             const auto value = parse_number(parts[d + 1]);
             if (!value || !std::isfinite(*value))
-              fail("'" + parts[d + 1] + "' is no coordinate");
+              fail("'" + parts[d + 1] + "' is not a coordinate");
             x[d] = *value;
           }
         const auto tag = number(parts[0]);
         if (!node_index.emplace(tag, mesh.nodes.size()).second)
-          fail("node " + parts[0] + " comes twice");
+          fail("node " + parts[0] + " occurs twice");
         mesh.nodes.emplace_back(x[0], x[1], x[2]);
         if (!set.empty())
           node_sets[named(set)].members.insert(tag);
@@ -213,10 +213,10 @@ namespace slipstick::fem
       const auto   starts = [&type](const std::string &prefix) { return type.compare(0, prefix.size(), prefix) == 0; };
       unsigned int dim = 0, n_nodes = 0;
       if (type.empty() || key.parameters.count("INPUT") > 0)
-        fail(type.empty() ? "*ELEMENT without TYPE" : "*ELEMENT with INPUT cannot be read here");
+        fail(type.empty() ? "*ELEMENT without TYPE" : "*ELEMENT with INPUT is not supported");
       if (starts("CAX") || starts("CGAX") || starts("DCAX") || starts("ACAX") || starts("SAX") || starts("MAX"))
         fail("elements of type " + type +
-             " are axisymmetric, which is not computed here (only plane stress and plane strain)");
+             " are axisymmetric, which is not supported (only plane stress and plane strain)");
       if (starts("C3D") || starts("SC"))
         dim = 3;
       for (const std::string candidate : {"CPEG", "CPS", "CPE", "STRI", "DC2D", "AC2D", "M3D", "SFM3D", "S"})
@@ -243,7 +243,7 @@ namespace slipstick::fem
       if (is_other)
         ++ignored["*ELEMENT, TYPE=" + type];
       else if (dim == 0 || (dim == 2 && n_nodes != 3 && n_nodes != 4 && n_nodes != 6 && n_nodes != 8))
-        fail("elements of type " + type + " are not known here");
+        fail("elements of type " + type + " are not supported");
       if (starts("CPS"))
         mesh.plane_stress_types.insert(type);
       if (starts("CPE"))
@@ -299,7 +299,7 @@ namespace slipstick::fem
               std::swap(element.corners[1], element.corners[2]);
           }
         if (!element_index.emplace(data[0], mesh.elements.size()).second)
-          fail("element " + std::to_string(data[0]) + " comes twice");
+          fail("element " + std::to_string(data[0]) + " occurs twice");
         mesh.elements.push_back(element);
         if (!set.empty())
           element_sets[named(set)].members.insert(data[0]);
@@ -315,7 +315,7 @@ namespace slipstick::fem
       if (name.empty())
         fail("a set without a name");
       if (of_nodes && key.parameters.count("ELSET") > 0)
-        fail("*NSET with ELSET cannot be read here; name the nodes, or the sides of the elements (*SURFACE)");
+        fail("*NSET with ELSET is not supported; name the nodes, or the sides of the elements (*SURFACE)");
       auto &sets = of_nodes ? node_sets : element_sets;
       auto &set  = sets[named(name)];
       if (set.line == 0)
@@ -377,12 +377,12 @@ namespace slipstick::fem
       const std::string type = upper(key["TYPE"]);
       if ((type != "" && type != "ELEMENT" && type != "NODE") || key.parameters.count("COMBINE") > 0 ||
           key.parameters.count("CROP") > 0)
-        fail("*SURFACE of this kind cannot be read here, only those of elements with their sides, and of nodes");
+        fail("*SURFACE of this kind is not supported, only those of elements with their sides, and of nodes");
       const Key name = named(key["NAME"]);
       for_data([&](const std::vector<std::string> &parts) {
         const std::string side = parts.size() < 2 ? "" : upper(parts[1]);
         if (parts.empty() || parts[0].empty())
-          fail("*SURFACE of everything cannot be read here; name sets of elements and their sides");
+          fail("*SURFACE of everything is not supported; name sets of elements and their sides");
         if (type != "NODE")
           surfaces[name].push_back({parts[0], side, line_number});
         else if (const auto set = node_sets.find(upper(parts[0])); set != node_sets.end())
@@ -500,7 +500,7 @@ namespace slipstick::fem
       while (!at_end)
         {
           if (line[0] != '*')
-            fail("data that belong to no keyword, or no Abaqus input file");
+            fail("data without a keyword, or not an Abaqus input file");
           const Keyword key = keyword();
           if (key.name == "NODE")
             read_nodes(key);
@@ -512,7 +512,7 @@ namespace slipstick::fem
             read_surface(key);
           else if (changing.count(key.name) > 0 || (key.name == "PART" && ++n_parts > 1) ||
                    (key.name == "INSTANCE" && ++n_instances > 1))
-            fail("*" + key.name + (n_parts > 1 || n_instances > 1 ? " (the second)" : "") + " cannot be read here");
+            fail("*" + key.name + (n_parts > 1 || n_instances > 1 ? " (the second)" : "") + " is not supported");
           else
             {
               const bool is_placed = key.name == "INSTANCE";
@@ -520,7 +520,7 @@ namespace slipstick::fem
                 ++ignored["*" + key.name];
               for_data([&](const std::vector<std::string> &) {
                 if (is_placed)
-                  fail("*INSTANCE with a translation or rotation cannot be read here");
+                  fail("*INSTANCE with a translation or rotation is not supported");
               });
             }
         }

@@ -5,22 +5,6 @@
 
 namespace slipstick::fem
 {
-  template <int dim>
-  bool can_be_pruned(const scene::ContactPair<dim> &pair)
-  {
-    switch (pair.law)
-      {
-        case scene::ContactLaw::frictionless:
-        case scene::ContactLaw::coulomb:
-          return true;
-        case scene::ContactLaw::tresca:
-          return pair.only_closed;
-        case scene::ContactLaw::bonded:
-          return false;
-      }
-    return false;
-  }
-
   namespace
   {
     template <int dim>
@@ -71,17 +55,18 @@ namespace slipstick::fem
       if (!distance) // of empty sides too
         refuse_pair(scene, pair, sides, 0.);
       const double near = pair.reach ? *pair.reach : automatic_reach(sides.slave, sides.master, *distance);
-      // nodes that are farther apart have no rows at first, but are looked at again when the solution is known
-      const double reach =
-        pair.reach || !can_be_pruned(pair) ? near : std::max(near, widest_reach(sides.slave, sides.master, *distance));
-      auto rows = mortar_rows(sides.slave, sides.master, {reach, near}, pair.discretization, pair.name);
+      // nodes that are farther apart have no rows at first, but are checked again when the solution is known
+      const double reach = pair.reach || !pair.law.acts_where_closed_alone()
+                             ? near
+                             : std::max(near, widest_reach(sides.slave, sides.master, *distance));
+      auto         rows  = mortar_rows(sides.slave, sides.master, {reach, near}, pair.discretization, pair.name);
       if (rows.empty())
         refuse_pair(scene, pair, sides, reach);
       check_sides(scene, mesh, pair, sides, all, rows);
       return rows;
     }
 
-    /// Nodes that hang together.
+    /// Connected nodes.
     class Groups
     {
     public:
@@ -145,6 +130,5 @@ namespace slipstick::fem
     return contacts;
   }
 
-  template bool            can_be_pruned(const scene::ContactPair<2> &);
   template BodyContacts<2> pair_bodies(const scene::Scene<2> &, const Mesh<2> &, const Spaces<2> &);
 } // namespace slipstick::fem

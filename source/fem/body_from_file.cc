@@ -17,7 +17,7 @@ namespace slipstick::fem
     constexpr unsigned int named_cells    = 3;    // in messages
 
     const std::string remedy_of_overlap =
-      "remove what lies on top of each other (in Gmsh: Coherence; Coherence Mesh), or choose one Part";
+      "remove duplicate entities (in Gmsh: Coherence; Coherence Mesh), or choose one Part";
 
     std::array<unsigned int, 2> sorted(const unsigned int a, const unsigned int b)
     {
@@ -129,7 +129,7 @@ namespace slipstick::fem
       if (cells.empty())
         fail("has no part '" + body.part + "'",
              suggest_name(body.part, std::vector<std::string>(parts.begin(), parts.end())) +
-               (parts.empty() ? "; name its surfaces (Physical Surface), or leave Part away to take all cells" : ""));
+               (parts.empty() ? "; name its surfaces (Physical Surface), or omit Part to take all cells" : ""));
     }
 
     template <int dim>
@@ -155,7 +155,7 @@ namespace slipstick::fem
     template <int dim>
     void Extraction<dim>::check_shapes()
     {
-      // orientation by the sum of the corners; a cell that crosses itself or is not convex has corners of both kinds
+      // orientation by the sum of the corners; a cell that intersects itself or is not convex has corners of both kinds
       std::vector<unsigned int> clockwise;
       for (unsigned int c = 0; c < cells.size(); ++c)
         {
@@ -175,7 +175,7 @@ namespace slipstick::fem
             }
           if (left != cell.n && right != cell.n)
             fail(std::string("has a degenerate cell: ") + cell_text(cell) + " " +
-                   (left > 0 && right > 0 ? "crosses itself or is not convex"
+                   (left > 0 && right > 0 ? "intersects itself or is not convex"
                     : left + right == 0   ? "has no area"
                                           : "has a corner of 0 or 180 degrees"),
                  "mesh again, or repair the geometry there (doubled or nearly equal points)");
@@ -189,7 +189,7 @@ namespace slipstick::fem
             some += (k > 0 ? ", " : "") + cell_text(cells[clockwise[k]]);
           fail(
             "has " + std::to_string(clockwise.size()) + " of " + std::to_string(cells.size()) +
-              " cells turned over (clockwise): " + some + (clockwise.size() > named_cells ? ", ..." : ""),
+              " cells with clockwise orientation: " + some + (clockwise.size() > named_cells ? ", ..." : ""),
             "give all cells the same orientation (in Gmsh: Recombine after Coherence, or ReverseMesh on the surface)");
         }
       for (const unsigned int c : clockwise) // all of them
@@ -240,7 +240,7 @@ namespace slipstick::fem
                remedy_of_overlap);
     }
 
-    /// Lines of the file at the outline carry its names; what is left over is outline without a name.
+    /// Lines of the file at the outline carry its names; the rest is outline without a name.
     template <int dim>
     void Extraction<dim>::name_boundaries()
     {
@@ -311,9 +311,9 @@ namespace slipstick::fem
                                  n_cells_at.count(sorted(a->second, b->second)) > 0;
             std::string problem;
             if (is_ours && names.count(sorted(a->second, b->second)) == 0)
-              problem = "lies inside of the body";
+              problem = "lies inside the body";
             else if (!is_ours && !is_edge_of_cell(sorted(line.corners[0], line.corners[1])))
-              problem = "is no edge of a cell";
+              problem = "is not an edge of a cell";
             else
               continue;
             for (const int physical : file.groups[line.group])
@@ -340,7 +340,7 @@ namespace slipstick::fem
             if (const auto v = vertex_of_node.find(node); v != vertex_of_node.end() && reached.count(v->second) == 0)
               if (std::string &problem = mesh.incomplete_boundaries[name]; problem.empty())
                 problem = "its node at " + at(file.nodes[node]) +
-                          " is no end of an edge of the outline between two nodes "
+                          " is not an end of an edge of the outline between two nodes "
                           "of the set";
         }
     }
@@ -378,7 +378,7 @@ namespace slipstick::fem
           case ConformityFault<dim>::Kind::overlap:
             fail("has cells on top of each other at " + place + ": " + of, remedy_of_overlap);
           case ConformityFault<dim>::Kind::hanging_node:
-            fail("has a node inside of an edge at " + place + ", which is not joined to it: " + of, remedy);
+            fail("has a node inside an edge at " + place + ", which is not joined to it: " + of, remedy);
           case ConformityFault<dim>::Kind::twin_nodes:
             fail("has two nodes at " + place + " that are not joined: " + of, remedy);
         }

@@ -11,7 +11,7 @@ namespace slipstick::fem
 {
   namespace
   {
-    // Contact nodes that are farther apart than the nearest ones by less than so many mesh sizes keep their rows.
+    // Contact nodes that are farther apart than the nearest ones by less than this many mesh sizes keep their rows.
     constexpr double mesh_sizes = 2;
 
     tfeti::Partitioner make_partitioner(const std::uint64_t                           first,
@@ -89,11 +89,11 @@ namespace slipstick::fem
   ContactRows contact_rows(const scene::Scene<dim> &scene,
                            const Mesh<dim>         &mesh,
                            const Spaces<dim>       &spaces,
+                           const BodyContacts<dim> &contacts,
                            const double             t,
                            const double             part)
   {
-    const auto              contacts = pair_bodies(scene, mesh, spaces);
-    const auto              nodes    = interface_nodes(scene, mesh, spaces, contacts, t);
+    const auto              nodes = interface_nodes(scene, mesh, spaces, contacts, t);
     ContactRows             rows;
     RowBuilder<dim>         builder(scene, nodes, contacts, t, rows.active);
     std::vector<PairExtent> extents(scene.contacts.size());
@@ -123,7 +123,8 @@ namespace slipstick::fem
                                          const Spaces<dim>       &spaces,
                                          const double             t)
   {
-    return contact_rows(scene, mesh, spaces, t, std::numeric_limits<double>::infinity()).active;
+    const auto contacts = pair_bodies(scene, mesh, spaces);
+    return contact_rows(scene, mesh, spaces, contacts, t, std::numeric_limits<double>::infinity()).active;
   }
 
   double largest_penetration(const tfeti::Constraints           &pruned,
@@ -146,6 +147,7 @@ namespace slipstick::fem
   template ContactRows        contact_rows(const scene::Scene<2> &,
                                            const Mesh<2> &,
                                            const Spaces<2> &,
+                                           const BodyContacts<2> &,
                                            const double,
                                            const double);
   template tfeti::Constraints contact_constraints(const scene::Scene<2> &,

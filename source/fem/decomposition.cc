@@ -102,7 +102,7 @@ namespace slipstick::fem
                number_text(modulus(b)) + " MPa";
       };
       remarks.push_back("warning: " + describe(large) + ", " + describe(small) +
-                        ": do their meshes and materials have the same units? (Scale, Young modulus)");
+                        ": check that their meshes and materials use the same units (Scale, Young modulus)");
     }
 
     /// Every rank makes its own blocks.
@@ -210,7 +210,7 @@ namespace slipstick::fem
                                            std::vector<BodyMesh<dim>> &bodies,
                                            std::vector<std::string>   &remarks)
     {
-      // pieces of one kind of cells that hang together through faces: less is not possible
+      // face-connected pieces with one type of cells: there cannot be fewer
       std::vector<MeshPiece<dim>> wholes;
       for (auto &body : bodies)
         {
@@ -235,8 +235,8 @@ namespace slipstick::fem
       const unsigned int wanted =
         asked > 0 ? asked : std::max(1., std::round(total * unknowns_per_node / automatic_cells_per_subdomain));
       if (asked > 0 && asked < wholes.size())
-        remarks.push_back(std::to_string(wholes.size()) + " subdomains in place of " + std::to_string(asked) +
-                          ": as many as bodies and parts of them with one kind of cells");
+        remarks.push_back(std::to_string(wholes.size()) + " subdomains instead of " + std::to_string(asked) +
+                          ": at least one for each body and cell type");
       const auto shares = shares_of_pieces(cost, n_cells, wanted);
 
       std::vector<MeshPiece<dim>>                                   pieces;

@@ -70,7 +70,7 @@ namespace slipstick::fem
         }
     }
 
-    /// The unknowns of nodes are dim in a row; nodes inside of edges and cells are not looked at for the place.
+    /// The unknowns of a node are consecutive; nodes inside edges and cells do not count for the position.
     template <int dim>
     void add_nodes(const dealii::DoFHandler<dim> &dof_handler,
                    const unsigned int             body,

@@ -99,10 +99,10 @@ namespace slipstick::fem
 
       [[noreturn]] void fail_broken() const
       {
-        fail(std::string("is truncated or mixed up: ") +
-               (binary ? "its bytes do not fit its own counts" : "not the number that belongs here") + " at byte " +
+        fail(std::string("is truncated or corrupt: ") +
+               (binary ? "its size does not match its own counts" : "not the number expected here") + " at byte " +
                std::to_string(at),
-             "write it again with Gmsh (a copy in text mode spoils a binary file), for example: gmsh -2 part.geo "
+             "write it again with Gmsh (copying in text mode damages a binary file), for example: gmsh -2 part.geo "
              "-format msh41");
       }
 
@@ -252,9 +252,9 @@ namespace slipstick::fem
       if (in.next_section() != "MeshFormat")
         {
           if (in.section == "NOD" || in.section == "NOE")
-            in.fail("is of Gmsh's version 1", "save it as 4.1: gmsh OLD.msh -save -format msh41 -o NEW.msh");
+            in.fail("has the Gmsh format version 1", "save it as 4.1: gmsh OLD.msh -save -format msh41 -o NEW.msh");
           in.section.clear();
-          in.fail("is no Gmsh file, it does not start with $MeshFormat", "give a .msh file of version 2.2 or 4.1");
+          in.fail("is not a Gmsh file: it does not start with $MeshFormat", "give a .msh file of version 2.2 or 4.1");
         }
       const double version = in.word<double>();
       const int    kind    = in.word<int>();
@@ -270,7 +270,7 @@ namespace slipstick::fem
         {
           in.binary = true;
           if (in.integer() != 1)
-            in.fail("is binary and of a machine with another order of bytes, or mixed up",
+            in.fail("is binary with another byte order, or corrupt",
                     "save it in ASCII: gmsh OLD.msh -save -format msh41 -o NEW.msh");
         }
       in.end_section(false);
@@ -365,7 +365,7 @@ namespace slipstick::fem
     {
       const ElementType result = element_type(type);
       if (result.n_nodes == 0)
-        in.fail("has elements of type " + std::to_string(type) + ", which is not known here, or is mixed up",
+        in.fail("has elements of type " + std::to_string(type) + ", which is not supported, or is corrupt",
                 "mesh with triangles or quadrilaterals of first or second order (Mesh.ElementOrder = 1)");
       return result;
     }

@@ -203,7 +203,7 @@ namespace slipstick::fem
     {
       for (const auto &[k, area] : node.areas)
         if (const auto &pair = scene.contacts[k];
-            pair.law == scene::ContactLaw::bonded &&
+            pair.law.is_bonded &&
             !(pair.reach && contact_with(scene.obstacles[pair.obstacle], node.point(), t).gap > *pair.reach))
           for (unsigned int c = 0; c < dim; ++c)
             hold(node,

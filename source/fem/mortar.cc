@@ -275,7 +275,7 @@ namespace slipstick::fem
               return rows;
             throw InputError(
               format("Contact %s: Discretization = node to node, but the meshes do not match: the master "
-                     "node nearest to the slave node at (%g, %g) is %g mm aside",
+                     "node nearest to the slave node at (%g, %g) is %g mm off to the side",
                      name.c_str(),
                      row.position[0],
                      row.position[1],

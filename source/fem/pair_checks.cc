@@ -84,11 +84,13 @@ namespace slipstick::fem
                                          const scene::ContactPair<2>     &pair,
                                          const std::vector<MortarRow<2>> &rows)
     {
-      throw InputError(between(scene, pair) +
-                         format(" face away from each other: against its outward normal, %g mm or more through its own "
-                                "body, the slave finds the master",
-                                least_gap(rows)),
-                       "choose the boundaries that lie between the two bodies, or move, mirror or rotate a body");
+      throw InputError(
+        between(scene, pair) +
+          format(
+            " face away from each other: the slave finds the master only against its outward normal, through %g mm or more of its own "
+            "body",
+            least_gap(rows)),
+        "choose the boundaries that lie between the two bodies, or move, mirror or rotate a body");
     }
 
     /// Largest displacement that a support prescribes at any load factor [mm].
@@ -136,7 +138,7 @@ namespace slipstick::fem
       if (gap > size + prescribed)
         throw InputError(names +
                            format(" are out of reach of each other: the smallest gap is %g mm, the automatic reach "
-                                  "goes to %g mm (%g mm across, prescribed displacements up to %g mm)",
+                                  "is %g mm (extent %g mm, prescribed displacements up to %g mm)",
                                   gap,
                                   size + prescribed,
                                   size,
@@ -181,10 +183,10 @@ namespace slipstick::fem
       if (found.cosine <= -facing_cosine)
         throw InputError(names +
                            format(" face away from each other: the outward normals of the slave are %g degrees or "
-                                  "more off the direction to the obstacle, allowed are less than %g",
+                                  "more from the direction to the obstacle; less than %g is allowed",
                                   degrees(found.cosine),
                                   degrees(-facing_cosine)),
-                         "choose the boundary on the side of the obstacle, move the body, or turn the obstacle round");
+                         "choose the boundary on the side of the obstacle, move the body, or reverse the obstacle");
       if (pair.reach && found.gap > *pair.reach)
         throw InputError(names + format(" are out of reach of each other: the smallest gap is %g mm, Reach is %g mm",
                                         found.gap,
@@ -231,7 +233,7 @@ namespace slipstick::fem
     if (!distance)
       throw InputError(between(scene, pair) +
                          format(" do not face each other anywhere: the angle between their outward "
-                                "normals is %g degrees or less, facing is more than %g",
+                                "normals is %g degrees or less; more than %g is needed",
                                 largest_angle(sides.slave, sides.master),
                                 degrees(facing_cosine)),
                        normals_remedy);
@@ -282,7 +284,7 @@ namespace slipstick::fem
   template <>
   void check_obstacle_pairs(const scene::Scene<2> &scene, const Mesh<2> &mesh, const Spaces<2> &spaces)
   {
-    const auto is_checked = [](const auto &pair) { return !pair.master && pair.law != scene::ContactLaw::bonded; };
+    const auto        is_checked = [](const auto &pair) { return !pair.master && !pair.law.is_bonded; };
     std::vector<bool> wanted(scene.bodies.size(), false);
     for (const auto &pair : scene.contacts)
       if (is_checked(pair))

@@ -92,7 +92,7 @@ namespace slipstick::fem
 
     bool is_watched(const scene::ContactPair<2> &pair)
     {
-      return pair.law != scene::ContactLaw::bonded && !pair.gap;
+      return !pair.law.is_bonded && !pair.gap;
     }
 
     /// Slave nodes that have no row within the Reach of the pair, but one without it.

@@ -114,16 +114,17 @@ namespace slipstick::fem
         found[k].subdomain = best[k].subdomain;
         found[k].node      = best[k].node;
         if (best[k].size == 0 || best[k].distance > reach_of_point * best[k].size)
-          throw InputError(format("%s: the point (%g, %g) is not on body '%s': its nearest node, (%g, %g), is %g away, "
-                                  "more than half a cell",
-                                  owners[k].c_str(),
-                                  at[k][0],
-                                  at[k][1],
-                                  scene.bodies[points[k].body].name.c_str(),
-                                  found[k].position[0],
-                                  found[k].position[1],
-                                  best[k].distance),
-                           "give coordinates in or on the body, or name the body that they belong to");
+          throw InputError(
+            format("%s: the point (%g, %g) is not on body '%s': the nearest node, (%g, %g), is %g mm away, "
+                   "more than half a cell",
+                   owners[k].c_str(),
+                   at[k][0],
+                   at[k][1],
+                   scene.bodies[points[k].body].name.c_str(),
+                   found[k].position[0],
+                   found[k].position[1],
+                   best[k].distance),
+            "give coordinates in or on the body, or name the body that they belong to");
       }
     return found;
   }

@@ -29,7 +29,7 @@ namespace slipstick::fem
         fine.cells.push_back(cell);
       }
 
-      /// Point @p k of @p n equal parts of the edge from @p a to @p b; the same vertex for all that ask for it.
+      /// Point @p k of @p n equal parts of the edge from @p a to @p b; the same vertex on every call.
       unsigned int on_edge(const unsigned int a, const unsigned int b, const unsigned int k, const unsigned int n)
       {
         if (k == 0)

@@ -240,7 +240,7 @@ namespace slipstick::fem
                                        const double       area,
                                        Touch             &touch) const
   {
-    return scene.contacts[pair].law != scene::ContactLaw::bonded && place_on_obstacle(i, pair, area, touch);
+    return !scene.contacts[pair].law.is_bonded && place_on_obstacle(i, pair, area, touch);
   }
 
   template <int dim>
@@ -329,7 +329,7 @@ namespace slipstick::fem
     touch.point.slave_body    = nodes[i].body;
     touch.point.key           = nodes[i].key;
     touch.point.interface_dof = dim * i;
-    touch.has_tangent         = scene.contacts[touch.pair].law != scene::ContactLaw::frictionless;
+    touch.has_tangent         = scene.contacts[touch.pair].law.has_tangential_row();
     for (unsigned int d = 0; d < dim; ++d)
       {
         touch.point.position[d] = nodes[i].position[d];
@@ -391,7 +391,7 @@ namespace slipstick::fem
     std::vector<std::vector<std::pair<unsigned int, Touch>>> by_pair(scene.contacts.size());
     for (const auto &[key, list] : pairs_of)
       for (const auto &[pair, row] : list)
-        if (scene.contacts[pair].law == scene::ContactLaw::bonded)
+        if (scene.contacts[pair].law.is_bonded)
           {
             Touch touch;
             touch_body(number.at(key), pair, *row, touch);
@@ -412,7 +412,7 @@ namespace slipstick::fem
     const auto &key     = nodes[i].key;
     const auto  is_free = [](const Vector &left) { return norm(left) > held_direction_tolerance; };
     for (Touch &touch : touches)
-      if (scene.contacts[touch.pair].law == scene::ContactLaw::bonded)
+      if (scene.contacts[touch.pair].law.is_bonded)
         {
           for (const unsigned int d : {0, 1})
             {
@@ -429,7 +429,7 @@ namespace slipstick::fem
         }
     for (Touch &touch : touches)
       {
-        if (scene.contacts[touch.pair].law == scene::ContactLaw::bonded)
+        if (scene.contacts[touch.pair].law.is_bonded)
           continue;
         const auto normal     = jump(touch, touch.normal);
         const auto left       = bonds.reduce(free_part(normal));
@@ -473,7 +473,7 @@ namespace slipstick::fem
   template <int dim>
   bool RowBuilder<dim>::is_held_open(const tfeti::HeldContacts::Point &point) const
   {
-    return point.is_known && can_be_pruned(scene.contacts[point.contact.pair]) &&
+    return point.is_known && scene.contacts[point.contact.pair].law.acts_where_closed_alone() &&
            point.contact.gap - point.closing > held_contact_tolerance(point);
   }
 
@@ -510,7 +510,7 @@ namespace slipstick::fem
   void RowBuilder<dim>::add_bonds_to_obstacles(const unsigned int i)
   {
     for (const auto &[k, area] : nodes[i].areas)
-      if (const auto &pair = scene.contacts[k]; pair.law == scene::ContactLaw::bonded)
+      if (const auto &pair = scene.contacts[k]; pair.law.is_bonded)
         if (Touch touch; place_on_obstacle(i, k, area, touch))
           {
             complete(i, touch);
@@ -523,7 +523,7 @@ namespace slipstick::fem
   template <int dim>
   bool RowBuilder<dim>::is_pruned(const Touch &touch) const
   {
-    return touch.point.gap > limits[touch.pair] && can_be_pruned(scene.contacts[touch.pair]);
+    return touch.point.gap > limits[touch.pair] && scene.contacts[touch.pair].law.acts_where_closed_alone();
   }
 
   template <int dim>

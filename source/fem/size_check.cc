@@ -155,7 +155,7 @@ namespace slipstick::fem
       if (!forced && size.memory_mb > usable * free)
         throw InputError(asks + ", which take about " + rounded(size.memory_mb) + " MB of memory, and " +
                            rounded(free) + " MB are free",
-                         less + "; or run it all the same with --force");
+                         less + "; or run it anyway with --force");
     });
   }
 

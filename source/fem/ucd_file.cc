@@ -27,7 +27,7 @@ namespace slipstick::fem
       }
     catch (const std::exception &)
       {
-        in.fail("is no .ucd file, it does not start with the number of its nodes");
+        in.fail("is not a .ucd file: it does not start with the number of its nodes");
       }
     const auto n_cells = in.count(1);
     in.line(); // numbers of data
@@ -37,7 +37,7 @@ namespace slipstick::fem
       {
         const auto number = in.integer();
         if (!index_of_node.emplace(number, mesh.nodes.size()).second)
-          in.fail("node " + std::to_string(number) + " comes twice");
+          in.fail("node " + std::to_string(number) + " occurs twice");
         const double x = in.real(), y = in.real(), z = in.real();
         mesh.nodes.emplace_back(x, y, z);
       }
@@ -49,7 +49,7 @@ namespace slipstick::fem
         element.number      = in.integer();
         const auto material = in.integer();
         if (material < -1000000000 || material > 1000000000)
-          in.fail_mixed_up();
+          in.fail_corrupt();
         const std::string type = in.word();
         if (type == "hex" || type == "tet" || type == "prism" || type == "pyr")
           {
@@ -62,7 +62,7 @@ namespace slipstick::fem
             element.n   = type == "quad" ? 4 : element.dim + 1;
           }
         else
-          in.fail("cell " + std::to_string(element.number) + " is of type '" + type + "', which is not known here");
+          in.fail("cell " + std::to_string(element.number) + " is of type '" + type + "', which is not supported");
         for (unsigned int k = 0; k < element.n; ++k)
           {
             const auto node  = in.integer();

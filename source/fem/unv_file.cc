@@ -96,7 +96,7 @@ namespace slipstick::fem
             in.integer(); // coordinate systems, colour
           const double x = in.real(), y = in.real(), z = in.real();
           if (!node_index.emplace(node, mesh.nodes.size()).second)
-            in.fail("node " + std::to_string(node) + " comes twice");
+            in.fail("node " + std::to_string(node) + " occurs twice");
           mesh.nodes.emplace_back(x, y, z);
         }
     }
@@ -110,17 +110,17 @@ namespace slipstick::fem
             in.integer(); // property, material, colour
           const auto n_nodes = in.integer();
           if (n_nodes < 1 || n_nodes > 100)
-            in.fail_mixed_up();
+            in.fail_corrupt();
           if (type >= 11 && type <= 32) // rods, beams and pipes: orientation and cross-sections
             for (unsigned int k = 0; k < 3; ++k)
               in.integer();
           if (type >= 81 && type <= 85)
             in.fail("element " + std::to_string(number) + " is axisymmetric (type " + std::to_string(type) +
-                    "), which is not computed here");
+                    "), which is not supported");
           const FeType known = fe_type(type);
           if (known.n_nodes > 0 ? n_nodes != known.n_nodes : known.dim == 0 && n_nodes > 2)
             in.fail("element " + std::to_string(number) + " of type " + std::to_string(type) + " with " +
-                    std::to_string(n_nodes) + " nodes is not known here");
+                    std::to_string(n_nodes) + " nodes is not supported");
           MeshFile::Element element;
           element.dim    = known.dim;
           element.n      = known.n_corners;
@@ -137,7 +137,7 @@ namespace slipstick::fem
                 element.corners[k / stride] = found->second;
             }
           if (!element_index.emplace(number, mesh.elements.size()).second)
-            in.fail("element " + std::to_string(number) + " comes twice");
+            in.fail("element " + std::to_string(number) + " occurs twice");
           if (type >= 41 && type <= 45)
             mesh.plane_stress_types.insert("type " + std::to_string(type));
           if (type >= 51 && type <= 55)
@@ -177,7 +177,7 @@ namespace slipstick::fem
           in.line();
           const std::string name = in.line();
           if (name.empty())
-            in.fail_mixed_up();
+            in.fail_corrupt();
           const int physical = physical_of(name);
           auto     &of_group = members[physical];
           for (std::size_t k = 0; k < n; ++k)
@@ -202,7 +202,7 @@ namespace slipstick::fem
       while (!in.at_end())
         if (in.line() == "-1")
           return;
-      in.fail_mixed_up();
+      in.fail_corrupt();
     }
 
     void UnvReader::make_groups()
@@ -253,7 +253,7 @@ namespace slipstick::fem
       for (std::string word = in.word(); !word.empty(); word = in.word())
         {
           if (word != "-1")
-            in.fail("is no .unv file, or mixed up: '" + word.substr(0, 20) + "' where -1 belongs");
+            in.fail("is not a .unv file, or corrupt: '" + word.substr(0, 20) + "' where -1 belongs");
           in.section = in.word();
           if (in.section == "2411")
             read_nodes();

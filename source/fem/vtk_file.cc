@@ -80,7 +80,7 @@ namespace slipstick::fem
     {
       in.section = "header";
       if (in.line().compare(0, 14, "# vtk DataFile") != 0)
-        in.fail("is no legacy .vtk file, it does not start with '# vtk DataFile'");
+        in.fail("is not a legacy .vtk file: it does not start with '# vtk DataFile'");
       in.line(); // its title
       if (!in.skip("ASCII"))
         in.fail("is not in ASCII");
@@ -109,14 +109,14 @@ namespace slipstick::fem
           for (std::size_t c = 0; c < n; ++c)
             offsets.push_back(in.integer());
           if (!in.skip("CONNECTIVITY"))
-            in.fail_mixed_up();
+            in.fail_corrupt();
           in.word();
           if (n == 0 || offsets.front() != 0 || offsets.back() != static_cast<long long>(n_entries))
-            in.fail_mixed_up();
+            in.fail_corrupt();
           for (std::size_t c = 0; c + 1 < n; ++c)
             {
               if (offsets[c + 1] < offsets[c])
-                in.fail_mixed_up();
+                in.fail_corrupt();
               corners.emplace_back();
               for (long long k = offsets[c]; k < offsets[c + 1]; ++k)
                 corners.back().push_back(in.integer());
@@ -134,7 +134,7 @@ namespace slipstick::fem
               read += of_cell + 1;
             }
           if (read != n_entries)
-            in.fail_mixed_up();
+            in.fail_corrupt();
         }
       for (std::size_t c = 0; c < corners.size(); ++c)
         for (const long long corner : corners[c])
@@ -153,7 +153,7 @@ namespace slipstick::fem
           const auto type  = in.integer();
           const auto known = cell_type(type);
           if (known.n_nodes == 0 && known.dim == 0)
-            in.fail("cell " + std::to_string(c) + " is of type " + std::to_string(type) + ", which is not known here");
+            in.fail("cell " + std::to_string(c) + " is of type " + std::to_string(type) + ", which is not supported");
           if (known.dim < 3 && corners[c].size() != known.n_nodes)
             in.fail("cell " + std::to_string(c) + " of type " + std::to_string(type) + " has " +
                     std::to_string(corners[c].size()) + " corners");
@@ -207,7 +207,7 @@ namespace slipstick::fem
               const std::vector<std::string> rest = split_list(collapse_blanks(in.line()), ' '); // type, components
               const auto                     components = rest.size() > 1 ? parse_number(rest[1]).value_or(0) : 1;
               if (!(components >= 1 && components <= 4))
-                in.fail_mixed_up();
+                in.fail_corrupt();
               if (in.skip("LOOKUP_TABLE"))
                 in.word();
               read_array(name, n_data * static_cast<std::size_t>(components));
@@ -227,7 +227,7 @@ namespace slipstick::fem
                   const auto        components = in.count(1), n_tuples = in.count(1);
                   in.word();
                   if (components > 0 && n_tuples > n_data)
-                    in.fail_mixed_up();
+                    in.fail_corrupt();
                   read_array(name, components * n_tuples);
                 }
             }
@@ -238,7 +238,7 @@ namespace slipstick::fem
                 ;
             }
           else
-            in.fail("has a section '" + word + "' that is not known here");
+            in.fail("has a section '" + word + "' that is not supported");
         }
     }
 
@@ -261,7 +261,7 @@ namespace slipstick::fem
       read_header();
       const auto enter = [this](const std::string &section) {
         if (!in.skip(section))
-          in.section.empty() ? in.fail("lacks its section " + section) : in.fail_mixed_up();
+          in.section.empty() ? in.fail("lacks its section " + section) : in.fail_corrupt();
         in.section = section;
       };
       in.section.clear();

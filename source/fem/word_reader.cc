@@ -27,9 +27,9 @@ namespace slipstick::fem
     throw InputError("mesh file " + file + ":" + std::to_string(line_number) + ": " + problem, remedy);
   }
 
-  void WordReader::fail_mixed_up() const
+  void WordReader::fail_corrupt() const
   {
-    fail("is truncated or mixed up in its section " + section);
+    fail("is truncated or corrupt in its section " + section);
   }
 
   std::string WordReader::word()
@@ -61,7 +61,7 @@ namespace slipstick::fem
     long long         value  = 0;
     const auto        result = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (digits.empty() || result.ec != std::errc() || result.ptr != digits.data() + digits.size())
-      fail_mixed_up();
+      fail_corrupt();
     return value;
   }
 
@@ -72,7 +72,7 @@ namespace slipstick::fem
     std::replace(digits.begin(), digits.end(), 'd', 'e');
     const auto value = parse_number(digits);
     if (!value || !std::isfinite(*value))
-      fail_mixed_up();
+      fail_corrupt();
     return *value;
   }
 
@@ -80,7 +80,7 @@ namespace slipstick::fem
   {
     const long long n = integer();
     if (n < 0 || static_cast<std::size_t>(n) > (text.size() - at) / least)
-      fail_mixed_up();
+      fail_corrupt();
     return n;
   }
 

@@ -31,7 +31,7 @@ namespace slipstick::output
 
     const std::string result_names =
       "solution\\.pvd|solution_\\d+\\.pvtu|subdomain_\\d+_\\d+\\.vtu|contact_\\d+\\.vtp|contact\\.csv|"
-      "convergence\\.csv|history\\.csv|probes\\.csv|summary\\.json|parameters\\.prm";
+      "conditions\\.csv|convergence\\.csv|history\\.csv|probes\\.csv|summary\\.json|parameters\\.prm";
 
     /// Beside @p name, with the number of the process, by which others know whether it is still written, and a random part.
     std::string temporary_name(const std::string &name)
@@ -110,7 +110,7 @@ namespace slipstick::output
         reject(directory.string(), "no file can be written there: " + reason);
     }
 
-    /// What killed runs left half written.
+    /// Removes files that killed runs left half written.
     void remove_stale(const std::filesystem::path &directory)
     {
       static const std::regex stale("(" + result_names + "|\\.slipstick-probe)(\\.(\\d{1,9})-[0-9a-f]+)?\\.tmp");
@@ -137,7 +137,7 @@ namespace slipstick::output
         throw InputError("The name of the output directory is empty", "name one: --output DIR");
       std::error_code error;
       if (std::filesystem::exists(path, error) && !std::filesystem::is_directory(path, error))
-        reject(path, "there is a file of that name");
+        reject(path, "a file of that name exists");
       std::vector<std::string> missing;
       for (std::filesystem::path p = path; !p.empty() && !std::filesystem::exists(p, error); p = p.parent_path())
         missing.insert(missing.begin(), p.string());

@@ -21,7 +21,7 @@ namespace slipstick::output
 {
   namespace
   {
-    /// Numbers of one .vtu array, and how VTK calls them.
+    /// Number types of .vtu arrays and VTK's names for them.
     template <class Number>
     constexpr const char *vtk_type = nullptr;
     template <>
@@ -109,7 +109,7 @@ namespace slipstick::output
       return grid;
     }
 
-    /// From displacement and stress components to the fields that users look at.
+    /// Computes the fields for users from displacement and stress components.
     /// @param stress nodes x 4: xx, yy, xy, zz [MPa].
     std::vector<Field> nodal_fields(const Eigen::VectorXd &u, const Eigen::MatrixXd &stress)
     {

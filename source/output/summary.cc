@@ -177,6 +177,8 @@ namespace slipstick::output
           return "not converged";
         case RunStatus::no_equilibrium:
           return "no equilibrium";
+        case RunStatus::unfinished:
+          return "unfinished";
       }
     AssertThrow(false, dealii::ExcInternalError());
     return "";

@@ -12,8 +12,8 @@ namespace slipstick::scene
 
     const std::string name = "Accuracy";
 
-    // What each delivers on cases with known answers is measured: doc/accuracy.md. `engineering` is the default of every
-    // knob. The preconditioner's precision is none of them: no answer depends on it.
+    // The accuracy of each on cases with known answers is measured in doc/accuracy.md. `engineering` is the default of every
+    // setting. The precision of the preconditioner is not among them, since no answer depends on it.
     const std::vector<std::pair<std::string, Knobs>> presets = {{"draft",
                                                                  {{"Solver/Tolerance", "auto"},
                                                                   {"Solver/Operator precision", "single"},
@@ -53,7 +53,7 @@ namespace slipstick::scene
   void apply_accuracy(const Parameters &parameters, dealii::ParameterHandler &prm)
   {
     const auto preset = parameters.value(name);
-    if (preset) // a word that is none is refused by apply()
+    if (preset) // a word that is not a preset is refused by apply()
       for (const auto &[path, value] : knobs_of_accuracy(*preset))
         set_value(prm, path, value);
   }

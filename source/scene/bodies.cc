@@ -1,4 +1,5 @@
 #include <slipstick/scene/declare.h>
+#include <slipstick/scene/material_library.h>
 #include <slipstick/scene/sections.h>
 
 namespace slipstick::scene
@@ -10,6 +11,17 @@ namespace slipstick::scene
   void MaterialSection::declare(dealii::ParameterHandler &prm)
   {
     prm.enter_subsection("Material " + name);
+    Choices<std::string> choices;
+    choices.emplace_back("none", "none");
+    for (const std::string &entry : library_names())
+      choices.emplace_back(entry, entry);
+    add_choice(
+      prm,
+      "Library",
+      library,
+      choices,
+      "typical values at room temperature; values that the scene sets take precedence. A material in Materials "
+      "that has such a name needs no subsection");
     add_number(prm, "Young modulus", material.young_modulus, "MPa", Interval::above(0), "Young's modulus E");
     add_number(prm,
                "Poisson ratio",

@@ -116,7 +116,7 @@ namespace slipstick::scene
              body.file,
              "",
              "a file: .msh (Gmsh 2.2, 4.1), .inp (Abaqus), .ucd, .unv, .vtk",
-             "mesh: sought from the directory of the .prm, then from the working directory; must be set");
+             "mesh: relative to the directory of the .prm, then to the working directory; must be set");
     add_text(prm,
              "Part",
              body.part,
@@ -188,9 +188,9 @@ namespace slipstick::scene
         for (const Shape shape : of_shapes)
           names.push_back(name_of(shape));
         throw parameters.error(section + "/" + parameter,
-                               "means nothing for Shape = " + name_of(body.shape) + ", it belongs to " +
+                               "has no meaning for Shape = " + name_of(body.shape) + ", it belongs to " +
                                  join_names(names),
-                               "leave it away, or set Shape");
+                               "remove it, or set Shape");
       }
 
     switch (body.shape)
@@ -212,11 +212,13 @@ namespace slipstick::scene
                              "is not less than Radius = " + number_text(body.radius),
                              "give 0 < Inner radius < Radius");
     if (body.shape == Shape::ring && body.cells && (*body.cells)[0] < 3)
-      throw parameters.error(section + "/Cells", "a ring needs at least 3 cells around", "give 3 or more, then across");
+      throw parameters.error(section + "/Cells",
+                             "a ring needs at least 3 cells along its circumference",
+                             "give 3 or more, then the cells across");
     if (body.shape == Shape::disc && (body.cells_along_arc % 4 != 0 || body.cells_along_arc < 8))
       throw parameters.error(section + "/Cells along arc",
                              "a disc is meshed in four quarters of at least 2 edges",
-                             "give a multiple of 4 from 8 on");
+                             "give a multiple of 4, at least 8");
     if (body.shape == Shape::half_disc && body.cells_along_arc % 2 != 0)
       throw parameters.error(section + "/Cells along arc", "a half disc needs an even number", "give an even number");
   }
@@ -260,7 +262,7 @@ namespace slipstick::scene
     parameters.require(section + "/Material", "set a name from Materials (" + join_names(materials) + ")");
     result.material = std::find(materials.begin(), materials.end(), material) - materials.begin();
     if (result.material == materials.size())
-      throw parameters.error(section + "/Material", "there is no such material", suggest_name(material, materials));
+      throw parameters.error(section + "/Material", "unknown material", suggest_name(material, materials));
     return result;
   }
 

@@ -80,7 +80,7 @@ namespace slipstick::scene
         {
           if (body.shape != Shape::rectangle)
             throw parameters.error("Decomposition/Method",
-                                   "cuts rectangles only, and body '" + body.name + "' is none",
+                                   "cuts rectangles only, but body '" + body.name + "' is not one",
                                    "set it to METIS or auto");
           if (body.boundary_refinements > 0 && !body.refined_boundaries.empty())
             throw parameters.error("Decomposition/Method",
@@ -103,10 +103,10 @@ namespace slipstick::scene
       const Algorithm algorithm = scene.solver.algorithm;
       if (algorithm == Algorithm::pcg && scene.has_contact())
         throw parameters.error("Solver/Algorithm",
-                               "solves linear scenes only, and this one has contact",
+                               "solves linear scenes only, but this one has contact",
                                "set it to auto");
       if ((algorithm == Algorithm::smalbe || algorithm == Algorithm::semismooth_newton) && !scene.has_contact())
-        throw parameters.error("Solver/Algorithm", "needs contact, and this scene has none", "set it to auto");
+        throw parameters.error("Solver/Algorithm", "needs contact, but this scene has none", "set it to auto");
       const auto preconditioner = scene.solver.dual.preconditioner;
       if (algorithm == Algorithm::smalbe && preconditioner != tfeti::Preconditioner::automatic &&
           preconditioner != tfeti::Preconditioner::none)
@@ -115,7 +115,7 @@ namespace slipstick::scene
                                "set it to auto, or Solver/Algorithm to semismooth newton");
     }
 
-    // Poisson's ratio above which standard elements of plane strain are too stiff by much (bulk over shear modulus 100).
+    // Poisson's ratio above which standard elements in plane strain are much too stiff (bulk over shear modulus 100).
     constexpr double locking_poisson_ratio = 0.495;
 
     template <int dim>
@@ -124,7 +124,7 @@ namespace slipstick::scene
       if (scene.discretization.element == ElementKind::nearly_incompressible &&
           scene.plane_state == PlaneState::plane_stress)
         throw parameters.error("Discretization/Element",
-                               "is for plane strain; nothing locks in plane stress",
+                               "is for plane strain; there is no locking in plane stress",
                                "set it to standard, or Plane state = plane strain");
     }
   } // namespace
@@ -148,7 +148,7 @@ namespace slipstick::scene
         if (material.poisson_ratio > locking_poisson_ratio)
           texts.push_back("warning: standard elements lock in plane strain with Poisson ratio " +
                           number_text(material.poisson_ratio) + " (Material " + material.name +
-                          "): displacements come out too small; set Discretization/Element = nearly incompressible");
+                          "): displacements will be too small; set Discretization/Element = nearly incompressible");
     return texts;
   }
 

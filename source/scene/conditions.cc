@@ -100,7 +100,7 @@ namespace slipstick::scene
     if (!boundary.empty())
       throw parameters.error(section + "/Boundary",
                              "stands beside a point",
-                             "set either Boundary, or Body and Point, and leave the other away");
+                             "set either Boundary, or Body and Point, and remove the other");
     parameters.require(section + "/Body", "set the body that the point belongs to");
     parameters.require(section + "/Point", "set the point of the body, for example: set Point = 0, 0");
     support.where.body = read_body(body, section + "/Body", parameters, scene.bodies);
@@ -127,20 +127,20 @@ namespace slipstick::scene
       {
         if (holds)
           throw parameters.error(section + "/Displacement normal",
-                                 "stands beside a displacement along an axis",
-                                 "set the others to free, or make a second support of them");
+                                 "cannot be combined with a displacement along an axis",
+                                 "set the others to free, or move them to a second support");
         if (support.point)
           throw parameters.error(section + "/Displacement normal",
-                                 "needs a boundary, and this is a point",
+                                 "needs a boundary, but this support is at a point",
                                  "set Displacement x or y, or a Boundary");
         support.normal = Field<dim>(normal, parameters.locate(section + "/Displacement normal"));
         holds          = true;
       }
     if (!holds)
       throw parameters.error(section,
-                             "holds nothing, every component is free",
+                             "holds nothing: every component is free",
                              "set Displacement x, y or normal to a number or formula, or take '" + name +
-                               "' out of the list Supports and leave its subsection away");
+                               "' out of the list Supports and remove its subsection");
     return support;
   }
 
@@ -179,9 +179,9 @@ namespace slipstick::scene
     result.where              = read_boundary(boundary, section + "/Boundary", parameters, scene.bodies);
     if (result.normal_stiffness == 0 && result.tangential_stiffness == 0)
       throw parameters.error(section,
-                             "holds nothing, both stiffnesses are 0",
+                             "holds nothing: both stiffnesses are 0",
                              "set Normal stiffness or Tangential stiffness, or take '" + name +
-                               "' out of the list Foundations and leave its subsection away");
+                               "' out of the list Foundations and remove its subsection");
     return result;
   }
 

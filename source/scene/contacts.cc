@@ -14,48 +14,59 @@ namespace slipstick::scene
 
     /// A formula whose value, where it is a number, is not negative.
     template <int dim>
-    Field<dim> not_negative(const std::string &text,
-                            const std::string &path,
-                            const std::string &remedy,
-                            const Parameters  &parameters)
+    std::optional<LawNumber<dim>> read_number(const LawParameter &parameter,
+                                              const std::string  &text,
+                                              const std::string  &path,
+                                              const Parameters   &parameters)
     {
+      if (text == parameter.default_text) // such as none
+        return {};
       const Field<dim> field(text, parameters.locate(path));
       if (field.is_constant() && field.value(dealii::Point<dim>(), 1) < 0)
-        throw parameters.error(path, "is negative", remedy);
-      return field;
+        throw parameters.error(path,
+                               "is negative",
+                               "give a number >= 0" + (parameter.unit == "-" ? "" : " [" + parameter.unit + "]"));
+      return LawNumber<dim>{parameter.name, parameter.unit, field};
     }
   } // namespace
 
   template <int dim>
   void ContactLawSection<dim>::declare(dealii::ParameterHandler &prm)
   {
-    add_choice(
-      prm,
-      "Law",
-      law,
-      Choices<ContactLaw>{{"bonded", ContactLaw::bonded},
-                          {"frictionless", ContactLaw::frictionless},
-                          {"Tresca", ContactLaw::tresca},
-                          {"Coulomb", ContactLaw::coulomb}},
-      "bonded (no relative displacement, tension too; a gap stays as it is), frictionless, Tresca friction with a "
-      "given slip bound, or Coulomb friction");
-    add_text(prm,
-             "Slip bound",
-             slip_bound,
-             "MPa",
-             field_format + ", >= 0",
-             "Tresca: largest tangential traction; must be set");
+    std::vector<std::string>  names, meanings;
+    std::vector<LawParameter> parameters; // of all laws, with what they mean in each
+    for (const auto &kind : law_kinds<dim>())
+      {
+        names.push_back(kind.name);
+        meanings.push_back(kind.name + (kind.meaning.empty() ? "" : " (" + kind.meaning + ")"));
+        for (const LawParameter &parameter : kind.parameters)
+          {
+            const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const auto &other) {
+              return other.name == parameter.name;
+            });
+            if (found == parameters.end())
+              parameters.push_back(parameter);
+            else
+              found->meaning += "; " + parameter.meaning;
+          }
+      }
+    add_word(prm, "Law", law, names, join_names(meanings), [this](const std::string &word) { law = word; });
+    for (const LawParameter &parameter : parameters)
+      {
+        std::string &text = numbers[parameter.name];
+        text              = parameter.default_text.empty() ? "0" : parameter.default_text;
+        add_text(prm,
+                 parameter.name,
+                 text,
+                 parameter.unit,
+                 (parameter.default_text.empty() ? "" : parameter.default_text + ", or ") + field_format + ", >= 0",
+                 parameter.meaning);
+      }
     add_choice(prm,
                "Slip bound acts on",
                only_closed,
                Choices<bool>{{"boundary", false}, {"contact", true}},
                "Tresca: on the whole slave boundary, open nodes included, or where it is in contact");
-    add_text(prm,
-             "Friction coefficient",
-             friction_coefficient,
-             "-",
-             field_format + ", >= 0",
-             "Coulomb: tangential traction over pressure when slipping; must be set");
     add_text(prm, "Offset", offset, "mm", field_format, "added to the gap; negative: interference of a press fit");
   }
 
@@ -64,17 +75,21 @@ namespace slipstick::scene
                                     const std::string &section,
                                     ContactPair<dim>  &pair) const
   {
-    pair.law         = law;
-    pair.only_closed = only_closed;
-    if (law == ContactLaw::tresca)
-      parameters.require(section + "/Slip bound", "set it in MPa, or set Law = frictionless");
-    if (law == ContactLaw::coulomb)
-      parameters.require(section + "/Friction coefficient", "set it, or set Law = frictionless");
-    pair.slip_bound =
-      not_negative<dim>(slip_bound, section + "/Slip bound", "give a slip bound >= 0 [MPa]", parameters);
-    pair.friction_coefficient =
-      not_negative<dim>(friction_coefficient, section + "/Friction coefficient", "give a coefficient >= 0", parameters);
-    pair.offset = Field<dim>(offset, parameters.locate(section + "/Offset"));
+    for (const auto &kind : law_kinds<dim>())
+      {
+        std::vector<std::optional<LawNumber<dim>>> values;
+        for (const LawParameter &parameter : kind.parameters)
+          {
+            const std::string path = section + "/" + parameter.name;
+            if (kind.name == law && !parameter.remedy.empty())
+              parameters.require(path, parameter.remedy);
+            values.push_back(read_number<dim>(parameter, numbers.at(parameter.name), path, parameters));
+          }
+        if (kind.name == law)
+          pair.law = kind.law(values);
+      }
+    pair.law.acts_when_open = pair.law.acts_when_open && !only_closed;
+    pair.offset             = Field<dim>(offset, parameters.locate(section + "/Offset"));
   }
 
   template <int dim>
@@ -104,13 +119,13 @@ namespace slipstick::scene
              gap,
              "mm",
              "geometry, " + field_format,
-             "initial distance along the normal: that of the geometry, or given in its place");
+             "initial distance along the normal: that of the geometry, or a given one instead");
     add_text(prm,
              "Reach",
              reach,
              "mm",
              "auto, or a number > 0",
-             "what is farther apart along the normal is not paired; auto: two bodies from distance and mesh, obstacles "
+             "nodes farther apart along the normal are not paired; auto: two bodies from distance and mesh, obstacles "
              "without limit");
     add_choice(prm,
                "Discretization",
@@ -118,7 +133,7 @@ namespace slipstick::scene
                Choices<ContactDiscretization>{{"auto", ContactDiscretization::automatic},
                                               {"node to node", ContactDiscretization::node_to_node},
                                               {"mortar", ContactDiscretization::mortar}},
-               "two bodies: auto is node to node where all nodes meet a node, else mortar");
+               "two bodies: auto is node to node where every slave node has a master node opposite, otherwise mortar");
     prm.leave_subsection();
   }
 
@@ -136,14 +151,14 @@ namespace slipstick::scene
       {
         pair.obstacle = std::find(obstacles.begin(), obstacles.end(), master) - obstacles.begin();
         if (pair.obstacle == obstacles.size())
-          throw parameters.error(path, "there is no such obstacle", suggest_name(master, obstacles));
+          throw parameters.error(path, "unknown obstacle", suggest_name(master, obstacles));
         return;
       }
     pair.master = read_boundary(master, path, parameters, scene.bodies);
     if (pair.master->body == pair.slave.body &&
         (pair.master->boundary == pair.slave.boundary || pair.master->boundary == "*" || pair.slave.boundary == "*"))
       throw parameters.error(path,
-                             "is a part of the slave boundary: no boundary can be in contact with itself",
+                             "is part of the slave boundary: a boundary cannot be in contact with itself",
                              "choose two different boundaries of body '" + scene.bodies[pair.slave.body].name + "'");
   }
 

@@ -104,7 +104,7 @@ namespace slipstick::scene
   bool Interval::contains(const double value) const
   {
     const bool may_be_tiny =
-      !(lower_open && lower == 0) || value >= smallest_number; // as coordinates that rounding left are
+      !(lower_open && lower == 0) || value >= smallest_number; // such as coordinates that are zero but for rounding
     return is_usable(value) && may_be_tiny && (lower_open ? value > lower : value >= lower) &&
            (upper_open ? value < upper : value <= upper);
   }

@@ -92,7 +92,9 @@ namespace slipstick::scene
         parser.SetExpr(formula);
         parser.Eval();
         if (parser.GetNumResults() != 1)
-          throw formula_error(where, formula, "more than one value (the decimal sign is the point, not the comma)");
+          throw formula_error(where,
+                              formula,
+                              "more than one value (the decimal separator is the point, not the comma)");
       }
     catch (const mu::Parser::exception_type &error)
       {

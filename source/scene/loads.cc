@@ -68,7 +68,7 @@ namespace slipstick::scene
       return std::all_of(texts.begin(), texts.end(), is_zero);
     }
 
-    /// A load without any value is a mistake: a name misread, a sign lost.
+    /// A load whose values are all zero is a mistake, such as a misspelt name or a lost value.
     void require_load(const bool         is_none,
                       const std::string &section,
                       const std::string &what,
@@ -78,9 +78,9 @@ namespace slipstick::scene
     {
       if (is_none)
         throw parameters.error(section,
-                               "loads nothing, all its values are 0",
+                               "is no load: all its values are 0",
                                "set " + what + ", or take '" + name + "' out of the list " + list +
-                                 " and leave its subsection away");
+                                 " and remove its subsection");
     }
   } // namespace
 
@@ -291,8 +291,8 @@ namespace slipstick::scene
   void TemperatureSection<dim>::declare(dealii::ParameterHandler &prm)
   {
     prm.enter_subsection("Temperature " + name);
-    add_text(prm, "Bodies", bodies, "", bodies_format, "bodies that it changes in");
-    add_text(prm, "Change", change, "K", field_format, "change against the state without stress; must be set");
+    add_text(prm, "Bodies", bodies, "", bodies_format, "bodies whose temperature changes");
+    add_text(prm, "Change", change, "K", field_format, "change from the stress-free state; must be set");
     prm.leave_subsection();
   }
 
@@ -310,7 +310,7 @@ namespace slipstick::scene
     });
     if (!expands)
       throw parameters.error(section,
-                             "changes nothing: Thermal expansion is 0 in the material of every body that it names",
+                             "has no effect: Thermal expansion is 0 in the material of every body that it names",
                              "set Thermal expansion (steel: 1.2e-5 1/K) in their materials");
     return temperature;
   }

@@ -123,12 +123,13 @@ namespace slipstick::scene
               "",
               Interval(),
               "half plane: normal of its border, towards the bodies, of any length");
-    add_text(prm,
-             "Points",
-             points,
-             "mm",
-             "x y; x y; ...",
-             "polyline: at least two points; ends go on straight unless the last point is the first; must be set");
+    add_text(
+      prm,
+      "Points",
+      points,
+      "mm",
+      "x y; x y; ...",
+      "polyline: at least two points; its ends are extended straight unless the last point is the first; must be set");
     add_text(prm,
              "Height",
              height,
@@ -182,7 +183,7 @@ namespace slipstick::scene
       if (const auto value = parameters.value(section + "/" + other);
           value && trim(*value) != defaults.at(other) &&
           std::find(fitting.begin(), fitting.end(), other) == fitting.end())
-        throw parameters.error(section + "/" + other, "means nothing for this shape", "leave it away, or change Shape");
+        throw parameters.error(section + "/" + other, "has no meaning for this shape", "remove it, or change Shape");
     return result;
   }
 

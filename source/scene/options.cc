@@ -1,3 +1,4 @@
+#include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/sections.h>
@@ -62,7 +63,7 @@ namespace slipstick::scene
                 smalbe.max_outer_iterations,
                 1,
                 max_iterations,
-                "multiplier updates before giving up");
+                "largest number of multiplier updates");
       add_count(prm,
                 "Max inner iterations",
                 smalbe.inner.max_iterations,
@@ -112,8 +113,8 @@ namespace slipstick::scene
                  Choices<DualOperatorKind>{{"auto", DualOperatorKind::automatic},
                                            {"explicit", DualOperatorKind::explicit_blocks},
                                            {"implicit", DualOperatorKind::implicit}},
-                 "F as dense blocks (explicit) or by a forward and backward solve per multiplication (implicit); auto: "
-                 "explicit where the blocks fit in the memory and pay");
+                 "F by dense blocks (explicit) or by a forward and backward solve per multiplication (implicit); auto: "
+                 "explicit where the blocks fit into memory and save time");
       const Choices<Precision> precisions{{"double", Precision::double_precision},
                                           {"single", Precision::single_precision}};
       add_choice(prm,
@@ -199,12 +200,12 @@ namespace slipstick::scene
                          {"smalbe", Algorithm::smalbe},
                          {"semismooth newton", Algorithm::semismooth_newton},
                          {"pcg", Algorithm::pcg}},
-      "smalbe, semismooth newton: scenes with contact; pcg: linear scenes; auto: semismooth newton or pcg, as fits");
+      "smalbe, semismooth newton: scenes with contact; pcg: linear scenes; auto: semismooth newton or pcg, by the scene");
     declare_tolerance(prm, solver);
     add_flag(prm,
              "Prune contact",
              solver.prune_contact,
-             "leave contact nodes that are far apart without multipliers, unless the solution makes them penetrate");
+             "no multipliers for contact nodes that are far apart, unless the solution makes them penetrate");
     declare_dual(prm, solver.dual);
     declare_smalbe(prm, solver.smalbe);
     prm.enter_subsection("PCG");
@@ -221,10 +222,45 @@ namespace slipstick::scene
                friction.tolerance,
                "-",
                Interval::inside(0, 1),
-               "relative change of the slip bounds at which they count as found (Coulomb; Tresca where closed)");
+               "relative change of the slip bounds at which their iteration ends (Coulomb; Tresca where closed)");
     add_count(prm, "Max iterations", friction.max_iterations, 1, max_iterations, "updates of the slip bounds");
     prm.leave_subsection();
   }
+
+  namespace
+  {
+    // Load steps of one range: more are a slip of the pen.
+    constexpr double most_steps = 100000;
+
+    /// The number that @p text spells; none if it is not one, or not finite.
+    std::vector<double> single_number(const std::string &text)
+    {
+      const auto number = parse_number(text);
+      return number && std::isfinite(*number) ? std::vector<double>{*number} : std::vector<double>();
+    }
+
+    /// "FIRST:STEP:LAST", of which LAST is met when a whole number of steps leads there within rounding; none if it is not
+    /// a range of increasing numbers.
+    std::vector<double> range(const std::string &text)
+    {
+      std::vector<double> ends;
+      for (const std::string &part : split_list(text, ':'))
+        {
+          const auto number = single_number(part);
+          ends.insert(ends.end(), number.begin(), number.end());
+        }
+      if (ends.size() != 3 || std::count(text.begin(), text.end(), ':') != 2 || !(ends[1] > 0) || ends[2] < ends[0])
+        return {};
+      const double n_steps = (ends[2] - ends[0]) / ends[1], whole = std::round(n_steps);
+      const bool   meets = std::abs(n_steps - whole) < 1e-9 * std::max(1., whole);
+      if (!(n_steps < most_steps))
+        return {};
+      std::vector<double> numbers;
+      for (unsigned int k = 0; k <= (meets ? whole : std::floor(n_steps)); ++k) // 0.3, not 0.30000000000000004
+        numbers.push_back(meets && k == whole ? ends[2] : parse_number(format("%.12g", ends[0] + k * ends[1])).value());
+      return numbers;
+    }
+  } // namespace
 
   void declare_load_steps(dealii::ParameterHandler &prm, std::vector<double> &factors)
   {
@@ -232,10 +268,10 @@ namespace slipstick::scene
       std::vector<double> numbers;
       for (const std::string &part : split_list(text))
         {
-          const auto number = parse_number(part);
-          if (!number || !std::isfinite(*number))
+          const auto some = part.find(':') == std::string::npos ? single_number(part) : range(part);
+          if (some.empty())
             return std::vector<double>();
-          numbers.push_back(*number);
+          numbers.insert(numbers.end(), some.begin(), some.end());
         }
       return numbers;
     };
@@ -248,8 +284,8 @@ namespace slipstick::scene
       "Factors",
       text,
       "",
-      "load factors t of the steps, one after the other; slip is measured from the end of the step before",
-      "numbers separated by commas, rising",
+      "load factors t of the steps, in order; slip is measured from the end of the previous step",
+      "increasing numbers, separated by commas, or ranges FIRST:STEP:LAST such as 0:0.1:1",
       [parse](const std::string &list) {
         const auto numbers = parse(list);
         return !numbers.empty() &&

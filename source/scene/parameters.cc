@@ -3,6 +3,7 @@
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/listing.h>
 #include <slipstick/scene/parameters.h>
+#include <slipstick/scene/variables.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,7 +14,7 @@ namespace slipstick::scene
 {
   namespace
   {
-    // What stands for every body, or the whole outline, in the place of a name.
+    // Stands for every body, or the whole outline, instead of a name.
     const std::vector<std::string> reserved_names = {"all", "*"};
 
     /// "a/b/c" -> "a/b", "c"
@@ -148,7 +149,9 @@ namespace slipstick::scene
     : file(file_name)
     , kinds(named_kinds)
     , settings(read_settings(file_name, overrides))
-  {}
+  {
+    expand_variables(settings);
+  }
 
   const Setting *Parameters::find(const std::string &path) const
   {
@@ -164,6 +167,13 @@ namespace slipstick::scene
     return setting != nullptr && !setting->is_section;
   }
 
+  bool Parameters::has_section(const std::string &path) const
+  {
+    return std::any_of(settings.begin(), settings.end(), [&path](const Setting &setting) {
+      return setting.path == path || setting.path.compare(0, path.size() + 1, path + "/") == 0;
+    });
+  }
+
   std::optional<std::string> Parameters::value(const std::string &path) const
   {
     if (!is_set(path))
@@ -175,7 +185,7 @@ namespace slipstick::scene
   {
     for (const auto &path : {std::filesystem::path(file).parent_path() / name, std::filesystem::path(name)})
       {
-        std::error_code error; // a path that cannot be looked at is no file
+        std::error_code error; // a path that cannot be examined is not a file
         if (std::filesystem::is_regular_file(path, error))
           return std::filesystem::absolute(path).lexically_normal().string();
       }
@@ -210,8 +220,8 @@ namespace slipstick::scene
         name = collapse_blanks(name);
         if (name.empty() || name.find_first_of("/=") != std::string::npos)
           throw error(kind.list,
-                      "'" + name + "' is no valid name",
-                      "separate names by commas; use no / and no = in them");
+                      "'" + name + "' is not a valid name",
+                      "separate names by commas; names must not contain / or =");
         if (std::find(reserved_names.begin(), reserved_names.end(), name) != reserved_names.end())
           throw error(kind.list,
                       "'" + name + "' is reserved: where names may stand it means all of them",
@@ -256,10 +266,8 @@ namespace slipstick::scene
       for (const std::string &name : names(kind))
         {
           const std::string section = kind.kind + " " + name;
-          if (std::none_of(settings.begin(), settings.end(), [&section](const Setting &setting) {
-                return setting.path == section || setting.path.compare(0, section.size() + 1, section + "/") == 0;
-              }))
-            throw error(kind.list, "nothing describes '" + name + "'", "add a subsection " + section);
+          if (std::find(kind.known.begin(), kind.known.end(), name) == kind.known.end() && !has_section(section))
+            throw error(kind.list, "no subsection describes '" + name + "'", "add a subsection " + section);
         }
   }
 } // namespace slipstick::scene

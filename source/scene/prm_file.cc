@@ -16,7 +16,7 @@ namespace slipstick::scene
     constexpr unsigned int most_levels = 10;  // of subsections within each other, and of files that include others
     constexpr unsigned int most_files  = 100; // included in all: files that include others several times multiply
 
-    const std::string encoding_remedy = "save the file as UTF-8 (iconv -f latin1 -t utf-8), or leave the character out";
+    const std::string encoding_remedy = "save the file as UTF-8 (iconv -f latin1 -t utf-8), or remove the character";
 
     /// Names and values stand in files that must be UTF-8.
     void check_encoding(const std::string &text, const std::string &where)
@@ -131,7 +131,7 @@ namespace slipstick::scene
       if (stream.bad())
         throw InputError("'" + file + "' could not be read to its end, only " + std::to_string(n_lines) +
                            " lines of it",
-                         "look at the disk or the network that it is on");
+                         "check the disk or the network that it is on");
       read_line(trim(statement));
       if (!sections.empty())
         throw InputError(sections.back().second + ": subsection '" + sections.back().first + "' has no end",
@@ -152,7 +152,7 @@ namespace slipstick::scene
       else if (word == "include" || word == "INCLUDE")
         include(rest);
       else
-        throw InputError(where() + ": '" + line + "' is no statement",
+        throw InputError(where() + ": '" + line + "' is not a statement",
                          "start a line with one of set, subsection, end, include, #: " +
                            suggest_name(word, {"set", "subsection", "end", "include"}));
     }
@@ -166,7 +166,7 @@ namespace slipstick::scene
       const auto [place, is_new] = places.emplace(path(name), where());
       if (!is_new)
         throw InputError(where() + ": " + path(name) + " = '" + trim(text.substr(equals + 1)) +
-                           "' is set a second time (first: " + place->second + ")",
+                           "' is set twice (first: " + place->second + ")",
                          "keep one of the two lines");
       settings.push_back({path(name), trim(text.substr(equals + 1)), where(), false});
     }
@@ -175,11 +175,11 @@ namespace slipstick::scene
     {
       const std::string name = collapse_blanks(text);
       if (name.empty() || name.find_first_of("/=") != std::string::npos)
-        throw InputError(where() + ": 'subsection " + text + "' is no valid name of a subsection",
+        throw InputError(where() + ": 'subsection " + text + "' is not a valid name of a subsection",
                          "write: subsection NAME, without / and =");
       if (sections.size() >= most_levels)
         throw InputError(where() + ": subsection '" + name + "' is nested more than " + std::to_string(most_levels) +
-                           " deep",
+                           " levels deep",
                          "close every subsection with a line 'end'");
       settings.push_back({path(name), "", where(), true});
       sections.emplace_back(name, where());
@@ -198,7 +198,7 @@ namespace slipstick::scene
     {
       if (depth == most_levels)
         throw InputError(where() + ": include '" + text + "' is nested more than " + std::to_string(most_levels) +
-                           " deep",
+                           " levels deep",
                          "look for a file that includes itself");
       if (++n_files > most_files)
         throw InputError(where() + ": include '" + text + "' would be file number " + std::to_string(n_files) +
@@ -206,7 +206,7 @@ namespace slipstick::scene
                          "include at most " + std::to_string(most_files) +
                            " files; look for files that include others several times");
       if (!sections.empty())
-        throw InputError(where() + ": include '" + text + "' inside of subsection '" + sections.back().first + "'",
+        throw InputError(where() + ": include '" + text + "' inside subsection '" + sections.back().first + "'",
                          "include files at top level");
       const auto directory = std::filesystem::path(file).parent_path();
       Reader((directory / text).string(), where(), depth + 1, n_files, settings);
@@ -224,11 +224,11 @@ namespace slipstick::scene
         throw InputError("'" + where + "' has no '=' that separates name and value",
                          "write: --set 'Section/Sub/Name=value', for example --set 'Solver/Tolerance=1e-6'");
       if (static_cast<unsigned int>(std::count(path.begin(), path.end(), '/')) > most_levels)
-        throw InputError("'" + where + "' is nested more than " + std::to_string(most_levels) + " deep",
+        throw InputError("'" + where + "' is nested more than " + std::to_string(most_levels) + " levels deep",
                          "write: --set 'Section/Sub/Name=value', for example --set 'Solver/Tolerance=1e-6'");
       const std::string value = trim(text.substr(equals + 1));
       if (value.find_first_of("#\n") != std::string::npos || (!value.empty() && value.back() == '\\'))
-        throw InputError("'" + where + "': a value cannot hold '#' or a line break, nor end with a backslash",
+        throw InputError("'" + where + "': a value cannot contain '#' or a line break, or end with a backslash",
                          "leave these characters out");
       return {path, value, where, false};
     }

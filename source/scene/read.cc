@@ -3,6 +3,7 @@
 #include <slipstick/scene/checks.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/listing.h>
+#include <slipstick/scene/material_library.h>
 #include <slipstick/scene/read.h>
 #include <slipstick/scene/sections.h>
 
@@ -14,7 +15,7 @@ namespace slipstick::scene
   namespace
   {
     // The top level lists and the subsections whose names they declare.
-    const NamedKind material_kind    = {"Material", "Materials"};
+    const NamedKind material_kind    = {"Material", "Materials", library_names()};
     const NamedKind body_kind        = {"Body", "Bodies"};
     const NamedKind obstacle_kind    = {"Obstacle", "Obstacles"};
     const NamedKind support_kind     = {"Support", "Supports"};
@@ -57,6 +58,7 @@ namespace slipstick::scene
     private:
       void declare_top_level(const Names &names);
 
+      std::string                          variables;
       Scene<dim>                           options; // those concerns that refer to no names
       std::vector<MaterialSection>         materials;
       std::vector<BodySection<dim>>        bodies;
@@ -116,6 +118,12 @@ namespace slipstick::scene
     void SceneParameters<dim>::declare_top_level(const Names &names)
     {
       add_text(prm, "Title", options.title, "", "one line of text", "what the scene shows");
+      add_text(prm,
+               "Variables",
+               variables,
+               "",
+               "NAME = NUMBER; NAME = NUMBER; ...",
+               "numbers that other values use as {NAME} or {10 - NAME/2}; later ones may use earlier ones");
       add_choice(prm,
                  "Plane state",
                  options.plane_state,
@@ -129,7 +137,7 @@ namespace slipstick::scene
                                    {"engineering", Accuracy::engineering},
                                    {"reference", Accuracy::reference}},
                  "preset of Tolerance, Operator precision and Prune contact of the solver, Friction/Tolerance and "
-                 "Discretization/Degree; each of them that the scene sets itself wins");
+                 "Discretization/Degree; values that the scene sets take precedence");
       for (const NamedKind &kind : named_kinds)
         add_entry(
           prm,
@@ -201,6 +209,7 @@ namespace slipstick::scene
 
     SceneParameters<2> declared(names);
     apply_accuracy(parameters, declared.prm);
+    apply_library(parameters, names.at(material_kind.list), declared.prm);
     parameters.apply(declared.prm);
     Scene<2> scene = declared.read(parameters);
     scene.name     = std::filesystem::path(file).stem().string();

@@ -20,7 +20,7 @@ namespace slipstick::tfeti
 
     const std::string       name_of_matrix   = "the coarse matrix G G'";
     const Cholesky::Failure of_coarse_matrix = {" is not positive definite",
-                                                "some body is free to move: add a support or a contact that holds it"};
+                                                "a body is free to move: add a support or a contact that holds it"};
 
     /// The entries of all ranks on every rank, in the order of the ranks.
     CoarseSolver::Entries gather(const CoarseSolver::Entries &entries, const MPI_Comm comm)

@@ -33,11 +33,11 @@ namespace slipstick::tfeti
   DualOperator::DualOperator(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                              const std::vector<LocalGluing>                      &gluing,
                              const Partitioner                                   &rows,
-                             std::vector<PackedSymmetric>                         dense_blocks)
+                             const std::vector<PackedSymmetric>                  *dense_blocks)
     : subdomains(subdomains)
     , gluing(gluing)
     , rows(rows)
-    , blocks(std::move(dense_blocks))
+    , blocks(dense_blocks)
     , source(rows)
     , target(rows)
   {}
@@ -89,7 +89,7 @@ namespace slipstick::tfeti
   {
     if (is_explicit())
       apply(x, y, [this](const unsigned int p, const Eigen::VectorXd &force, Eigen::VectorXd &at_touched) {
-        blocks[p].multiply(force, at_touched);
+        (*blocks)[p].multiply(force, at_touched);
       });
     else
       apply_by_solves(x, y);
@@ -118,8 +118,9 @@ namespace slipstick::tfeti
   std::size_t DualOperator::block_bytes() const
   {
     std::size_t n = 0;
-    for (const auto &block : blocks)
-      n += block.bytes();
+    if (blocks)
+      for (const auto &block : *blocks)
+        n += block.bytes();
     return n;
   }
 } // namespace slipstick::tfeti

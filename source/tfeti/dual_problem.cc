@@ -53,48 +53,50 @@ namespace slipstick::tfeti
                            const DualOptions              &options,
                            const std::vector<std::string> &body_names,
                            const MPI_Comm                  comm)
+    : DualProblem(std::make_shared<Subdomains>(std::move(matrices)), std::move(constraints), options, body_names, comm)
+  {}
+
+  DualProblem::DualProblem(std::shared_ptr<Subdomains>     subdomains,
+                           Constraints                     constraints,
+                           const DualOptions              &options,
+                           const std::vector<std::string> &body_names,
+                           const MPI_Comm                  comm)
     : comm(comm)
     , reduce(comm)
     , rows(std::move(constraints))
     , owned_rows(std::make_shared<dealii::Utilities::MPI::Partitioner>(rows.rows->locally_owned_range(), comm))
     , names_of_bodies(body_names)
+    , parts(std::move(subdomains))
+    , systems(parts->systems)
   {
-    const bool explicit_blocks     = is_explicit(options, matrices, rows, comm);
-    const bool with_trailing_block = explicit_blocks || options.preconditioner == Preconditioner::dirichlet;
-    const auto session             = std::make_shared<CholmodSession>();
-    std::vector<PackedSymmetric> inverses, schur_complements;
-    std::vector<Eigen::VectorXd> u; // K+ f
+    const bool   explicit_blocks = is_explicit(options, parts->n_unknowns(), rows, comm);
+    const double seconds_before  = parts->factorization_seconds();
     collectively(comm, [&] {
-      for (unsigned int p = 0; p < matrices.size(); ++p)
+      std::vector<std::vector<unsigned int>> touched;
+      for (const auto &block : rows.blocks)
         {
-          const double start    = MPI_Wtime();
-          auto [local, touched] = LocalGluing::make(rows.blocks[p]);
+          auto [local, unknowns] = LocalGluing::make(block);
           gluing.push_back(std::move(local));
-          systems.push_back(std::make_unique<SubdomainSystem>(session,
-                                                              std::move(matrices[p]),
-                                                              std::move(touched),
-                                                              with_trailing_block));
-          factorization_time += MPI_Wtime() - start;
-          SubdomainSystem &system = *systems.back();
-          if (explicit_blocks)
-            inverses.push_back(system.pseudo_inverse_block(options.operator_precision));
-          if (options.preconditioner == Preconditioner::dirichlet)
-            schur_complements.push_back(system.schur_complement(options.preconditioner_precision));
-          u.push_back(system.load());
-          system.apply_pseudo_inverse(u.back());
-          if (explicit_blocks && !options.keeps_factors)
-            system.release(); // one factor at a time
+          touched.push_back(std::move(unknowns));
         }
-      session->forget_analyses();
+      parts->prepare(touched, explicit_blocks, options);
     });
-    F      = std::make_unique<DualOperator>(systems, gluing, rows.rows, std::move(inverses));
+    factorization_time = parts->factorization_seconds() - seconds_before;
+    F      = std::make_unique<DualOperator>(systems, gluing, rows.rows, explicit_blocks ? &parts->inverses : nullptr);
     bodies = std::make_unique<BodyMotions>(systems, gluing, rows, body_names.size(), comm);
     require_support(bodies->free({}), body_names);
+    held_by_contact = std::make_unique<BodyEquilibrium>(*bodies, rows, comm);
     if (options.preconditioner == Preconditioner::lumped || options.preconditioner == Preconditioner::dirichlet)
       {
-        preconditioner =
-          std::make_unique<RowPreconditioner>(systems, gluing, *F, rows.rows, comm, std::move(schur_complements));
-        metric = preconditioner->weights().stiffnesses();
+        preconditioner = std::make_unique<RowPreconditioner>(systems,
+                                                             gluing,
+                                                             *F,
+                                                             rows.rows,
+                                                             comm,
+                                                             options.preconditioner == Preconditioner::dirichlet
+                                                               ? &parts->schur_complements
+                                                               : nullptr);
+        metric         = preconditioner->weights().stiffnesses();
         const double least =
           dealii::Utilities::MPI::min(metric.empty() ? qp::infinity : *std::min_element(metric.begin(), metric.end()),
                                       comm);
@@ -110,40 +112,27 @@ namespace slipstick::tfeti
     projector = std::make_unique<Projector>(systems, gluing, *F, rows.rows, has_no_bounds, comm);
 
     is_single = explicit_blocks && options.operator_precision == Precision::single_precision;
-    set_dual_load(u);
+    set_dual_load();
     norm_PFP              = lanczos(options);
     setup_multiplications = F->n_applications();
   }
 
   void DualProblem::set_step(std::vector<Eigen::VectorXd> loads, std::vector<double> c)
   {
-    for (unsigned int p = 0; p < systems.size(); ++p)
-      systems[p]->set_load(std::move(loads[p]));
-    rows.c = std::move(c);
-    update_dual_load();
+    parts->set_loads(std::move(loads));
+    set_right_hand_side(std::move(c));
   }
 
   void DualProblem::set_right_hand_side(std::vector<double> c)
   {
     rows.c = std::move(c);
-    update_dual_load();
+    set_dual_load();
   }
 
-  // d = B K+ f - c
-  void DualProblem::update_dual_load()
+  // d = B K+ f - c, and e
+  void DualProblem::set_dual_load()
   {
-    std::vector<Eigen::VectorXd> u;
-    for (const auto &system : systems)
-      {
-        u.push_back(system->load());
-        system->apply_pseudo_inverse(u.back());
-      }
-    set_dual_load(u);
-  }
-
-  void DualProblem::set_dual_load(const std::vector<Eigen::VectorXd> &u)
-  {
-    dual_load = jumps(u);
+    dual_load = jumps(parts->unconstrained());
     for (unsigned int r = 0; r < rows.c.size(); ++r)
       dual_load.local_element(r) -= rows.c[r];
     correction = zero();
@@ -154,6 +143,8 @@ namespace slipstick::tfeti
         resultants.conservativeResize(resultants.size() + part.size());
         resultants.tail(part.size()) = part;
       }
+    if (!held_by_contact->empty())
+      held_by_contact->set_loads(bodies->loads());
   }
 
   double DualProblem::refine(const DistributedVector &x)
@@ -251,7 +242,7 @@ namespace slipstick::tfeti
   {
     std::optional<RowPreconditioner> lumped;
     if (!preconditioner)
-      lumped.emplace(systems, gluing, *F, rows.rows, comm, std::vector<PackedSymmetric>());
+      lumped.emplace(systems, gluing, *F, rows.rows, comm, nullptr);
     const RowPreconditioner &M        = preconditioner ? *preconditioner : *lumped;
     const auto               energies = M.energies(RowWeights::Inverse(M.weights(), held), r);
     const std::size_t        n_bodies = names_of_bodies.size();
@@ -314,10 +305,10 @@ namespace slipstick::tfeti
     return y;
   }
 
-  bool DualProblem::hold(const std::vector<RigidMotion> &loose,
-                         const std::vector<bool>        &is_candidate,
-                         const std::vector<double>      &scale,
-                         std::vector<bool>              &free) const
+  bool DualProblem::hold_by(const std::vector<RigidMotion> &loose,
+                            const std::vector<bool>        &is_candidate,
+                            const std::vector<double>      &scale,
+                            std::vector<bool>              &free) const
   {
     const Eigen::MatrixXd            own = bodies->jumps(loose);
     std::vector<std::vector<double>> candidates;
@@ -335,14 +326,14 @@ namespace slipstick::tfeti
     for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
       for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
         all.emplace(labels_of[rank][i], shares_of[rank][i]);
-    if (all.empty()) // Eigen's decomposition of no columns reads what is not there
+    if (all.empty()) // Eigen's decomposition of a matrix without columns reads out of bounds
       return false;
     Eigen::MatrixXd shares(loose.size(), all.size());
     unsigned int    column = 0;
     for (const auto &candidate : all)
       shares.col(column++) = Eigen::Map<const Eigen::VectorXd>(candidate.second.data(), loose.size());
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted(shares);
-    // of unit motions: shares that are all rounding hold nothing
+    // of unit motions; shares that are only rounding hold nothing
     pivoted.setThreshold(least_hold * std::max(1., 1 / std::max(pivoted.maxPivot(), least_hold)));
     if (pivoted.rank() < static_cast<Eigen::Index>(loose.size()))
       return false;
@@ -364,13 +355,13 @@ namespace slipstick::tfeti
     std::vector<bool>         is_candidate(free.size());
     for (unsigned int r = 0; r < free.size(); ++r)
       is_candidate[r] = !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
-    if (hold(loose, is_candidate, equal, free))
+    if (hold_by(loose, is_candidate, equal, free))
       return true;
     if (!keeps_still || plainest(loose).work > 0)
       require_support(loose, names_of_bodies);
     for (unsigned int r = 0; r < free.size(); ++r)
       is_candidate[r] = !free[r];
-    if (!hold(loose, is_candidate, equal, free))
+    if (!hold_by(loose, is_candidate, equal, free))
       require_support(loose, names_of_bodies);
     return false;
   }
@@ -396,7 +387,7 @@ namespace slipstick::tfeti
       u[p] -= bodies->displacements(p, amplitudes);
   }
 
-  // Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of what is.
+  // Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of the violations.
   void DualProblem::slide_apart(const std::vector<RigidMotion> &loose,
                                 const std::vector<bool>        &free,
                                 const DistributedVector        &x,

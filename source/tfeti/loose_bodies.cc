@@ -12,6 +12,8 @@ namespace slipstick::tfeti
   {
     // Motions that free rows resist by less than this part of the best held one count as weakly held.
     constexpr double weak_resistance = 1e-3;
+    // Gaps below this part of the largest count alike.
+    constexpr double least_gap = 1e-6;
     // Rows with one bound resist by this times all two-sided ones and the loads.
     constexpr double barrier = 10;
     // |t| is smoothed to sqrt(t^2 + eps^2), eps from the largest |g| down by this factor ...
@@ -68,7 +70,8 @@ namespace slipstick::tfeti
       Eigen::VectorXd motion() const
       {
         Eigen::VectorXd a = Eigen::VectorXd::Zero(loads.size());
-        for (double eps = largest; std::isfinite(largest) && eps > least_smoothing * largest; eps *= smoothing_reduction)
+        for (double eps = largest; std::isfinite(largest) && eps > least_smoothing * largest;
+             eps *= smoothing_reduction)
           for (unsigned int k = 0; k < max_newton_steps; ++k)
             {
               Eigen::VectorXd       slope;
@@ -143,53 +146,36 @@ namespace slipstick::tfeti
     }
   } // namespace
 
-  DualProblem::Settled DualProblem::settle(const std::vector<bool>   &free,
-                                           const std::vector<double> &capacity,
-                                           const DistributedVector   &x,
-                                           const DistributedVector   &g,
-                                           const bool                 is_weak) const
+  std::vector<bool> DualProblem::hold(const std::vector<bool>   &free,
+                                      const std::vector<double> &gaps,
+                                      const bool                 well) const
   {
-    Settled    result{free, zero(), false};
-    const auto loose = bodies->free(free, is_weak ? weak_resistance : BodyMotions::rounding_of_resistance);
+    std::vector<bool> result = free;
+    const auto        loose  = bodies->free(free, well ? weak_resistance : BodyMotions::rounding_of_resistance);
     if (loose.empty())
       return result;
-    result.is_loose           = true;
-    const Eigen::MatrixXd own = bodies->jumps(loose);
-    const std::size_t     n   = loose.size();
-
-    std::vector<std::vector<double>> numbers; // g, capacity, share
-    std::vector<std::uint64_t>       labels;
-    Eigen::VectorXd                  loads = Eigen::VectorXd::Zero(n);
-    for (unsigned int r = 0; r < free.size(); ++r)
-      if (!free[r])
-        {
-          loads += x.local_element(r) * own.row(r).transpose();
-          if (capacity[r] < 0 || own.row(r).isZero(0.))
-            continue;
-          numbers.push_back({g.local_element(r), capacity[r]});
-          for (std::size_t m = 0; m < n; ++m)
-            numbers.back().push_back(own(r, m));
-          labels.push_back(rows.label[r]);
-        }
-    MPI_Allreduce(MPI_IN_PLACE, loads.data(), n, MPI_DOUBLE, MPI_SUM, comm);
-    const auto            in_order = gathered(labels, numbers, comm);
-    const Eigen::VectorXd a        = Settling(in_order, loads).motion();
-
-    double typical = 0;
-    for (const LooseRow &row : in_order)
-      typical = std::max(typical, std::abs(row.g + row.share.dot(a)));
+    const double largest =
+      dealii::Utilities::MPI::max(gaps.empty() ? 0. : *std::max_element(gaps.begin(), gaps.end()), comm);
     std::vector<bool>   is_candidate(free.size());
     std::vector<double> scale(free.size(), 1.);
     for (unsigned int r = 0; r < free.size(); ++r)
-      if (!free[r])
-        {
-          result.shift.local_element(r) = own.row(r).dot(a);
-          is_candidate[r]               = capacity[r] >= 0;
-          const double rest             = std::abs(g.local_element(r) + result.shift.local_element(r));
-          scale[r]                      = 1 / (1e-6 + (typical > 0 ? rest / typical : 0.));
-        }
-    hold(loose, is_candidate, scale, result.free);
+      {
+        is_candidate[r] = !free[r];
+        scale[r]        = 1 / (least_gap + (largest > 0 ? gaps[r] / largest : 0.));
+      }
+    hold_by(loose, is_candidate, scale, result);
     return result;
+  }
+
+  void DualProblem::balance_bodies(const std::vector<double>                  &stiffness,
+                                   const qp::AdmissibleSet<DistributedVector> &bounds,
+                                   std::vector<double>                        &moved) const
+  {
+    if (held_by_contact->empty())
+      return;
+    const auto jumps = held_by_contact->shift(moved, stiffness, bounds);
+    for (std::size_t r = 0; r < moved.size(); ++r)
+      moved[r] -= stiffness[r] * jumps[r];
   }
 
   std::optional<DualProblem::Overload> DualProblem::overload(const std::vector<bool>   &free,
@@ -220,7 +206,7 @@ namespace slipstick::tfeti
       return {};
     const Settling        settling(all, loads);
     const Eigen::VectorXd a = settling.motion();
-    if (!(a.norm() > 0))
+    if (!a.allFinite() || a.isZero(0.))
       return {};
     const double held = settling.held_part(a);
     if (!(held < 1))

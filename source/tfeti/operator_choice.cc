@@ -65,18 +65,18 @@ namespace slipstick::tfeti
     return std::numeric_limits<std::size_t>::max();
   }
 
-  bool is_explicit(const DualOptions                    &options,
-                   const std::vector<SubdomainMatrices> &matrices,
-                   const Constraints                    &constraints,
-                   const MPI_Comm                        comm)
+  bool is_explicit(const DualOptions               &options,
+                   const std::vector<unsigned int> &n_unknowns,
+                   const Constraints               &constraints,
+                   const MPI_Comm                   comm)
   {
     if (options.dual_operator != DualOperatorKind::automatic)
       return options.dual_operator == DualOperatorKind::explicit_blocks;
     std::size_t bytes = 0;
     double      gain  = 0;
-    for (unsigned int p = 0; p < matrices.size(); ++p)
+    for (unsigned int p = 0; p < n_unknowns.size(); ++p)
       {
-        const auto estimate = estimate_block(matrices[p].load.size(), n_touched(constraints.blocks[p]), options);
+        const auto estimate = estimate_block(n_unknowns[p], n_touched(constraints.blocks[p]), options);
         bytes += estimate.bytes;
         gain += expected_multiplications * estimate.saving - estimate.setup;
       }

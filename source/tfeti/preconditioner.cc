@@ -7,11 +7,11 @@ namespace slipstick::tfeti
                                        const DualOperator                                  &F,
                                        const Partitioner                                   &rows,
                                        const MPI_Comm                                       comm,
-                                       std::vector<PackedSymmetric>                         blocks_)
+                                       const std::vector<PackedSymmetric>                  *blocks_)
     : subdomains(subdomains_)
     , scatter_gather(F)
     , row_weights(subdomains, gluing, rows, comm)
-    , blocks(std::move(blocks_))
+    , blocks(blocks_)
     , source(rows)
     , target(rows)
   {
@@ -63,9 +63,9 @@ namespace slipstick::tfeti
 
   void RowPreconditioner::multiply(const unsigned int p, const Eigen::VectorXd &move, Eigen::VectorXd &force) const
   {
-    if (blocks.empty())
+    if (!blocks)
       force = subdomains[p]->apply_touched_stiffness(move);
     else
-      blocks[p].multiply(move, force);
+      (*blocks)[p].multiply(move, force);
   }
 } // namespace slipstick::tfeti

@@ -18,7 +18,7 @@ namespace
   bool opens_regions = false;
 }
 
-// In place of libgomp's. CHOLMOD opens thousands of parallel regions a factorisation, each of which ends in a system call,
+// Replaces the one of libgomp. CHOLMOD opens thousands of parallel regions a factorisation, each of which ends in a system call,
 // of one thread too: a seventh of the time of factors of 5000 unknowns (perf). Here a region is a call.
 extern "C" void GOMP_parallel(void (*body)(void *), void *data, unsigned int n_threads, unsigned int flags)
 {

@@ -19,6 +19,8 @@ namespace slipstick::tfeti
     constexpr double least_work = 1e-9;
     // Rows are moved by a translation when that gives more than this part of what it gives with one body.
     constexpr double rounding_of_translation = 1e-9;
+    // Resultants below this part of the sum of magnitudes are rounding of none.
+    constexpr double rounding_of_loads = 1e-13;
     // Coordinates below this part of a body's size are zero.
     constexpr double negligible_coordinate = 1e-4;
 
@@ -50,7 +52,7 @@ namespace slipstick::tfeti
       return frames;
     }
 
-    /// Share of one subdomain in what a row sees of its body's motions.
+    /// Contribution of one subdomain to the jumps of a row under the motions of its body.
     struct RowPart
     {
       std::uint64_t       row  = 0; // global
@@ -179,17 +181,27 @@ namespace slipstick::tfeti
         motions.push_back({eigen.eigenvectors().col(i), 0., frames});
     if (motions.empty()) // as nearly always: the loads are not asked
       return motions;
-    Eigen::VectorXd load = Eigen::VectorXd::Zero(n_motions);
-    for (const auto &subdomain : subdomains)
-      load.segment(subdomain->body() * motions_of_body, motions_of_body) +=
-        subdomain->body_modes().transpose() * (subdomain->kernel().transpose() * subdomain->load());
-    MPI_Allreduce(MPI_IN_PLACE, load.data(), load.size(), MPI_DOUBLE, MPI_SUM, comm);
+    const Eigen::VectorXd load = loads();
     for (auto &motion : motions)
       {
         motion.load = motion.amplitudes.dot(load);
         motion.work = load.norm() > 0 ? motion.load / load.norm() : 0.;
       }
     return motions;
+  }
+
+  Eigen::VectorXd BodyMotions::loads() const
+  {
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(n_motions, 2); // of the loads, and of their magnitudes
+    for (const auto &subdomain : subdomains)
+      {
+        const Eigen::MatrixXd modes = subdomain->kernel() * subdomain->body_modes();
+        const Eigen::Index    first = subdomain->body() * motions_of_body;
+        sums.col(0).segment(first, motions_of_body) += modes.transpose() * subdomain->load();
+        sums.col(1).segment(first, motions_of_body) += modes.cwiseAbs().transpose() * subdomain->load().cwiseAbs();
+      }
+    MPI_Allreduce(MPI_IN_PLACE, sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, comm);
+    return (sums.col(0).array().abs() <= rounding_of_loads * sums.col(1).array()).select(0., sums.col(0));
   }
 
   Eigen::MatrixXd BodyMotions::jumps(const std::vector<RigidMotion> &motions) const
@@ -232,7 +244,7 @@ namespace slipstick::tfeti
     for (unsigned int b = 0; b < body_names.size(); ++b)
       {
         const Eigen::VectorXd part = (motion.amplitudes.segment(b * k, k).array().abs() < named_part * largest)
-                                       .select(0., motion.amplitudes.segment(b * k, k)); // rounding left away
+                                       .select(0., motion.amplitudes.segment(b * k, k)); // without rounding
         if (part.cwiseAbs().maxCoeff() < named_part * largest)
           continue;
         const Eigen::VectorXd translation = part.head(k - 1);

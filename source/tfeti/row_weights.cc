@@ -36,7 +36,7 @@ namespace slipstick::tfeti
       double       value;
     };
 
-    /// Summands of W that one subdomain gives: pairs of rows that touch the same unknown.
+    /// Summands of W from one subdomain: pairs of rows that touch the same unknown.
     std::vector<Weight> weights_of(const SubdomainSystem &subdomain, const LocalGluing &gluing, const Partitioner &rows)
     {
       std::vector<std::vector<std::pair<std::uint64_t, double>>> by_unknown(subdomain.touched().size());
@@ -71,7 +71,7 @@ namespace slipstick::tfeti
     auto received  = dealii::Utilities::MPI::some_to_some(comm, to_send);
     received[rank] = std::move(own);
 
-    // the groups of rows that hang together, and the entries of W
+    // the connected groups of rows, and the entries of W
     std::vector<Entry>        entries;
     std::vector<unsigned int> root(n), size(n, 0);
     std::iota(root.begin(), root.end(), 0);

@@ -93,11 +93,11 @@ class MultibodyBadInput(unittest.TestCase):
     def test_truncated_binary_file(self):
         for share in (0.3, 0.6, 0.9):
             path = changed('clamp.msh', lambda content: content[:int(share * len(content))])
-            self.refused(shipped('clamp'), {'Body A/File': path}, str(path), 'truncated or mixed up', ranks=(2,))
+            self.refused(shipped('clamp'), {'Body A/File': path}, str(path), 'truncated or corrupt', ranks=(2,))
 
     def test_binary_file_copied_as_text(self):
         path = changed('bolt.msh', lambda content: content.replace(b'\n', b'\r\n'))
-        self.refused(shipped('lap_joint'), {'Body bolt/File': path}, str(path), 'mixed up')
+        self.refused(shipped('lap_joint'), {'Body bolt/File': path}, str(path), 'corrupt')
 
     def test_text_file_that_says_it_is_binary(self):
         path = changed('patch.msh', lambda content: content.replace(b'4.1 0 8', b'4.1 1 8'))
@@ -106,7 +106,7 @@ class MultibodyBadInput(unittest.TestCase):
     # cells
 
     def test_cell_that_crosses_itself(self):
-        self.refused_mesh(mesh(SQUARE, '3 2 2 2 1 2 4 3'), 'degenerate cell', 'crosses itself')
+        self.refused_mesh(mesh(SQUARE, '3 2 2 2 1 2 4 3'), 'degenerate cell', 'intersects itself')
 
     def test_cell_that_is_not_convex(self):
         self.refused_mesh(mesh(('0 0 0', '10 0 0', '2 2 0', '0 10 0'), '3 2 2 2 1 2 3 4'), 'not convex')
@@ -139,16 +139,16 @@ class MultibodyBadInput(unittest.TestCase):
     def test_pair_of_sides_that_face_away_from_each_other(self):
         for more in ({}, {'Contact touch/Reach': 1}, {'Contact touch/Law': 'bonded'}, {'Discretization/Degree': 2}):
             self.refused(CYLINDERS, {**self.FLATS, **more}, 'Contact touch: upper/flat and lower/flat face away',
-                         '200 mm or more through its own body', 'mirror')
+                         '200 mm or more of its own body', 'mirror')
 
     def test_pair_whose_normals_are_not_opposed_names_the_angle(self):
         result = solve(CYLINDERS, {'Contact touch/Slave': 'upper/arc', 'Contact touch/Master': 'upper/contact'})
         self.assertEqual(result.status, 2, result)
-        self.assertRegex(result.stderr, r'normals is 8\d\.\d+ degrees or less, facing is more than 104\.478')
+        self.assertRegex(result.stderr, r'normals is 8\d\.\d+ degrees or less; more than 104\.478')
 
     def test_pair_far_apart_with_an_automatic_reach(self):
         self.refused(CYLINDERS, {'Body upper/Translation': '0, 60'}, 'Contact touch: upper/contact and lower/contact are '
-                     'out of reach', 'smallest gap is 60 mm', 'goes to 3.2', 'Contact touch/Reach')
+                     'out of reach', 'smallest gap is 60 mm', 'automatic reach is 3.2', 'Contact touch/Reach')
 
     def test_obstacle_on_the_other_side(self):
         self.refused(BOX, {'Contact circle/Slave': 'box/top'}, 'Contact circle: box/top and obstacle disc face away',
@@ -160,7 +160,7 @@ class MultibodyBadInput(unittest.TestCase):
         self.refused(case, {}, 'box/bottom and obstacle ground face away', '180 degrees')
 
     def test_obstacle_out_of_reach(self):
-        for reach, words in (('auto', 'automatic reach goes to 40 mm'), ('5', 'Reach is 5 mm')):
+        for reach, words in (('auto', 'automatic reach is 40 mm'), ('5', 'Reach is 5 mm')):
             self.refused(BOX, {'Obstacle disc/Center': '5, -90', 'Contact circle/Reach': reach}, 'out of reach',
                          'smallest gap is 70 mm', words, 'Contact circle/Reach')
 

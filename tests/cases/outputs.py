@@ -68,7 +68,7 @@ class Outputs(unittest.TestCase):
             self.assertEqual(isinstance(value, bool), expected is FLAG, path)
 
     def test_all_files_are_there_and_nothing_else(self):
-        expected = ['contact.csv', 'contact_000.vtp', 'convergence.csv', 'history.csv', 'parameters.prm',
+        expected = ['conditions.csv', 'contact.csv', 'contact_000.vtp', 'convergence.csv', 'history.csv', 'parameters.prm',
                     'solution.pvd', 'solution_000.pvtu', 'summary.json'] + ['subdomain_000_{:04}.vtu'.format(i) for i in range(16)]
         self.assertEqual(box().files(), sorted(expected))
 
@@ -164,8 +164,8 @@ class Outputs(unittest.TestCase):
 
     def test_fields_may_be_left_away(self):
         result = converged(shipped('box_on_circle'), {**SMALL, 'Output/VTU': 'false'}, ranks=2)
-        self.assertEqual(result.files(), ['contact.csv', 'contact_000.vtp', 'convergence.csv', 'history.csv',
-                                          'parameters.prm', 'summary.json'])
+        self.assertEqual(result.files(), ['conditions.csv', 'contact.csv', 'contact_000.vtp', 'convergence.csv',
+                                          'history.csv', 'parameters.prm', 'summary.json'])
 
     def test_parameters_run_again_give_the_same_result(self):
         for case, overrides in (('box_on_circle', SMALL), ('box_linear', {'Traction pressed/Traction y': '-250*x/10'})):

@@ -123,8 +123,8 @@ class Robustness(unittest.TestCase):
     def test_long_names_and_deep_nesting(self):
         name = 'n' * 30000
         self.refused(write(BLOCK.replace('Bodies = a', 'Bodies = ' + name)), {}, '...')
-        self.refused(write('subsection x\n' * 20000), {}, 'nested more than 10 deep')
-        self.refused(write(BLOCK), {'a/' * 3000 + 'x': 1}, 'nested more than 10 deep')
+        self.refused(write('subsection x\n' * 20000), {}, 'nested more than 10 levels deep')
+        self.refused(write(BLOCK), {'a/' * 3000 + 'x': 1}, 'nested more than 10 levels deep')
 
     def test_includes(self):
         case = write('include pipe\n' + BLOCK)

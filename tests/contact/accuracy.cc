@@ -24,10 +24,7 @@ namespace
         load(scene, 0, "right", "40", "-30");
       }
     if (kind == Kind::coulomb)
-      {
-        scene.contacts[0].law                  = scene::ContactLaw::coulomb;
-        scene.contacts[0].friction_coefficient = field("0.3");
-      }
+      scene.contacts[0].law = scene::make_law<2>("Coulomb", {"0.3"});
     scene.solver.algorithm                     = algorithm;
     scene.solver.tolerance                     = 1e-10;
     scene.solver.stops_at_discretization_error = true; // SMALBE keeps the preconditioner for the error, too
@@ -45,7 +42,7 @@ namespace
     scene.materials[1].young_modulus = 1e3;
     support(scene, 0, "bottom", "0", "0");
     support(scene, 1, "top", "0", "-0.1 - 0.02*x");
-    touch(scene, {1, "bottom"}, {0, "top"}, scene::ContactLaw::frictionless);
+    touch(scene, {1, "bottom"}, {0, "top"}, {});
     scene.solver.algorithm                     = scene::Algorithm::semismooth_newton;
     scene.solver.tolerance                     = 1e-12;
     scene.solver.dual.preconditioner_precision = tfeti::Precision::double_precision;

@@ -75,9 +75,9 @@ namespace
           normal.b[2 * i]     = ray[0] / ray.norm();
           normal.b[2 * i + 1] = ray[1] / ray.norm();
           rows.push_back(normal);
-          if (contact.law == scene::ContactLaw::frictionless)
+          if (!contact.law.has_friction)
             continue;
-          const double bound = contact.slip_bound.value(x[i], 1.) * area;
+          const double bound = contact.law.fixed->value.value(x[i], 1.) * area;
           Row          tangential{i, Eigen::VectorXd::Zero(2 * n_nodes), 0, -bound, bound};
           tangential.b[2 * i]     = -normal.b[2 * i + 1];
           tangential.b[2 * i + 1] = normal.b[2 * i];
@@ -415,7 +415,7 @@ TEST(ContactSolve, push_beyond_the_slip_bound_has_no_equilibrium_on_any_rank)
 TEST(ContactSolve, frictionless_box_on_a_circle_may_roll_off)
 {
   Scene scene           = floating_box("0", "-20");
-  scene.contacts[0].law = scene::ContactLaw::frictionless;
+  scene.contacts[0].law = {};
   for (const Cut &how : cuts)
     {
       const std::string text = message_on_all_ranks<NoEquilibrium>([&] { Torn(cut(scene, how)).dual(); });

@@ -16,11 +16,11 @@ class NotConverged(Extremes):
         table = Table('not converged')
         for what, case, words, overrides in (
                 ('SMALBE, two outer steps', shipped('box_on_circle'),
-                 ('reached its limit of iterations', 'of |Pd|, asked for is 0.0001', 'largest error of the displacement: ',
+                 ('reached its iteration limit', 'of |Pd|, the tolerance is 0.0001', 'largest error of the displacement: ',
                   'of body box', 'contact circle', 'Max outer iterations'),
                  {**BLOCKS, 'Solver/Algorithm': 'smalbe', 'Solver/SMALBE/Max outer iterations': 2}),
                 ('conjugate gradients, three steps', shipped('box_linear'),
-                 ('reached its limit of iterations', 'the projected gradient is', 'error in the energy norm', ' of body box',
+                 ('reached its iteration limit', 'the projected gradient is', 'error in the energy norm', ' of body box',
                   'Solver/PCG/Max iterations'), {**BLOCKS, 'Solver/PCG/Max iterations': 3}),
                 ('tolerance below rounding', shipped('box_linear'), ('came to a standstill', 'set Solver/Tolerance to '),
                  {**BLOCKS, 'Solver/Tolerance': 1e-15}),
@@ -101,7 +101,7 @@ class Doubtful(Extremes):
     def test_mixed_units(self):
         table = Table('units of bodies, of loads')
         self.warned(table, 'modulus of one body in Pa', stack(box={'Young modulus': '2.1e11'}), 'body box is ',
-                    'do their meshes and materials have the same units?')
+                    'check that their meshes and materials use the same units')
         self.warned(table, 'all moduli in Pa', stack(base={'Young modulus': '2.1e11'}, box={'Young modulus': '2.1e11'}),
                     'are the moduli given in Pa', without=('same units', 'linear theory'))
         self.warned(table, 'all in m, N and Pa', stack(unit=1e3), without=('Pa',))

@@ -33,7 +33,7 @@ RULES = {
     "qp": Rule(),
     "tfeti": Rule(layers={"base", "qp"}, dealii={"base", "lac"},
                   libraries={"MPI", "Boost", "Eigen", "Trilinos", "CHOLMOD", "POSIX"}),
-    "scene": Rule(layers={"base"}, headers={"qp/options.h", "tfeti/options.h"}, dealii={"base"},
+    "scene": Rule(layers={"base"}, headers={"qp/node_set.h", "qp/options.h", "tfeti/options.h"}, dealii={"base"},
                   libraries={"MPI", "Boost", "muParser"}),
     "fem": Rule(layers={"base", "scene"},
                 # of tfeti the plain data that fem fills
@@ -179,7 +179,7 @@ FIXTURES = {
     "CHOLMOD in contact": ({"source/contact/x.cc": "#include <suitesparse/cholmod.h>"}, "may not include CHOLMOD"),
     "contact with a mesh": ({"source/contact/x.cc": "#  include <deal.II/dofs/dof_handler.h>"}, "base, lac"),
     "contact with fem": ({"source/contact/x.cc": "#include <slipstick/fem/mesh.h>"}, "may not include fem"),
-    "scene with a solver": ({"source/scene/x.cc": "#include <slipstick/qp/mpgp.h>"}, "only qp/options.h"),
+    "scene with a solver": ({"source/scene/x.cc": "#include <slipstick/qp/mpgp.h>"}, "only qp/node_set.h"),
     "scene with options": ({"source/scene/x.cc": "#include <slipstick/qp/options.h>"}, None),
     "fem with an operator": ({"source/fem/x.cc": "#include <slipstick/tfeti/dual_operator.h>"}, "only tfeti/"),
     "fem with plain data": ({"source/fem/x.cc": "#include <slipstick/tfeti/constraints.h>"}, None),

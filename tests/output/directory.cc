@@ -54,7 +54,7 @@ TEST_F(Directory, file_in_its_place_is_rejected_on_all_ranks)
   if (is_root())
     std::ofstream(root / "file") << "in the way";
   const std::string message = rejection(root / "file");
-  EXPECT_NE(message.find("there is a file of that name"), std::string::npos) << message;
+  EXPECT_NE(message.find("a file of that name exists"), std::string::npos) << message;
   EXPECT_NE(message.find("remedy: "), std::string::npos) << message;
 }
 

@@ -125,7 +125,7 @@ TEST(PivotedCholesky, solves_consistent_singular_systems)
           for (std::size_t j = 0; j < 10; ++j)
             A(i, j) *= std::exp(sizes[i] + sizes[j]);
         const Vector b = A * random.vector(10);
-        Vector diagonal(10);
+        Vector       diagonal(10);
         for (std::size_t i = 0; i < 10; ++i)
           diagonal[i] = A(i, i);
         const Vector x = PivotedCholesky(small(A), diagonal, 1e-12).solve(b);

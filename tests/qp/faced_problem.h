@@ -140,32 +140,20 @@ namespace slipstick::qp::test
       return Face(*this, free, ties);
     }
 
-    struct Settled
+    /// The entries with the least gaps become free until the face is regular.
+    std::vector<bool> hold(std::vector<bool> free, const std::vector<double> &gaps, const bool) const
     {
-      std::vector<bool> free;
-      Vector            shift;
-      bool              is_loose;
-    };
-
-    /// Without moving anything: the candidates with the least gradients leave until the face is regular.
-    Settled settle(std::vector<bool>          free,
-                   const std::vector<double> &capacity,
-                   const Vector              &x,
-                   const Vector              &g,
-                   const bool) const
-    {
-      const bool is_loose = !face(free, {}).is_regular();
       while (!face(free, {}).is_regular())
         {
           std::size_t next = free.size();
           for (std::size_t i = 0; i < free.size(); ++i)
-            if (!free[i] && capacity[i] >= 0 && (next == free.size() || std::abs(g[i]) < std::abs(g[next])))
+            if (!free[i] && (next == free.size() || gaps[i] < gaps[next]))
               next = i;
           if (next == free.size())
             break;
           free[next] = true;
         }
-      return {std::move(free), Vector(x.size(), 0.), is_loose};
+      return free;
     }
 
     Vector e;

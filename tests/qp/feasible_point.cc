@@ -222,15 +222,15 @@ TEST(FeasiblePoint, least_squares_takes_over_when_newton_may_not_step)
 namespace
 {
   // n/2 cones (0,1), (2,3), ... with random coefficients, a few of them 0.
-  FrictionCones<Vector> random_cones(Random &random, const std::size_t n)
+  ForceSet<Vector> random_cones(Random &random, const std::size_t n)
   {
-    FrictionCones<Vector> set{{Vector(n, -infinity), Vector(n, infinity)}, {}};
+    ForceSet<Vector> set{{Vector(n, -infinity), Vector(n, infinity)}, {}};
     for (std::size_t i = 0; i + 1 < n; i += 2)
-      set.cones.push_back({i, i + 1, std::max(0., random.uniform(-0.2, 1.0))});
+      set.nodes.push_back({i, i + 1, {0., std::max(0., random.uniform(-0.2, 1.0))}});
     return set;
   }
 
-  Vector random_point(Random &random, const FrictionCones<Vector> &set, const std::size_t n)
+  Vector random_point(Random &random, const ForceSet<Vector> &set, const std::size_t n)
   {
     Vector x = random.vector(n);
     project(set, x);
@@ -238,7 +238,7 @@ namespace
   }
 } // namespace
 
-TEST(FrictionCones, projection_leaves_a_remainder_in_the_polar_cone)
+TEST(ForceSet, projection_leaves_a_remainder_in_the_polar_cone)
 {
   Random random(1);
   for (unsigned int k = 0; k < 200; ++k)
@@ -248,16 +248,16 @@ TEST(FrictionCones, projection_leaves_a_remainder_in_the_polar_cone)
       Vector       x(y);
       project(set, x);
       EXPECT_NEAR(inner(x, minus(y, x)), 0, 1e-14);
-      for (const auto &cone : set.cones)
+      for (const auto &cone : set.nodes)
         {
-          EXPECT_LE(std::abs(x[cone.tangential]), cone.coefficient * x[cone.normal] + 1e-15);
+          EXPECT_LE(std::abs(x[cone.tangential]), cone.forces.coefficient * x[cone.normal] + 1e-15);
           const double t = y[cone.tangential] - x[cone.tangential], n = y[cone.normal] - x[cone.normal];
-          EXPECT_LE(n + cone.coefficient * std::abs(t), 1e-14);
+          EXPECT_LE(n + cone.forces.coefficient * std::abs(t), 1e-14);
         }
     }
 }
 
-TEST(FrictionCones, derivative_is_that_of_the_projection)
+TEST(ForceSet, derivative_is_that_of_the_projection)
 {
   Random random(2);
   for (unsigned int k = 0; k < 100; ++k)
@@ -294,7 +294,7 @@ TEST(FeasiblePoint, in_friction_cones_is_the_nearest)
     }
 }
 
-TEST(FrictionCones, points_are_sums_of_their_parts_along_the_sides)
+TEST(ForceSet, points_are_sums_of_their_parts_along_the_sides)
 {
   for (unsigned int seed = 0; seed < 20; ++seed)
     {
@@ -362,4 +362,118 @@ TEST(FeasiblePoint, outside_of_friction_cones_is_certified)
         }
     }
   EXPECT_GT(n_infeasible, 10u);
+}
+
+namespace
+{
+  /// n/2 sets (0,1), (2,3), ...: with cohesion, capped, both, or the caps below the cohesion; a few without friction.
+  ForceSet<Vector> random_polygons(Random &random, const std::size_t n)
+  {
+    ForceSet<Vector> set = random_cones(random, n);
+    for (std::size_t k = 0; k < set.nodes.size(); ++k)
+      {
+        set.nodes[k].forces.fixed = k % 3 == 0 ? 0. : random.uniform(0.1, 1.0);
+        if (k % 2 == 0)
+          set.nodes[k].forces.cap = random.uniform(0.1, 2.0);
+      }
+    return set;
+  }
+} // namespace
+
+TEST(ForceSet, projection_is_the_nearest_point_of_a_node_and_has_its_derivative)
+{
+  Random             random(3);
+  std::array<int, 6> n_parts{};
+  const double       h = 1e-7;
+  for (unsigned int k = 0; k < 500; ++k)
+    {
+      const auto   set = random_polygons(random, 12);
+      const Vector y = random.vector(12, 2.), p = random.vector(12);
+      Vector       x(y), forward(y), backward(y), derivative(p);
+      project(set, x);
+      add(h, p, forward);
+      add(-h, p, backward);
+      project(set, forward);
+      project(set, backward);
+      multiply_derivative(set, y, derivative);
+      for (const auto &node : set.nodes)
+        {
+          const std::size_t t = node.tangential, n = node.normal;
+          ++n_parts[int(node.forces.part(y[t], y[n]))];
+          EXPECT_GE(x[n], 0);
+          EXPECT_LE(std::abs(x[t]), node.forces.closed_radius(x[n]) + 1e-14);
+          for (unsigned int i = 0; i < 50; ++i) // an obtuse angle with the way to any other point
+            {
+              double other_t = random.uniform(-3, 3), other_n = random.uniform(-1, 6);
+              node.forces.project(other_t, other_n);
+              EXPECT_LE((y[t] - x[t]) * (other_t - x[t]) + (y[n] - x[n]) * (other_n - x[n]), 1e-13);
+            }
+          EXPECT_NEAR(derivative[t], (forward[t] - backward[t]) / (2 * h), 1e-6);
+          EXPECT_NEAR(derivative[n], (forward[n] - backward[n]) / (2 * h), 1e-6);
+        }
+    }
+  for (const int n : n_parts)
+    EXPECT_GT(n, 20);
+}
+
+TEST(ForceSet, support_is_the_largest_product_with_a_point_of_a_node)
+{
+  Random random(4);
+  for (unsigned int k = 0; k < 300; ++k)
+    {
+      const auto   set = random_polygons(random, 12);
+      const Vector r   = random.vector(12);
+      for (const auto &node : set.nodes)
+        {
+          const double t = r[node.tangential], n = r[node.normal];
+          const auto   support = node.forces.support(t, n);
+          double       largest = -1e300;
+          for (unsigned int i = 0; i < 100; ++i)
+            {
+              double other_t = random.uniform(-3, 3), other_n = random.uniform(-1, 6);
+              node.forces.project(other_t, other_n);
+              const double product = t * other_t + n * other_n;
+              largest              = std::max(largest, product);
+              EXPECT_LE(product, support.value + std::sqrt(support.unbounded) * std::hypot(other_t, other_n) + 1e-13);
+            }
+          double far_t = 1e6 * t, far_n = 1e6 * n; // projects onto the face where the product is largest
+          node.forces.project(far_t, far_n);
+          if (support.unbounded == 0)
+            {
+              EXPECT_NEAR(t * far_t + n * far_n, support.value, 1e-9);
+            }
+        }
+    }
+}
+
+TEST(FeasiblePoint, within_the_shear_strength_of_nodes_is_found_or_refuted)
+{
+  unsigned int n_infeasible = 0;
+  for (const unsigned int max_newton_steps : {FeasiblePointOptions().max_newton_steps, 0u})
+    for (unsigned int seed = 0; seed < 60; ++seed)
+      {
+        FeasiblePointOptions options;
+        options.max_newton_steps = max_newton_steps;
+        Random             random(seed);
+        const DenseProblem problem(identity(20), random.orthonormal(8, 20));
+        const auto         set    = random_polygons(random, 20);
+        const Vector       inside = random_point(random, set, 20);
+        const Vector       x_e    = seed % 2 == 0 ? inside : random.vector(20, 2.);
+        const auto         result = feasible_point(problem, x_e, set, options);
+        Vector             there  = result.x;
+        project(set, there);
+        EXPECT_LT(distance(there, result.x), 1e-13 * length(x_e)) << seed;
+        if (result.status == Status::converged)
+          EXPECT_LT(length(problem.range(minus(x_e, result.x))), 1e-11 * length(x_e)) << seed;
+        else
+          {
+            ASSERT_EQ(result.status, Status::infeasible) << seed;
+            ++n_infeasible;
+            const double along = inner(result.certificate, x_e);
+            for (unsigned int k = 0; k < 100; ++k)
+              EXPECT_LT(inner(result.certificate, random_point(random, set, 20)), along * (1 + 1e-9)) << seed;
+          }
+        EXPECT_TRUE(result.status == Status::converged || seed % 2 == 1) << seed;
+      }
+  EXPECT_GT(n_infeasible, 20u);
 }

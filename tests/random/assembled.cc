@@ -149,7 +149,12 @@ namespace slipstick::random
     fem::check_overlap(scene, mesh, spaces);
     fem::check_obstacle_pairs(scene, mesh, spaces);
     const auto  matrices    = fem::assemble(scene, mesh, spaces, t);
-    const auto  all_rows    = fem::contact_rows(scene, mesh, spaces, t, std::numeric_limits<double>::infinity());
+    const auto  all_rows    = fem::contact_rows(scene,
+                                            mesh,
+                                            spaces,
+                                            fem::pair_bodies(scene, mesh, spaces),
+                                            t,
+                                            std::numeric_limits<double>::infinity());
     const auto &constraints = all_rows.active;
     const auto  numbering   = number_nodes(mesh, matrices, constraints, scene.bodies.size());
 
@@ -188,11 +193,11 @@ namespace slipstick::random
                            row_of(point.normal_row),
                            row_of(point.tangential_row)};
           const dealii::Point<2> x(point.position[0], point.position[1]);
-          if (node.tangential >= 0 && pair.law == scene::ContactLaw::tresca)
-            problem.rows[node.tangential].bound = pair.slip_bound.value(x, t) * point.area;
-          if (node.tangential >= 0 && pair.law == scene::ContactLaw::coulomb)
+          if (node.tangential >= 0 && pair.law.name == "Tresca")
+            problem.rows[node.tangential].bound = pair.law.fixed->value.value(x, t) * point.area;
+          if (node.tangential >= 0 && pair.law.name == "Coulomb")
             {
-              problem.rows[node.tangential].mu     = node.normal >= 0 ? pair.friction_coefficient.value(x, t) : -1.;
+              problem.rows[node.tangential].mu     = node.normal >= 0 ? pair.law.coefficient->value.value(x, t) : -1.;
               problem.rows[node.tangential].normal = node.normal;
             }
           problem.nodes.push_back(node);

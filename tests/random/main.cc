@@ -66,7 +66,7 @@ namespace
     diagnosed,        // alike
     another_solution, // Coulomb: another than the dense solver's, or it found none; conditions hold
     undetermined,     // several positions: slipstick says so, or gives one that keeps all conditions
-    unsolved,         // neither finds a solution (Coulomb)
+    unsolved,         // neither finds a solution (Coulomb): slipstick says so, or what slides where its search ended
     wrong,            // converged with a wrong answer
     failed            // another diagnosis
   };
@@ -78,14 +78,7 @@ namespace
     Verdict     worst;
     const char *reason;
   };
-  // Of other seeds 316, 626, 667, 686 (not converged), 866 and 867 (called loose) do not end as they should: doc/status.md.
-  const std::map<unsigned int, Known> known = {
-    {243,
-     {Verdict::failed,
-      "neither solver finds a solution; Newton says that friction is too weak, which nothing here confirms"}},
-    {246,
-     {Verdict::failed,
-      "neither solver finds a solution; Newton says that friction is too weak, which nothing here confirms"}}};
+  const std::map<unsigned int, Known> known = {};
 
   const char *name_of(const Verdict verdict)
   {
@@ -152,6 +145,8 @@ namespace
           result.verdict = Verdict::diagnosed;
         else if (expected.outcome == Outcome::solved && !expected.position_unique)
           result.verdict = Verdict::undetermined;
+        else if (expected.outcome == Outcome::unsolved && dense.has_coulomb()) // friction is too weak where the search ended
+          result.verdict = Verdict::unsolved;
         return result;
       }
     if (found.status != ExitStatus::converged)

@@ -63,7 +63,7 @@ TEST(bad_input, section_that_no_list_declares)
 
 TEST(bad_input, name_without_a_section)
 {
-  refused({"Bodies=box, wedge"}, {"'box, wedge'", "nothing describes 'wedge'", "subsection Body wedge"});
+  refused({"Bodies=box, wedge"}, {"'box, wedge'", "no subsection describes 'wedge'", "subsection Body wedge"});
 }
 
 TEST(bad_input, unknown_words_are_refused_with_what_is_available)
@@ -73,7 +73,8 @@ TEST(bad_input, unknown_words_are_refused_with_what_is_available)
   refused({"Contact circle/Slip bound acts on=open"}, {"'open'", "boundary, contact"});
   refused({"Contact search/Mode=on"}, {"'on'", "declared, automatic"});
   refused({"Solver/Tolerance=automatic"}, {"'automatic'", "auto, or a number in (0, 1)"});
-  refused({"Body box/Shape=dics"}, {"'dics'", "available: rectangle, disc, half disc, ring, quarter ring, mesh", "did you mean 'disc'"});
+  refused({"Body box/Shape=dics"},
+          {"'dics'", "available: rectangle, disc, half disc, ring, quarter ring, mesh", "did you mean 'disc'"});
   refused({"Obstacle disc/Shape=halfplane"}, {"'halfplane'", "circle, hole, half plane, polyline, function"});
 }
 

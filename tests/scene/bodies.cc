@@ -12,7 +12,8 @@ namespace
   {
     return "set Materials = steel\nset Bodies = part\nset Supports = held\nsubsection Material steel\nend\n"
            "subsection Body part\n  set Material = steel\n" +
-           body + "end\nsubsection Support held\n  set Boundary = part/" + boundary + "\n  set Displacement x = 0\nend\n";
+           body + "end\nsubsection Support held\n  set Boundary = part/" + boundary +
+           "\n  set Displacement x = 0\nend\n";
   }
 
   scene::Scene<2> read(const std::string &body, const std::string &boundary = "*")
@@ -34,14 +35,16 @@ TEST(bodies, shapes_with_their_parameters)
   EXPECT_EQ(disc.center, dealii::Point<2>(1, 2));
   EXPECT_EQ(disc.radius, 3);
   EXPECT_EQ(disc.cells_along_arc, 24u);
-  const auto ring = read("set Shape = quarter ring\nset Radius = 3\nset Inner radius = 2\nset Cells = 8, 4\n").bodies[0];
+  const auto ring =
+    read("set Shape = quarter ring\nset Radius = 3\nset Inner radius = 2\nset Cells = 8, 4\n").bodies[0];
   EXPECT_EQ(ring.shape, Shape::quarter_ring);
   EXPECT_EQ(ring.inner_radius, 2);
   EXPECT_EQ((*ring.cells)[1], 4u);
-  const auto placed = read("set Shape = half disc\nset Radius = 3\nset Mirror = y\nset Rotation = -30\nset Translation = 5, 6\n"
-                           "set Refinements = 2\nset Refine towards = arc, flat\nset Refine levels = 3\n",
-                           "arc")
-                        .bodies[0];
+  const auto placed =
+    read("set Shape = half disc\nset Radius = 3\nset Mirror = y\nset Rotation = -30\nset Translation = 5, 6\n"
+         "set Refinements = 2\nset Refine towards = arc, flat\nset Refine levels = 3\n",
+         "arc")
+      .bodies[0];
   EXPECT_FALSE(placed.placement.mirror_x);
   EXPECT_TRUE(placed.placement.mirror_y);
   EXPECT_EQ(placed.placement.rotation, -30);
@@ -53,7 +56,8 @@ TEST(bodies, shapes_with_their_parameters)
 
 TEST(bodies, parameters_must_fit_the_shape)
 {
-  refused("set Size = 1, 1\nset Radius = 3\n", {"Body part/Radius = '3'", "means nothing for Shape = rectangle", "disc"});
+  refused("set Size = 1, 1\nset Radius = 3\n",
+          {"Body part/Radius = '3'", "has no meaning for Shape = rectangle", "disc"});
   refused("set Shape = disc\nset Radius = 3\nset Size = 2, 1\n", {"Body part/Size", "rectangle"});
   refused("set Shape = disc\nset Radius = 3\nset Cells = 2, 1\n", {"Body part/Cells", "rectangle, ring, quarter ring"});
   refused("set Size = 1, 1\nset File = a.msh\n", {"Body part/File", "it belongs to mesh"});
@@ -69,8 +73,9 @@ TEST(bodies, required_parameters_are_named)
 
 TEST(bodies, values_must_make_sense)
 {
-  refused("set Shape = ring\nset Radius = 2\nset Inner radius = 2\n", {"Body part/Inner radius = '2'", "not less than Radius = 2"});
-  refused("set Shape = ring\nset Radius = 2\nset Inner radius = 1\nset Cells = 2, 2\n", {"at least 3 cells around"});
+  refused("set Shape = ring\nset Radius = 2\nset Inner radius = 2\n",
+          {"Body part/Inner radius = '2'", "not less than Radius = 2"});
+  refused("set Shape = ring\nset Radius = 2\nset Inner radius = 1\nset Cells = 2, 2\n", {"at least 3 cells along its circumference"});
   refused("set Shape = disc\nset Radius = 2\nset Cells along arc = 30\n", {"multiple of 4"});
   refused("set Shape = half disc\nset Radius = 2\nset Cells along arc = 5\n", {"even number"});
   refused("set Size = 1, 1\nset Refine levels = 1\n", {"no boundary is named in Refine towards"});
@@ -84,7 +89,8 @@ TEST(bodies, names_of_a_mesh_are_left_for_later)
 {
   TemporaryDirectory directory;
   directory.write("part.msh", "");
-  const auto file  = directory.write("scene.prm", scene_of("set Shape = mesh\nset File = part.msh\n", "any name/at all"));
+  const auto file =
+    directory.write("scene.prm", scene_of("set Shape = mesh\nset File = part.msh\n", "any name/at all"));
   const auto scene = read_scene(file);
   EXPECT_EQ(scene.supports[0].where.boundary, "any name/at all");
   EXPECT_EQ(scene.decomposition.method, scene::DecompositionMethod::metis);
@@ -125,6 +131,7 @@ TEST(bodies, automatic_decomposition)
   EXPECT_EQ(read("set Size = 2, 1\nset Cells = 7, 3\n").decomposition.method, DecompositionMethod::metis);
   EXPECT_EQ(read("set Shape = disc\nset Radius = 3\n").decomposition.method, DecompositionMethod::metis);
   const std::string blocks = "end\nsubsection Decomposition\nset Method = blocks\n";
-  refused("set Shape = disc\nset Radius = 3\n" + blocks, {"Decomposition/Method = 'blocks'", "'part' is none", "METIS or auto"});
+  refused("set Shape = disc\nset Radius = 3\n" + blocks,
+          {"Decomposition/Method = 'blocks'", "'part' is not one", "METIS or auto"});
   refused("set Size = 2, 1\nset Refine towards = top\nset Refine levels = 1\n" + blocks, {"equal cells only"});
 }

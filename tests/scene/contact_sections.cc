@@ -42,28 +42,43 @@ TEST(contact_sections, pair_of_bodies)
   ASSERT_TRUE(pair.master);
   EXPECT_EQ(pair.master->body, 1u);
   EXPECT_EQ(pair.master->boundary, "left");
-  EXPECT_EQ(pair.law, scene::ContactLaw::coulomb);
-  EXPECT_NEAR(pair.friction_coefficient.value({2, 0}, 1), 0.6, 1e-15);
+  EXPECT_EQ(pair.law.name, "Coulomb");
+  EXPECT_NEAR(pair.law.coefficient->value.value({2, 0}, 1), 0.6, 1e-15);
   EXPECT_EQ(pair.offset.value({0, 0}, 1), -0.01);
   EXPECT_EQ(pair.gap->value({0, 0}, 1), 0.2);
   EXPECT_EQ(*pair.reach, 0.5);
   EXPECT_EQ(pair.discretization, scene::ContactDiscretization::mortar);
 }
 
+TEST(contact_sections, cohesion)
+{
+  const std::vector<std::string> law       = {"Contact both/Law=cohesion",
+                                              "Contact both/Cohesion=2*x",
+                                              "Contact both/Friction coefficient=0.5"};
+  const auto                     forces_at = [&](const std::vector<std::string> &more) {
+    return box(with(with(two_bodies, law), more)).contacts[1].law.admissible_forces({1.5, 0}, 1, 4, "both");
+  };
+  EXPECT_EQ(forces_at({}).radius(10), 2 * 1.5 * 4 + 0.5 * 10);
+  EXPECT_EQ(forces_at({"Contact both/Shear limit=4"}).radius(10), 4 * 4);
+  EXPECT_EQ(forces_at({"Contact both/Shear limit=4"}).radius(4), 2 * 1.5 * 4 + 0.5 * 4);
+  refused(with(two_bodies, {"Contact both/Law=cohesion"}), {"Cohesion is not set", "Law = Coulomb"});
+  refused(with(with(two_bodies, law), {"Contact both/Shear limit=-1"}), {"Shear limit", "negative", ">= 0 [MPa]"});
+}
+
 TEST(contact_sections, defaults_of_a_pair)
 {
   const auto pair = box(two_bodies).contacts[1];
-  EXPECT_EQ(pair.law, scene::ContactLaw::frictionless);
+  EXPECT_EQ(pair.law.name, "frictionless");
   EXPECT_FALSE(pair.gap);
   EXPECT_FALSE(pair.reach);
-  EXPECT_FALSE(pair.only_closed);
+  EXPECT_TRUE(pair.law.acts_where_closed_alone());
   EXPECT_EQ(pair.discretization, scene::ContactDiscretization::automatic);
 }
 
 TEST(contact_sections, wrong_pairs_are_refused)
 {
   refused(with(two_bodies, {"Contact both/Master=wedge/lfet"}), {"'wedge/lfet'", "did you mean 'left'?"});
-  refused(with(two_bodies, {"Contact both/Master=dics"}), {"no such obstacle", "disc"});
+  refused(with(two_bodies, {"Contact both/Master=dics"}), {"unknown obstacle", "disc"});
   refused(with(two_bodies, {"Contact both/Master=box/right"}), {"box/right", "itself", "different"});
   refused(with(two_bodies, {"Contact both/Master=box/*"}), {"itself"});
   refused(with(two_bodies, {"Contact both/Law=Coulomb"}), {"Friction coefficient is not set"});
@@ -93,9 +108,9 @@ TEST(contact_sections, search)
                         .contact_search;
   EXPECT_TRUE(search.automatic);
   EXPECT_EQ(search.reach, 0.1);
-  EXPECT_EQ(search.pair.law, scene::ContactLaw::tresca);
-  EXPECT_EQ(search.pair.slip_bound.value({0, 0}, 1), 7);
-  EXPECT_TRUE(search.pair.only_closed);
+  EXPECT_EQ(search.pair.law.name, "Tresca");
+  EXPECT_EQ(search.pair.law.fixed->value.value({0, 0}, 1), 7);
+  EXPECT_TRUE(search.pair.law.acts_where_closed_alone());
   refused({"Contact search/Reach=-1"}, {"Reach", ">= 0"});
 }
 
@@ -107,7 +122,7 @@ TEST(contact_sections, obstacles_of_all_shapes)
   EXPECT_NEAR(plane.normal[0], 0.6, 1e-15);
   EXPECT_NEAR(plane.normal[1], 0.8, 1e-15);
   refused(with(half, {"Obstacle o/Normal=0, 0"}), {"no length"});
-  refused(with(half, {"Obstacle o/Radius=3"}), {"Obstacle o/Radius", "means nothing"});
+  refused(with(half, {"Obstacle o/Radius=3"}), {"Obstacle o/Radius", "has no meaning"});
 
   const std::vector<std::string> line = {"Obstacles=disc, o", "Obstacle o/Shape=polyline"};
   EXPECT_EQ(box(with(line, {"Obstacle o/Points=0 0; 1 0; 2 1"})).obstacles[1].points[2], dealii::Point<2>(2, 1));

@@ -115,8 +115,8 @@ TEST(loads, wrong_points)
 
 TEST(loads, that_load_nothing)
 {
-  refused({"Point load pull/Force y=0"}, {"Point load pull", "loads nothing", "set Force x or Force y"});
-  refused({"Body force wheel/Angular velocity=0"}, {"Body force wheel", "loads nothing"});
+  refused({"Point load pull/Force y=0"}, {"Point load pull", "is no load", "set Force x or Force y"});
+  refused({"Body force wheel/Angular velocity=0"}, {"Body force wheel", "is no load"});
 }
 
 TEST(loads, of_bodies_without_density_or_expansion)

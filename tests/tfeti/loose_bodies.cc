@@ -1,5 +1,7 @@
-// Bodies that slide on all contacts: where they come to rest at given forces.
+// Bodies that nothing but contact holds: where forces within bounds balance their loads.
 #include "torn.h"
+
+#include <functional>
 
 #include <limits>
 
@@ -25,10 +27,8 @@ namespace
     add_body(scene, "upper", {0, 15}, {10, 10}, {{5, 5}});
     support(scene, 0, "bottom", "0", "0");
     support(scene, 2, "top", "0", "-1e-3");
-    touch(scene, {1, "bottom"}, {0, "top"}, scene::ContactLaw::tresca);
-    touch(scene, {1, "top"}, {2, "bottom"}, scene::ContactLaw::tresca);
-    for (auto &pair : scene.contacts)
-      pair.slip_bound = field("100");
+    touch(scene, {1, "bottom"}, {0, "top"}, scene::make_law<2>("Tresca", {"100"}));
+    touch(scene, {1, "top"}, {2, "bottom"}, scene::make_law<2>("Tresca", {"100"}));
     return scene;
   }
 
@@ -45,172 +45,158 @@ namespace
     return static_cast<double>(state >> 11) / static_cast<double>(1ull << 52) - 1;
   }
 
-  struct Row
+  /// What balance_bodies() makes of random gradients, known to all ranks.
+  struct Moved
   {
-    double g, capacity, force, share; // share: jump in the motion
-    double shift;
-    bool   holds;
-  };
-  using Rows = std::map<std::uint64_t, Row>; // tangential ones, by label
-
-  /// All slip at random bounds and gradients; what settle() makes of it, known to all ranks.
-  struct Sliding
-  {
-    template <typename Motion>
-    Sliding(const Scene &scene, const MPI_Comm comm, const unsigned int seed, const Motion &motion)
+    Moved(const Scene &scene, const MPI_Comm comm, const unsigned int seed, const double friction)
     {
-      const Torn          torn(scene, comm);
-      const auto          dual = torn.dual();
-      const unsigned int  n    = torn.constraints.kind.size();
-      std::vector<bool>   free(n);
-      std::vector<double> capacity(n, std::numeric_limits<double>::infinity());
-      auto                x = dual->zero(), g = dual->zero();
+      const Torn                                  torn(scene, comm);
+      const auto                                  dual = torn.dual();
+      const auto                                 &rows = dual->constraints();
+      const unsigned int                          n    = rows.kind.size();
+      qp::AdmissibleSet<tfeti::DistributedVector> bounds{{dual->zero(), dual->zero()}, {}};
+      std::vector<double>                         stiffness(n), moved(n);
       for (unsigned int r = 0; r < n; ++r)
         {
-          const auto label = torn.constraints.label[r];
-          free[r]          = torn.constraints.kind[r] != tfeti::RowKind::tangential;
-          if (free[r])
-            continue;
-          capacity[r]        = 2 + number_of(label, seed);
-          g.local_element(r) = number_of(label, seed + 1000);
-          x.local_element(r) = 0.3 * number_of(label, seed + 2000) * capacity[r];
+          const bool is_tangential          = rows.kind[r] == tfeti::RowKind::tangential;
+          const bool is_equality            = tfeti::is_equality(rows.kind[r]);
+          bounds.box.lower.local_element(r) = is_equality     ? -qp::infinity
+                                              : is_tangential ? -2 - number_of(rows.label[r], seed)
+                                                              : 0;
+          bounds.box.upper.local_element(r) = is_tangential ? 2 + number_of(rows.label[r], seed) : qp::infinity;
+          stiffness[r]                      = 10 * (2 + number_of(rows.label[r], seed + 1000));
+          moved[r]                          = 5 * number_of(rows.label[r], seed + 2000);
         }
-      const auto                   settled = dual->settle(free, capacity, x, g, false);
-      std::vector<Eigen::VectorXd> u;
-      for (unsigned int p = 0; p < torn.matrices.size(); ++p)
-        {
-          const auto at = node_positions(torn.spaces, p);
-          u.emplace_back(2 * at.size());
-          for (unsigned int i = 0; i < at.size(); ++i)
-            for (unsigned int c = 0; c < 2; ++c)
-              u.back()[2 * i + c] = motion(torn.matrices[p].body, at[i])[c];
-        }
-      const auto                         share = dual->jumps(u);
-      std::vector<std::uint64_t>         labels;
-      std::vector<std::array<double, 6>> values;
+      for (const auto &point : rows.contact_points)
+        if (friction > 0 && point.tangential_row != tfeti::invalid_row)
+          bounds.pressure_bounds.push_back({point.tangential_row, point.normal_row, {0., friction}});
+      dual->balance_bodies(stiffness, bounds, moved);
+
+      auto forces = dual->zero();
       for (unsigned int r = 0; r < n; ++r)
+        forces.local_element(r) =
+          tfeti::is_equality(rows.kind[r])
+            ? 0.
+            : qp::clip(moved[r], bounds.box.lower.local_element(r), bounds.box.upper.local_element(r));
+      for (const auto &bound : bounds.pressure_bounds)
         {
-          if (free[r])
+          const double radius                    = bound.forces.radius(forces.local_element(bound.normal));
+          forces.local_element(bound.tangential) = qp::clip(moved[bound.tangential], -radius, radius);
+        }
+      size = forces.l1_norm();
+      for (const auto &motion : {Motion([](const Point &) {
+                                   return Point{1., 0.};
+                                 }),
+                                 Motion([](const Point &) {
+                                   return Point{0., 1.};
+                                 }),
+                                 Motion([](const Point &at) {
+                                   return Point{-at[1], at[0]};
+                                 })})
+        {
+          std::vector<Eigen::VectorXd> u;
+          double                       load = 0;
+          for (unsigned int p = 0; p < torn.matrices.size(); ++p)
             {
-              others += std::abs(settled.shift.local_element(r)) + !settled.free[r];
-              continue;
+              const auto at = node_positions(torn.spaces, p);
+              u.emplace_back(Eigen::VectorXd::Zero(2 * at.size()));
+              for (unsigned int i = 0; i < at.size() && torn.matrices[p].body == free_body(scene); ++i)
+                for (unsigned int c = 0; c < 2; ++c)
+                  u.back()[2 * i + c] = motion(at[i])[c];
+              load += u.back().dot(torn.matrices[p].load);
             }
-          labels.push_back(torn.constraints.label[r]);
-          values.push_back({{g.local_element(r),
-                             capacity[r],
-                             x.local_element(r),
-                             share.local_element(r),
-                             settled.shift.local_element(r),
-                             settled.free[r] ? 1. : 0.}});
+          const double bears = dual->jumps(u) * forces;
+          missing.push_back(dealii::Utilities::MPI::sum(load, comm) - bears);
         }
-      is_loose              = settled.is_loose;
-      const auto all_labels = gathered(labels, comm);
-      const auto all_values = gathered(values, comm);
+      std::vector<std::uint64_t> labels(rows.label.begin(), rows.label.begin() + n);
+      const auto                 all_labels = gathered(labels, comm);
+      const auto                 all_moved  = gathered(moved, comm);
       for (unsigned int i = 0; i < all_labels.size(); ++i)
-        {
-          const auto &v       = all_values[i];
-          rows[all_labels[i]] = {v[0], v[1], v[2], v[3], v[4], v[5] == 1};
-        }
+        by_label[all_labels[i]] = all_moved[i];
     }
 
-    /// The row at which sum r |g + S a| + a sum x S is least, by trying all.
-    std::uint64_t median() const
+    using Motion = std::function<Point(const Point &)>;
+
+    static unsigned int free_body(const Scene &scene)
     {
-      std::uint64_t best  = 0;
-      double        least = std::numeric_limits<double>::max();
-      for (const auto &[label, row] : rows)
-        {
-          const double a     = -row.g / row.share;
-          double       value = 0;
-          for (const auto &[other, at] : rows)
-            value += at.capacity * std::abs(at.g + at.share * a) + at.force * at.share * a;
-          if (value < least)
-            {
-              least = value;
-              best  = label;
-            }
-        }
-      return best;
+      return scene.bodies.size() > 1 ? 1 : 0;
     }
 
-    Rows   rows;
-    bool   is_loose = false;
-    double others   = 0; // changes of rows that were free
+    std::vector<double>             missing; // of the loads along x, y and in rotation
+    double                          size = 0;
+    std::map<std::uint64_t, double> by_label;
   };
-
-  Point rolling(const unsigned int, const Point &at)
-  {
-    return {20 + at[1], 5 - at[0]}; // about (5, -20)
-  }
-
-  Point leaving(const unsigned int body, const Point &)
-  {
-    return {body == 1 ? 1. : 0., 0.};
-  }
-
-  void expect_median(const Sliding &sliding, const std::string &where)
-  {
-    ASSERT_TRUE(sliding.is_loose) << where;
-    const auto   held = sliding.median();
-    const auto  &at   = sliding.rows.at(held);
-    const double a    = -at.g / at.share;
-    unsigned int n    = 0;
-    for (const auto &[label, row] : sliding.rows)
-      {
-        n += row.holds;
-        EXPECT_NEAR(row.shift, a * row.share, 1e-4) << where; // of gradients of size 1, by the smoothing
-      }
-    EXPECT_TRUE(at.holds) << where;
-    EXPECT_EQ(n, 1u) << where;
-  }
 } // namespace
 
-TEST(LooseBodies, settle_at_the_weighted_median_of_what_slides)
+TEST(LooseBodies, are_where_clipped_forces_balance_their_loads)
 {
-  for (const Cut &how : {whole(), blocks(2)})
-    for (unsigned int seed = 0; seed < 4; ++seed)
-      {
-        const Sliding sliding(cut(loose_box(), how), MPI_COMM_WORLD, seed, rolling);
-        EXPECT_EQ(sliding.others, 0.) << seed;
-        expect_median(sliding, "seed " + std::to_string(seed));
-      }
+  for (const Scene &scene : {loose_box(), stack()})
+    for (const Cut &how : {whole(), blocks(2)})
+      for (const double friction : {0., 0.3})
+        for (unsigned int seed = 0; seed < 3; ++seed)
+          {
+            const Moved moved(cut(scene, how), MPI_COMM_WORLD, seed, friction);
+            EXPECT_TRUE(moved.size > 1 || friction > 0) << seed; // there is something to balance
+            for (const double missing : moved.missing)
+              EXPECT_NEAR(missing, 0., 1e-8 * std::max(1., moved.size)) << "friction " << friction << ", seed " << seed;
+          }
 }
 
-TEST(LooseBodies, settle_between_two_bodies)
+TEST(LooseBodies, are_in_the_same_place_on_any_number_of_ranks)
 {
-  for (const Cut &how : {whole(), blocks(2)})
-    for (unsigned int seed = 0; seed < 2; ++seed)
-      expect_median(Sliding(cut(stack(), how), MPI_COMM_WORLD, seed, leaving), "seed " + std::to_string(seed));
-}
-
-TEST(LooseBodies, settle_alike_on_any_number_of_ranks)
-{
-  const Scene   scene = cut(stack(), metis(3));
-  const Sliding alone(scene, MPI_COMM_SELF, 1, leaving);
+  const Scene scene = cut(stack(), metis(3));
+  const Moved alone(scene, MPI_COMM_SELF, 1, 0.3);
   for (unsigned int n = 1; n <= dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD); ++n)
     {
       const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
       MPI_Comm           comm;
       MPI_Comm_split(MPI_COMM_WORLD, rank < n, rank, &comm); // the others do the same among themselves
       {
-        const Sliding sliding(scene, comm, 1, leaving);
-        ASSERT_EQ(sliding.rows.size(), alone.rows.size()) << n;
-        for (const auto &[label, row] : alone.rows)
-          {
-            EXPECT_EQ(sliding.rows.at(label).holds, row.holds) << n;
-            EXPECT_NEAR(sliding.rows.at(label).shift, row.shift, 1e-8) << n;
-          }
+        const Moved moved(scene, comm, 1, 0.3);
+        ASSERT_EQ(moved.by_label.size(), alone.by_label.size()) << n;
+        for (const auto &[label, value] : alone.by_label)
+          EXPECT_NEAR(moved.by_label.at(label), value, 1e-9 * std::max(1., std::abs(value))) << n;
       }
       MPI_Comm_free(&comm);
     }
 }
 
-TEST(LooseBodies, nothing_settles_where_all_is_held)
+TEST(LooseBodies, stay_where_supports_hold_them)
 {
   Scene scene = loose_box();
   support(scene, 0, "left", "0", "0");
-  const Sliding sliding(cut(scene, blocks(2)), MPI_COMM_WORLD, 1, rolling);
-  EXPECT_FALSE(sliding.is_loose);
-  for (const auto &[label, row] : sliding.rows)
-    EXPECT_TRUE(row.shift == 0 && !row.holds);
+  const Torn                                        torn(cut(scene, blocks(2)), MPI_COMM_WORLD);
+  const auto                                        dual = torn.dual();
+  const std::vector<double>                         stiffness(torn.constraints.kind.size(), 1.);
+  std::vector<double>                               moved(stiffness.size(), 1.);
+  const qp::AdmissibleSet<tfeti::DistributedVector> bounds{{dual->zero(), dual->zero()}, {}};
+  dual->balance_bodies(stiffness, bounds, moved);
+  EXPECT_EQ(moved, stiffness);
+}
+
+TEST(LooseBodies, are_held_by_the_row_that_is_nearest_to_its_bound)
+{
+  const Torn          torn(cut(stack(), blocks(2)), MPI_COMM_WORLD);
+  const auto          dual = torn.dual();
+  const unsigned int  n    = torn.constraints.kind.size();
+  std::vector<bool>   free(n);
+  std::vector<double> gaps(n, 0.);
+  double              least = 1;
+  for (unsigned int r = 0; r < n; ++r)
+    {
+      free[r] = torn.constraints.kind[r] != tfeti::RowKind::tangential;
+      gaps[r] = free[r] ? 0. : std::abs(number_of(torn.constraints.label[r], 7));
+      least   = free[r] ? least : std::min(least, gaps[r]);
+    }
+  least              = dealii::Utilities::MPI::min(least, MPI_COMM_WORLD);
+  const auto   holds = dual->hold(free, gaps, false);
+  unsigned int added = 0;
+  for (unsigned int r = 0; r < n; ++r)
+    if (holds[r] != free[r])
+      {
+        ++added;
+        EXPECT_EQ(gaps[r], least);
+      }
+  EXPECT_EQ(dealii::Utilities::MPI::sum(added, MPI_COMM_WORLD), 1u);
+  EXPECT_EQ(dual->hold(holds, gaps, false), holds);
 }

@@ -3,6 +3,7 @@
 import csv
 import importlib.machinery
 import importlib.util
+import shlex
 import signal
 import subprocess
 import sys
@@ -14,7 +15,7 @@ import scenes
 from program import ENVIRONMENT, PROGRAM, SOURCE, TIME_LIMIT, WORK, converged, new_path
 
 LADDER = ('--refinements', '0,1', '--degrees', '1,2', '--tolerances', '1e-2,1e-4', '--subdomains', 'auto,4', '--ranks', '1')
-RUNS = 2 * 2 * (2 + 1 + 1) + 2 * 3  # one more number of subdomains and algorithm for each mesh and degree; presets
+RUNS = 2 * 2 * (2 + 1 + 1) + 2 * 3 + 3  # one more number of subdomains and algorithm for each mesh and degree; presets; reference
 
 
 def case():
@@ -38,6 +39,13 @@ def study(*arguments):
 def rows(directory):
     with open(directory / 'study.csv', newline='') as stream:
         return list(csv.DictReader(stream))
+
+
+def the_script():
+    loader = importlib.machinery.SourceFileLoader('study_script', str(SOURCE / 'scripts' / 'study'))
+    script = importlib.util.module_from_spec(importlib.util.spec_from_loader('study_script', loader))
+    loader.exec_module(script)
+    return script
 
 
 class Study(unittest.TestCase):
@@ -66,21 +74,33 @@ class Study(unittest.TestCase):
         self.assertEqual([row['time_s'] for row in found[:len(kept)]], [row['time_s'] for row in kept], 'solved again')
         self.assertEqual({row['status'] for row in found}, {'converged'})
         without = [row for row in found if not row['error']]
-        self.assertEqual([(row['refinements'], row['degree'], row['preset']) for row in without], [('1', '2', 'reference')])
+        self.assertEqual([(row['refinements'], row['degree'], row['preset'], row['tolerance']) for row in without],
+                         [(level, '2', 'reference run', '1e-08') for level in '012'])  # one refinement beyond all others
         presets = {(row['refinements'], row['preset']): (row['degree'], row['tolerance']) for row in found}
         for refinements in '01':
             self.assertEqual(presets[refinements, 'draft'], ('1', 'auto'))
             self.assertEqual(presets[refinements, 'engineering'], ('1', '0.0001'))
             self.assertEqual(presets[refinements, 'reference'], ('2', '1e-08'))
-        reference = float(without[0]['strain_energy'])
+        levels = [float(row['strain_energy']) for row in without]
+        reference = levels[2]
+        ratio = (levels[1] - levels[0]) / (levels[2] - levels[1])
+        floor = abs(levels[2] - levels[1]) / (min(ratio, 16) - 1 if ratio > 1 else 1) / abs(reference)
         for row in found:
             if row['error']:
                 self.assertAlmostEqual(float(row['error']), abs(float(row['strain_energy']) / reference - 1),
                                        delta=1e-3 * float(row['error']) + 1e-15)
-        good = [row for row in found if row['error'] and float(row['error']) <= 0.05]
+                if abs(float(row['error']) / floor - 1) > 1e-3:  # of first order, the mesh before the last has this error itself
+                    self.assertEqual(row['below_floor'], 'yes' if float(row['error']) < floor else 'no')
+        good = [row for row in found if row['error'] and float(row['error']) + floor <= 0.05]
         best = min(good, key=lambda row: float(row['time_s']))
         self.assertIn('degree {degree}, {refinements} refinements'.format(**best), result.stdout)
         self.assertIn(best['time_s'] + ' s', result.stdout)
+        self.assertIn('which is known to {:.2g} % itself'.format(100 * floor), result.stdout)
+        flags = result.stdout.splitlines()[-1]
+        self.assertIn('--set Discretization/Refinements={refinements} --set Discretization/Degree={degree} '.format(**best), flags)
+        figures = converged(scene, dict(word.split('=', 1) for word in shlex.split(flags) if word != '--set')).summary
+        self.assertAlmostEqual(figures['results']['strain_energy'] / float(best['strain_energy']), 1, delta=1e-6)
+        self.assertIn('table and plot: {}'.format(directory), result.stderr)
         self.assertEqual((directory / 'study.txt').read_text(), result.stdout)
         drawn = (directory / 'study.png').is_file()
         self.assertTrue(drawn or 'study.png not drawn' in result.stderr, result.stderr)
@@ -97,10 +117,16 @@ class Study(unittest.TestCase):
         self.assertIn('is of another scene', result.stderr)
         self.assertEqual(len(rows(directory)), RUNS)
 
+    def test_error_of_the_reference(self):
+        script = the_script()
+        for p in (1, 2, 3):  # q = 1 + h^p, h = 1, 1/2, 1/4
+            self.assertAlmostEqual(script.richardson([2, 1 + 2.**-p, 1 + 4.**-p], 2), 4.**-p)
+        self.assertEqual(script.richardson([1, 2, 1.5], 2), 0.5)  # not monotone
+        self.assertEqual(script.richardson([3, 2], 2), 1)
+        self.assertEqual(script.richardson([3], 2), float('inf'))
+
     def test_knobs_of_the_presets_are_those_of_the_program(self):
-        loader = importlib.machinery.SourceFileLoader('study_script', str(SOURCE / 'scripts' / 'study'))
-        script = importlib.util.module_from_spec(importlib.util.spec_from_loader('study_script', loader))
-        loader.exec_module(script)
+        script = the_script()
         for preset, knobs in script.PRESETS.items():
             lines = converged(case(), {'Accuracy': preset}).directory.joinpath('parameters.prm').read_text().splitlines()
             section, found = [], {}

@@ -9,7 +9,7 @@
 
 namespace slipstick::app
 {
-  /// What the user asks for. When `message` or `list_parameters` is set there may be no case file.
+  /// What the user asks for. When `message`, `list_parameters` or `new_scene` is set there may be no case file.
   struct CommandLine
   {
     std::string                      case_file;
@@ -20,7 +20,8 @@ namespace slipstick::app
     bool                             quiet   = false;
     bool                             verbose = false;
     std::optional<scene::ListFormat> list_parameters;
-    std::optional<std::string>       message; // text of --help or --version: print it and exit with 0
+    std::optional<std::string>       new_scene; // name of one to write
+    std::optional<std::string>       message;   // text of --help or --version: print it and exit with 0
   };
 
   /// Prints nothing and never exits; knows no MPI.

@@ -40,7 +40,7 @@ namespace slipstick::app
                      const contact::Checks       &checks,
                      const double                 tolerance);
 
-  /// Resultants of loads, supports, foundations and contact pairs, and what is left of those from outside.
+  /// Resultants of loads, supports, foundations and contact pairs, and the sum of those from outside.
   void print_forces(const Log &log, const scene::Scene<2> &scene, const output::ResultSummary &results);
 
   /// The figures that matter and the file to open.

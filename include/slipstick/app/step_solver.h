@@ -4,7 +4,7 @@
 #include <slipstick/base/log.h>
 #include <slipstick/contact/checks.h>
 #include <slipstick/contact/friction.h>
-#include <slipstick/fem/spaces.h>
+#include <slipstick/fem/contact_constraints.h>
 #include <slipstick/fem/stress.h>
 #include <slipstick/output/convergence.h>
 #include <slipstick/scene/scene.h>
@@ -16,7 +16,7 @@
 
 namespace slipstick::app
 {
-  /// Mesh, dual problem and solver of a scene. Members are collective unless they only tell what is known.
+  /// Mesh, dual problem and solver of a scene. Members are collective, except those that only return known values.
   class StepSolver
   {
   public:
@@ -95,18 +95,24 @@ namespace slipstick::app
     void make_dual(const double t);
     void make_dual_as_it_is(const double t);
 
+    /// Loads of this rank's subdomains that are what rounding leaves of those of earlier steps become zero.
+    void drop_rounding(std::vector<Eigen::VectorXd> &loads);
+
+    /// The rows of contact at load factor t, as far as they are not pruned.
+    fem::ContactRows contact_rows(const double t);
+
     /// Loads and right-hand sides of a later step; slip starts from where the step before ended.
     /// @return whether the multipliers of the step before fit the rows.
     bool advance(const double t);
 
-    /// Slip counts from the displacement at the end of the step before.
+    /// Slip is measured from the displacement at the end of the previous step.
     void start_slip_from_here();
 
     /// The displacement of the solution.
     tfeti::DualProblem::Recovery recovered() const;
 
-    /// Checks and stresses of what was recovered from @p from.
-    void look_at(Answer &answer, const contact::DualSolution &from, const double t) const;
+    /// Computes checks and stresses of an answer that was recovered from @p from.
+    void evaluate(Answer &answer, const contact::DualSolution &from, const double t) const;
 
     /// Is the algebraic error of an iterate a small part of its discretisation error, and does it pass the checks? A step
     /// looks at its last estimate first, which errors of the iterates so far can only have made too large, and recovers
@@ -121,21 +127,25 @@ namespace slipstick::app
 
     std::unique_ptr<Answer> checked(std::unique_ptr<Answer> answer, const double t) const;
 
-    /// Goes on from a solution whose checks fail, to smaller residuals: those that are asked for are relative to |Pd|,
-    /// which may be far above what is left of it in the displacement (slender parts). Ends where that does not help.
+    /// Continues from a solution whose checks fail, to smaller residuals: the tolerance is relative to |Pd|,
+    /// which may be far above the corresponding part of the displacement (slender parts). Ends when that does not help.
     std::unique_ptr<Answer> tighten(const unsigned int      step,
                                     const std::uint64_t     multiplications_before,
                                     std::unique_ptr<Answer> answer);
 
     /// Corrects the displacement of an answer, on its set, until its checks are within the limit or do not fall any more.
     /// @return whether they are.
-    bool close(Answer &answer, const unsigned int step, const double limit);
+    bool close_gaps(Answer &answer, const unsigned int step, const double limit);
 
     scene::Scene<dim>    scene;
     const Log           &log;
     StageClock          &clock;
     const MPI_Comm       comm;
     scene::SolverOptions options;
+
+    // the same in all load steps
+    std::optional<fem::BodyContacts<dim>> contacts;
+    std::shared_ptr<tfeti::Subdomains>    subdomains;
 
     std::unique_ptr<fem::Mesh<dim>>     the_mesh;
     std::unique_ptr<fem::Spaces<dim>>   the_spaces;
@@ -145,12 +155,13 @@ namespace slipstick::app
     unsigned int                        n_given; // supports
     std::string                         unheld_motions;
     double                              kept_part;
+    double                              largest_load  = 0;    // of the steps so far [N]
     double                              factorization = 0;    // [s]
     double                              discretization_error; // last estimate in the step [sqrt(N mm)]
     contact::DualSolution               the_solution;
-    std::unique_ptr<Answer>             accepted;                 // by the test of accuracy, in the step
-    std::vector<Eigen::VectorXd>        u;                        // of the last step
-    double                              largest_displacement = 0; // of the steps before [mm]
+    std::unique_ptr<Answer>             accepted; // by the test of accuracy, in the step
+    std::vector<Eigen::VectorXd>        u;        // of the last step
+    contact::History                    history;  // of the steps before
     std::vector<output::ConvergenceRow> rows;
   };
 } // namespace slipstick::app

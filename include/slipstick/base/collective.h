@@ -1,4 +1,4 @@
-// Errors found by one rank become the same error on all ranks, so that none is left waiting.
+// An error found on one rank is raised on all ranks, so that no rank is left waiting.
 #pragma once
 
 #include <mpi.h>

@@ -36,6 +36,9 @@ namespace slipstick::contact
     double error_energy      = 0; // DualProblem::jump_energies of all that u violates [N mm]
     double max_displacement  = 0; // magnitude [mm]
     double energy            = 0; // u'K u, twice the strain energy [N mm]
+    double largest_force     = 0; // of a contact node [N]
+
+    std::vector<double> energies; // u'K u of every body [N mm]
 
     /// One of the relative checks.
     struct Entry
@@ -52,11 +55,22 @@ namespace slipstick::contact
     /// The relative checks with their names and places.
     std::array<Entry, n_entries> entries() const;
 
-    /// The worst of them; a number that is none is.
+    /// The worst of them; a value that is not a number counts as worse than any other.
     Entry worst_entry() const;
 
     /// Its name and value.
     std::pair<std::string, double> worst() const;
+  };
+
+  /// The largest values of the load steps before: what rounding leaves of them counts as none.
+  struct History
+  {
+    double              displacement = 0;  // magnitude [mm]
+    double              force        = 0;  // of a contact node [N]
+    std::vector<double> energies     = {}; // u'K u of every body [N mm]; none before the first step
+
+    /// Becomes what it is after one more step.
+    void add(const Checks &step);
   };
 
   struct CheckedContact
@@ -74,7 +88,6 @@ namespace slipstick::contact
   /// @param multipliers [N], balanced with u as DualProblem::recover returns them.
   /// @param slip_bound of every owned row [N].
   /// @param free owned rows whose multiplier is strictly inside its bounds: tells open from closed, stick from slip.
-  /// @param displacement_before the largest of the load steps before [mm]: what rounding leaves of it counts as none.
   /// Collective.
   CheckedContact check(const tfeti::DualProblem           &dual,
                        const tfeti::DistributedVector     &multipliers,
@@ -82,7 +95,7 @@ namespace slipstick::contact
                        const std::vector<double>          &slip_bound,
                        const std::vector<bool>            &free,
                        const unsigned int                  n_bodies,
-                       const double                        displacement_before = 0);
+                       const History                      &before = {});
 
   /// Sums over the nodes of all pairs, from the nodes of all ranks.
   std::vector<PairResult> pair_results(const std::vector<ContactNode> &nodes,

@@ -1,4 +1,4 @@
-// What a solve of the dual problem returns, and what it is watched by.
+// Result of a solve of the dual problem, and its observers.
 #pragma once
 
 #include <slipstick/qp/direction_store.h>
@@ -22,6 +22,7 @@ namespace slipstick::contact
     double                   projected_gradient = 0; // |gP| / |P d|
     double                   reference          = 0; // that the residuals are relative to
     double                   weighted_reference = 0; // the same with the weights of DualProblem::residual_weights()
+    double                   largest_traction   = 0; // norm in L2 of a pair's, of all steps so far [sqrt(N MPa)]
     double                   equality           = 0; // |G x - e| / |P d|, scaled
     unsigned long long       active_constraints = 0; // inequality rows at a bound, over all ranks
     std::string              algorithm;              // "smalbe", "semismooth newton", "pcg"

@@ -1,4 +1,4 @@
-// Solutions beyond the rounding of the dual operator and of the multipliers.
+// Solutions more accurate than rounding of the dual operator and the multipliers allows.
 #pragma once
 
 #include <slipstick/contact/friction.h>

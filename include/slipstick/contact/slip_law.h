@@ -1,8 +1,7 @@
 // Slip bounds of the contact laws, and the forces that a law admits.
 #pragma once
 
-#include <slipstick/qp/friction_cones.h>
-#include <slipstick/qp/pressure_bounds.h>
+#include <slipstick/qp/force_set.h>
 #include <slipstick/scene/scene.h>
 #include <slipstick/tfeti/dual_problem.h>
 
@@ -13,8 +12,7 @@ namespace slipstick::contact
   /// Bounds of the multipliers: normal >= 0, |tangential| <= slip bound, equality rows free [N].
   Box multiplier_box(const tfeti::DualProblem &dual, const std::vector<double> &slip_bound);
 
-  /// Slip bound of every owned row [N], 0 for rows that are not tangential. Tresca: bound times tributary area, on the
-  /// whole boundary or where the pair is closed; Coulomb: friction coefficient times normal force.
+  /// The laws of a scene on the rows of a dual problem: the forces that they admit at every contact node.
   class SlipLaw
   {
   public:
@@ -36,21 +34,17 @@ namespace slipstick::contact
     std::vector<double> bounds(const tfeti::DistributedVector &x) const;
 
     /// The bounds that depend on the normal forces, for a solver that follows them itself; entries: owned rows.
-    std::vector<qp::PressureBound> pressure_bounds() const;
+    const std::vector<qp::PressureBound> &pressure_bounds() const
+    {
+      return rows;
+    }
 
-    /// All multipliers that some pressure admits: cones for Coulomb friction, bounds for the others.
-    qp::FrictionCones<tfeti::DistributedVector> admissible(const tfeti::DualProblem &dual) const;
+    /// All multipliers that some pressure admits.
+    qp::ForceSet<tfeti::DistributedVector> admissible(const tfeti::DualProblem &dual) const;
 
   private:
-    struct Row
-    {
-      unsigned int tangential, normal; // owned rows
-      double       coefficient;        // Coulomb
-      bool         is_coulomb;         // else: the fixed bound acts while the normal row is pressed
-    };
-
-    std::vector<double> fixed;
-    std::vector<Row>    rows; // whose bound depends on the pressure
-    bool                follows_pressure = false;
+    std::vector<double>            fixed; // [N], of every owned row; 0 where the bound follows the pressure
+    std::vector<qp::PressureBound> rows;  // owned, whose bound does
+    bool                           follows_pressure = false;
   };
 } // namespace slipstick::contact

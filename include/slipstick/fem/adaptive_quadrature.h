@@ -11,7 +11,7 @@ namespace slipstick::fem
   constexpr unsigned int n_first_pieces = 16;
   // A piece and its two halves agree when they differ by no more than this part of the integral of the magnitudes.
   constexpr double same_integral = 1e-12;
-  // A piece is halved so often: a jump is then within rounding of its place.
+  // A piece is halved at most this many times: a jump is then located to rounding.
   constexpr unsigned int max_halvings = 44;
   // Pieces of one edge, all together: more are asked for by formulas that have no integral, or swing without end.
   constexpr unsigned int max_pieces = 20000;

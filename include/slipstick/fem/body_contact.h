@@ -5,17 +5,13 @@
 
 namespace slipstick::fem
 {
-  /// May nodes of the pair that are far apart go without rows? Not where a law acts on open nodes.
-  template <int dim>
-  bool can_be_pruned(const scene::ContactPair<dim> &pair);
-
   /// All pairs of bodies, known to every rank.
   template <int dim>
   struct BodyContacts
   {
     std::vector<std::vector<MortarRow<dim>>> rows; // by contact pair; none for obstacles
 
-    /// Subdomain whose rank owns the rows of a node: one for all nodes that hang together through rows, so that rows
+    /// Subdomain whose rank owns the rows of a node: one for all nodes that are connected through rows, so that rows
     /// which share a node are on one rank. Nodes that are not here may be owned by anyone.
     std::map<NodeKey, unsigned int> owner;
   };

@@ -25,7 +25,7 @@ namespace slipstick::fem
   };
 
   /// The first fault of a piece whose cells are all counterclockwise, with no more than two at an edge. As the number of cells
-  /// above a point is the winding number of the outline around it, only the edges of the outline are looked at: none may lie on,
+  /// above a point is the winding number of the outline around it, only the edges of the outline are examined: none may lie on,
   /// cross or touch another, and none may have a cell on both sides. The two flanks of a slit may lie on each other where all
   /// their edges are among @p named.
   template <int dim>

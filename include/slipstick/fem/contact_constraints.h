@@ -1,7 +1,7 @@
 // From meshes, supports and contact pairs to the rows of B.
 #pragma once
 
-#include <slipstick/fem/spaces.h>
+#include <slipstick/fem/body_contact.h>
 #include <slipstick/tfeti/constraints.h>
 
 #include <Eigen/Dense>
@@ -18,10 +18,12 @@ namespace slipstick::fem
 
   /// As contact_constraints(), but without rows for contact nodes whose gap exceeds the smallest one of their pair by
   /// more than @p part of the length of its slave boundary and two mesh sizes; laws that act on open nodes keep all.
+  /// @param contacts as pair_bodies() found them, which depends on neither t nor part.
   template <int dim>
   ContactRows contact_rows(const scene::Scene<dim> &scene,
                            const Mesh<dim>         &mesh,
                            const Spaces<dim>       &spaces,
+                           const BodyContacts<dim> &contacts,
                            const double             t,
                            const double             part);
 

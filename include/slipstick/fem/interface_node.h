@@ -9,7 +9,7 @@
 
 namespace slipstick::fem
 {
-  /// One copy of a node, or (with several entries in `copies`) all that is known of it.
+  /// One copy of a node, or (with several entries in `copies`) everything known about it.
   template <int dim>
   struct InterfaceNode
   {

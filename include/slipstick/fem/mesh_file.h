@@ -12,7 +12,7 @@
 
 namespace slipstick::fem
 {
-  /// What a mesh file holds, as it stands there: in its own units, nodes that nothing uses included.
+  /// Contents of a mesh file as written there: in its own units, including unused nodes.
   struct MeshFile
   {
     struct Element

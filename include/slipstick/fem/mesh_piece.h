@@ -137,7 +137,7 @@ namespace slipstick::fem
   template <int dim>
   std::vector<MeshPiece<dim>> cut(const MeshPiece<dim> &whole, const std::vector<unsigned int> &part);
 
-  /// METIS partition of the cells of @p piece, which must hang together through faces. @return a part number for
+  /// METIS partition of the cells of @p piece, which must be connected through faces. @return a part number for
   /// every cell.
   template <int dim>
   std::vector<unsigned int> metis_parts(const MeshPiece<dim> &piece,

@@ -36,7 +36,7 @@ namespace slipstick::fem
 
   /// Makes the rows of interface nodes: contact, bonds, supports, foundations, gluing.
   ///
-  /// Rows of contact that the supports of their nodes and the bonds (of all nodes that hang together) already imply are left
+  /// Rows of contact that the supports of their nodes and the bonds (of all connected nodes) already imply are left
   /// out; the tangential row goes before the normal one. So are rows of bonds, as where three bonded bodies meet in a
   /// point: the pair that comes last in the scene gives way. A node that may touch several obstacles has a normal row for each (for parallel
   /// normals the nearer obstacle only) and one tangential row, that of the nearest obstacle. So has a node at a corner of
@@ -55,7 +55,7 @@ namespace slipstick::fem
     /// Of every pair, as far as this rank owns its slave nodes.
     std::vector<PairExtent> extents() const;
 
-    /// Nodes of pair k with a gap above limits[k] get no rows (where can_be_pruned()); they go to `pruned`.
+    /// Nodes of pair k with a gap above limits[k] get no rows (where ContactLaw::acts_where_closed_alone()); they go to `pruned`.
     void limit_gaps(std::vector<double> limits);
 
     /// Fills kind, c, compliance, label, contact points, reactions, interface_held and counts of the constraints.

@@ -5,7 +5,7 @@
 
 namespace slipstick::fem
 {
-  /// Two pairs may not join the same edges, under whatever names: both would carry load there, and slip bounds would add up.
+  /// Two pairs may not join the same edges, under any names: both would carry load there, and slip bounds would add up.
   /// Of two bodies the shared edges must also face each other, whichever side is the slave. Collective.
   /// @throws InputError on all ranks, with both pairs and an edge that they share.
   template <int dim>

@@ -15,7 +15,7 @@ namespace slipstick::fem
   /// Identity of a node across subdomains and ranks: its vertex twice, or the two vertices of its edge.
   using NodeKey = std::array<GlobalVertex, 2>;
 
-  /// Lagrange element of one cell type and all that goes with it. Nodes lie on vertices (degree 1) and also in the middle
+  /// Lagrange element of one cell type, with its mapping and quadratures. Nodes lie on vertices (degree 1) and also in the middle
   /// of edges (degree 2; quadrilaterals have one more inside). Mappings are isoparametric: with degree 2 the edges follow
   /// the manifolds of the triangulation, of quadrilaterals and triangles alike.
   template <int dim>

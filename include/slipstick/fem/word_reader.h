@@ -16,7 +16,7 @@ namespace slipstick::fem
     [[noreturn]] void fail(const std::string &problem) const;
 
     /// fail() as the present section does not hold what belongs there.
-    [[noreturn]] void fail_mixed_up() const;
+    [[noreturn]] void fail_corrupt() const;
 
     /// The next word, empty at the end of the file.
     std::string word();

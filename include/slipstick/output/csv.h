@@ -1,4 +1,4 @@
-// Numbers and words as they stand in the text files.
+// Formats of numbers and words in the text files.
 #pragma once
 
 #include <string>

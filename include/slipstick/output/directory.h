@@ -26,7 +26,7 @@ namespace slipstick::output
     /// Path of the file @p name in the directory; empty @p name: of the directory itself.
     std::string path(const std::string &name = "") const;
 
-    /// Writes the file @p name on this rank alone: @p content fills a stream beside it, then the file takes its name.
+    /// Writes the file @p name on this rank alone: @p content writes a temporary file, which is then renamed.
     /// A file of that name from before is replaced; when anything fails it stays, and nothing else is left behind.
     /// The file beside it is new, under a random name: nothing is written through a link that stands in its place.
     /// @throws InputError on this rank alone when the disk does not take it; what @p content throws passes through.

@@ -15,10 +15,11 @@ namespace slipstick::output
   {
     converged,
     not_converged,
-    no_equilibrium
+    no_equilibrium,
+    unfinished // load steps are still to come; what is left of a run that was interrupted
   };
 
-  /// "converged", "not converged", "no equilibrium"
+  /// "converged", "not converged", "no equilibrium", "unfinished"
   std::string to_string(const RunStatus status);
 
   struct DualSummary
@@ -185,7 +186,7 @@ namespace slipstick::output
     MemorySummary   memory_mb;
 
     std::vector<StepSummary> steps;
-    std::vector<std::string> warnings; // what is doubtful about input or answer
+    std::vector<std::string> warnings; // warnings about the input or the answer
   };
 
   /// The text of summary.json. A number that is not finite becomes null, bytes that are not UTF-8 become U+FFFD.

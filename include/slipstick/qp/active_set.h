@@ -26,6 +26,33 @@ namespace slipstick::qp
     /// Of every owned entry: -1 at the lower bound, 1 at the upper, 0 free.
     using Sides = std::vector<signed char>;
 
+    /// `balance_bodies` of problems that have it; others have no bodies that contact alone holds.
+    template <typename Problem, typename Set>
+    auto balance_bodies(const Problem             &problem,
+                        const std::vector<double> &stiffness,
+                        const Set                 &set,
+                        std::vector<double>       &moved,
+                        int) -> decltype(problem.balance_bodies(stiffness, set, moved))
+    {
+      problem.balance_bodies(stiffness, set, moved);
+    }
+    template <typename Problem, typename Set>
+    void balance_bodies(const Problem &, const std::vector<double> &, const Set &, std::vector<double> &, long)
+    {}
+    template <typename Problem>
+    auto has_loose_bodies(const Problem &problem, int) -> decltype(problem.has_loose_bodies())
+    {
+      return problem.has_loose_bodies();
+    }
+    template <typename Problem>
+    bool has_loose_bodies(const Problem &, long)
+    {
+      return false;
+    }
+
+    // Bodies that move until s g balances their loads rest on the fewer points the stiffer s is: no larger than this then.
+    constexpr double step_with_loose_bodies = 1;
+
     /// The natural map x -> proj(x - s g) of an admissible set, and the set of entries that it puts on bounds. s: `step`
     /// over the norm of F, times the weight of the entry, so that s g is a force of the size that closes g.
     template <typename Vector, typename Problem>
@@ -40,6 +67,7 @@ namespace slipstick::qp
         , set(std::move(set_))
         , weights(residual_weights(problem_, 0))
         , active(local_size(set.box.lower))
+        , beyond(active.size(), 0.)
       {
         for (std::size_t i = 0; i < active.size(); ++i)
           bounded.push_back(set.box.lower.begin()[i] > -HUGE_VAL || set.box.upper.begin()[i] < HUGE_VAL);
@@ -65,11 +93,24 @@ namespace slipstick::qp
         return set.box;
       }
 
+      /// From here on bodies that contact alone holds move until s g balances their loads. @return whether that is new, and
+      /// there are such bodies.
+      bool start_balancing()
+      {
+        if (balances || !has_loose_bodies(problem, 0))
+          return false;
+        balances = true;
+        step     = std::min(step, step_with_loose_bodies);
+        return true;
+      }
+
       /// The set becomes that of x - s g. @return whether it is another one, on any process.
       bool predict(const Vector &x, const Vector &g)
       {
         const Sides before = active;
-        map(x, g, [](const std::size_t, const double, const double) {});
+        map(x, g, [this](const std::size_t i, const double, const double projected, const double moved) {
+          beyond[i] = std::abs(moved - projected) * norm / (step * weight(i));
+        });
         for (std::size_t i = 0; i < active.size(); ++i)
           if (active[i] * before[i] < 0 && set.box.lower.begin()[i] < set.box.upper.begin()[i])
             active[i] = 0; // from one bound to the other by way of the inside: s g is cut to the width
@@ -87,7 +128,7 @@ namespace slipstick::qp
               const double r = weight(i) * g.begin()[i];
               sum += r * r;
             }
-        map(x, g, [&](const std::size_t, const double xi, const double projected) {
+        map(x, g, [&](const std::size_t, const double xi, const double projected, const double) {
           const double r = norm * (xi - projected) / step;
           sum += r * r;
         });
@@ -131,8 +172,9 @@ namespace slipstick::qp
       {
         std::vector<Tie> result;
         for (const PressureBound &bound : set.pressure_bounds)
-          if (active[bound.tangential] != 0 && active[bound.normal] == 0 && bound.coefficient > 0)
-            result.push_back({bound.tangential, bound.normal, active[bound.tangential] * bound.coefficient});
+          if (const double slope = bound.forces.slope(set.box.upper.begin()[bound.tangential]);
+              active[bound.tangential] != 0 && active[bound.normal] == 0 && slope > 0)
+            result.push_back({bound.tangential, bound.normal, active[bound.tangential] * slope});
         return result;
       }
 
@@ -160,17 +202,10 @@ namespace slipstick::qp
         return result;
       }
 
-      /// What entries at bounds can bear: the bound of those between two, infinity with one bound, negative where the
-      /// bounds leave no room.
-      std::vector<double> capacities() const
+      /// By how much, in units of g, the entries at bounds are beyond them in the prediction made last.
+      const std::vector<double> &gaps() const
       {
-        std::vector<double> result(active.size());
-        for (std::size_t i = 0; i < active.size(); ++i)
-          {
-            const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i];
-            result[i] = l < u ? std::max(std::abs(l), std::abs(u)) : -1.;
-          }
-        return result;
+        return beyond;
       }
 
       /// Entries leave their bounds where @p free says so.
@@ -201,9 +236,7 @@ namespace slipstick::qp
       void move_bounds(const Vector &x)
       {
         for (const PressureBound &bound : set.pressure_bounds)
-          set_radius(bound,
-                     active[bound.normal] == 0 ? bound.fixed + bound.coefficient * std::max(x.begin()[bound.normal], 0.)
-                                               : 0.);
+          set_radius(bound, active[bound.normal] == 0 ? bound.forces.closed_radius(x.begin()[bound.normal]) : 0.);
       }
 
       void set_radius(const PressureBound &bound, const double radius)
@@ -212,37 +245,46 @@ namespace slipstick::qp
         set.box.upper.begin()[bound.tangential] = radius;
       }
 
-      // The set, and action(i, x_i, proj(x - s g)_i) for all entries with bounds. Normal entries come first: bounds of
+      // The set, and action(i, x_i, proj(x - s g)_i, (x - s g)_i) for all entries with bounds. Normal entries come first: bounds of
       // others follow the projected ones.
       template <typename Action>
       void map(const Vector &x, const Vector &g, const Action &action)
       {
-        std::vector<double> projected(active.size());
-        const auto          place = [&](const std::size_t i) {
+        std::vector<double> projected(active.size()), moved(active.size()), stiffness(active.size());
+        for (std::size_t i = 0; i < active.size(); ++i)
+          {
+            stiffness[i] = step / norm * weight(i);
+            moved[i]     = x.begin()[i] - stiffness[i] * g.begin()[i];
+          }
+        if (balances)
+          balance_bodies(problem, stiffness, set, moved, 0);
+        const auto place = [&](const std::size_t i) {
           const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i];
-          const double t = x.begin()[i] - step / norm * weight(i) * g.begin()[i];
-          active[i]      = t <= l ? -1 : t >= u ? 1 : 0;
-          projected[i]   = clip(t, l, u);
+          active[i]    = moved[i] <= l ? -1 : moved[i] >= u ? 1 : 0;
+          projected[i] = clip(moved[i], l, u);
         };
         for (std::size_t i = 0; i < active.size(); ++i)
           if (bounded[i])
             place(i);
         for (const PressureBound &bound : set.pressure_bounds)
           {
-            set_radius(bound, bound.radius(projected[bound.normal]));
+            set_radius(bound, bound.forces.radius(projected[bound.normal]));
             place(bound.tangential);
           }
         for (std::size_t i = 0; i < active.size(); ++i)
           if (bounded[i])
-            action(i, x.begin()[i], projected[i]);
+            action(i, x.begin()[i], projected[i], moved[i]);
       }
 
       const Problem        &problem;
-      const double          norm, step;
+      const double          norm;
+      double                step;
+      bool                  balances = false;
       AdmissibleSet<Vector> set;
       const double         *weights;
       std::vector<bool>     bounded;
       Sides                 active;
+      std::vector<double>   beyond;
     };
   } // namespace detail
 } // namespace slipstick::qp

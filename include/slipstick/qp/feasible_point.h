@@ -1,4 +1,4 @@
-// The point of a box (or of friction cones) and of equalities nearest to zero, or the proof that there is none.
+// The point of a box (or of admissible forces) and of equalities nearest to zero, or the proof that there is none.
 //
 // min 1/2 |x|^2 over the set and Q x = Q x_e. Dual: x = proj(y), y in the range of Q, maximise the concave
 //   theta(y) = 1/2 |proj(y)|^2 - y'proj(y) + y'x_e,   grad theta = r = Q(x_e - proj(y)),
@@ -7,7 +7,7 @@
 // certificate: r'x <= r'x_e - |r|^2 for all x of the set, while Q x = Q x_e would need r'x = r'x_e.
 #pragma once
 
-#include <slipstick/qp/friction_cones.h>
+#include <slipstick/qp/force_set.h>
 #include <slipstick/qp/mpgp.h>
 
 namespace slipstick::qp
@@ -193,13 +193,13 @@ namespace slipstick::qp
       Status least_squares(const Status failure)
       {
         is_nearest = false;
-        // far out, where y runs to if there is no such point, rounding is larger than what is looked for
+        // if there is no such point y diverges, and far out rounding exceeds the residual sought
         const bool is_far = norm(y, reduction) > options.certificate_radius * reference;
         std::copy(is_far ? Qx_e.begin() : y.begin(), is_far ? Qx_e.end() : y.end(), x.begin());
         project(box, x);
         if constexpr (std::is_same_v<Set, Box<Vector>>)
           minimize([this](const Vector &v, Vector &Qv) { project_range(v, Qv); }, 1., Qx_e, box);
-        else
+        else if (reduction.min(are_cones(box) ? 1. : 0.) > 0)
           {
             // of the parts along the sides of the cones, which have bounds: S'Q S, |S|^2 <= 2
             const auto multiply = [this](const Vector &v, Vector &product) {
@@ -231,7 +231,7 @@ namespace slipstick::qp
       }
 
       // x := least 1/2 x'Ax - x'b within bounds, down to rounding. It has a minimum: where rounding in directions that A does
-      // not see passes for a way down without end, MPGP starts anew.
+      // not see looks like a direction of unbounded descent, MPGP is restarted.
       template <typename Operator>
       void minimize(const Operator &A, const double norm_A, const Vector &b, const Box<Vector> &bounds)
       {
@@ -291,7 +291,7 @@ namespace slipstick::qp
     };
   } // namespace detail
 
-  /// The point nearest to zero of the set (a Box, FrictionCones) with Q x = Q x_e. Uses `problem.project_range` and
+  /// The point nearest to zero of the set (a Box, ForceSet) with Q x = Q x_e. Uses `problem.project_range` and
   /// `problem.reduction` only.
   /// status: infeasible with a certificate, see FeasiblePoint (without, if some lower > upper); iteration_limit or
   /// stagnated if neither a point nor a certificate was found.

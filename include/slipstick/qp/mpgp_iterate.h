@@ -18,7 +18,7 @@ namespace slipstick::qp
     std::optional<Vector> gradient = std::nullopt;
   };
 
-  /// Follows what MPGP does to x, for who keeps a linear function of x up to date; this one does nothing. v is the
+  /// Told of the steps of MPGP, to keep a linear function of x up to date; this one does nothing. v is the
   /// vector last multiplied by A.
   struct NoTracker
   {

@@ -39,7 +39,7 @@ namespace slipstick::qp
     double       penalty_progress = 0.5;  // ... below this times its old value, else rho grows ... (own choice)
     double       penalty_growth   = 10.0; // ... by this factor (own choice)
 
-    double       certificate_radius  = 100;  // |x| times this: so far must a certificate exclude points (own choice)
+    double       certificate_radius  = 100;  // a certificate must exclude all points up to this times |x| (own choice)
     unsigned int stagnation_window   = 100;  // outer steps in which the least residual must fall ... (own choice)
     double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
   };
@@ -71,7 +71,7 @@ namespace slipstick::qp
     double smallest_curvature   = 1e-15; // p'Fp over p'p and the largest such quotient so far: below it F is singular
     double rounding       = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
     double progress       = 0.999; // a step that leaves more than this part of the residual ...
-    unsigned int patience = 10;    // ... so often in a row ends the solve
+    unsigned int patience = 10;    // ... this many times in a row ends the solve
   };
 
   /// Options of the semismooth Newton method (own choice; doc/method.md).

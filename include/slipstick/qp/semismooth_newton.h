@@ -16,8 +16,12 @@
 //       `precondition(r, z)`    z = M r on the free entries, 0 on the others; symmetric positive semidefinite
 //       the Problem and its faces may have residual_weights (kernels.h)
 //       `is_regular()`          false when the free entries alone do not determine a
-//   `settle(free, capacity, x, g, is_weak) const`   what entries at bounds do where the free ones leave a motion open:
-//       { free, shift, is_loose }, see tfeti::DualProblem
+//   `hold(free, gaps, well) const`   the free entries and as many others, with small gaps, as make the face regular if that
+//       can be; or, if that is asked for, far from singular
+// It may have `has_loose_bodies() const` and
+//     `balance_bodies(stiffness, set, moved) const`, which moves bodies that nothing but entries with bounds holds,
+//       moved -= stiffness times their jumps, so that proj(moved) balances their loads: the least of the potential of the
+//       projected forces. So sets are predicted that can bear the loads.
 #pragma once
 
 #include <slipstick/qp/active_set.h>
@@ -67,6 +71,9 @@ namespace slipstick::qp
   {
     // Of a step along M r: eigenvalues of F M are 1 to some 5 (first steps of conjugate gradients there: 0.15 to 0.5).
     constexpr double descent_step = 0.3;
+    // Steps after which bodies that contact alone holds move until it balances their loads. Where many nodes hold a body, which
+    // then rests on others than the elastic one, sets are better told by the multipliers a of the faces, in 10 to 20 steps.
+    constexpr unsigned int unbalanced_steps = 20;
 
     template <typename Vector, typename Problem>
     class SemismoothNewton
@@ -156,10 +163,20 @@ namespace slipstick::qp
                 has_met_goal = true;
                 tolerance    = options.tightening * left;
               }
-            if (!step())
+            const bool falls = step();
+            if ((!falls || counts.outer_iterations >= unbalanced_steps) && set.start_balancing())
+              start_again();
+            else if (!falls)
               return ended(Status::stagnated);
           }
         return ended(Status::iteration_limit);
+      }
+
+      void start_again()
+      {
+        is_stuck = false;
+        merits   = {set.natural_residual(x, g)};
+        set.predict(x, g);
       }
 
       // Residuals below the goal that do not fall any more are at rounding.
@@ -198,12 +215,12 @@ namespace slipstick::qp
         return error;
       }
 
-      // The face of the set. Where that leaves a motion open, or nearly, bodies first settle at present forces, and the
-      // entries that are at rest then leave their bounds.
+      // The face of the set. Where that leaves a motion open, the entries at bounds that come nearest to leaving them hold
+      // it; where a step failed, motions that the free entries hardly hold count as open.
       std::optional<Face> regular_face()
       {
-        if (holds_weak)
-          hold(true);
+        if (is_stuck)
+          set.release(problem.hold(set.free(), set.gaps(), true));
         for (unsigned int attempt = 0; attempt < 2; ++attempt)
           {
             ties = set.ties();
@@ -211,19 +228,9 @@ namespace slipstick::qp
             face.emplace(problem.face(set.free(), ties));
             if (face->is_regular())
               return face;
-            hold(false);
+            set.release(problem.hold(set.free(), set.gaps(), false));
           }
         return {};
-      }
-
-      void hold(const bool is_weak)
-      {
-        auto settled = problem.settle(set.free(), set.capacities(), x, g, is_weak);
-        if (!settled.is_loose)
-          return;
-        add(1., g, settled.shift);
-        set.predict(x, settled.shift);
-        set.release(problem.settle(set.free(), set.capacities(), x, settled.shift, is_weak).free);
       }
 
       // x to its bounds and to where G x = e, F x, gradient and set.
@@ -314,19 +321,19 @@ namespace slipstick::qp
         add(descent_step, p, step);
       }
 
-      // Along the step; where the residual does not fall along it the bodies that the face hardly held settle first.
+      // Along the step to the next point and set. @return whether the residual falls along it.
       bool step()
       {
         const auto   solved = set.free();
         const double t      = line_search();
-        if (t == 0)
+        if (t == 0) // once more with the set of x itself
           {
-            const bool is_hopeless = holds_weak;
-            holds_weak             = true;
+            const bool is_hopeless = is_stuck;
+            is_stuck               = true;
             set.predict(x, g);
             return !is_hopeless;
           }
-        holds_weak = false;
+        is_stuck = false;
         Vector known(g); // what is left on free entries after a whole step says nothing of the set
         if (t == 1)
           for (std::size_t i = 0; i < solved.size(); ++i)
@@ -412,8 +419,8 @@ namespace slipstick::qp
       Vector                y, Fy, gy; // where the present step leads
       std::vector<double>   merits;    // natural residuals of all x so far
       std::optional<Vector> best;      // where the natural residual is least
-      double                residual   = HUGE_VAL;
-      bool                  holds_weak = false; // the next face must hold all bodies well
+      double                residual = HUGE_VAL;
+      bool                  is_stuck = false; // the last step did not lower the residual
       Counts                counts;
     };
   } // namespace detail

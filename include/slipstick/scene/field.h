@@ -1,4 +1,4 @@
-// A number or a formula of x, y and the load factor t, as it stands in a .prm.
+// A number or a formula of x, y and the load factor t, as written in a .prm.
 #pragma once
 
 #include <deal.II/base/point.h>

@@ -15,8 +15,9 @@ namespace slipstick::scene
   /// Subsections "KIND NAME" whose names the top level parameter LIST declares: {"Body", "Bodies"}.
   struct NamedKind
   {
-    std::string kind;
-    std::string list;
+    std::string              kind;
+    std::string              list;
+    std::vector<std::string> known = {}; // names that need no subsection
   };
 
   /// Sets the declared parameter @p path, "Solver/Tolerance", whose value must be allowed.
@@ -27,7 +28,7 @@ namespace slipstick::scene
   class Parameters
   {
   public:
-    /// @throws InputError as read_settings() does.
+    /// @throws InputError as read_settings() and expand_variables() do.
     Parameters(const std::string              &file,
                const std::vector<std::string> &overrides,
                const std::vector<NamedKind>   &named_kinds);
@@ -41,6 +42,9 @@ namespace slipstick::scene
     void apply(dealii::ParameterHandler &prm) const;
 
     bool is_set(const std::string &path) const;
+
+    /// Whether the file opens the subsection @p path, or anything in it is set.
+    bool has_section(const std::string &path) const;
 
     /// The text that the file or an override sets the parameter to; nothing when it is not set.
     std::optional<std::string> value(const std::string &path) const;

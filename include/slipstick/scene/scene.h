@@ -2,7 +2,7 @@
 #pragma once
 
 #include <slipstick/qp/options.h>
-#include <slipstick/scene/field.h>
+#include <slipstick/scene/contact_law.h>
 #include <slipstick/tfeti/options.h>
 
 #include <deal.II/base/point.h>
@@ -188,14 +188,6 @@ namespace slipstick::scene
     unsigned int                n_points = 101; // on a line
   };
 
-  enum class ContactLaw
-  {
-    bonded, // no relative displacement, tension too
-    frictionless,
-    tresca,
-    coulomb
-  };
-
   enum class ContactDiscretization
   {
     automatic, // node to node where the meshes match, else mortar
@@ -211,15 +203,11 @@ namespace slipstick::scene
     BoundaryName                slave;
     std::optional<BoundaryName> master;       // empty: the obstacle
     unsigned int                obstacle = 0; // index into Scene::obstacles
-    ContactLaw                  law      = ContactLaw::frictionless;
-    Field<dim>                  slip_bound;          // [MPa], >= 0; Tresca only
-    bool                        only_closed = false; // Tresca: the bound acts where the pair is closed; else on the
-                                                     // whole declared boundary, open nodes included (as in the paper)
-    Field<dim>                friction_coefficient;  // [-], >= 0; Coulomb only
-    Field<dim>                offset;                // added to the gap of the geometry [mm]; negative: press fit
-    std::optional<Field<dim>> gap;                   // [mm] in place of the gap of the geometry
-    std::optional<double>     reach; // [mm]: what is farther apart is no candidate; empty: from the meshes
-    ContactDiscretization     discretization = ContactDiscretization::automatic;
+    ContactLaw<dim>             law;
+    Field<dim>                  offset; // added to the gap of the geometry [mm]; negative: press fit
+    std::optional<Field<dim>>   gap;    // [mm] in place of the gap of the geometry
+    std::optional<double>       reach;  // [mm]: what is farther apart is no candidate; empty: from the meshes
+    ContactDiscretization       discretization = ContactDiscretization::automatic;
   };
 
   /// Contact pairs found among the declared bodies.
@@ -231,7 +219,7 @@ namespace slipstick::scene
     ContactPair<dim> pair;          // law, bounds, offset and so on of the pairs that are found
   };
 
-  /// Fixed point of the slip bounds (Coulomb; Tresca where closed).
+  /// Fixed point of the slip bounds of laws that act where a pair is closed.
   struct FrictionOptions
   {
     double       tolerance      = 1e-6; // relative change of the slip bounds

@@ -57,6 +57,7 @@ namespace slipstick::scene
     explicit MaterialSection(const std::string &name);
 
     std::string name;
+    std::string library = "none";
     Material    material;
 
     void     declare(dealii::ParameterHandler &prm);
@@ -219,16 +220,15 @@ namespace slipstick::scene
   template <int dim>
   struct ContactLawSection
   {
-    ContactLaw  law                  = ContactLaw::frictionless;
-    std::string slip_bound           = "0";
-    bool        only_closed          = false;
-    std::string friction_coefficient = "0";
-    std::string offset               = "0";
+    std::string                        law = "frictionless";
+    std::map<std::string, std::string> numbers; // of all laws, by parameter
+    bool                               only_closed = false;
+    std::string                        offset      = "0";
 
     /// In the subsection that is open.
     void declare(dealii::ParameterHandler &prm);
 
-    /// Law, bounds and offset into @p pair. @p section: the path of the subsection.
+    /// Law and offset into @p pair. @p section: the path of the subsection.
     void read(const Parameters &parameters, const std::string &section, ContactPair<dim> &pair) const;
   };
 

@@ -21,7 +21,7 @@ namespace slipstick::tfeti
   class CoarseSolver
   {
   public:
-    /// An entry by global row and column; entries of one position, of whatever rank, are added. Those above the diagonal
+    /// An entry by global row and column; entries of one position, of any rank, are added. Those above the diagonal
     /// are not read.
     struct Entry
     {

@@ -48,7 +48,7 @@ namespace slipstick::tfeti
     double                length        = 0;          // tributary length [mm]
     double                traction_area = 0;  // that tractions are given for: where less than half of the node's
                                               // full tributary length faces the other side half of it counts, since
-                                              // the force of a sliver over its own area says nothing [mm^2]
+                                              // the force on a sliver over its own area is meaningless [mm^2]
     std::array<std::uint64_t, 2> key{{0, 0}}; // the mesh's name of the node
     unsigned int                 normal_row     = invalid_row; // owned rows; invalid where a support takes their place
     unsigned int                 tangential_row = invalid_row;

@@ -31,16 +31,16 @@ namespace slipstick::tfeti
   class DualOperator
   {
   public:
-    /// @p blocks of K+ at the touched unknowns of every subdomain; none: implicit.
+    /// @p blocks of K+ at the touched unknowns of every subdomain, which must live as long as this; null: implicit.
     DualOperator(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                  const std::vector<LocalGluing>                      &gluing,
                  const Partitioner                                   &rows,
-                 std::vector<PackedSymmetric>                         blocks);
+                 const std::vector<PackedSymmetric>                  *blocks);
 
     /// y = F x; x: multipliers [N], y: displacement jumps [mm], owned entries. Collective. Farhat, Roux 1991.
     void apply(const DistributedVector &x, DistributedVector &y) const;
 
-    /// The same by sparse solves, whatever the blocks are stored in. Collective.
+    /// The same by sparse solves, in any storage of the blocks. Collective.
     void apply_by_solves(const DistributedVector &x, DistributedVector &y) const;
 
     /// B' x on subdomain p of this rank: forces at the touched unknowns; x needs its ghosts.
@@ -62,7 +62,7 @@ namespace slipstick::tfeti
 
     bool is_explicit() const
     {
-      return !blocks.empty();
+      return blocks != nullptr;
     }
 
     /// Memory of the dense blocks on this rank [bytes].
@@ -76,7 +76,7 @@ namespace slipstick::tfeti
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     const std::vector<LocalGluing>                      &gluing;
     Partitioner                                          rows;
-    std::vector<PackedSymmetric>                         blocks;
+    const std::vector<PackedSymmetric>                  *blocks; // null: none
     mutable DistributedVector                            source, target;
     mutable unsigned long long                           applications = 0;
   };

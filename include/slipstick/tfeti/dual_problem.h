@@ -1,17 +1,19 @@
 // The dual problem of the torn bodies: F, d, G, e, P, and the way back to displacements.
 #pragma once
 
+#include <slipstick/tfeti/body_equilibrium.h>
 #include <slipstick/tfeti/dual_operator.h>
 #include <slipstick/tfeti/preconditioner.h>
 #include <slipstick/tfeti/projector.h>
 #include <slipstick/tfeti/reduction.h>
 #include <slipstick/tfeti/rigid_motions.h>
+#include <slipstick/tfeti/subdomains.h>
 
 #include <optional>
 
 namespace slipstick::tfeti
 {
-  /// Forces of no more than this part of the largest are what rounding leaves of none: they hold nothing.
+  /// Forces up to this part of the largest one are rounding of zero and hold nothing.
   constexpr double force_rounding = 1e-13;
 
   /// min 1/2 x'F x - x'd  s.t.  G x = e and bounds on x (which the contact layer knows). x: multipliers [N], one a row
@@ -48,6 +50,14 @@ namespace slipstick::tfeti
     /// none of them, UnheldMotions.
     /// @throws NumericalError when a subdomain cannot be factorised.
     DualProblem(std::vector<SubdomainMatrices>  matrices,
+                Constraints                     constraints,
+                const DualOptions              &options,
+                const std::vector<std::string> &body_names,
+                const MPI_Comm                  comm);
+
+    /// The same; of @p subdomains whose rows were others before only those are factorised that are touched elsewhere. No other
+    /// problem may have them at the same time.
+    DualProblem(std::shared_ptr<Subdomains>     subdomains,
                 Constraints                     constraints,
                 const DualOptions              &options,
                 const std::vector<std::string> &body_names,
@@ -100,18 +110,6 @@ namespace slipstick::tfeti
     /// The problem on the free rows (owned ones), the others held, or tied to free ones. Collective.
     Face face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties = {}) const;
 
-    /// Rows that hold bodies which a set leaves loose, and how these bodies move until friction balances their loads.
-    struct Settled
-    {
-      std::vector<bool> free;     // with those that hold
-      DistributedVector shift;    // of the gradient F x - d + G'a, by the motion
-      bool              is_loose; // else nothing was to be done
-    };
-
-    /// Loose bodies move to where the forces at their rows, at present bounds, balance the loads: the least of
-    /// sum_i r_i |g_i + S_i a| + e'a, S the jumps of their motions. The rows that are at rest there hold them.
-    /// @param capacity r_i: the bound of a row between two bounds [N]; negative: the row cannot leave its bound; infinity:
-    ///        a row with one bound, g_i + S_i a >= 0. @param is_weak asks for motions that free rows hardly resist, too.
     /// A motion of bodies for which friction at present bounds is too weak.
     struct Overload
     {
@@ -119,14 +117,26 @@ namespace slipstick::tfeti
       double      held = 0; // the part of the load along it that friction bears, below 1
     };
 
-    /// @param free rows that hold: gluing, supports, closed contact. @param capacity, x as of settle(). Collective.
+    /// @param free rows that hold: gluing, supports, closed contact. @param capacity the bound of a row between two bounds
+    ///        [N]; negative: the row bears nothing; infinity: a row with one bound. Collective.
     std::optional<Overload> overload(const std::vector<bool> &free, const std::vector<double> &capacity) const;
 
-    Settled settle(const std::vector<bool>   &free,
-                   const std::vector<double> &capacity,
-                   const DistributedVector   &x,
-                   const DistributedVector   &g,
-                   const bool                 is_weak) const;
+    /// The free rows and, of the others, as many as hold the bodies that these leave loose, those with the smallest gaps [of
+    /// any unit] rather than others. Just the free ones when nothing is loose, or nothing can hold. @param well bodies that
+    /// free rows hardly hold are held, too. Collective.
+    std::vector<bool> hold(const std::vector<bool> &free, const std::vector<double> &gaps, const bool well) const;
+
+    /// moved -= stiffness times the jumps of the motion of bodies which nothing but contact holds, after which the forces
+    /// `moved`, cut to their bounds, balance the loads of these bodies. Owned rows. Collective.
+    void balance_bodies(const std::vector<double>                  &stiffness,
+                        const qp::AdmissibleSet<DistributedVector> &bounds,
+                        std::vector<double>                        &moved) const;
+
+    /// Are there bodies that nothing but contact holds?
+    bool has_loose_bodies() const
+    {
+      return !held_by_contact->empty();
+    }
 
     /// |P F P| [mm/N].
     double norm() const
@@ -219,10 +229,10 @@ namespace slipstick::tfeti
 
     /// Of the candidates, as many as hold the loose motions are added to the free rows: those whose shares, times their
     /// scale, are largest. @return whether they do.
-    bool hold(const std::vector<RigidMotion> &loose,
-              const std::vector<bool>        &is_candidate,
-              const std::vector<double>      &scale,
-              std::vector<bool>              &free) const;
+    bool hold_by(const std::vector<RigidMotion> &loose,
+                 const std::vector<bool>        &is_candidate,
+                 const std::vector<double>      &scale,
+                 std::vector<bool>              &free) const;
     /// The free rows and some of those with friction forces that hold the loose motions, or, where nothing drives these,
     /// of all rows. @return whether they are rows with forces.
     bool rows_that_fix(const std::vector<RigidMotion> &loose,
@@ -239,22 +249,23 @@ namespace slipstick::tfeti
 
     double lanczos(const DualOptions &options) const;
     void   apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
-    void   update_dual_load();
-    void   set_dual_load(const std::vector<Eigen::VectorXd> &u); // u = K+ f; e too
+    void   set_dual_load();                                                 // e too
 
-    MPI_Comm                                      comm;
-    MpiReduction                                  reduce;
-    Constraints                                   rows;
-    Partitioner                                   owned_rows; // without ghosts
-    std::vector<std::string>                      names_of_bodies;
-    std::vector<LocalGluing>                      gluing;
-    std::vector<std::unique_ptr<SubdomainSystem>> systems;
-    std::unique_ptr<DualOperator>                 F;
-    std::unique_ptr<BodyMotions>                  bodies;
-    std::unique_ptr<Projector>                    projector;
-    std::unique_ptr<RowPreconditioner>            preconditioner;
-    std::vector<double>                           metric; // stiffnesses of the owned rows
-    bool               projects_twice = false;            // rounding of one projection would show in the stiffest rows
+    MPI_Comm                                             comm;
+    MpiReduction                                         reduce;
+    Constraints                                          rows;
+    Partitioner                                          owned_rows; // without ghosts
+    std::vector<std::string>                             names_of_bodies;
+    std::vector<LocalGluing>                             gluing;
+    std::shared_ptr<Subdomains>                          parts;
+    const std::vector<std::unique_ptr<SubdomainSystem>> &systems; // theirs
+    std::unique_ptr<DualOperator>                        F;
+    std::unique_ptr<BodyMotions>                         bodies;
+    std::unique_ptr<BodyEquilibrium>                     held_by_contact; // bodies that nothing else holds
+    std::unique_ptr<Projector>                           projector;
+    std::unique_ptr<RowPreconditioner>                   preconditioner;
+    std::vector<double>                                  metric; // stiffnesses of the owned rows
+    bool               projects_twice = false; // rounding of one projection would show in the stiffest rows
     DistributedVector  dual_load;
     Eigen::VectorXd    resultants; // e of this rank's subdomains in turn
     DistributedVector  correction; // (F - F~) x, taken off the dual load

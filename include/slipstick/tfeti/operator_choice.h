@@ -3,7 +3,6 @@
 
 #include <slipstick/tfeti/constraints.h>
 #include <slipstick/tfeti/options.h>
-#include <slipstick/tfeti/subdomain_matrices.h>
 
 #include <cstddef>
 
@@ -24,8 +23,9 @@ namespace slipstick::tfeti
 
   /// Is F to be stored in dense blocks? As the options say; if it is left to us, when the blocks of every rank take no
   /// more than a part of its memory share and the multiplications to be expected pay for them. Collective.
-  bool is_explicit(const DualOptions                    &options,
-                   const std::vector<SubdomainMatrices> &matrices,
-                   const Constraints                    &constraints,
-                   const MPI_Comm                        comm);
+  /// @param n_unknowns of every subdomain.
+  bool is_explicit(const DualOptions               &options,
+                   const std::vector<unsigned int> &n_unknowns,
+                   const Constraints               &constraints,
+                   const MPI_Comm                   comm);
 } // namespace slipstick::tfeti

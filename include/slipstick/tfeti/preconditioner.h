@@ -11,13 +11,14 @@ namespace slipstick::tfeti
   class RowPreconditioner
   {
   public:
-    /// @param blocks S of this rank's subdomains at their touched unknowns; none: lumped, by products with K.
+    /// @param blocks S of this rank's subdomains at their touched unknowns, which must live as long as this; null: lumped, by
+    /// products with K.
     RowPreconditioner(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                       const std::vector<LocalGluing>                      &gluing,
                       const DualOperator                                  &F,
                       const Partitioner                                   &rows,
                       const MPI_Comm                                       comm,
-                      std::vector<PackedSymmetric>                         blocks);
+                      const std::vector<PackedSymmetric>                  *blocks);
 
     const RowWeights &weights() const
     {
@@ -39,7 +40,7 @@ namespace slipstick::tfeti
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     const DualOperator                                  &scatter_gather;
     RowWeights                                           row_weights;
-    std::vector<PackedSymmetric>                         blocks;
+    const std::vector<PackedSymmetric>                  *blocks;            // null: none
     std::vector<Eigen::VectorXd>                         inverse_diagonals; // of K at the touched unknowns
     mutable DistributedVector                            source, target;    // with ghosts
   };

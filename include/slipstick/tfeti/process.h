@@ -6,7 +6,7 @@
 namespace slipstick::tfeti
 {
   /// One in main(), before anything else: BLAS on one thread (more would fight with the ranks for the cores), MPI
-  /// and Kokkos, with nothing looked for that the run does not need. They do not see the command line. Ends MPI when
+  /// and Kokkos, without searching for networks that the run does not need. They do not see the command line. Ends MPI when
   /// destroyed.
   class Process
   {

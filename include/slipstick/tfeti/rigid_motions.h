@@ -27,7 +27,7 @@ namespace slipstick::tfeti
     std::vector<RigidMotion> motions; // orthonormal
   };
 
-  /// What the rows of B (gluing aside, which moves with its body) see of the rigid motions of whole bodies.
+  /// Jumps of the rows of B under rigid motions of whole bodies (except gluing rows, which move with their body).
   class BodyMotions
   {
   public:
@@ -48,6 +48,9 @@ namespace slipstick::tfeti
                                   const double             resistance = rounding_of_resistance) const;
 
     static constexpr double rounding_of_resistance = 1e-12;
+
+    /// Loads along the motions of all bodies, 3 a body [N]; 0 where the loads cancel to rounding. Collective.
+    Eigen::VectorXd loads() const;
 
     /// Jumps B u of all rows that this rank owns (0 for gluing) under motions; rows x motions.
     Eigen::MatrixXd jumps(const std::vector<RigidMotion> &motions) const;

@@ -30,6 +30,17 @@ namespace slipstick::tfeti
     /// x := K+ x; n entries [N] to [mm].
     void apply_pseudo_inverse(Eigen::VectorXd &x) const;
 
+    bool has_factor() const
+    {
+      return cholesky.has_value();
+    }
+
+    /// Gives K, f and R away for a factor in another order; of no use afterwards.
+    SubdomainMatrices take_matrices()
+    {
+      return std::move(matrices);
+    }
+
     /// Frees the factor. K+ is then applied by factorising anew, every time, in an order with less fill; the dense blocks
     /// may not be asked for any more.
     void release()

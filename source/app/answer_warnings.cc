@@ -1,5 +1,5 @@
+#include <slipstick/app/answer_warnings.h>
 #include <slipstick/app/curve_doubts.h>
-#include <slipstick/app/doubts.h>
 #include <slipstick/base/log.h>
 #include <slipstick/fem/deformation.h>
 
@@ -22,14 +22,14 @@ namespace slipstick::app
     constexpr double largest_motion = 0.5;
     // Young modulus above that of any material (diamond: 1.2e6 MPa) ...
     constexpr double largest_modulus = 1e7;
-    // ... which may be meant as rigid, but not of all bodies where these hardly move, as a part of their diagonals.
+    // ... which may be meant as rigid; but not of all bodies if all displacements are below this part of the bodies' diagonals.
     constexpr double least_motion = 1e-8;
     // Contact pressure over the smaller Young modulus of the two sides.
     constexpr double largest_pressure = 1;
     // Overlap and slip over the length of an edge.
     constexpr double largest_step = 1;
 
-    /// Of one contact pair: the largest of something, the place, the length of the longest edge.
+    /// Of one contact pair: the largest value, where it is, and the length of the longest edge.
     struct OfPair
     {
       double overlap = 0, overlap_x = 0, overlap_y = 0;
@@ -111,7 +111,7 @@ namespace slipstick::app
       return pair.master ? std::min(of(pair.slave.body), of(pair.master->body)) : of(pair.slave.body);
     }
 
-    /// Pairs between which forces may be exchanged without an effect, and where first; none: empty. Collective.
+    /// Pairs between which forces can be exchanged without effect, and the first place; empty if there are none. Collective.
     std::string doubt_of_split(const scene::Scene<2>    &scene,
                                const tfeti::DualProblem &dual,
                                const std::vector<bool>  &free)
@@ -143,9 +143,9 @@ namespace slipstick::app
       for (const unsigned int pair : pairs)
         names += (names.empty() ? "" : ", ") + scene.contacts[pair].name;
       return format(
-        "Contact %s: at %zu points, the first at (%.6g, %.6g), what sticks together there holds itself in more "
-        "ways than one, so that only sums of the forces are determined, not how they are split between these "
-        "pairs and supports; leave one of the pairs or nodes out, or rely on the sums",
+        "Contact %s: at %zu points, the first at (%.6g, %.6g), the bodies that stick together there hold each other in more "
+        "than one way, so that only the sums of the forces are determined, not their distribution over these "
+        "pairs and supports; leave out one of the pairs or nodes, or use the sums only",
         names.c_str(),
         places.size(),
         places.begin()->first,
@@ -161,13 +161,13 @@ namespace slipstick::app
     }
   } // namespace
 
-  std::map<std::string, std::string> doubts(const scene::Scene<2>                   &scene,
-                                            const fem::Mesh<2>                      &mesh,
-                                            const fem::Spaces<2>                    &spaces,
-                                            const tfeti::DualProblem                &dual,
-                                            const std::vector<bool>                 &free,
-                                            const std::vector<contact::ContactNode> &nodes,
-                                            const std::vector<Eigen::VectorXd>      &u)
+  std::map<std::string, std::string> answer_warnings(const scene::Scene<2>                   &scene,
+                                                     const fem::Mesh<2>                      &mesh,
+                                                     const fem::Spaces<2>                    &spaces,
+                                                     const tfeti::DualProblem                &dual,
+                                                     const std::vector<bool>                 &free,
+                                                     const std::vector<contact::ContactNode> &nodes,
+                                                     const std::vector<Eigen::VectorXd>      &u)
   {
     std::map<std::string, std::string> texts;
     const auto                         pairs = peaks_of_pairs(scene, dual.constraints(), nodes, mesh.comm);
@@ -190,7 +190,7 @@ namespace slipstick::app
         if (pair.slip > largest_step * pair.edge)
           texts["slip " + name] = format(
             "Contact %s: its sides slide by %.4g mm at (%.6g, %.6g), more than an edge of %.4g mm, but contact is "
-            "that of the places before loading; check loads and supports",
+            "found in the undeformed positions; check loads and supports",
             name.c_str(),
             pair.slip,
             pair.slip_x,
@@ -217,7 +217,7 @@ namespace slipstick::app
         format("the rotation %s is %.3g rad: %s", place(scene, large.rotation).c_str(), large.rotation.value, remedy);
     if (large.motion.value > largest_motion)
       texts["motion"] = format(
-        "the displacement %s is %.3g times the size of the body, but contact is that of the places before loading; "
+        "the displacement %s is %.3g times the size of the body, but contact is found in the undeformed positions; "
         "check gaps, loads and supports",
         place(scene, large.motion).c_str(),
         large.motion.value);

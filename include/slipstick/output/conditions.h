@@ -1,0 +1,17 @@
+// conditions.csv: where supports, loads and contact pairs are, for those who draw the scene.
+#pragma once
+
+#include <slipstick/fem/spaces.h>
+#include <slipstick/output/directory.h>
+
+namespace slipstick::output
+{
+  /// Writes conditions.csv from rank 0: one row for every edge, before loading, of a boundary that a support, foundation,
+  /// traction or contact pair names, and for every point that a support or point load names (both ends are then the
+  /// node). Collective.
+  template <int dim>
+  void write_conditions(const OutputDirectory   &directory,
+                        const scene::Scene<dim> &scene,
+                        const fem::Mesh<dim>    &mesh,
+                        const fem::Spaces<dim>  &spaces);
+} // namespace slipstick::output

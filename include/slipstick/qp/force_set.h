@@ -1,0 +1,135 @@
+// The forces that the laws of contact admit as a feasible set: those of nodes in polygons, bounds on all others.
+//
+// The operations are those of box.h: projection, its derivative, Farkas certificate.
+#pragma once
+
+#include <slipstick/qp/box.h>
+#include <slipstick/qp/pressure_bounds.h>
+
+#include <vector>
+
+namespace slipstick::qp
+{
+  /// Entries of nodes have no bounds in the box.
+  template <typename Vector>
+  struct ForceSet
+  {
+    Box<Vector>                box;
+    std::vector<PressureBound> nodes;
+  };
+
+  /// x := projection of x on the set.
+  template <typename Vector>
+  void project(const ForceSet<Vector> &set, Vector &x)
+  {
+    project(set.box, x);
+    const auto xi = x.begin();
+    for (const PressureBound &node : set.nodes)
+      node.forces.project(xi[node.tangential], xi[node.normal]);
+  }
+
+  /// p := derivative of the projection at y, times p.
+  template <typename Vector>
+  void multiply_derivative(const ForceSet<Vector> &set, const Vector &y, Vector &p)
+  {
+    multiply_derivative(set.box, y, p);
+    const auto yi = y.begin();
+    const auto pi = p.begin();
+    for (const PressureBound &node : set.nodes)
+      node.forces.multiply_derivative(yi[node.tangential], yi[node.normal], pi[node.tangential], pi[node.normal]);
+  }
+
+  template <typename Vector>
+  double n_contradictions(const ForceSet<Vector> &set)
+  {
+    return n_contradictions(set.box);
+  }
+
+  /// Are all nodes cones (on this process)?
+  template <typename Vector>
+  bool are_cones(const ForceSet<Vector> &set)
+  {
+    return std::all_of(set.nodes.begin(), set.nodes.end(), [](const auto &node) { return node.forces.is_cone(); });
+  }
+
+  // A point of a cone is the sum of parts along its two sides, which are any numbers from 0: x_T = s (a - b),
+  // x_N = c (a + b) with s, c the sine and cosine of half the angle between them, a in the place of x_T, b in that of x_N.
+
+  /// Bounds of the parts along the sides of the cones; other entries keep theirs. Without friction there is one side.
+  template <typename Vector>
+  Box<Vector> bounds_of_sides(const ForceSet<Vector> &set)
+  {
+    Box<Vector> box = set.box;
+    for (const PressureBound &cone : set.nodes)
+      {
+        box.lower.begin()[cone.tangential] = box.lower.begin()[cone.normal] = 0;
+        box.upper.begin()[cone.tangential] = cone.forces.coefficient > 0 ? infinity : 0;
+        box.upper.begin()[cone.normal]     = infinity;
+      }
+    return box;
+  }
+
+  /// x := parts along the sides, of a point within the set.
+  template <typename Vector>
+  void resolve_into_sides(const ForceSet<Vector> &set, Vector &x)
+  {
+    for (const PressureBound &cone : set.nodes)
+      if (cone.forces.coefficient > 0)
+        {
+          double      &t = x.begin()[cone.tangential], &n = x.begin()[cone.normal];
+          const double length = std::hypot(1., cone.forces.coefficient) / 2, over = t / cone.forces.coefficient;
+          t = length * (n + over);
+          n = length * (n - over);
+        }
+  }
+
+  /// x := sum of the parts along the sides, S x.
+  template <typename Vector>
+  void add_sides(const ForceSet<Vector> &set, Vector &x)
+  {
+    for (const PressureBound &cone : set.nodes)
+      {
+        double      &t = x.begin()[cone.tangential], &n = x.begin()[cone.normal];
+        const double c = 1 / std::hypot(1., cone.forces.coefficient), a = t, b = n;
+        t = cone.forces.coefficient * c * (a - b);
+        n = c * (a + b);
+      }
+  }
+
+  /// r := S'r.
+  template <typename Vector>
+  void add_sides_transposed(const ForceSet<Vector> &set, Vector &r)
+  {
+    for (const PressureBound &cone : set.nodes)
+      {
+        double      &t = r.begin()[cone.tangential], &n = r.begin()[cone.normal];
+        const double c = 1 / std::hypot(1., cone.forces.coefficient), along_t = cone.forces.coefficient * c * t,
+                     along_n = c * n;
+        t                    = along_n + along_t;
+        n                    = along_n - along_t;
+      }
+  }
+
+  /// See box.h; a node is unbounded along r as far as r is in the cone of directions in which its set has no end.
+  template <typename Vector, typename Reduction>
+  bool is_farkas_certificate(const ForceSet<Vector> &set,
+                             const Vector           &r,
+                             const Vector           &x_e,
+                             const double            radius,
+                             const double            rounding,
+                             const Reduction        &reduction)
+  {
+    std::array<double, 3> s  = detail::farkas_sums(set.box, r, x_e);
+    const auto            ri = r.begin();
+    for (const PressureBound &node : set.nodes)
+      {
+        const double t = ri[node.tangential], n = ri[node.normal];
+        const auto   support = node.forces.support(t, n);
+        s[0] -= support.value;
+        s[1] += support.unbounded - (t * t + n * n); // the box took both as unbounded
+        s[2] += std::abs(support.value);
+      }
+    s = reduction.sum(s);
+    return s[0] > std::sqrt(std::max(0., s[1])) * radius + rounding * s[2];
+  }
+} // namespace slipstick::qp

@@ -1,0 +1,152 @@
+// The forces that a law of contact admits at one node: the one form in which friction reaches the solvers.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace slipstick::qp
+{
+  /// Normal force n >= 0 (compression positive), tangential force within a disc (in the plane: an interval) whose radius
+  /// follows n: |t| <= min(fixed + coefficient n, cap) while n is positive, else 0. No friction: all zero; Tresca where the
+  /// pair is closed: fixed alone; Coulomb: coefficient alone. All functions but radius() are those of the closure, in
+  /// which the radius at n = 0 is `fixed` (at most `cap`): a convex polygon. As the disc is round, t may be the length of
+  /// a tangential force wherever its sign does not matter.
+  struct NodeSet
+  {
+    double fixed       = 0;        // >= 0
+    double coefficient = 0;        // >= 0
+    double cap         = HUGE_VAL; // >= 0
+
+    double closed_radius(const double n) const
+    {
+      return std::min(fixed + coefficient * std::max(n, 0.), cap);
+    }
+
+    double radius(const double n) const
+    {
+      return n > 0 ? closed_radius(n) : 0.;
+    }
+
+    /// Derivative of the radius by n where it has this value: what ties a slipping force to the normal one.
+    double slope(const double radius) const
+    {
+      return radius < cap ? coefficient : 0.;
+    }
+
+    bool is_cone() const
+    {
+      return fixed == 0 && std::isinf(cap);
+    }
+
+    /// Where the point of the closure nearest to (t, n) lies: two edges meet in the foot (n = 0) and in the corner, where
+    /// the cap is reached. A foot of no width is the apex of a cone.
+    enum class Part
+    {
+      inside,
+      base, // n = 0
+      foot,
+      side, // |t| = fixed + coefficient n
+      corner,
+      top // |t| = cap
+    };
+
+    Part part(const double t, const double n) const
+    {
+      const double size = std::abs(t), width = std::min(fixed, cap);
+      if (n >= 0 && size <= closed_radius(n))
+        return Part::inside;
+      if (n < 0 && size < width)
+        return Part::base;
+      const double along = coefficient * (size - width) + n; // the side, from the foot
+      if (along <= 0)
+        return Part::foot;
+      const double height = corner_height();
+      if (n >= height)
+        return Part::top;
+      return along < (1 + coefficient * coefficient) * height ? Part::side : Part::corner;
+    }
+
+    /// (t, n) := nearest point of the closure.
+    void project(double &t, double &n) const
+    {
+      const double at = t;
+      const auto   to = [&](const double size, const double normal) {
+        t = at < 0 ? -size : size;
+        n = normal;
+      };
+      const double width = std::min(fixed, cap);
+      switch (part(t, n))
+        {
+          case Part::inside:
+            break;
+          case Part::base:
+            n = 0;
+            break;
+          case Part::foot:
+            to(width, 0);
+            break;
+          case Part::side:
+            n = (coefficient * (std::abs(t) - width) + n) / (1 + coefficient * coefficient);
+            to(width + coefficient * n, n);
+            break;
+          case Part::corner:
+            to(cap, corner_height());
+            break;
+          case Part::top:
+            to(cap, n);
+            break;
+        }
+    }
+
+    /// (dt, dn) := derivative of the projection at (t, n), times (dt, dn): free on the inside, fixed at corners, tied to each
+    /// other on the side.
+    void multiply_derivative(const double t, const double n, double &dt, double &dn) const
+    {
+      const Part at = part(t, n);
+      if (at == Part::side)
+        {
+          const double slope = t < 0 ? -coefficient : coefficient, along = (slope * dt + dn) / (1 + slope * slope);
+          dt = slope * along;
+          dn = along;
+          return;
+        }
+      if (at != Part::inside && at != Part::base)
+        dt = 0;
+      if (at != Part::inside && at != Part::top)
+        dn = 0;
+    }
+
+    /// Support function of the closure, as far as it is finite: the part of (t, n) along which the set has no end, its
+    /// projection on the cone of these directions, is taken from (t, n) first.
+    struct Support
+    {
+      double value;     // largest product of the rest with a point of the set
+      double unbounded; // square of the length of what was taken
+    };
+
+    Support support(const double t, const double n) const
+    {
+      double     along_t = t, along_n = n;
+      const bool is_capped = std::isfinite(cap) || coefficient == 0;
+      if (is_capped)
+        {
+          along_t = 0;
+          along_n = std::max(n, 0.);
+        }
+      else
+        NodeSet{0, coefficient}.project(along_t, along_n);
+      const double size = std::abs(t - along_t), rest = n - along_n, width = std::min(fixed, cap);
+      const bool   has_corner = is_capped && coefficient > 0 && width < cap;
+      return {has_corner ? std::max(width * size, cap * size + corner_height() * rest) : width * size,
+              along_t * along_t + along_n * along_n};
+    }
+
+  private:
+    // Normal force at which the cap is reached.
+    double corner_height() const
+    {
+      return fixed >= cap ? 0. : coefficient > 0 ? (cap - fixed) / coefficient : HUGE_VAL;
+    }
+  };
+} // namespace slipstick::qp

@@ -1,0 +1,158 @@
+"""report.html: a run on one self-contained page."""
+
+import base64
+import html
+import io
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+from . import contact_plot, pictures, scene_drawing
+
+STYLE = """
+body { font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 1.5rem auto; padding: 0 1rem; }
+h1 { font-size: 1.5rem; margin-bottom: 0; } h2 { font-size: 1.15rem; margin: 1.8rem 0 .5rem; border-bottom: 1px solid #ccc; }
+table { border-collapse: collapse; margin: .5rem 0; } td, th { padding: .2rem .7rem; border-bottom: 1px solid #ddd; text-align: right; }
+th { background: #f3f3f3; font-weight: 600; } td:first-child, th:first-child { text-align: left; }
+tr.sum td { border-top: 2px solid #888; font-weight: 600; } img { max-width: 100%; height: auto; } .scroll { overflow-x: auto; }
+.good { color: #0a6b2d; } .bad { color: #b00020; } .warning { background: #fff4d6; border-left: 4px solid #e0a800; padding: .4rem .8rem; margin: .4rem 0; }
+.bar { display: inline-block; height: .8em; background: #4a7ebb; vertical-align: middle; } figure { margin: .8rem 0; } .small { color: #666; font-size: .9em; }
+"""
+CLOSED_BALANCE = 1e-6  # of the largest force: less than this is called zero
+
+
+def number(value, digits=5):
+    return "-" if value is None else f"{value:.{digits}g}"
+
+
+def table(head, rows, sums=()):
+    text = "<div class=scroll><table><tr>" + "".join(f"<th>{html.escape(cell)}</th>" for cell in head) + "</tr>"
+    for kind, group in (("", rows), (" class=sum", sums)):
+        for row in group:
+            text += f"<tr{kind}>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in row) + "</tr>"
+    return text + "</table></div>"
+
+
+def picture(figure, alt):
+    """Closes the figure."""
+    data = io.BytesIO()
+    figure.savefig(data, format="png", dpi=110)
+    plt.close(figure)
+    return f'<figure><img alt="{html.escape(alt)}" src="data:image/png;base64,{base64.b64encode(data.getvalue()).decode()}"></figure>'
+
+
+def heading(run):
+    summary, title = run.summary, run.scene.get("Title")
+    good = summary.get("converged")
+    text = f"<h1>{html.escape(title or summary.get('case', 'run'))}</h1><p class=small>{html.escape(str(summary.get('case', '')))}, "
+    text += f"slipstick {html.escape(str(summary.get('version', '')))}, {html.escape(str(run.folder))}</p>"
+    text += f"<p>Status: <b class={'good' if good else 'bad'}>{html.escape(str(summary.get('status', 'unknown')))}</b>"
+    return text + ("" if good else ": the results below are not a solution") + "</p>"
+
+
+def figures(run):
+    """What is read off first."""
+    summary = run.summary
+    results, error, problem, solver = (summary.get(key, {}) for key in ("results", "error", "problem", "solver"))
+    estimate = error.get("estimate_energy_relative")
+    rows = [("largest displacement", number(results.get("max_displacement")) + " mm"),
+            ("largest von Mises stress", number(results.get("max_von_mises")) + " MPa"),
+            ("strain energy", number(results.get("strain_energy")) + " N mm"),
+            ("discretisation error in the energy norm, estimated", "-" if estimate is None else f"{100 * estimate:.2g} %"),
+            ("algebraic error in the energy norm, at most", "-" if error.get("algebraic_relative") is None else
+             f"{100 * error['algebraic_relative']:.1g} %"),
+            ("unknowns, cells, subdomains", ", ".join(str(problem.get(key, "-")) for key in ("primal_dofs", "cells", "subdomains"))),
+            ("algorithm, tolerance, multiplications with F",
+             f"{solver.get('algorithm', '-')}, {number(solver.get('tolerance'))}, {solver.get('hessian_multiplications', '-')}")]
+    return table(("quantity", "value"), rows)
+
+
+def warnings(run):
+    texts = run.summary.get("warnings", [])
+    if not texts:
+        return "<p>None.</p>"
+    return "".join(f"<div class=warning>{html.escape(text)}</div>" for text in texts)
+
+
+def balance(results):
+    """Loads and reactions of one step; contact with obstacles is outside, too."""
+    entries = [(f"{entry['kind']} {entry['load']}", entry) for entry in results.get("loads", [])]
+    entries += [(f"{kind} {entry[kind]}", entry) for kind in ("support", "foundation") for entry in results.get(kind + "s", [])]
+    return entries
+
+
+def balance_table(run, results):
+    entries = balance(results)
+    obstacles = set(run.scene.names("Obstacles"))
+    entries += [(f"contact {pair['pair']} with obstacle {master}", pair) for pair in results.get("contact", [])
+                for master in [run.scene.get(f"Contact {pair['pair']}/Master")] if master in obstacles and "force" in pair]
+    rows = [(name, *(number(entry["force"][axis]) for axis in (0, 1)), number(entry["moment"])) for name, entry in entries]
+    sums = [sum(entry["force"][axis] for _, entry in entries) for axis in (0, 1)] + [sum(entry["moment"] for _, entry in entries)]
+    scales = [max((abs(entry["force"][axis]) for _, entry in entries for axis in (0, 1)), default=0)] * 2
+    scales.append(max((abs(entry["moment"]) for _, entry in entries), default=0))
+    cells = ["0" if abs(total) <= CLOSED_BALANCE * scale else number(total, 3) for total, scale in zip(sums, scales)]
+    return table(("acts on the bodies", "Fx [N]", "Fy [N]", "moment about the origin [N mm]"), rows, [("sum", *cells)])
+
+
+def pairs_table(results):
+    keys = (("normal_force", "normal force [N]"), ("tangential_force", "tangential force [N]"), ("max_pressure", "largest pressure [MPa]"),
+            ("contact_length", "length in contact [mm]"), ("contact_nodes", "nodes in contact"), ("stick_nodes", "stick"),
+            ("slip_nodes", "slip"), ("open_nodes", "open"))
+    rows = [(pair["pair"], *(number(pair.get(key)) for key, _ in keys)) for pair in results.get("contact", [])]
+    return table(("pair", *(name for _, name in keys)), rows) if rows else "<p>The scene has no contact.</p>"
+
+
+def history_plot(run):
+    """Resultants over the load factor."""
+    rows = run.table("history.csv")
+    if len(rows) < 2:
+        return ""
+    columns = [name for name in rows[0] if name.endswith((" Fx", " Fy")) and any(abs(float(row[name] or 0)) > 0 for row in rows)]
+    figure, axes = plt.subplots(figsize=(8, 4.2), layout="constrained")
+    for name in columns:
+        axes.plot([float(row["t"]) for row in rows], [float(row[name]) for row in rows], marker=".", label=name)
+    axes.set(xlabel="t, load factor", ylabel="[N]", title="forces on the bodies over the load steps")
+    axes.grid(True, color="0.9")
+    if columns:
+        axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
+    return picture(figure, "forces over the load factor")
+
+
+def drawings(run, options):
+    text = ""
+    grids = [run.grid(step) for step in range(len(run.grid_files))]
+    for name in ("von_mises", "displacement") if grids else ():
+        painter = pictures.Painter(run, name, options, grids)
+        text += picture(painter.draw(len(grids) - 1), painter.title)
+    if run.contact:
+        painter = contact_plot.ContactPainter(run)
+        figure = painter.draw(painter.steps[-1])
+        if figure:
+            text += picture(figure, "tractions along the contact boundaries")
+    return text or "<p>The run wrote no fields (Output/VTU) and has no contact nodes.</p>"
+
+
+def costs(run):
+    seconds, memory = run.summary.get("time_s", {}), run.summary.get("memory_mb", {})
+    total = seconds.get("total") or 1.
+    rows = "".join(f"<tr><td>{html.escape(stage)}</td><td>{value:.3g} s</td><td style='text-align:left'>"
+                   f"<span class=bar style='width:{max(0., 20 * value / total):.2f}rem'></span></td></tr>"
+                   for stage, value in seconds.items() if stage != "total" and isinstance(value, (int, float)))
+    return (f"<p>{number(seconds.get('total'), 3)} s on {run.summary.get('ranks', '-')} MPI rank(s), "
+            f"{number(memory.get('peak_total'), 4)} MB of memory in all, {number(memory.get('peak_rank_max'), 4)} MB on one rank.</p>"
+            f"<table><tr><th>stage</th><th>time</th><th></th></tr>{rows}</table>")
+
+
+def page(run, options=None):
+    options = options or pictures.Options()
+    results = run.summary.get("results", {})
+    sections = [("Scene", (picture(scene_drawing.draw(run), "the scene before loading") if run.grid_files else
+                           "<p>Not drawn: the run wrote no fields (Output/VTU).</p>")),
+                ("Results", figures(run)), ("Warnings", warnings(run)),
+                ("Balance of loads and reactions" + (", last load step" if len(run.factors) > 1 else ""), balance_table(run, results)),
+                ("Contact pairs", pairs_table(results)), ("Load steps", history_plot(run)), ("Pictures", drawings(run, options)),
+                ("Time and memory", costs(run))]
+    body = heading(run) + "".join(f"<h2>{html.escape(name)}</h2>{text}" for name, text in sections if text)
+    title = html.escape(run.summary.get("case", "run"))
+    return f"<!DOCTYPE html><html lang=en><head><meta charset=utf-8><title>{title}</title><style>{STYLE}</style></head><body>{body}</body></html>\n"

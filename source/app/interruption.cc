@@ -1,0 +1,64 @@
+#include <slipstick/app/interruption.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstring>
+
+#include <unistd.h>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    // bytes; longer texts are cut
+    constexpr std::size_t longest_text = 1000;
+
+    // A handler may come in between two characters: the text that it reads is never the one that is being written.
+    std::array<std::array<char, longest_text>, 2> texts;
+    std::array<std::atomic<std::size_t>, 2>       lengths;
+    std::atomic<int>                              present{-1};
+
+    void tell(const int signal)
+    {
+      // only what a handler may call: POSIX.1-2017, 2.4.3
+      const int k = present.load();
+      if (k >= 0 && write(STDERR_FILENO, texts[k].data(), lengths[k].load()) < 0)
+        {} // there is nobody to tell
+      std::signal(signal, SIG_DFL);
+      raise(signal);
+    }
+  } // namespace
+
+  void tell_when_interrupted(const std::string &text)
+  {
+    const int  next   = present.load() == 0 ? 1 : 0;
+    const auto line   = "\nerror: interrupted " + text + "\n";
+    const auto length = std::min(line.size(), longest_text);
+    std::memcpy(texts[next].data(), line.data(), length);
+    lengths[next]     = length;
+    const bool is_new = present.exchange(next) < 0;
+    if (!is_new)
+      return;
+    for (const int signal : {SIGINT, SIGTERM})
+      {
+        struct sigaction action = {};
+        sigaction(signal, nullptr, &action);
+        if (action.sa_handler != SIG_IGN) // as of a job in the background of a shell, or under nohup
+          std::signal(signal, tell);
+      }
+  }
+
+  void do_not_tell_when_interrupted()
+  {
+    present = -1;
+    for (const int signal : {SIGINT, SIGTERM})
+      {
+        struct sigaction action = {};
+        sigaction(signal, nullptr, &action);
+        if (action.sa_handler == tell)
+          std::signal(signal, SIG_DFL);
+      }
+  }
+} // namespace slipstick::app

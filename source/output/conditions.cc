@@ -1,0 +1,115 @@
+#include <slipstick/fem/points.h>
+#include <slipstick/fem/surface.h>
+#include <slipstick/output/conditions.h>
+#include <slipstick/output/csv.h>
+
+#include <ostream>
+
+namespace slipstick::output
+{
+  namespace
+  {
+    /// A boundary that something in the scene names.
+    struct NamedBoundary
+    {
+      std::string         kind, name, side;
+      scene::BoundaryName where;
+    };
+
+    template <int dim>
+    std::vector<NamedBoundary> boundaries_of(const scene::Scene<dim> &scene)
+    {
+      std::vector<NamedBoundary> all;
+      for (const auto &support : scene.supports)
+        if (!support.point)
+          all.push_back({"support", support.name, "", support.where});
+      for (const auto &foundation : scene.foundations)
+        all.push_back({"foundation", foundation.name, "", foundation.where});
+      for (const auto &traction : scene.tractions)
+        all.push_back({"traction", traction.name, "", traction.where});
+      for (const auto &pair : scene.contacts)
+        {
+          all.push_back({"contact", pair.name, "slave", pair.slave});
+          if (pair.master)
+            all.push_back({"contact", pair.name, "master", *pair.master});
+        }
+      return all;
+    }
+
+    /// A point that something in the scene names.
+    template <int dim>
+    struct NamedPoint
+    {
+      std::string           kind, name;
+      scene::PointName<dim> where;
+    };
+
+    template <int dim>
+    std::vector<NamedPoint<dim>> points_of(const scene::Scene<dim> &scene)
+    {
+      std::vector<NamedPoint<dim>> all;
+      for (const auto &support : scene.supports)
+        if (support.point)
+          all.push_back({"support", support.name, *support.point});
+      for (const auto &load : scene.point_loads)
+        all.push_back({"point load", load.name, load.where});
+      return all;
+    }
+
+    template <int dim>
+    std::string at(const dealii::Point<dim> &point)
+    {
+      std::string text;
+      for (unsigned int d = 0; d < dim; ++d)
+        text += "," + to_text(point[d]);
+      return text;
+    }
+  } // namespace
+
+  template <int dim>
+  void write_conditions(const OutputDirectory   &directory,
+                        const scene::Scene<dim> &scene,
+                        const fem::Mesh<dim>    &mesh,
+                        const fem::Spaces<dim>  &spaces)
+  {
+    const auto        boundaries = boundaries_of(scene);
+    std::vector<bool> wanted(scene.bodies.size());
+    for (const auto &boundary : boundaries)
+      wanted[boundary.where.body] = true;
+    const auto outlines = fem::outlines(mesh, spaces, wanted);
+
+    const auto                         named = points_of(scene);
+    std::vector<scene::PointName<dim>> points;
+    std::vector<std::string>           owners;
+    for (const auto &point : named)
+      {
+        points.push_back(point.where);
+        owners.push_back(point.kind + " " + point.name);
+      }
+    const auto nodes = fem::nodes_at(scene, mesh, spaces, points, owners);
+
+    directory.write_from_root("conditions.csv", [&](std::ostream &out) {
+      const auto row =
+        [&](const std::string &kind, const std::string &name, const std::string &side, const unsigned int body) {
+          out << csv_field(kind) << ',' << csv_field(name) << ',' << side << ',' << csv_field(scene.bodies[body].name);
+        };
+      out << "kind,name,side,body,x1,y1,x2,y2\n";
+      for (const auto &boundary : boundaries)
+        for (const auto &edge : fem::edges_on(mesh, outlines, boundary.where))
+          {
+            row(boundary.kind, boundary.name, boundary.side, boundary.where.body);
+            out << at(edge.node(0)) << at(edge.node(1)) << '\n';
+          }
+      for (unsigned int k = 0; k < named.size(); ++k)
+        {
+          row(named[k].kind, named[k].name, "", named[k].where.body);
+          out << at(nodes[k].position) << at(nodes[k].position) << '\n';
+        }
+    });
+  }
+
+  template void write_conditions<2>(const OutputDirectory &,
+                                    const scene::Scene<2> &,
+                                    const fem::Mesh<2> &,
+                                    const fem::Spaces<2> &);
+} // namespace slipstick::output

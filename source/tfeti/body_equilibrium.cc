@@ -1,0 +1,294 @@
+#include <slipstick/tfeti/body_equilibrium.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
+
+#include <cmath>
+#include <map>
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    // Newton steps of one search; piecewise quadratic functions of a few variables take some five.
+    constexpr unsigned int max_newton_steps = 50;
+    // A step must lower what is out of balance by this part times its length, or is halved, down to the shortest.
+    constexpr double least_decrease = 1e-4, shortest_step = 1e-6;
+    // Rounds of Newton's method with bounds as they are, then with bounds that follow.
+    constexpr unsigned int max_rounds = 5;
+    // Forces are out of balance by less than this part of all of them: rounding.
+    constexpr double balanced = 1e-12;
+    // Motions that no row inside its bounds resists are resisted by this part of what all rows would.
+    constexpr double regularization = 1e-10;
+    // Jumps below this part of the largest are rounding of none.
+    constexpr double negligible_share = 1e-10;
+  } // namespace
+
+  BodyEquilibrium::BodyEquilibrium(const BodyMotions &bodies, const Constraints &constraints, const MPI_Comm comm_)
+    : comm(comm_)
+    , place_of(constraints.kind.size(), -1)
+  {
+    std::vector<bool> is_equality_row(constraints.kind.size());
+    for (unsigned int r = 0; r < is_equality_row.size(); ++r)
+      is_equality_row[r] = is_equality(constraints.kind[r]);
+    motions = bodies.free(is_equality_row);
+    if (motions.empty())
+      return;
+    const std::size_t n = motions.size();
+
+    const Eigen::MatrixXd jumps   = bodies.jumps(motions);
+    const double          largest = dealii::Utilities::MPI::max(jumps.size() ? jumps.cwiseAbs().maxCoeff() : 0., comm);
+    std::vector<std::uint64_t>       labels;
+    std::vector<std::vector<double>> values;
+    for (unsigned int r = 0; r < is_equality_row.size(); ++r)
+      if (!is_equality_row[r] && jumps.row(r).cwiseAbs().maxCoeff() > negligible_share * largest)
+        {
+          own.push_back(r);
+          labels.push_back(constraints.label[r]);
+          values.emplace_back();
+          for (std::size_t m = 0; m < n; ++m)
+            values.back().push_back(jumps(r, m));
+        }
+    std::map<std::uint64_t, std::vector<double>> all; // in an order that no number of ranks changes
+    const auto                                   labels_of = dealii::Utilities::MPI::all_gather(comm, labels);
+    const auto                                   values_of = dealii::Utilities::MPI::all_gather(comm, values);
+    for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
+      for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
+        all.emplace(labels_of[rank][i], values_of[rank][i]);
+    std::map<std::uint64_t, int>        place;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const auto &[label, row] : all)
+      {
+        const int i = place.size();
+        place.emplace(label, i);
+        for (std::size_t m = 0; m < n; ++m)
+          if (std::abs(row[m]) > negligible_share * largest)
+            entries.emplace_back(i, m, row[m]);
+      }
+    shares.resize(all.size(), n);
+    shares.setFromTriplets(entries.begin(), entries.end());
+    by_columns = shares;
+    magnitudes = shares.cwiseAbs();
+    for (std::size_t i = 0; i < own.size(); ++i)
+      place_of[own[i]] = place.at(labels[i]);
+  }
+
+  void BodyEquilibrium::set_loads(const Eigen::VectorXd &of_bodies)
+  {
+    loads.resize(motions.size());
+    for (std::size_t m = 0; m < motions.size(); ++m)
+      loads[m] = motions[m].amplitudes.dot(of_bodies);
+  }
+
+  std::vector<BodyEquilibrium::Row> BodyEquilibrium::gathered(const std::vector<double>                  &t,
+                                                              const std::vector<double>                  &k,
+                                                              const qp::AdmissibleSet<DistributedVector> &bounds) const
+  {
+    constexpr unsigned int width = 9;
+    std::vector<double>    numbers;
+    for (const unsigned int r : own)
+      {
+        const double l = bounds.box.lower.local_element(r), u = bounds.box.upper.local_element(r);
+        numbers.insert(numbers.end(), {double(place_of[r]), t[r], k[r], l, u, -1., 0., 0., 0.});
+      }
+    std::map<unsigned int, unsigned int> at;
+    for (unsigned int i = 0; i < own.size(); ++i)
+      at[own[i]] = i;
+    for (const auto &bound : bounds.pressure_bounds)
+      if (const auto i = at.find(bound.tangential); i != at.end() && place_of[bound.normal] >= 0)
+        {
+          double *row = numbers.data() + width * i->second;
+          row[5]      = place_of[bound.normal];
+          row[6]      = bound.forces.fixed;
+          row[7]      = bound.forces.coefficient;
+          row[8]      = bound.forces.cap;
+        }
+    std::vector<Row> result(shares.rows());
+    for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
+      for (std::size_t i = 0; i < of_rank.size(); i += width)
+        {
+          const double *n                        = of_rank.data() + i;
+          result[static_cast<std::size_t>(n[0])] = {n[1], n[2], n[3], n[4], static_cast<int>(n[5]), {n[6], n[7], n[8]}};
+        }
+    return result;
+  }
+
+  void BodyEquilibrium::follow_pressures(const Eigen::VectorXd &a, std::vector<Row> &rows) const
+  {
+    const Eigen::VectorXd slips = shares * a;
+    for (Row &row : rows)
+      if (row.follows >= 0)
+        {
+          const Row   &normal = rows[row.follows];
+          const double force  = qp::clip(normal.t - normal.k * slips[row.follows], normal.lower, normal.upper);
+          row.upper           = row.forces.radius(force);
+          row.lower           = -row.upper;
+        }
+  }
+
+  // Along a + s p: the slope is sum_i -S_i p clip(t_i - k_i (slip_i + s along_i)) + L'p, which grows with s.
+  double BodyEquilibrium::line_minimum(const std::vector<Row> &rows,
+                                       const Eigen::VectorXd  &slips,
+                                       const Eigen::VectorXd  &along,
+                                       const double            load) const
+  {
+    const auto slope = [&](const double s) {
+      double sum = load;
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        sum -= along[i] * qp::clip(rows[i].t - rows[i].k * (slips[i] + s * along[i]), rows[i].lower, rows[i].upper);
+      return sum;
+    };
+    std::vector<double> kinks;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (along[i] != 0 && rows[i].k > 0)
+        for (const double bound : {rows[i].lower, rows[i].upper})
+          if (std::isfinite(bound))
+            {
+              const double s = ((rows[i].t - bound) / rows[i].k - slips[i]) / along[i];
+              if (s > 0 && std::isfinite(s))
+                kinks.push_back(s);
+            }
+    std::sort(kinks.begin(), kinks.end());
+    std::size_t low = 0, high = kinks.size(); // the first kink at which the slope is not negative
+    while (low < high)
+      {
+        const std::size_t middle = (low + high) / 2;
+        slope(kinks[middle]) < 0 ? low = middle + 1 : high = middle;
+      }
+    const double s0 = low > 0 ? kinks[low - 1] : 0., f0 = slope(s0);
+    if (!(f0 < 0))
+      return s0;
+    const double s1 = low < kinks.size() ? kinks[low] : s0 + std::max(1., s0), f1 = slope(s1);
+    if (!(f1 > f0))
+      return HUGE_VAL; // nothing resists any more: loads that friction does not bear
+    return s0 - f0 * (s1 - s0) / (f1 - f0);
+  }
+
+  bool BodyEquilibrium::minimise(const std::vector<Row> &rows, Eigen::VectorXd &a) const
+  {
+    Eigen::VectorXd stiffness(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      stiffness[i] = rows[i].k;
+    const Eigen::VectorXd least = regularization * (shares.cwiseAbs2().transpose() * stiffness);
+    double                size  = 0;
+    for (unsigned int step = 0; step < max_newton_steps; ++step)
+      {
+        const Eigen::VectorXd slips = shares * a;
+        Eigen::VectorXd       forces(rows.size()), inside(rows.size());
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          {
+            const double t = rows[i].t - rows[i].k * slips[i];
+            forces[i]      = qp::clip(t, rows[i].lower, rows[i].upper);
+            inside[i]      = t > rows[i].lower && t < rows[i].upper ? rows[i].k : 0.;
+          }
+        const Eigen::VectorXd slope = loads - shares.transpose() * forces;
+        size                        = std::max(size, sum_of_magnitudes(forces));
+        if (slope.norm() <= balanced * size)
+          return true;
+        Eigen::SparseMatrix<double> H = by_columns.transpose() * inside.asDiagonal() * by_columns;
+        for (Eigen::Index m = 0; m < a.size(); ++m)
+          H.coeffRef(m, m) += least[m] + std::numeric_limits<double>::min();
+        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(H);
+        const Eigen::VectorXd                                    p = -factor.solve(slope);
+        if (!(p.dot(slope) < 0) || !p.allFinite())
+          return false;
+        const double s = line_minimum(rows, slips, shares * p, loads.dot(p));
+        if (!(s > 0) || std::isinf(s))
+          return false;
+        a += s * p;
+      }
+    return false;
+  }
+
+  double BodyEquilibrium::sum_of_magnitudes(const Eigen::VectorXd &forces) const
+  {
+    return loads.norm() + (magnitudes.transpose() * forces.cwiseAbs()).norm();
+  }
+
+  // Out of balance, of all forces; and with the bounds that follow, its derivative.
+  Eigen::VectorXd BodyEquilibrium::imbalance(std::vector<Row>            &rows,
+                                             const Eigen::VectorXd       &a,
+                                             double                      &size,
+                                             Eigen::SparseMatrix<double> *derivative) const
+  {
+    follow_pressures(a, rows);
+    const Eigen::VectorXd               slips = shares * a;
+    Eigen::VectorXd                     forces(rows.size());
+    std::vector<Eigen::Triplet<double>> entries; // of the forces by the slips
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      {
+        const Row   &row = rows[i];
+        const double t   = row.t - row.k * slips[i];
+        forces[i]        = qp::clip(t, row.lower, row.upper);
+        if (!derivative)
+          continue;
+        if (t > row.lower && t < row.upper)
+          entries.emplace_back(i, i, -row.k);
+        else if (row.follows >= 0 && forces[row.follows] > 0) // normal rows come before those that follow them
+          entries.emplace_back(i, row.follows, -(t > 0 ? 1. : -1.) * row.forces.slope(row.upper) * rows[row.follows].k);
+      }
+    size = sum_of_magnitudes(forces);
+    if (derivative)
+      {
+        Eigen::SparseMatrix<double> by_slips(rows.size(), rows.size());
+        by_slips.setFromTriplets(entries.begin(), entries.end());
+        *derivative = -(by_columns.transpose() * by_slips * by_columns);
+      }
+    return loads - shares.transpose() * forces;
+  }
+
+  // Newton's method for the bounds that follow, on which the potential does not depend.
+  bool BodyEquilibrium::follow(std::vector<Row> &rows, Eigen::VectorXd &a) const
+  {
+    double                      size, largest = 0;
+    Eigen::SparseMatrix<double> derivative;
+    Eigen::VectorXd             r = imbalance(rows, a, size, &derivative);
+    for (unsigned int step = 0; step < max_newton_steps && r.norm() > balanced * (largest = std::max(largest, size));
+         ++step)
+      {
+        const double scale = derivative.coeffs().size() ? derivative.coeffs().cwiseAbs().maxCoeff() : 0.;
+        for (Eigen::Index m = 0; m < a.size(); ++m)
+          derivative.coeffRef(m, m) += regularization * scale + std::numeric_limits<double>::min();
+        Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(derivative);
+        if (factor.info() != Eigen::Success)
+          return false;
+        const Eigen::VectorXd p = -factor.solve(r);
+        if (!p.allFinite())
+          return false;
+        double          part = 1;
+        Eigen::VectorXd next = imbalance(rows, a + p, size, nullptr);
+        while (!(next.norm() < (1 - least_decrease * part) * r.norm()) && part > shortest_step)
+          {
+            part /= 2;
+            next = imbalance(rows, a + part * p, size, nullptr);
+          }
+        if (!(next.norm() < r.norm()))
+          return false;
+        a += part * p;
+        r = imbalance(rows, a, size, &derivative);
+      }
+    return r.norm() <= balanced * std::max(largest, size);
+  }
+
+  std::vector<double> BodyEquilibrium::shift(const std::vector<double>                  &t,
+                                             const std::vector<double>                  &k,
+                                             const qp::AdmissibleSet<DistributedVector> &bounds) const
+  {
+    std::vector<Row> rows = gathered(t, k, bounds);
+    Eigen::VectorXd  a    = Eigen::VectorXd::Zero(loads.size());
+    for (unsigned int round = 0; round < max_rounds; ++round)
+      {
+        follow_pressures(a, rows);
+        const bool is_bounded = minimise(rows, a);
+        if (follow(rows, a) || !is_bounded)
+          break;
+      }
+    const Eigen::VectorXd slips = shares * a;
+    std::vector<double>   result(t.size(), 0.);
+    for (const unsigned int r : own)
+      result[r] = slips[place_of[r]];
+    return result;
+  }
+} // namespace slipstick::tfeti

@@ -1,0 +1,197 @@
+"""scripts/render and scripts/report on the folder of a small run. Status 77 (skipped) where what it needs is not installed."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / 'scripts'
+sys.path.insert(0, str(SCRIPTS))
+try:
+    import numpy
+    from results import contact_plot, fields, film, folder, formula, pictures, report_page
+except ImportError as error:
+    print('skipped: {}; scripts/setup --render'.format(error))
+    sys.exit(77)
+
+import run_folder
+
+
+class WithRun(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.place = pathlib.Path(temporary.name)
+
+    def run_of(self, **what):
+        return folder.Run(run_folder.write(self.place / 'run', **what))
+
+
+class Formulas(unittest.TestCase):
+    def test_as_muparser_evaluates_them(self):
+        for text, expected in (('-20*(x>-8 && x<8)', -20), ('2^3', 8), ('x < 0 ? 1 : y < 0 ? 2 : 3', 3), ('t*sin(pi/2)', 0.5),
+                               ('max(1, (x > 0 ? 7 : 8))', 7), ('-250', -250)):
+            self.assertAlmostEqual(formula.value(text, 1, 2, 0.5), expected, msg=text)
+        for text in ('__import__("os")', 'x +', 'unknown(1)', '1/0', 'free'):
+            self.assertIsNone(formula.value(text), text)
+
+
+class Fields(WithRun):
+    def test_hoop_and_radial_stress(self):
+        grid = self.run_of().grid(1)
+        radial, hoop = (fields.values(name, grid) for name in ('radial', 'hoop'))
+        self.assertEqual((radial[1], hoop[1]), (100, 20))  # at (1, 0) the radius is along x
+        self.assertEqual((radial[3], hoop[3]), (20, 100))  # at (0, 1) along y
+        self.assertAlmostEqual(radial[2], 60, places=4)
+        self.assertTrue(numpy.isnan(radial[0]))  # the centre has none
+
+    def test_what_is_not_there_is_named(self):
+        with self.assertRaisesRegex(ValueError, 'principal_stress_1'):
+            fields.values('principal_stress_1', self.run_of().grid(0))
+
+
+class Pictures(WithRun):
+    def painter(self, name='von_mises', run=None, **options):
+        return pictures.Painter(run or self.run_of(), name, pictures.Options(**options))
+
+    def test_true_scale_where_contact_is_open(self):
+        self.assertEqual(self.painter(run=self.run_of(statuses=('open', 'stick'))).factor, 1)
+        small = self.run_of(strain=1e-4)
+        self.assertEqual(self.painter('displacement', small).factor, 200)
+        self.assertEqual(self.painter('displacement', small, scale=3).factor, 3)
+
+    def test_load_factors_of_ranges(self):
+        run = self.run_of()
+        run.scene.values['Load steps/Factors'] = '0:0.25:1, 2'
+        self.assertEqual(run.scene.load_factors(), [0, 0.25, 0.5, 0.75, 1, 2])
+        self.assertEqual(run.factors, [0.5, 1])  # of the steps that there are
+
+    def test_gaps_that_are_given_are_not_magnified(self):
+        run = self.run_of()
+        run.scene.values['Contact joint/Offset'] = '-0.1'
+        self.assertTrue(run.scene.has_given_gaps())
+
+    def test_all_steps_have_the_same_colours_and_axes(self):
+        painter = self.painter()
+        self.assertAlmostEqual(painter.limits[0], 5, delta=0.1)  # of the first step
+        self.assertAlmostEqual(painter.limits[1], 12, delta=0.1)  # of the last
+        axes = [painter.draw(step).axes[0] for step in (0, 1)]
+        self.assertEqual(axes[0].get_xlim(), axes[1].get_xlim())
+        self.assertEqual(axes[0].collections[0].get_clim(), axes[1].collections[0].get_clim())
+
+    def test_colours_are_as_deep_as_magnitudes(self):
+        painter = self.painter(limits=[-2000, 20])
+        low, zero, high = (painter.colours()(place)[:3] for place in (0., 2000 / 2020, 1.))
+        self.assertGreater(low[2] - low[0], 0.4)  # deep blue
+        self.assertLess(max(high) - min(high), 0.1)  # 20 of 2000 is next to grey
+        self.assertLess(max(zero) - min(zero), 0.05)
+
+    def test_title_says_step_and_t_and_where_the_largest_value_is(self):
+        first, second, third = self.painter().lines_of_title(0)
+        self.assertIn('step 0 (0 to 1), t = 0.5', first)
+        self.assertEqual(second, 'largest 6 MPa at (2, 0)')
+        self.assertEqual(third, 'displacements in true scale')
+
+    def test_box_is_of_the_scene_before_loading(self):
+        painter = self.painter(box=[-0.1, 1.1, -0.1, 1.1])
+        self.assertAlmostEqual(painter.limits[1], 11, delta=0.1)  # x = 1, which moves to 1.1
+        self.assertEqual(painter.largest(1)[0], 11)
+        with self.assertRaisesRegex(ValueError, 'nothing of the scene'):
+            self.painter(box=[5, 6, 5, 6])
+
+    def test_symbols(self):
+        axes = self.painter().draw(1).axes[0]
+        kinds = [type(patch).__name__ for patch in axes.patches]
+        self.assertEqual(kinds.count('FancyArrowPatch'), 2, kinds)  # the traction and the motion of the tip
+        self.assertEqual(kinds.count('Polygon'), 3, kinds)  # obstacle, wall, tip
+        bare = self.painter(with_symbols=False).draw(1).axes[0]
+        self.assertEqual(len(bare.patches), 0)
+
+    def test_nothing_is_cut_or_covered(self):
+        for figure in (self.painter().draw(0), contact_plot.ContactPainter(self.run_of()).draw(0)):
+            figure.canvas.draw()
+            whole = figure.bbox
+            boxes = [text.get_window_extent() for text in figure.texts] + [figure.legends[0].get_window_extent()]
+            for box in boxes:
+                self.assertTrue(whole.x0 <= box.x0 and box.x1 <= whole.x1 and whole.y0 <= box.y0 and box.y1 <= whole.y1, box)
+            for axes in figure.axes:
+                for box in boxes:
+                    self.assertFalse(axes.get_window_extent().overlaps(box))
+
+
+class Films(WithRun):
+    def test_gif_and_mp4(self):
+        files, remark = film.make(pictures.Painter(self.run_of(), 'von_mises', pictures.Options()), 2, self.place / 'film')
+        self.assertEqual((self.place / 'film.gif').read_bytes()[:6], b'GIF89a')
+        self.assertEqual(len(files) == 2, not remark)
+
+    def test_without_ffmpeg(self):
+        painter = contact_plot.ContactPainter(self.run_of())
+        which, film.shutil.which = film.shutil.which, lambda name: None
+        self.addCleanup(setattr, film.shutil, 'which', which)
+        files, remark = film.make(painter, 2, self.place / 'film')
+        self.assertEqual([file.name for file in files], ['film.gif'])
+        self.assertIn('ffmpeg', remark)
+
+
+class Report(WithRun):
+    def rows(self, text):
+        return [re.sub('<[^>]*>', ' ', row).split() for row in re.findall('<tr.*?</tr>', text)]
+
+    def test_everything_is_on_the_page(self):
+        text = report_page.page(self.run_of())
+        self.assertEqual(re.findall('(?:src|href)="(?!data:image/png;base64,)', text), [])  # no other file
+        self.assertEqual(text.count('<img '), 5)  # scene, history, two fields, contact
+        self.assertIn('Contact joint: &lt;something&gt; &amp; more', text)
+        rows = self.rows(text)
+        for row in ('traction pull 60 0 -42', 'support wall -60 0 42', 'sum 0 0 0', 'joint 100 5 100 1 2 2 0 0', 'solve 0.75 s'):
+            self.assertIn(row.split(), rows)
+        self.assertIn('5 %', text)  # the estimated error
+
+    def test_forces_that_do_not_balance_show(self):
+        run = self.run_of()
+        run.summary['results']['supports'][0]['force'][0] = -59
+        self.assertIn('sum 1 0 0'.split(), self.rows(report_page.page(run)))
+
+    def test_what_is_no_solution_is_marked(self):
+        run = self.run_of()
+        run.summary.update(status='not converged', converged=False)
+        self.assertIn('the results below are not a solution', report_page.page(run))
+
+    def test_in_a_browser(self):
+        browser = shutil.which('chromium') or shutil.which('google-chrome')
+        if not browser:
+            self.skipTest('no Chromium')
+        run = run_folder.write(self.place / 'run')
+        result = subprocess.run([sys.executable, str(SCRIPTS / 'report'), str(run)], stdout=subprocess.PIPE, text=True, timeout=120)
+        self.assertEqual((result.returncode, result.stdout), (0, 'report: {}\n'.format(run / 'report.html')))
+        result = subprocess.run([browser, '--headless', '--no-sandbox', '--disable-gpu', '--user-data-dir={}'.format(self.place / 'profile'),
+                                 '--dump-dom', (run / 'report.html').as_uri()], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                                text=True, timeout=120)
+        self.assertIn('Balance of loads and reactions', result.stdout)
+        self.assertEqual(result.stdout.count('</table>'), 4)  # none is left open
+
+
+class CommandLine(WithRun):
+    def render(self, *arguments):
+        return subprocess.run([sys.executable, str(SCRIPTS / 'render'), *map(str, arguments)], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True, timeout=120)
+
+    def test_pictures_and_messages(self):
+        run = run_folder.write(self.place / 'run')
+        result = self.render(run, self.place / 'png', '--field', 'hoop,displacement_x', '--centre', '0,0.5')
+        self.assertEqual(result.returncode, 0, result)
+        self.assertEqual(sorted(file.name for file in (self.place / 'png').iterdir()),
+                         ['contact.png', 'displacement_x.png', 'hoop.png'])
+        for arguments, message in ((['--field', 'nothing'], "no field 'nothing'"), (['--step', '7'], 'steps 0 to 1'),
+                                   (['--pairs', 'x'], "no pair 'x'"), (['--box', '1,0,0,1'], 'X0 < X1')):
+            result = self.render(run, self.place / 'png', *arguments)
+            self.assertEqual(result.returncode, 2, result)
+            self.assertIn(message, result.stderr)
+
+
+if __name__ == '__main__':
+    unittest.main()
