@@ -1,5 +1,6 @@
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/scene/accuracy.h>
+#include <slipstick/scene/boundary_part.h>
 #include <slipstick/scene/checks.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/listing.h>
@@ -160,7 +161,7 @@ namespace slipstick::scene
         if (body.shape != Shape::rectangle || body.cells ||
             (body.boundary_refinements > 0 && !body.refined_boundaries.empty()))
           return DecompositionMethod::metis;
-      return DecompositionMethod::blocks;
+      return has_boundary_parts(scene) ? DecompositionMethod::metis : DecompositionMethod::blocks;
     }
 
     template <int dim>
