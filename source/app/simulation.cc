@@ -3,6 +3,7 @@
 #include <slipstick/app/held_nodes.h>
 #include <slipstick/app/interruption.h>
 #include <slipstick/app/report.h>
+#include <slipstick/app/restart.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/app/step_solver.h>
 #include <slipstick/contact/resultants.h>
@@ -16,12 +17,14 @@
 #include <slipstick/output/fields.h>
 #include <slipstick/output/history.h>
 #include <slipstick/output/probes.h>
+#include <slipstick/output/scene_picture.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <filesystem>
 #include <optional>
 #include <set>
 
@@ -35,8 +38,6 @@ namespace slipstick::app
     // stresses at nodes are means over cells, and may be largest beside it.
     constexpr double cells_of_singularity = 1.5;
 
-    /// Of contact nodes, by pair and node: the slip of all load steps so far [mm].
-    using TotalSlip = std::map<std::pair<unsigned int, fem::NodeKey>, double>;
     // Tables are written again after this multiple of the time that writing them took.
     constexpr double pause_over_writing = 10;
 
@@ -87,6 +88,15 @@ namespace slipstick::app
       return summary;
     }
 
+    /// "40 s", "12 min", "3.5 h"
+    std::string duration_text(const double seconds)
+    {
+      constexpr double minute = 60, hour = 3600;
+      if (seconds < 2 * minute)
+        return format("%.0f s", seconds);
+      return seconds < 2 * hour ? format("%.0f min", seconds / minute) : format("%.1f h", seconds / hour);
+    }
+
     std::string set_to_zero(const std::string &motion)
     {
       return "nothing resists " + motion +
@@ -116,13 +126,21 @@ namespace slipstick::app
         , warnings(warnings_before(scene, solver.mesh()))
       {}
 
-      ExitStatus solve_and_write()
+      ExitStatus solve_and_write(const bool resumes)
       {
-        solver.build();
-        directory.remove_results(); // the scene is accepted: results of an earlier run are no longer valid
-        output::write_conditions(directory, scene, solver.mesh(), solver.spaces());
         output::Summary summary;
-        for (unsigned int step = 0; step < scene.load_factors.size(); ++step)
+        if (resumes)
+          summary = resume();
+        else
+          solver.build();
+        if (!resumes)
+          {
+            directory.remove_results(); // the scene is accepted: results of an earlier run are no longer valid
+            output::write_conditions(directory, scene, solver.mesh(), solver.spaces());
+          }
+        first_step  = summary.steps.size();
+        steps_began = clock.total();
+        for (unsigned int step = first_step; step < scene.load_factors.size(); ++step)
           {
             announce(step);
             summary        = load_step(step, summary);
@@ -138,6 +156,8 @@ namespace slipstick::app
         summary.memory_mb = memory(comm);
         summary.warnings  = warnings;
         output::write_summary(directory, summary);
+        if (summary.status == output::RunStatus::converged)
+          remove_restart(directory, comm);
         log.line("");
         print_forces(log, scene, summary.results);
         if (prints())
@@ -165,6 +185,30 @@ namespace slipstick::app
       }
 
     private:
+      /// Takes over what an earlier run has found. @return its summary.
+      output::Summary resume()
+      {
+        RunState state = read_restart(directory, scene, comm);
+        contact_steps  = std::move(state.contact_steps);
+        total_slip     = std::move(state.total_slip);
+        warnings       = std::move(state.warnings);
+        warned_about   = std::move(state.warned_about);
+        finished_steps = state.summary;
+        kept_steps     = state.summary.steps.size();
+        solver.resume(kept_steps - 1, state.solver);
+        log.line(format("resumed      after load step %u of %zu", kept_steps, scene.load_factors.size()));
+        return std::move(state.summary);
+      }
+
+      /// What is left of the run [s], if its steps take as long as those so far; none before the first one has ended.
+      std::string time_left(const unsigned int step) const
+      {
+        if (step == first_step)
+          return "";
+        const double left = (clock.total() - steps_began) / (step - first_step) * (scene.load_factors.size() - step);
+        return ", about " + duration_text(left) + " left";
+      }
+
       bool prints() const
       {
         return dealii::Utilities::MPI::this_mpi_process(comm) == 0;
@@ -176,10 +220,12 @@ namespace slipstick::app
         if (prints())
           tell_when_interrupted(
             format("in load step %u of %zu; ", step + 1, scene.load_factors.size()) +
-            (kept_steps > 0 ? format("summary.json, history.csv and contact.csv in %s hold the results of the first %u",
-                                     directory.path("").c_str(),
-                                     kept_steps)
-                            : std::string("there are no results")));
+            (kept_steps > 0
+               ? format(
+                   "summary.json, history.csv and contact.csv in %s hold the results of the first %u, after which --resume goes on",
+                   directory.path("").c_str(),
+                   kept_steps)
+               : std::string("there are no results")));
       }
 
       /// Writes the tables of the steps so far while others are still to come, for a run that does not live to see its end;
@@ -198,6 +244,10 @@ namespace slipstick::app
         summary.memory_mb = memory(comm);
         summary.warnings  = warnings;
         output::write_summary(directory, summary);
+        write_restart(directory,
+                      scene,
+                      {solver.state(), summary, contact_steps, total_slip, warnings, warned_about},
+                      comm);
         kept_steps   = step + 1;
         kept_at      = clock.total();
         writing_time = kept_at - begin;
@@ -220,7 +270,11 @@ namespace slipstick::app
       {
         const double t = scene.load_factors[step];
         if (scene.load_factors.size() > 1)
-          log.line(format("load step    %u of %zu, t = %g", step + 1, scene.load_factors.size(), t));
+          log.line(format("load step    %u of %zu, t = %g%s",
+                          step + 1,
+                          scene.load_factors.size(),
+                          t,
+                          time_left(step).c_str()));
         const auto   answer    = solver.solve(step, so_far.solver.hessian_multiplications);
         const auto  &u         = answer->recovery.u;
         const auto  &contact   = *answer->contact;
@@ -388,13 +442,15 @@ namespace slipstick::app
       std::vector<std::string>         warnings;
       std::set<std::string>            warned_about;
       std::optional<output::Summary>   finished_steps;   // of all load steps that have ended
+      unsigned int                     first_step   = 0; // of this process
+      double                           steps_began  = 0; // [s]
       unsigned int                     kept_steps   = 0; // in the tables on the disk
       double                           kept_at      = 0; // when they were written [s]
       double                           writing_time = 0; // that this took [s]
     };
   } // namespace
 
-  void check_scene(const scene::Scene<dim> &scene, const Log &log, const MPI_Comm comm)
+  void check_scene(const scene::Scene<dim> &scene, const std::string &picture, const Log &log, const MPI_Comm comm)
   {
     StageClock clock;
     StepSolver solver(scene, log, clock, comm);
@@ -404,10 +460,19 @@ namespace slipstick::app
       log.line("warning: " + set_to_zero(solver.unheld()));
     log.line(std::string("the scene is complete: every subdomain has its rigid motions as kernel") +
              (solver.unheld().empty() ? ", every body is held by supports or contact" : ""));
+    if (picture.empty())
+      return;
+    auto as_given = solver.discrete_scene();
+    as_given.supports.resize(solver.n_given_supports());
+    const std::filesystem::path   file(picture);
+    const output::OutputDirectory directory(file.has_parent_path() ? file.parent_path().string() : ".", comm);
+    output::write_scene_picture(directory, file.filename().string(), as_given, solver.mesh(), solver.spaces());
+    log.line("picture of the scene: " + picture);
   }
 
   ExitStatus run(const scene::Scene<dim> &scene,
                  const std::string       &output_directory,
+                 const bool               resumes,
                  const Log               &log,
                  const MPI_Comm           comm)
   {
@@ -416,7 +481,7 @@ namespace slipstick::app
     try
       {
         steps.emplace(scene, directory, log, comm);
-        return steps->solve_and_write();
+        return steps->solve_and_write(resumes);
       }
     catch (const InputError &) // some of it shows in meshes and formulas only
       {

@@ -1,6 +1,7 @@
 #include <slipstick/app/held_nodes.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/step_solver.h>
+#include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/contact/refinement.h>
 #include <slipstick/fem/assembly.h>
@@ -63,6 +64,22 @@ namespace slipstick::app
       for (const auto &motion : tfeti::disentangled(motions))
         text += (text.empty() ? "" : ", nor ") + tfeti::describe(motion, body_names);
       return text;
+    }
+
+    std::vector<double> values_of(const tfeti::DistributedVector &x)
+    {
+      std::vector<double> values(x.locally_owned_size());
+      for (std::size_t r = 0; r < values.size(); ++r)
+        values[r] = x.local_element(r);
+      return values;
+    }
+
+    tfeti::DistributedVector vector_of(const std::vector<double> &values, const tfeti::DualProblem &dual)
+    {
+      auto x = dual.zero();
+      for (std::size_t r = 0; r < values.size(); ++r)
+        x.local_element(r) = values[r];
+      return x;
     }
 
     /// Observer of the solver: a line on the console and a row of convergence.csv.
@@ -137,6 +154,58 @@ namespace slipstick::app
     const double t = scene.load_factors.front();
     build_dual(t);
     contact::SlipLaw(scene, *the_dual, t); // refuses bounds
+  }
+
+  StepState StepSolver::state() const
+  {
+    StepState state;
+    state.kept_part          = kept_part;
+    state.largest_load       = largest_load;
+    state.history            = history;
+    state.rows               = rows;
+    state.labels             = the_dual->constraints().label;
+    state.multipliers        = values_of(the_solution.multipliers);
+    state.reference          = the_solution.reference;
+    state.weighted_reference = the_solution.weighted_reference;
+    state.largest_traction   = the_solution.largest_traction;
+    for (const auto &part : u)
+      state.u.emplace_back(part.data(), part.data() + part.size());
+    if (the_solution.directions)
+      for (std::size_t j = 0; j < the_solution.directions->size(); ++j)
+        {
+          const auto &direction = (*the_solution.directions)[j];
+          state.directions.emplace_back(values_of(direction.p), values_of(direction.Fp));
+        }
+    return state;
+  }
+
+  void StepSolver::resume(const unsigned int step, const StepState &state)
+  {
+    kept_part    = state.kept_part;
+    largest_load = state.largest_load;
+    history      = state.history;
+    rows         = state.rows;
+    build_dual(scene.load_factors[step]);
+    collectively(comm, [&] {
+      bool fits = state.labels == the_dual->constraints().label && state.u.size() == the_dual->subdomains().size();
+      for (std::size_t p = 0; fits && p < state.u.size(); ++p)
+        fits = state.u[p].size() == the_dual->subdomains()[p]->n_unknowns();
+      if (!fits)
+        throw InputError("--resume: meshes or contact are not those of the run that is to go on",
+                         "leave --resume out to start from the first load step");
+    });
+    for (const auto &part : state.u)
+      u.push_back(Eigen::Map<const Eigen::VectorXd>(part.data(), part.size()));
+    the_solution.multipliers        = vector_of(state.multipliers, *the_dual);
+    the_solution.reference          = state.reference;
+    the_solution.weighted_reference = state.weighted_reference;
+    the_solution.largest_traction   = state.largest_traction;
+    if (state.directions.empty())
+      return;
+    the_solution.directions =
+      std::make_shared<qp::DirectionStore<tfeti::DistributedVector>>(options.newton.n_directions);
+    for (const auto &[p, Fp] : state.directions)
+      the_solution.directions->push(vector_of(p, *the_dual), vector_of(Fp, *the_dual), the_dual->reduction());
   }
 
   std::unique_ptr<StepSolver::Answer> StepSolver::solve(const unsigned int  step,

@@ -1,6 +1,7 @@
 // A scene made discrete, and the checked solutions of its load steps.
 #pragma once
 
+#include <slipstick/app/step_state.h>
 #include <slipstick/base/log.h>
 #include <slipstick/contact/checks.h>
 #include <slipstick/contact/friction.h>
@@ -40,6 +41,12 @@ namespace slipstick::app
     /// Solves a load step, the one after that solved before, until the checks of its answer pass or that is hopeless.
     /// @param multiplications_before by F in the steps before.
     std::unique_ptr<Answer> solve(const unsigned int step, const std::uint64_t multiplications_before);
+
+    /// In place of build(): as after load step @p step of an earlier run. @throws InputError where the state does not fit.
+    void resume(const unsigned int step, const StepState &state);
+
+    /// After a load step, for resume(). Not of the last step of a scene.
+    StepState state() const;
 
     /// With the contact pairs that were found.
     const scene::Scene<dim> &discrete_scene() const
