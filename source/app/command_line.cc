@@ -52,6 +52,8 @@ namespace slipstick::app
                            "write: --set 'Section/Sub/Name=value', for example --set 'Solver/Tolerance=1e-6'");
       if (line.quiet && line.verbose)
         throw InputError("--quiet and --verbose cannot be combined", "leave one of them out");
+      if (line.resume && line.check)
+        throw InputError("--resume cannot be combined with --check and --draw", "leave one of them out");
       if (line.case_file.empty() && !line.list_parameters && !line.new_scene)
         throw InputError("no case file is given", usage);
     }
@@ -75,6 +77,12 @@ namespace slipstick::app
       app.add_option("--output", line.output_directory, "output directory, default output/<name of the case>")
         ->type_name("DIR");
     app.add_flag("--force", line.force, "run a scene that asks for more memory than is free");
+    app.add_flag("--resume", line.resume, "go on after the last finished load step of a run in the output directory");
+    app
+      .add_option("--draw",
+                  line.picture,
+                  "as --check, and draw the scene with supports, loads and contact into an SVG file")
+      ->type_name("FILE.svg");
     app.add_flag("--check", line.check, "build and check the scene, solve nothing");
     const CLI::Option *list =
       app.add_option("--list-parameters", list_format, "list all parameters as text (default), prm, json or latex")
@@ -124,6 +132,7 @@ namespace slipstick::app
       line.list_parameters = read_list_format(list_format.empty() ? "text" : list_format);
     if (start->count() > 0)
       line.new_scene = new_scene;
+    line.check = line.check || !line.picture.empty();
     check(line);
     if (output->count() > 0 && line.output_directory.empty())
       throw InputError("--output: the name of the directory is empty",

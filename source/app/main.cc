@@ -99,10 +99,10 @@ namespace
         fem::check_size(scene, command_line.force, comm);
         if (command_line.check)
           {
-            app::check_scene(scene, log, comm);
+            app::check_scene(scene, command_line.picture, log, comm);
             return static_cast<int>(ExitStatus::converged);
           }
-        return static_cast<int>(app::run(scene, command_line.output_directory, log, comm));
+        return static_cast<int>(app::run(scene, command_line.output_directory, command_line.resume, log, comm));
       }
     catch (const InputError &error)
       {

@@ -363,6 +363,32 @@ namespace slipstick::app
       summary.results.strain_energy,
       100 * summary.error.estimate_energy_relative,
       100 * summary.error.algebraic_relative));
+    for (const auto &probe : summary.results.probes)
+      if (probe.is_point)
+        {
+          const auto &found = probe.points.front();
+          log.line(format("probe %s at (%.6g, %.6g): displacement (%.6g, %.6g) mm, von Mises stress %.6g MPa",
+                          probe.name.c_str(),
+                          found.position[0],
+                          found.position[1],
+                          found.displacement[0],
+                          found.displacement[1],
+                          found.von_mises));
+        }
+    const auto &peak = summary.results.max_von_mises_at, &error = summary.error.largest_at;
+    log.line(format(
+      "von Mises stress is largest in body %s at (%.6g, %.6g)%s; the cell with the largest error, %.2g %% of the "
+      "square of all, is at (%.6g, %.6g) of body %s",
+      peak.body.c_str(),
+      peak.position[0],
+      peak.position[1],
+      summary.results.singular.empty()
+        ? ""
+        : (", " + summary.results.singular + ", where it grows without limit under refinement").c_str(),
+      100 * summary.error.largest_part,
+      error.position[0],
+      error.position[1],
+      error.body.c_str()));
     log.line(format("%s after %llu F-multiplications in %u outer steps; equilibrium error %.1e; %.2f s, %.0f MB",
                     output::to_string(summary.status).c_str(),
                     static_cast<unsigned long long>(summary.solver.hessian_multiplications),
@@ -396,6 +422,7 @@ namespace slipstick::app
     step.strain_energy           = summary.results.strain_energy;
     step.contact                 = summary.results.contact;
     step.forces                  = summary.results.forces;
+    step.probes                  = summary.results.probes;
     summary.steps                = so_far.steps;
     summary.steps.push_back(std::move(step));
 

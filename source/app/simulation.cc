@@ -3,21 +3,28 @@
 #include <slipstick/app/held_nodes.h>
 #include <slipstick/app/interruption.h>
 #include <slipstick/app/report.h>
+#include <slipstick/app/restart.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/app/step_solver.h>
 #include <slipstick/contact/resultants.h>
 #include <slipstick/fem/arc_length.h>
+#include <slipstick/fem/elasticity.h>
 #include <slipstick/fem/loads.h>
+#include <slipstick/fem/probes.h>
+#include <slipstick/fem/singular_points.h>
 #include <slipstick/output/conditions.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/fields.h>
 #include <slipstick/output/history.h>
+#include <slipstick/output/probes.h>
+#include <slipstick/output/scene_picture.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <filesystem>
 #include <optional>
 #include <set>
 
@@ -27,14 +34,20 @@ namespace slipstick::app
   {
     constexpr int dim = 2;
 
+    // A singular point raises the stress as far as so many diameters of the cells around the node with the largest one:
+    // stresses at nodes are means over cells, and may be largest beside it.
+    constexpr double cells_of_singularity = 1.5;
+
     // Tables are written again after this multiple of the time that writing them took.
     constexpr double pause_over_writing = 10;
 
     /// Contact nodes of all ranks on rank 0, with their arc lengths.
+    /// @param total_slip gets the slip of this step added, on rank 0.
     output::ContactStep gather_contact(const scene::Scene<dim>       &scene,
                                        const fem::Mesh<dim>          &mesh,
                                        const fem::Spaces<dim>        &spaces,
-                                       const contact::CheckedContact &own)
+                                       const contact::CheckedContact &own,
+                                       TotalSlip                     &total_slip)
     {
       const auto          lengths = fem::arc_lengths(scene, mesh, spaces);
       const auto          nodes   = dealii::Utilities::MPI::gather(mesh.comm, own.nodes);
@@ -45,6 +58,7 @@ namespace slipstick::app
           {
             auto node       = nodes[rank][i];
             node.arc_length = lengths.at({node.pair, keys[rank][i]});
+            node.total_slip = total_slip[{node.pair, keys[rank][i]}] += node.slip;
             step.nodes.push_back(node);
           }
       return step;
@@ -74,6 +88,22 @@ namespace slipstick::app
       return summary;
     }
 
+    /// "40 s", "12 min", "3.5 h"
+    std::string duration_text(const double seconds)
+    {
+      constexpr double minute = 60, hour = 3600;
+      if (seconds < 2 * minute)
+        return format("%.0f s", seconds);
+      return seconds < 2 * hour ? format("%.0f min", seconds / minute) : format("%.1f h", seconds / hour);
+    }
+
+    std::string set_to_zero(const std::string &motion)
+    {
+      return "nothing resists " + motion +
+             ", and no load acts along it: it is set to zero; add a support or a contact " +
+             "against this motion if it matters";
+    }
+
     output::MemorySummary memory(const MPI_Comm comm)
     {
       return {dealii::Utilities::MPI::max(peak_memory_mb(), comm), dealii::Utilities::MPI::sum(peak_memory_mb(), comm)};
@@ -92,16 +122,25 @@ namespace slipstick::app
         , comm(comm_)
         , solver(scene, log_, clock, comm_)
         , scene(solver.discrete_scene())
+        , probes(this->scene, solver.mesh(), solver.spaces())
         , warnings(warnings_before(scene, solver.mesh()))
       {}
 
-      ExitStatus solve_and_write()
+      ExitStatus solve_and_write(const bool resumes)
       {
-        solver.build();
-        directory.remove_results(); // the scene is accepted: results of an earlier run are no longer valid
-        output::write_conditions(directory, scene, solver.mesh(), solver.spaces());
         output::Summary summary;
-        for (unsigned int step = 0; step < scene.load_factors.size(); ++step)
+        if (resumes)
+          summary = resume();
+        else
+          solver.build();
+        if (!resumes)
+          {
+            directory.remove_results(); // the scene is accepted: results of an earlier run are no longer valid
+            output::write_conditions(directory, scene, solver.mesh(), solver.spaces());
+          }
+        first_step  = summary.steps.size();
+        steps_began = clock.total();
+        for (unsigned int step = first_step; step < scene.load_factors.size(); ++step)
           {
             announce(step);
             summary        = load_step(step, summary);
@@ -117,6 +156,8 @@ namespace slipstick::app
         summary.memory_mb = memory(comm);
         summary.warnings  = warnings;
         output::write_summary(directory, summary);
+        if (summary.status == output::RunStatus::converged)
+          remove_restart(directory, comm);
         log.line("");
         print_forces(log, scene, summary.results);
         if (prints())
@@ -144,6 +185,30 @@ namespace slipstick::app
       }
 
     private:
+      /// Takes over what an earlier run has found. @return its summary.
+      output::Summary resume()
+      {
+        RunState state = read_restart(directory, scene, comm);
+        contact_steps  = std::move(state.contact_steps);
+        total_slip     = std::move(state.total_slip);
+        warnings       = std::move(state.warnings);
+        warned_about   = std::move(state.warned_about);
+        finished_steps = state.summary;
+        kept_steps     = state.summary.steps.size();
+        solver.resume(kept_steps - 1, state.solver);
+        log.line(format("resumed      after load step %u of %zu", kept_steps, scene.load_factors.size()));
+        return std::move(state.summary);
+      }
+
+      /// What is left of the run [s], if its steps take as long as those so far; none before the first one has ended.
+      std::string time_left(const unsigned int step) const
+      {
+        if (step == first_step)
+          return "";
+        const double left = (clock.total() - steps_began) / (step - first_step) * (scene.load_factors.size() - step);
+        return ", about " + duration_text(left) + " left";
+      }
+
       bool prints() const
       {
         return dealii::Utilities::MPI::this_mpi_process(comm) == 0;
@@ -155,10 +220,12 @@ namespace slipstick::app
         if (prints())
           tell_when_interrupted(
             format("in load step %u of %zu; ", step + 1, scene.load_factors.size()) +
-            (kept_steps > 0 ? format("summary.json, history.csv and contact.csv in %s hold the results of the first %u",
-                                     directory.path("").c_str(),
-                                     kept_steps)
-                            : std::string("there are no results")));
+            (kept_steps > 0
+               ? format(
+                   "summary.json, history.csv and contact.csv in %s hold the results of the first %u, after which --resume goes on",
+                   directory.path("").c_str(),
+                   kept_steps)
+               : std::string("there are no results")));
       }
 
       /// Writes the tables of the steps so far while others are still to come, for a run that does not live to see its end;
@@ -177,6 +244,10 @@ namespace slipstick::app
         summary.memory_mb = memory(comm);
         summary.warnings  = warnings;
         output::write_summary(directory, summary);
+        write_restart(directory,
+                      scene,
+                      {solver.state(), summary, contact_steps, total_slip, warnings, warned_about},
+                      comm);
         kept_steps   = step + 1;
         kept_at      = clock.total();
         writing_time = kept_at - begin;
@@ -199,7 +270,11 @@ namespace slipstick::app
       {
         const double t = scene.load_factors[step];
         if (scene.load_factors.size() > 1)
-          log.line(format("load step    %u of %zu, t = %g", step + 1, scene.load_factors.size(), t));
+          log.line(format("load step    %u of %zu, t = %g%s",
+                          step + 1,
+                          scene.load_factors.size(),
+                          t,
+                          time_left(step).c_str()));
         const auto   answer    = solver.solve(step, so_far.solver.hessian_multiplications);
         const auto  &u         = answer->recovery.u;
         const auto  &contact   = *answer->contact;
@@ -212,12 +287,12 @@ namespace slipstick::app
         warn(answer_warnings(scene, solver.mesh(), solver.spaces(), solver.dual(), solution.free, contact.nodes, u));
         warn(doubts_of_held_nodes(scene, solver.held_contacts(), contact, comm));
 
+        if (!solver.unheld().empty())
+          warn({{"unresisted", set_to_zero(solver.unheld())}});
         if (!answer->recovery.unresisted.empty())
-          warn({{"unresisted",
-                 format("nothing resists %s, and no load acts along it: it is set to zero; add a support or a contact "
-                        "against this motion if it matters",
-                        tfeti::describe(tfeti::plainest(answer->recovery.unresisted), solver.dual().body_names())
-                          .c_str())}});
+          warn(
+            {{"unresisted",
+              set_to_zero(tfeti::describe(tfeti::plainest(answer->recovery.unresisted), solver.dual().body_names()))}});
         const auto geometry =
           judge(scene, fem::penetrations(scene, solver.mesh(), solver.spaces(), u, t), contact.checks.max_displacement);
         warn(geometry.warnings);
@@ -230,6 +305,8 @@ namespace slipstick::app
         if (geometry.failure)
           summary.status = output::RunStatus::not_converged;
         summary.results.forces = forces(*answer, t);
+        add_places(stress, summary);
+        summary.results.probes = probe_results(u, stress);
         if (scene.output.vtu)
           {
             output::write_fields(directory, solver.mesh(), solver.spaces(), u, stress, step);
@@ -237,7 +314,7 @@ namespace slipstick::app
           }
         if (scene.has_contact())
           {
-            contact_steps.push_back(gather_contact(scene, solver.mesh(), solver.spaces(), contact));
+            contact_steps.push_back(gather_contact(scene, solver.mesh(), solver.spaces(), contact, total_slip));
             contact_steps.back().step = step;
             output::write_contact_vtp(directory, contact_steps.back());
             summary.results.contact = contact::pair_results(contact_steps.back().nodes, contact_names().pairs);
@@ -245,6 +322,54 @@ namespace slipstick::app
         clock.leave();
         add_step(so_far, t, summary);
         return summary;
+      }
+
+      /// Where stress and error are largest, and whether more than the mesh is in the way there.
+      void add_places(const fem::StressResult &stress, output::Summary &summary) const
+      {
+        const auto places   = fem::stress_places(solver.mesh(), solver.spaces(), stress);
+        const auto as_place = [&](const fem::Peak<dim> &peak) {
+          return output::Place{scene.bodies[peak.body].name, {{peak.position[0], peak.position[1]}}};
+        };
+        summary.results.max_von_mises_at = as_place(places.von_mises);
+        summary.error.largest_at         = as_place(places.error);
+        if (stress.error_squared > 0)
+          summary.error.largest_part = places.error.value * places.error.value / stress.error_squared;
+        double nearest = cells_of_singularity * places.size;
+        for (const auto &point : fem::singular_points(scene, solver.mesh(), solver.spaces(), solver.n_given_supports()))
+          if (point.body == places.von_mises.body && point.position.distance(places.von_mises.position) < nearest)
+            {
+              nearest                  = point.position.distance(places.von_mises.position);
+              summary.results.singular = point.what;
+            }
+      }
+
+      std::vector<output::ProbeResult> probe_results(const std::vector<Eigen::VectorXd> &u,
+                                                     const fem::StressResult            &stress) const
+      {
+        std::vector<output::ProbeResult> results;
+        for (const auto &points : probes.values(u, stress))
+          {
+            const auto         &probe = scene.probes[results.size()];
+            output::ProbeResult result;
+            result.name     = probe.name;
+            result.is_point = probe.ends.size() == 1;
+            for (const auto &point : points)
+              {
+                output::ProbeValues values;
+                values.distance = point.distance;
+                for (unsigned int d = 0; d < dim; ++d)
+                  {
+                    values.position[d]     = point.position[d];
+                    values.displacement[d] = point.displacement[d];
+                  }
+                values.stress    = point.stress;
+                values.von_mises = fem::von_mises(point.stress[0], point.stress[1], point.stress[2], point.stress[3]);
+                result.points.push_back(values);
+              }
+            results.push_back(std::move(result));
+          }
+        return results;
       }
 
       /// Resultants of loads and supports; warns of loads whose formulas no mesh resolves.
@@ -277,7 +402,7 @@ namespace slipstick::app
                                                   answer.contact->held_forces,
                                                   answer.recovery.multipliers,
                                                   n_holders);
-        for (unsigned int h = 0; h < n_supports; ++h)
+        for (unsigned int h = 0; h < solver.n_given_supports(); ++h) // the others bear nothing
           sums.supports.push_back({scene.supports[h].name, "support", reactions[h]});
         for (unsigned int h = n_supports; h < n_holders; ++h)
           sums.foundations.push_back({scene.foundations[h - n_supports].name, "foundation", reactions[h]});
@@ -298,6 +423,7 @@ namespace slipstick::app
       void write_tables(const output::Summary &summary) const
       {
         output::write_history(directory, summary.steps);
+        output::write_probes(directory, summary.steps);
         output::write_convergence(directory, solver.convergence());
         directory.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
         if (scene.has_contact())
@@ -310,26 +436,43 @@ namespace slipstick::app
       StageClock                       clock;
       StepSolver                       solver;
       const scene::Scene<dim>         &scene; // with the contact pairs that are found
+      fem::Probes<dim>                 probes;
       std::vector<output::ContactStep> contact_steps;
+      TotalSlip                        total_slip;
       std::vector<std::string>         warnings;
       std::set<std::string>            warned_about;
       std::optional<output::Summary>   finished_steps;   // of all load steps that have ended
+      unsigned int                     first_step   = 0; // of this process
+      double                           steps_began  = 0; // [s]
       unsigned int                     kept_steps   = 0; // in the tables on the disk
       double                           kept_at      = 0; // when they were written [s]
       double                           writing_time = 0; // that this took [s]
     };
   } // namespace
 
-  void check_scene(const scene::Scene<dim> &scene, const Log &log, const MPI_Comm comm)
+  void check_scene(const scene::Scene<dim> &scene, const std::string &picture, const Log &log, const MPI_Comm comm)
   {
     StageClock clock;
-    StepSolver(scene, log, clock, comm).build();
-    log.line(
-      "the scene is complete: every subdomain has its rigid motions as kernel, every body is held by supports or contact");
+    StepSolver solver(scene, log, clock, comm);
+    fem::Probes<dim>(scene, solver.mesh(), solver.spaces());
+    solver.build();
+    if (!solver.unheld().empty())
+      log.line("warning: " + set_to_zero(solver.unheld()));
+    log.line(std::string("the scene is complete: every subdomain has its rigid motions as kernel") +
+             (solver.unheld().empty() ? ", every body is held by supports or contact" : ""));
+    if (picture.empty())
+      return;
+    auto as_given = solver.discrete_scene();
+    as_given.supports.resize(solver.n_given_supports());
+    const std::filesystem::path   file(picture);
+    const output::OutputDirectory directory(file.has_parent_path() ? file.parent_path().string() : ".", comm);
+    output::write_scene_picture(directory, file.filename().string(), as_given, solver.mesh(), solver.spaces());
+    log.line("picture of the scene: " + picture);
   }
 
   ExitStatus run(const scene::Scene<dim> &scene,
                  const std::string       &output_directory,
+                 const bool               resumes,
                  const Log               &log,
                  const MPI_Comm           comm)
   {
@@ -338,7 +481,7 @@ namespace slipstick::app
     try
       {
         steps.emplace(scene, directory, log, comm);
-        return steps->solve_and_write();
+        return steps->solve_and_write(resumes);
       }
     catch (const InputError &) // some of it shows in meshes and formulas only
       {

@@ -1,6 +1,7 @@
 #include <slipstick/app/held_nodes.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/step_solver.h>
+#include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/contact/refinement.h>
 #include <slipstick/fem/assembly.h>
@@ -9,6 +10,7 @@
 #include <slipstick/fem/loads.h>
 #include <slipstick/fem/pair_checks.h>
 #include <slipstick/fem/shared_sides.h>
+#include <slipstick/fem/still_points.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -56,6 +58,30 @@ namespace slipstick::app
       return names;
     }
 
+    std::string in_words(const std::vector<tfeti::RigidMotion> &motions, const std::vector<std::string> &body_names)
+    {
+      std::string text;
+      for (const auto &motion : tfeti::disentangled(motions))
+        text += (text.empty() ? "" : ", nor ") + tfeti::describe(motion, body_names);
+      return text;
+    }
+
+    std::vector<double> values_of(const tfeti::DistributedVector &x)
+    {
+      std::vector<double> values(x.locally_owned_size());
+      for (std::size_t r = 0; r < values.size(); ++r)
+        values[r] = x.local_element(r);
+      return values;
+    }
+
+    tfeti::DistributedVector vector_of(const std::vector<double> &values, const tfeti::DualProblem &dual)
+    {
+      auto x = dual.zero();
+      for (std::size_t r = 0; r < values.size(); ++r)
+        x.local_element(r) = values[r];
+      return x;
+    }
+
     /// Observer of the solver: a line on the console and a row of convergence.csv.
     contact::ProgressObserver convergence_observer(const Log                           &log,
                                                    const scene::SolverOptions          &options,
@@ -101,6 +127,7 @@ namespace slipstick::app
     , clock(clock_)
     , comm(comm_)
     , options(contact::resolved_options(scene_))
+    , n_given(scene_.supports.size())
     , kept_part(first_kept_part)
     , discretization_error(infinity)
   {
@@ -127,6 +154,58 @@ namespace slipstick::app
     const double t = scene.load_factors.front();
     build_dual(t);
     contact::SlipLaw(scene, *the_dual, t); // refuses bounds
+  }
+
+  StepState StepSolver::state() const
+  {
+    StepState state;
+    state.kept_part          = kept_part;
+    state.largest_load       = largest_load;
+    state.history            = history;
+    state.rows               = rows;
+    state.labels             = the_dual->constraints().label;
+    state.multipliers        = values_of(the_solution.multipliers);
+    state.reference          = the_solution.reference;
+    state.weighted_reference = the_solution.weighted_reference;
+    state.largest_traction   = the_solution.largest_traction;
+    for (const auto &part : u)
+      state.u.emplace_back(part.data(), part.data() + part.size());
+    if (the_solution.directions)
+      for (std::size_t j = 0; j < the_solution.directions->size(); ++j)
+        {
+          const auto &direction = (*the_solution.directions)[j];
+          state.directions.emplace_back(values_of(direction.p), values_of(direction.Fp));
+        }
+    return state;
+  }
+
+  void StepSolver::resume(const unsigned int step, const StepState &state)
+  {
+    kept_part    = state.kept_part;
+    largest_load = state.largest_load;
+    history      = state.history;
+    rows         = state.rows;
+    build_dual(scene.load_factors[step]);
+    collectively(comm, [&] {
+      bool fits = state.labels == the_dual->constraints().label && state.u.size() == the_dual->subdomains().size();
+      for (std::size_t p = 0; fits && p < state.u.size(); ++p)
+        fits = state.u[p].size() == the_dual->subdomains()[p]->n_unknowns();
+      if (!fits)
+        throw InputError("--resume: meshes or contact are not those of the run that is to go on",
+                         "leave --resume out to start from the first load step");
+    });
+    for (const auto &part : state.u)
+      u.push_back(Eigen::Map<const Eigen::VectorXd>(part.data(), part.size()));
+    the_solution.multipliers        = vector_of(state.multipliers, *the_dual);
+    the_solution.reference          = state.reference;
+    the_solution.weighted_reference = state.weighted_reference;
+    the_solution.largest_traction   = state.largest_traction;
+    if (state.directions.empty())
+      return;
+    the_solution.directions =
+      std::make_shared<qp::DirectionStore<tfeti::DistributedVector>>(options.newton.n_directions);
+    for (const auto &[p, Fp] : state.directions)
+      the_solution.directions->push(vector_of(p, *the_dual), vector_of(Fp, *the_dual), the_dual->reduction());
   }
 
   std::unique_ptr<StepSolver::Answer> StepSolver::solve(const unsigned int  step,
@@ -175,7 +254,29 @@ namespace slipstick::app
     largest_load = std::max(largest_load, size);
   }
 
+  // Anew for every step where something is not held: its loads may push.
   void StepSolver::make_dual(const double t)
+  {
+    scene.supports.erase(scene.supports.begin() + n_given, scene.supports.end());
+    try
+      {
+        make_dual_as_it_is(t);
+      }
+    catch (const tfeti::UnheldMotions &unheld) // on all ranks alike
+      {
+        if (pruned.rows->size() > 0) // by contact nodes that were left out, perhaps
+          throw;
+        unheld_motions = in_words(unheld.motions, names_of(scene.bodies));
+        std::vector<Eigen::VectorXd> motions;
+        for (const auto &motion : unheld.motions)
+          motions.push_back(motion.amplitudes);
+        for (auto &support : fem::still_points(*the_mesh, *the_spaces, motions, unheld.motions.front().frames))
+          scene.supports.push_back(std::move(support));
+        make_dual_as_it_is(t);
+      }
+  }
+
+  void StepSolver::make_dual_as_it_is(const double t)
   {
     clock.enter("assembly");
     if (subdomains)
@@ -224,6 +325,7 @@ namespace slipstick::app
     auto rows  = contact_rows(t);
     drop_rounding(loads);
     const bool is_same =
+      scene.supports.size() == n_given &&
       dealii::Utilities::MPI::min(rows.active.label == the_dual->constraints().label ? 1 : 0, comm) > 0;
     if (is_same) // gaps that follow the load factor may prune other nodes
       {
@@ -356,8 +458,8 @@ namespace slipstick::app
   {
     try
       {
-        // what a later step of a history leaves without load stays where it is
-        return the_dual->recover(the_solution.multipliers, the_solution.free, !u.empty());
+        // what nothing resists and no load drives stays where it is
+        return the_dual->recover(the_solution.multipliers, the_solution.free, true);
       }
     catch (const UndeterminedPosition &)
       {

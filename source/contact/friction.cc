@@ -37,6 +37,8 @@ namespace slipstick::contact
     constexpr double largest_traction_error = 0.05;
     // Tractions of a pair below this part of the largest, of any pair in any step so far, count as this part.
     constexpr double negligible_pair = 1e-3;
+    // ... and so do those below this part of the largest force anywhere, on one contact node: of pairs that no load reaches.
+    constexpr double negligible_force = 1e-6;
     // Loads below this part of those of earlier steps are what rounding leaves of none.
     constexpr double rounding_of_loads = 1e-12;
     // Multiplications after which Newton's method and its fallback give up.
@@ -252,9 +254,15 @@ namespace slipstick::contact
         double     largest = largest_traction * largest_traction;
         for (std::size_t k = 0; k < squares.size(); k += 2)
           largest = std::max(largest, squares[k]);
+        double area = 0;
+        for (const auto &point : dual.constraints().contact_points)
+          area = std::max(area, point.traction_area);
+        area              = dealii::Utilities::MPI::max(area, dual.communicator());
+        const double none = area > 0 ? negligible_force * x.linfty_norm() / std::sqrt(area) : 0.;
         const double part = std::min(largest_traction_error, traction_error * options.tolerance);
         for (std::size_t k = 0; k < squares.size(); k += 2)
-          if (squares[k + 1] > part * part * std::max(squares[k], negligible_pair * negligible_pair * largest))
+          if (squares[k + 1] >
+              part * part * std::max({squares[k], negligible_pair * negligible_pair * largest, none * none}))
             return false;
         return true;
       }

@@ -6,6 +6,7 @@
 #include <slipstick/fem/shapes.h>
 #include <slipstick/fem/size_check.h>
 #include <slipstick/fem/triangulate.h>
+#include <slipstick/scene/boundary_part.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -62,8 +63,8 @@ namespace slipstick::fem
         if (body.shape != scene::Shape::rectangle ||
             (body.boundary_refinements > 0 && !body.refined_boundaries.empty()))
           return false;
-      return scene.decomposition.method == DecompositionMethod::blocks ||
-             scene.decomposition.method == DecompositionMethod::none;
+      return !scene::has_boundary_parts(scene) && (scene.decomposition.method == DecompositionMethod::blocks ||
+                                                   scene.decomposition.method == DecompositionMethod::none);
     }
 
     /// A warning about the two bodies that are farthest over the limits, if any are.

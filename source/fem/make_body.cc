@@ -1,9 +1,11 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/base/text.h>
+#include <slipstick/fem/boundary_parts.h>
 #include <slipstick/fem/make_body.h>
 #include <slipstick/fem/refinement.h>
 #include <slipstick/fem/smooth_outline.h>
+#include <slipstick/scene/boundary_part.h>
 
 #include <algorithm>
 #include <numeric>
@@ -109,7 +111,10 @@ namespace slipstick::fem
         boundaries.push_back(entry.first);
       for (const auto &entry : mesh.points)
         points.push_back(entry.first);
-      const auto boundary = [&](const std::string &user, const scene::BoundaryName &where) {
+      const auto boundary = [&](const std::string &user, const scene::BoundaryName &of_scene) {
+        auto where = of_scene;
+        if (mesh.boundary_ids.count(where.boundary) == 0)
+          where.boundary = scene::part_of_boundary(where.boundary).name;
         if (const auto lost = mesh.incomplete_boundaries.find(where.boundary);
             where.body == b && lost != mesh.incomplete_boundaries.end())
           throw InputError(user + ": boundary '" + where.boundary + "' of body '" + body.name + "'" + from +
@@ -132,24 +137,22 @@ namespace slipstick::fem
                            "give each its own name in the mesh, or give coordinates");
       };
       for (const std::string &name : body.refined_boundaries)
-        boundary("Body " + body.name + "/Refine towards", {b, name});
+        {
+          if (!scene::part_of_boundary(name).condition.empty())
+            throw InputError("Body " + body.name + "/Refine towards = '" + name + "': a condition is not possible here",
+                             "name the whole boundary");
+          boundary("Body " + body.name + "/Refine towards", {b, name});
+        }
+      for (const auto &[user, where] : scene::used_boundaries(scene))
+        boundary(user, where);
       for (const auto &support : scene.supports)
         if (support.point)
           point("Support " + support.name, *support.point);
-        else
-          boundary("Support " + support.name, support.where);
-      for (const auto &foundation : scene.foundations)
-        boundary("Foundation " + foundation.name, foundation.where);
-      for (const auto &traction : scene.tractions)
-        boundary("Traction " + traction.name, traction.where);
       for (const auto &load : scene.point_loads)
         point("Point load " + load.name, load.where);
-      for (const auto &contact : scene.contacts)
-        {
-          boundary("Contact " + contact.name + "/Slave", contact.slave);
-          if (contact.master)
-            boundary("Contact " + contact.name + "/Master", *contact.master);
-        }
+      for (const auto &probe : scene.probes)
+        for (const auto &end : probe.ends)
+          point("Probe " + probe.name, end);
     }
   } // namespace
 
@@ -207,6 +210,7 @@ namespace slipstick::fem
     refine_towards_boundaries(body, mesh);
     mesh.piece.body = b;
     place(mesh.piece, body.placement);
+    add_boundary_parts(scene, b, mesh);
     return mesh;
   }
 

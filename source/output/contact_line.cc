@@ -38,7 +38,8 @@ namespace slipstick::output
                                  node.tangential_traction,
                                  node.slip})
         out << ',' << to_text(value);
-      out << ',' << contact::to_string(node.status) << ',' << step << ',' << to_text(node.slip_bound) << '\n';
+      out << ',' << contact::to_string(node.status) << ',' << step << ',' << to_text(node.slip_bound) << ','
+          << to_text(node.total_slip) << '\n';
     }
 
     bool is_little_endian()
@@ -106,6 +107,7 @@ namespace slipstick::output
       write_scalar(out, "tangential_traction", nodes, [](const ContactNode &node) { return node.tangential_traction; });
       write_scalar(out, "slip_bound", nodes, [](const ContactNode &node) { return node.slip_bound; });
       write_scalar(out, "slip", nodes, [](const ContactNode &node) { return node.slip; });
+      write_scalar(out, "total_slip", nodes, [](const ContactNode &node) { return node.total_slip; });
       write_scalar(out, "status", nodes, [](const ContactNode &node) {
         return static_cast<std::int64_t>(node.status);
       });
@@ -162,7 +164,7 @@ namespace slipstick::output
                          const std::vector<ContactStep> &steps)
   {
     directory.write_from_root("contact.csv", [&](std::ostream &out) {
-      out << "pair,slave body,x,y,s,gap,pressure,tangential_traction,slip,status,step,slip_bound\n";
+      out << "pair,slave body,x,y,s,gap,pressure,tangential_traction,slip,status,step,slip_bound,total_slip\n";
       for (const ContactStep &step : steps)
         for (const ContactNode &node : along_the_arc(step.nodes))
           write_row(out, names, step.step, node);

@@ -31,7 +31,8 @@ namespace slipstick::output
 
     const std::string result_names =
       "solution\\.pvd|solution_\\d+\\.pvtu|subdomain_\\d+_\\d+\\.vtu|contact_\\d+\\.vtp|contact\\.csv|"
-      "conditions\\.csv|convergence\\.csv|history\\.csv|summary\\.json|parameters\\.prm";
+      "conditions\\.csv|convergence\\.csv|history\\.csv|probes\\.csv|summary\\.json|parameters\\.prm|"
+      "restart\\.bin|restart_\\d+_\\d+\\.bin";
 
     /// Beside @p name, with the number of the process, by which others know whether it is still written, and a random part.
     std::string temporary_name(const std::string &name)

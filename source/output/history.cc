@@ -26,6 +26,11 @@ namespace slipstick::output
         for (const auto &one : all_of(steps.front()))
           for (const std::string column : {" Fx", " Fy", " moment"})
             out << ',' << csv_field(one.kind + " " + one.name + column);
+      if (!steps.empty())
+        for (const auto &probe : steps.front().probes)
+          if (probe.is_point)
+            for (const std::string column : {" ux", " uy"})
+              out << ',' << csv_field("probe " + probe.name + column);
       out << '\n';
       for (unsigned int k = 0; k < steps.size(); ++k)
         {
@@ -33,6 +38,10 @@ namespace slipstick::output
           for (const auto &one : all_of(steps[k]))
             out << ',' << to_text(one.sum.force[0]) << ',' << to_text(one.sum.force[1]) << ','
                 << to_text(one.sum.moment);
+          for (const auto &probe : steps[k].probes)
+            if (probe.is_point)
+              for (const double component : probe.points.front().displacement)
+                out << ',' << to_text(component);
           out << '\n';
         }
     });

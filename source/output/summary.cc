@@ -105,6 +105,25 @@ namespace slipstick::output
       return pairs;
     }
 
+    /// Points alone: what lines found is in probes.csv.
+    Json json(const std::vector<ProbeResult> &probes)
+    {
+      Json list = Json::array();
+      for (const ProbeResult &probe : probes)
+        if (probe.is_point)
+          list.push_back({{"probe", probe.name},
+                          {"position", probe.points.front().position},
+                          {"displacement", probe.points.front().displacement},
+                          {"stress", probe.points.front().stress},
+                          {"von_mises", probe.points.front().von_mises}});
+      return list;
+    }
+
+    Json json(const Place &place)
+    {
+      return {{"body", place.body}, {"position", place.position}};
+    }
+
     Json json(const std::vector<StepSummary> &steps)
     {
       Json list = Json::array();
@@ -115,7 +134,8 @@ namespace slipstick::output
                              {"coulomb_iterations", step.coulomb_iterations},
                              {"max_displacement", step.max_displacement},
                              {"strain_energy", step.strain_energy},
-                             {"contact", json(step.contact)}},
+                             {"contact", json(step.contact)},
+                             {"probes", json(step.probes)}},
                             step.forces));
       return list;
     }
@@ -124,8 +144,11 @@ namespace slipstick::output
     {
       return with({{"max_displacement", results.max_displacement},
                    {"max_von_mises", results.max_von_mises},
+                   {"max_von_mises_at", json(results.max_von_mises_at)},
+                   {"singular", results.singular.empty() ? Json() : Json(results.singular)},
                    {"strain_energy", results.strain_energy},
-                   {"contact", json(results.contact)}},
+                   {"contact", json(results.contact)},
+                   {"probes", json(results.probes)}},
                   results.forces);
     }
 
@@ -174,7 +197,9 @@ namespace slipstick::output
                        {"residuals", json(summary.residuals)},
                        {"error",
                         {{"estimate_energy_relative", summary.error.estimate_energy_relative},
-                         {"algebraic_relative", summary.error.algebraic_relative}}},
+                         {"algebraic_relative", summary.error.algebraic_relative},
+                         {"largest_at", json(summary.error.largest_at)},
+                         {"largest_part", summary.error.largest_part}}},
                        {"results", json(summary.results)},
                        {"steps", json(summary.steps)},
                        {"time_s", json(summary.time_s)},

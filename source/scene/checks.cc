@@ -1,4 +1,5 @@
 #include <slipstick/base/text.h>
+#include <slipstick/scene/boundary_part.h>
 #include <slipstick/scene/checks.h>
 
 #include <map>
@@ -76,6 +77,11 @@ namespace slipstick::scene
       if (scene.decomposition.method != DecompositionMethod::blocks)
         return;
       const unsigned int blocks = scene.decomposition.blocks;
+      for (const auto &[user, where] : used_boundaries(scene))
+        if (!part_of_boundary(where.boundary).condition.empty())
+          throw parameters.error("Decomposition/Method",
+                                 "knows no parts of boundaries, but " + user + " has one, '" + where.boundary + "'",
+                                 "set it to METIS or auto");
       for (const Body<dim> &body : scene.bodies)
         {
           if (body.shape != Shape::rectangle)

@@ -1,5 +1,6 @@
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/base/text.h>
+#include <slipstick/scene/boundary_part.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/sections.h>
 
@@ -11,7 +12,7 @@ namespace slipstick::scene
   {
     const std::array<std::string, 3> axes = {{"x", "y", "z"}};
 
-    const std::string boundary_format = "BODY/BOUNDARY, such as box/left";
+    const std::string boundary_format = "BODY/BOUNDARY, such as box/left, or a part of it, such as box/top where x < 5";
     const std::string field_format    = "a number or a formula of x, y, t";
   } // namespace
 
@@ -25,7 +26,9 @@ namespace slipstick::scene
     const auto slash = text.find('/');
     if (slash == std::string::npos)
       throw parameters.error(path, "names no boundary of a body", "write " + boundary_format);
-    const std::string name = trim(text.substr(0, slash)), boundary = trim(text.substr(slash + 1));
+    const std::string  name     = trim(text.substr(0, slash));
+    const BoundaryPart part     = part_of_boundary(text.substr(slash + 1));
+    const std::string &boundary = part.name;
     if (boundary.empty())
       throw parameters.error(path, "names no boundary of a body", "write " + boundary_format);
 
@@ -45,7 +48,8 @@ namespace slipstick::scene
       throw parameters.error(path,
                              "body '" + name + "' has no boundary '" + boundary + "'",
                              suggest_name(boundary, boundaries));
-    return {static_cast<unsigned int>(body - bodies.begin()), boundary};
+    check_condition<dim>(part, path);
+    return {static_cast<unsigned int>(body - bodies.begin()), to_string(part)};
   }
 
   template <int dim>

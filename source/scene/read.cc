@@ -1,5 +1,6 @@
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/scene/accuracy.h>
+#include <slipstick/scene/boundary_part.h>
 #include <slipstick/scene/checks.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/listing.h>
@@ -25,6 +26,7 @@ namespace slipstick::scene
     const NamedKind point_load_kind  = {"Point load", "Point loads"};
     const NamedKind temperature_kind = {"Temperature", "Temperatures"};
     const NamedKind contact_kind     = {"Contact", "Contacts"};
+    const NamedKind probe_kind       = {"Probe", "Probes"};
 
     const std::vector<NamedKind> named_kinds = {material_kind,
                                                 body_kind,
@@ -35,7 +37,8 @@ namespace slipstick::scene
                                                 body_force_kind,
                                                 point_load_kind,
                                                 temperature_kind,
-                                                contact_kind};
+                                                contact_kind,
+                                                probe_kind};
 
     /// Names of each kind, by its list.
     using Names = std::map<std::string, std::vector<std::string>>;
@@ -68,6 +71,7 @@ namespace slipstick::scene
       std::vector<PointLoadSection<dim>>   point_loads;
       std::vector<TemperatureSection<dim>> temperatures;
       std::vector<ContactSection<dim>>     contacts;
+      std::vector<ProbeSection<dim>>       probes;
       ContactSearchSection<dim>            contact_search;
     };
 
@@ -83,6 +87,7 @@ namespace slipstick::scene
       , point_loads(names.at(point_load_kind.list).begin(), names.at(point_load_kind.list).end())
       , temperatures(names.at(temperature_kind.list).begin(), names.at(temperature_kind.list).end())
       , contacts(names.at(contact_kind.list).begin(), names.at(contact_kind.list).end())
+      , probes(names.at(probe_kind.list).begin(), names.at(probe_kind.list).end())
     {
       options.decomposition.method = DecompositionMethod::automatic;
       declare_top_level(names);
@@ -100,6 +105,7 @@ namespace slipstick::scene
       declare_all(point_loads);
       declare_all(temperatures);
       declare_all(contacts);
+      declare_all(probes);
       contact_search.declare(prm);
       declare(prm, options.discretization);
       declare(prm, options.decomposition);
@@ -155,7 +161,7 @@ namespace slipstick::scene
         if (body.shape != Shape::rectangle || body.cells ||
             (body.boundary_refinements > 0 && !body.refined_boundaries.empty()))
           return DecompositionMethod::metis;
-      return DecompositionMethod::blocks;
+      return has_boundary_parts(scene) ? DecompositionMethod::metis : DecompositionMethod::blocks;
     }
 
     template <int dim>
@@ -183,6 +189,8 @@ namespace slipstick::scene
       for (const auto &section : contacts)
         scene.contacts.push_back(section.read(parameters, scene));
       scene.contact_search = contact_search.read(parameters);
+      for (const auto &section : probes)
+        scene.probes.push_back(section.read(parameters, scene));
       if (scene.decomposition.method == DecompositionMethod::automatic)
         scene.decomposition.method = automatic_method(scene);
       for (const Body<dim> &body : scene.bodies)
@@ -221,7 +229,8 @@ namespace slipstick::scene
                                                                     {body_force_kind.list, {"gravity"}},
                                                                     {point_load_kind.list, {"pull"}},
                                                                     {temperature_kind.list, {"warm"}},
-                                                                    {contact_kind.list, {"circle"}}});
+                                                                    {contact_kind.list, {"circle"}},
+                                                                    {probe_kind.list, {"tip"}}});
     const std::vector<std::pair<std::string, std::string>> must_be_set = {
       {"Body box/Size", "10, 10"},
       {"Body box/Material", "elastic"},
@@ -242,7 +251,9 @@ namespace slipstick::scene
       {"Material elastic/Density", "7.85e-9"},
       {"Material elastic/Thermal expansion", "1.2e-5"},
       {"Contact circle/Slave", "box/bottom"},
-      {"Contact circle/Master", "disc"}};
+      {"Contact circle/Master", "disc"},
+      {"Probe tip/Body", "box"},
+      {"Probe tip/Point", "10, 10"}};
     for (const auto &[path, value] : must_be_set)
       set_value(example.prm, path, value);
     write_parameters(out, example.prm, format);

@@ -42,7 +42,9 @@ namespace slipstick::tfeti
       const std::string remedy = "add a support or a contact that acts against this motion";
       if (motion.work > 0)
         throw NoEquilibrium(text + ", where the loads push" + others, remedy);
-      throw UndeterminedPosition(text + "; no load acts along it, but the position is not determined" + others, remedy);
+      throw UnheldMotions(text + "; no load acts along it, but the position is not determined" + others,
+                          remedy,
+                          motions);
     }
   } // namespace
 

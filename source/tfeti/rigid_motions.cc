@@ -17,6 +17,8 @@ namespace slipstick::tfeti
     constexpr double turning_part = 0.02;
     // Loads push along a motion when their work is at least this part of what it could be.
     constexpr double least_work = 1e-9;
+    // Rows are moved by a translation when that gives more than this part of what it gives with one body.
+    constexpr double rounding_of_translation = 1e-9;
     // Resultants below this part of the sum of magnitudes are rounding of none.
     constexpr double rounding_of_loads = 1e-13;
     // Coordinates below this part of a body's size are zero.
@@ -122,11 +124,43 @@ namespace slipstick::tfeti
       shares.push_back({constraints.rows->global_to_local(part.row),
                         part.body,
                         Eigen::Map<const Eigen::VectorXd>(part.values.data(), part.values.size())});
+    find_levers();
+  }
+
+  // What a rotation of all bodies of a row about one point makes of it. A row that translations in common do not move
+  // either is one between bodies.
+  void BodyMotions::find_levers()
+  {
+    for (auto begin = shares.begin(); begin != shares.end();)
+      {
+        const auto end =
+          std::find_if(begin, shares.end(), [row = begin->row](const Share &share) { return share.row != row; });
+        Eigen::VectorXd translation = Eigen::VectorXd::Zero(motions_of_body - 1);
+        double          rotation = 0, size = 0;
+        for (auto share = begin; share != end; ++share)
+          {
+            const BodyFrame &frame = frames[share->body];
+            translation += share->values.head(motions_of_body - 1);
+            rotation += frame.center[0] * share->values[1] - frame.center[1] * share->values[0] +
+                        frame.length * share->values[motions_of_body - 1];
+            size = std::max(size, share->values.head(motions_of_body - 1).norm());
+          }
+        const bool is_between = std::any_of(begin, end, [&](const Share &share) { return share.body != begin->body; });
+        if (is_between && translation.norm() <= rounding_of_translation * size)
+          begin->lever = rotation / frames[begin->body].length;
+        begin = end;
+      }
   }
 
   std::vector<RigidMotion> BodyMotions::free(const std::vector<bool> &active, const double resistance) const
   {
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n_motions, n_motions);
+    Eigen::MatrixXd gram         = Eigen::MatrixXd::Zero(n_motions, n_motions);
+    const auto      at_one_point = [&active](const Share &share) {
+      Eigen::VectorXd values = share.values;
+      if (active.empty())
+        values[values.size() - 1] -= share.lever;
+      return values;
+    };
     for (auto begin = shares.begin(); begin != shares.end();)
       {
         const auto end =
@@ -135,7 +169,7 @@ namespace slipstick::tfeti
           for (auto a = begin; a != end; ++a)
             for (auto b = begin; b != end; ++b)
               gram.block(a->body * motions_of_body, b->body * motions_of_body, motions_of_body, motions_of_body) +=
-                a->values * b->values.transpose();
+                at_one_point(*a) * at_one_point(*b).transpose();
         begin = end;
       }
     MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, comm);
@@ -231,19 +265,8 @@ namespace slipstick::tfeti
     return text;
   }
 
-  RigidMotion plainest(const std::vector<RigidMotion> &motions)
+  std::vector<RigidMotion> disentangled(const std::vector<RigidMotion> &motions)
   {
-    RigidMotion pushed = motions.front();
-    pushed.amplitudes.setZero();
-    for (const auto &motion : motions)
-      pushed.amplitudes += motion.work * motion.amplitudes;
-    pushed.work = pushed.amplitudes.norm();
-    if (pushed.work > least_work)
-      {
-        pushed.amplitudes.normalize();
-        return pushed;
-      }
-    // reduced echelon form: every motion moves one component that no other does
     Eigen::MatrixXd basis(motions.size(), motions.front().amplitudes.size());
     for (unsigned int m = 0; m < motions.size(); ++m)
       basis.row(m) = motions[m].amplitudes;
@@ -260,17 +283,38 @@ namespace slipstick::tfeti
             basis.row(row) -= basis(row, column) * basis.row(next);
         ++next;
       }
+    std::vector<RigidMotion> result(motions);
+    for (unsigned int m = 0; m < result.size(); ++m)
+      {
+        result[m].amplitudes = basis.row(m).normalized();
+        result[m].work       = 0; // not told
+        result[m].load       = 0;
+      }
+    return result;
+  }
+
+  RigidMotion plainest(const std::vector<RigidMotion> &motions)
+  {
+    RigidMotion pushed = motions.front();
+    pushed.amplitudes.setZero();
+    for (const auto &motion : motions)
+      pushed.amplitudes += motion.work * motion.amplitudes;
+    pushed.work = pushed.amplitudes.norm();
+    if (pushed.work > least_work)
+      {
+        pushed.amplitudes.normalize();
+        return pushed;
+      }
     RigidMotion result = motions.front();
     result.work        = 0;
-    Eigen::Index least = basis.cols() + 1;
-    for (Eigen::Index row = 0; row < basis.rows(); ++row)
+    Eigen::Index least = result.amplitudes.size() + 1;
+    for (const auto &motion : disentangled(motions))
       {
-        const Eigen::VectorXd motion = basis.row(row).normalized();
-        const Eigen::Index    moved  = (motion.array().abs() >= named_part).count();
+        const Eigen::Index moved = (motion.amplitudes.array().abs() >= named_part).count();
         if (moved < least)
           {
             least             = moved;
-            result.amplitudes = motion;
+            result.amplitudes = motion.amplitudes;
           }
       }
     return result;

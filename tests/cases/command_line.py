@@ -1,7 +1,9 @@
 """Options that do not solve, and how much a run prints."""
 
 import json
+import re
 import unittest
+from xml.etree import ElementTree
 
 from program import WORK, new_path, run, settings, shipped
 
@@ -58,6 +60,30 @@ class CommandLine(unittest.TestCase):
             for word in ('box', 'bottom', 'top', 'left', 'right', 'kernel 48', '16 normal', '16 tangential'):
                 self.assertIn(word, text)
             self.assertNotIn('outer', text)
+
+    def test_drawing(self):
+        for ranks in (1, 2):
+            file = new_path('pictures') / 'scene.svg'
+            text = self.succeeds(shipped('box_on_circle'), *SMALL, '--draw', file, ranks=ranks)
+            self.assertIn('picture of the scene: {}'.format(file), text)
+            self.assertNotIn('outer', text)
+            drawn = {}
+            for element in ElementTree.parse(file).iter():
+                drawn.setdefault(element.get('class', element.tag.rsplit('}')[-1]), []).append(element)
+            self.assertEqual({element.text for element in drawn['text']}, {'support held', 'traction pressed', 'contact, slave circle'})
+            (held,), (pressed,), (slave,) = drawn['support'], drawn['traction'], drawn['contact, slave']
+            points = [[float(number) for number in re.findall(r'[-\d.]+', one.get('d'))] for one in (held, pressed, slave)]
+            self.assertEqual(set(points[0][::2]), {40})  # left
+            self.assertEqual(set(points[1][1::2]), {40})  # top
+            self.assertEqual(set(points[2][1::2]), {940})  # bottom
+            circle, = [one for one in drawn['obstacle'] if one.get('r')]
+            self.assertEqual([float(circle.get(key)) for key in ('cx', 'cy', 'r')], [490, 2740, 1800])
+            self.assertGreater(len(drawn['arrow']), 3)
+            for arrow in drawn['arrow']:
+                x0, y0, x1, y1 = [float(number) for number in re.findall(r'[-\d.]+', arrow.get('d'))]
+                self.assertEqual((x1 - x0, y1), (0, 40))
+                self.assertLess(y0, y1)  # downwards
+            self.assertEqual(drawn['mesh'][0].get('d').count('z'), 256)
 
     def test_quiet_prints_nothing(self):
         directory = new_path('output')

@@ -1,13 +1,15 @@
-"""Runs of many load steps that are interrupted, and where the conditions of a scene are."""
+"""Runs of many load steps that are interrupted and resumed, and where the conditions of a scene are."""
 
 import csv
+import json
+import re
 import signal
 import subprocess
 import time
 import unittest
 
 import scenes
-from program import ENVIRONMENT, PROGRAM, TIME_LIMIT, WORK, converged, launcher, new_path, shipped
+from program import ENVIRONMENT, PROGRAM, TIME_LIMIT, WORK, converged, launcher, new_path, run, settings, shipped, solve
 
 STEPS = 5000  # more than end in time
 
@@ -36,7 +38,6 @@ class Interrupted(unittest.TestCase):
 
     def kept(self, directory):
         """Number of steps in the tables, which agree."""
-        import json
         summary = json.loads((directory / 'summary.json').read_text())
         self.assertEqual((summary['status'], summary['converged']), ('unfinished', False))
         with open(directory / 'history.csv', newline='') as text:
@@ -53,13 +54,101 @@ class Interrupted(unittest.TestCase):
             self.assertEqual(status, -number, message)
             self.assertIn('error: interrupted in load step ', message)
             self.assertIn(' of {}; summary.json, history.csv and contact.csv in {}'.format(STEPS, directory), message)
-            said = int(message.rstrip().rsplit(' ', 1)[1])
+            said = int(re.search(r'the first (\d+), after which --resume goes on$', message.rstrip()).group(1))
             self.assertLessEqual(abs(self.kept(directory) - said), 1)
 
     def test_several_ranks(self):
         status, message, directory = self.interrupt(signal.SIGTERM, 2)
         self.assertNotEqual(status, 0, message)
         self.assertGreater(self.kept(directory), 0)
+
+
+FAILS = 100  # load factor of a step without equilibrium
+
+
+def rubbed(factors):
+    """A block pressed on another and rubbed there and back, with friction: every step depends on those before. It lifts off at
+    its edges in turn, so that contact nodes come and go."""
+    return scenes.box(
+        name='rubbed', bodies={'box': {**scenes.BOX, 'Cells': '6, 6'},
+                               'base': {'Origin': '-5, -5', 'Size': '20, 5', 'Cells': '14, 4', 'Material': 'elastic'}},
+        supports={'floor': {'Boundary': 'base/bottom', 'Displacement x': '0', 'Displacement y': '0'}},
+        tractions={'down': {'Boundary': 'box/top', 'Traction y': '-100*(1+0.2*x/10*sin(5*t))',
+                            'Traction x': '45*sin(2*pi*t) + 1e4*(t > {})'.format(FAILS / 2)}},
+        contacts={'joint': {'Slave': 'box/bottom', 'Master': 'base/top', 'Law': 'Coulomb', 'Friction coefficient': '0.5'}},
+        probes={'corner': {'Body': 'box', 'Point': '10, 10'}},
+        Decomposition={'Method': 'METIS', 'Subdomains': '5'}, Output={'VTU': 'false'},
+        **{'Load steps': {'Factors': factors}})
+
+
+class Resumed(unittest.TestCase):
+    TABLES = ('history.csv', 'contact.csv', 'probes.csv', 'convergence.csv')
+
+    def stopped(self, case, ranks=1):
+        """By a step that fails. @return the directory, which has the state after one of those before."""
+        result = solve(case, ranks=ranks)
+        self.assertEqual(result.status, 4, result)
+        self.assertIn('restart.bin', result.files())
+        self.assertEqual(sum(name.startswith('restart_') for name in result.files()), ranks)
+        return result.directory
+
+    def test_to_the_same_answer(self):
+        for ranks in (1, 2):
+            whole = converged(rubbed('0.02:0.02:0.4'), ranks=ranks)
+            self.assertEqual([name for name in whole.files() if 'restart' in name], [])
+            stopped = rubbed('0.02:0.02:0.2, {}'.format(FAILS))
+            directory = self.stopped(stopped, ranks)
+            before = {name: (directory / name).read_bytes() for name in ('summary.json', 'contact.csv', 'restart.bin')}
+            case = rubbed('0.02:0.02:0.4')
+            for arguments, n, words in (({'Contact joint/Friction coefficient': '0.4'}, ranks, ('differs', 'Friction coefficient')),
+                                        ({'Load steps/Factors': '0.02, 0.05'}, ranks, ('load step 2', 't = 0.04')),
+                                        ({}, 3 - ranks, ('{} rank'.format(ranks), 'this one has {}'.format(3 - ranks)))):
+                refused = run(case, '--resume', *settings(arguments), '--output', directory, ranks=n, directory=directory)
+                self.assertEqual(refused.status, 2, refused)
+                for word in words + ('--resume',):
+                    self.assertIn(word, refused.stderr)
+            for name, content in before.items():
+                self.assertEqual((directory / name).read_bytes(), content, name)
+
+            resumed = run(case, '--resume', '--output', directory, ranks=ranks, directory=directory)
+            self.assertEqual(resumed.status, 0, resumed)
+            self.assertRegex(resumed.stdout, r'resumed +after load step \d+ of 20')
+            self.assertNotRegex(resumed.stdout, r'load step +1 of 20')
+            self.assertRegex(resumed.stdout, r't = 0.4, about \d+ s left')
+            for table in self.TABLES:  # to the last digit
+                self.assertEqual((directory / table).read_text(), (whole.directory / table).read_text(), table)
+            for key in ('status', 'warnings', 'problem', 'residuals', 'error', 'results', 'steps', 'solver'):
+                self.assertEqual(resumed.summary[key], whole.summary[key], key)
+            self.assertEqual([name for name in resumed.files() if 'restart' in name], [])
+
+            again = run(case, '--resume', '--output', directory, ranks=ranks, directory=directory)
+            self.assertEqual(again.status, 2, again)
+            self.assertIn('there is no run in', again.stderr)
+            self.assertEqual(resumed.summary['status'], 'converged')  # and nothing was lost
+
+    def test_other_meshes_and_damage(self):
+        mesh = new_path('square.msh')
+        mesh.write_text('\n'.join(
+            ['$MeshFormat', '2.2 0 8', '$EndMeshFormat', '$PhysicalNames', '3', '1 1 "foot"', '1 2 "head"', '2 3 "all"',
+             '$EndPhysicalNames', '$Nodes', '4', '1 0 0 0', '2 10 0 0', '3 10 10 0', '4 0 10 0', '$EndNodes', '$Elements', '3',
+             '1 1 2 1 1 1 2', '2 1 2 2 2 3 4', '3 3 2 3 3 1 2 3 4', '$EndElements', '']))
+        case = scenes.box(bodies={'box': {'Shape': 'mesh', 'File': str(mesh), 'Refinements': '2', 'Material': 'elastic'}},
+                          supports={'foot': {'Boundary': 'box/foot', 'Displacement y': '0'}},
+                          tractions={'down': {'Boundary': 'box/head', 'Traction y': '-t', 'Traction x': '(t > 3)'}},
+                          Decomposition={'Method': 'none'}, **{'Load steps': {'Factors': '1, 2, 3, 4'}})
+        directory = self.stopped(case)
+        before = mesh.read_text()
+        mesh.write_text(before.replace('3 10 10 0', '3 10 11 0'))
+        refused = run(case, '--resume', '--output', directory)
+        self.assertEqual(refused.status, 2, refused)
+        self.assertIn("square.msh' has changed", refused.stderr)
+        mesh.write_text(before)
+        state, = directory.glob('restart_*_0000.bin')
+        state.write_bytes(state.read_bytes()[:-100])
+        refused = run(case, '--resume', '--output', directory)
+        self.assertEqual(refused.status, 2, refused)
+        self.assertIn('damaged', refused.stderr)
+        self.assertTrue((directory / 'history.csv').is_file())
 
 
 class Conditions(unittest.TestCase):

@@ -19,7 +19,7 @@ def text(**kinds):
         kinds.setdefault('obstacles', {'disc': DISC})
     lists = {'materials': 'Material', 'bodies': 'Body', 'obstacles': 'Obstacle', 'supports': 'Support',
              'foundations': 'Foundation', 'tractions': 'Traction', 'contacts': 'Contact', 'body_forces': 'Body force',
-             'point_loads': 'Point load'}
+             'point_loads': 'Point load', 'probes': 'Probe'}
     lines = ['set Plane state = ' + kinds.pop('plane_state', 'plane stress')]
     sections = {}
     for kind, content in kinds.items():
@@ -44,3 +44,17 @@ def write(name, content):
 def box(name='scene', **kinds):
     """Path of a .prm with the scene of text()."""
     return write(name, text(**kinds))
+
+
+SOFT = {'Young modulus': '1000', 'Poisson ratio': '0.25'}
+CUT = {'Method': 'METIS', 'Subdomains': '3'}
+SYMMETRIC = {'left': {'Boundary': 'box/left', 'Displacement x': '0'},
+             'foot': {'Boundary': 'box/bottom', 'Displacement y': '0'}}
+
+
+def stretched(**kinds):
+    """A box between two planes of symmetry, pulled with 10 MPa and then with 20."""
+    return box('stretched', **{
+        'materials': {'elastic': SOFT}, 'bodies': {'box': {'Size': '10, 10', 'Cells': '7, 6', 'Material': 'elastic'}},
+        'supports': SYMMETRIC, 'tractions': {'pull': {'Boundary': 'box/right', 'Traction x': '10*t'}}, 'Decomposition': CUT,
+        'Load steps': {'Factors': '1, 2'}, 'Solver': {'Tolerance': '1e-10'}, **kinds})

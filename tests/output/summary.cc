@@ -94,7 +94,8 @@ TEST(Summary, residuals_and_errors_have_the_keys_of_the_contract)
                   "moment_balance",
                   "tension",
                   "nodal_equilibrium"}));
-  EXPECT_EQ(keys(parsed(Summary())["error"]), Keys({"estimate_energy_relative", "algebraic_relative"}));
+  EXPECT_EQ(keys(parsed(Summary())["error"]),
+            Keys({"estimate_energy_relative", "algebraic_relative", "largest_at", "largest_part"}));
 }
 
 TEST(Summary, results_have_the_keys_of_the_contract)
@@ -103,8 +104,16 @@ TEST(Summary, results_have_the_keys_of_the_contract)
   summary.results.contact.emplace_back();
   const Json results = parsed(summary)["results"];
   EXPECT_EQ(keys(results),
-            Keys(
-              {"max_displacement", "max_von_mises", "strain_energy", "contact", "loads", "supports", "foundations"}));
+            Keys({"max_displacement",
+                  "max_von_mises",
+                  "max_von_mises_at",
+                  "singular",
+                  "strain_energy",
+                  "contact",
+                  "probes",
+                  "loads",
+                  "supports",
+                  "foundations"}));
   EXPECT_EQ(keys(results["contact"][0]),
             Keys({"pair",
                   "normal_force",

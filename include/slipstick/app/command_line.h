@@ -15,8 +15,10 @@ namespace slipstick::app
     std::string                      case_file;
     std::vector<std::string>         overrides;        // "Section/Sub/Name=value"
     std::string                      output_directory; // default: output/<name of the case>
-    bool                             check   = false;
-    bool                             force   = false;
+    bool                             check  = false;
+    bool                             force  = false;
+    bool                             resume = false;
+    std::string                      picture; // file for a picture of the scene, with `check`; empty: none
     bool                             quiet   = false;
     bool                             verbose = false;
     std::optional<scene::ListFormat> list_parameters;

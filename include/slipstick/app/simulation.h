@@ -8,13 +8,17 @@
 namespace slipstick::app
 {
   /// Builds and checks everything that the solver needs, prints the scene's table, solves nothing. Collective.
-  void check_scene(const scene::Scene<2> &scene, const Log &log, const MPI_Comm comm);
+  /// @param picture file for a drawing of the scene (SVG); empty: none.
+  void check_scene(const scene::Scene<2> &scene, const std::string &picture, const Log &log, const MPI_Comm comm);
 
   /// Solves @p scene and writes the results to @p output_directory. Collective.
+  /// @param resumes goes on after the last finished load step of an earlier run there, to the answer that this one would
+  /// have had.
   /// @return converged or not_converged; outputs are written in both cases.
   /// @throws InputError, NoEquilibrium, NumericalError on all ranks alike.
   ExitStatus run(const scene::Scene<2> &scene,
                  const std::string     &output_directory,
+                 const bool             resumes,
                  const Log             &log,
                  const MPI_Comm         comm);
 } // namespace slipstick::app

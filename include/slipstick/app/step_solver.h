@@ -1,6 +1,7 @@
 // A scene made discrete, and the checked solutions of its load steps.
 #pragma once
 
+#include <slipstick/app/step_state.h>
 #include <slipstick/base/log.h>
 #include <slipstick/contact/checks.h>
 #include <slipstick/contact/friction.h>
@@ -41,6 +42,12 @@ namespace slipstick::app
     /// @param multiplications_before by F in the steps before.
     std::unique_ptr<Answer> solve(const unsigned int step, const std::uint64_t multiplications_before);
 
+    /// In place of build(): as after load step @p step of an earlier run. @throws InputError where the state does not fit.
+    void resume(const unsigned int step, const StepState &state);
+
+    /// After a load step, for resume(). Not of the last step of a scene.
+    StepState state() const;
+
     /// With the contact pairs that were found.
     const scene::Scene<dim> &discrete_scene() const
     {
@@ -63,6 +70,16 @@ namespace slipstick::app
     {
       return held;
     }
+    /// Supports of the scene as it was given: what comes after them holds motions that nothing else does.
+    unsigned int n_given_supports() const
+    {
+      return n_given;
+    }
+    /// Motions that nothing holds and no load drives, in words; empty: none. They are set to zero.
+    const std::string &unheld() const
+    {
+      return unheld_motions;
+    }
     /// Of the step solved last.
     const contact::DualSolution &solution() const
     {
@@ -83,6 +100,7 @@ namespace slipstick::app
     /// K_p, B, F at load factor t, without the rows of pruned contact nodes unless a body is held by them.
     void build_dual(const double t);
     void make_dual(const double t);
+    void make_dual_as_it_is(const double t);
 
     /// Loads of this rank's subdomains that are what rounding leaves of those of earlier steps become zero.
     void drop_rounding(std::vector<Eigen::VectorXd> &loads);
@@ -139,8 +157,10 @@ namespace slipstick::app
     std::unique_ptr<fem::Mesh<dim>>     the_mesh;
     std::unique_ptr<fem::Spaces<dim>>   the_spaces;
     std::unique_ptr<tfeti::DualProblem> the_dual;
-    tfeti::Constraints                  pruned; // normal rows of the contact nodes without multipliers
-    tfeti::HeldContacts                 held;   // contact nodes whose gap supports prescribe
+    tfeti::Constraints                  pruned;  // normal rows of the contact nodes without multipliers
+    tfeti::HeldContacts                 held;    // contact nodes whose gap supports prescribe
+    unsigned int                        n_given; // supports
+    std::string                         unheld_motions;
     double                              kept_part;
     double                              largest_load  = 0;    // of the steps so far [N]
     double                              factorization = 0;    // [s]

@@ -37,7 +37,8 @@ namespace slipstick::contact
     double                gap                 = 0; // [mm]
     double                pressure            = 0; // [MPa]
     double                tangential_traction = 0; // [MPa]
-    double                slip                = 0; // [mm]
+    double                slip                = 0; // of the load step [mm]
+    double                total_slip          = 0; // of all load steps so far [mm]
     ContactStatus         status              = ContactStatus::open; // see is_closed
     bool                  is_closed           = false;               // pressed on the other side
     double                slip_bound          = 0; // [MPa], of the law: Tresca bound or mu times pressure
@@ -47,8 +48,8 @@ namespace slipstick::contact
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &pair &position &normal &arc_length &area &length &gap &pressure &tangential_traction &slip &status
-        &is_closed &slip_bound &moment_mismatch;
+      archive &pair &position &normal &arc_length &area &length &gap &pressure &tangential_traction &slip &total_slip
+        &status &is_closed &slip_bound &moment_mismatch;
     }
   };
 

@@ -4,6 +4,7 @@
 #include <slipstick/contact/result.h>
 #include <slipstick/output/directory.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -75,10 +76,36 @@ namespace slipstick::output
     double nodal_equilibrium  = 0;
   };
 
+  /// A place of a body.
+  struct Place
+  {
+    std::string           body;
+    std::array<double, 2> position{{0, 0}}; // reference configuration [mm]
+  };
+
   struct ErrorSummary
   {
     double estimate_energy_relative = 0; // discretisation
     double algebraic_relative       = 0;
+    Place  largest_at;       // the centre of the cell with the largest part of the discretisation error
+    double largest_part = 0; // of its square [-]
+  };
+
+  /// What was found at one point of a probe.
+  struct ProbeValues
+  {
+    double                distance = 0;         // from the beginning of the probe [mm]
+    std::array<double, 2> position{{0, 0}};     // reference configuration [mm]
+    std::array<double, 2> displacement{{0, 0}}; // [mm]
+    std::array<double, 4> stress{{0, 0, 0, 0}}; // xx, yy, xy, zz [MPa]
+    double                von_mises = 0;        // [MPa]
+  };
+
+  struct ProbeResult
+  {
+    std::string              name;
+    bool                     is_point = true; // else a line
+    std::vector<ProbeValues> points;
   };
 
   /// What one load, support or foundation exerts on the bodies.
@@ -97,9 +124,12 @@ namespace slipstick::output
 
   struct ResultSummary
   {
-    double                           max_displacement = 0; // [mm]
-    double                           max_von_mises    = 0; // [MPa]
-    double                           strain_energy    = 0; // [N mm]
+    double                   max_displacement = 0; // [mm]
+    double                   max_von_mises    = 0; // [MPa]
+    Place                    max_von_mises_at;
+    std::string              singular; // why stress is infinite there: "a re-entrant corner", ..; empty: it is not
+    std::vector<ProbeResult> probes;
+    double                   strain_energy = 0; // [N mm]
     std::vector<contact::PairResult> contact;
     ForceSummary                     forces;
   };
@@ -137,6 +167,7 @@ namespace slipstick::output
     double                           strain_energy           = 0; // [N mm]
     std::vector<contact::PairResult> contact;
     ForceSummary                     forces;
+    std::vector<ProbeResult>         probes;
   };
 
   /// Counts are sums over the load steps, residuals the worst of them, results those of the last.

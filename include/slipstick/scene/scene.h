@@ -178,6 +178,16 @@ namespace slipstick::scene
     Field<dim>                      height;     // function [mm], of x and t
   };
 
+  /// A point or a straight line of a body where displacement and stress are reported.
+  template <int dim>
+  struct Probe
+  {
+    std::string                 name;
+    unsigned int                body = 0;       // index into Scene::bodies
+    std::vector<PointName<dim>> ends;           // one: a point
+    unsigned int                n_points = 101; // on a line
+  };
+
   enum class ContactDiscretization
   {
     automatic, // node to node where the meshes match, else mortar
@@ -297,6 +307,7 @@ namespace slipstick::scene
     std::vector<Obstacle<dim>>               obstacles;
     std::vector<ContactPair<dim>>            contacts;
     ContactSearch<dim>                       contact_search;
+    std::vector<Probe<dim>>                  probes;
     FrictionOptions                          friction;
     std::vector<double>                      load_factors{1}; // t of the load steps
     Decomposition                            decomposition;

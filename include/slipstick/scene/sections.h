@@ -189,6 +189,21 @@ namespace slipstick::scene
   };
 
   template <int dim>
+  struct ProbeSection
+  {
+    explicit ProbeSection(const std::string &name);
+
+    std::string  name;
+    std::string  body;
+    std::string  point;
+    std::string  from, to;
+    unsigned int n_points = Probe<dim>().n_points;
+
+    void       declare(dealii::ParameterHandler &prm);
+    Probe<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
+  template <int dim>
   struct TemperatureSection
   {
     explicit TemperatureSection(const std::string &name);

@@ -46,7 +46,8 @@ namespace slipstick::tfeti
     };
 
     /// Factorises the subdomains and the coarse problem and estimates |P F P|. Collective.
-    /// @throws NoEquilibrium naming body and motion when the rows of B leave a rigid motion of a body free.
+    /// @throws NoEquilibrium naming body and motion when the rows of B leave a rigid motion of a body free; if loads drive
+    /// none of them, UnheldMotions.
     /// @throws NumericalError when a subdomain cannot be factorised.
     DualProblem(std::vector<SubdomainMatrices>  matrices,
                 Constraints                     constraints,

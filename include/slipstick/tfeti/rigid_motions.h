@@ -1,6 +1,7 @@
 // Rigid motions of whole bodies: which are free, and what to call them.
 #pragma once
 
+#include <slipstick/base/exceptions.h>
 #include <slipstick/tfeti/dual_operator.h>
 
 namespace slipstick::tfeti
@@ -14,6 +15,18 @@ namespace slipstick::tfeti
     double                 load = 0;   // along it [N]
   };
 
+  /// Motions that no row of B resists, and no load drives.
+  class UnheldMotions : public UndeterminedPosition
+  {
+  public:
+    UnheldMotions(const std::string &problem, const std::string &remedy, const std::vector<RigidMotion> &unheld)
+      : UndeterminedPosition(problem, remedy)
+      , motions(unheld)
+    {}
+
+    std::vector<RigidMotion> motions; // orthonormal
+  };
+
   /// Jumps of the rows of B under rigid motions of whole bodies (except gluing rows, which move with their body).
   class BodyMotions
   {
@@ -25,7 +38,9 @@ namespace slipstick::tfeti
                 const unsigned int                                   n_bodies,
                 const MPI_Comm                                       comm);
 
-    /// Motions that no active row of B resists. Collective.
+    /// Motions that no active row of B resists. Of all rows, those between bodies do not resist a motion that these have in
+    /// common: they join points that a gap or an overlap sets apart, which is not told from a lever, but holds nothing.
+    /// Collective.
     /// @param active rows (owned by this rank) that take part; empty: all.
     /// @param resistance below which a motion counts as free: squared jumps of the rows under a unit motion, over the
     ///        largest of all motions. Rounding by default.
@@ -48,8 +63,11 @@ namespace slipstick::tfeti
     {
       unsigned int    row; // owned
       unsigned int    body;
-      Eigen::VectorXd values; // of its motions
+      Eigen::VectorXd values;    // of its motions
+      double          lever = 0; // of these, the part of the rotation that is due to the distance of the joined points
     };
+
+    void find_levers();
 
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     MPI_Comm                                             comm;
@@ -68,6 +86,9 @@ namespace slipstick::tfeti
 
   /// "body box: translation along (1, 0)", "body a: rotation about (0, 5)"; names the bodies that move most.
   std::string describe(const RigidMotion &motion, const std::vector<std::string> &body_names);
+
+  /// The same motions, each of which moves a component that no other does (reduced echelon form).
+  std::vector<RigidMotion> disentangled(const std::vector<RigidMotion> &motions);
 
   /// Of the motions that combine some free ones that along which the loads push or, where they push along none, the one
   /// that moves the fewest components (translations before rotations). @param motions orthonormal, at least one.

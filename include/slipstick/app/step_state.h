@@ -1,0 +1,30 @@
+// What the solver of load steps carries from one step to the next.
+#pragma once
+
+#include <slipstick/contact/checks.h>
+#include <slipstick/output/convergence.h>
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace slipstick::app
+{
+  /// After a step, of one rank: with the scene it makes the next step what it would have been.
+  struct StepState
+  {
+    double                              kept_part    = 0;       // of the contact nodes, see StepSolver
+    double                              largest_load = 0;       // of the steps so far [N]
+    contact::History                    history;                // of the steps so far
+    std::vector<output::ConvergenceRow> rows;                   // of convergence.csv
+    std::vector<std::uint64_t>          labels;                 // of the owned rows
+    std::vector<double>                 multipliers;            // of the owned rows [N]
+    double                              reference          = 0; // as in contact::DualSolution
+    double                              weighted_reference = 0;
+    double                              largest_traction   = 0;
+    std::vector<std::vector<double>>    u; // of this rank's subdomains [mm]
+
+    /// Directions that the solver has kept, with their products, oldest first; owned rows.
+    std::vector<std::pair<std::vector<double>, std::vector<double>>> directions;
+  };
+} // namespace slipstick::app

@@ -1,0 +1,58 @@
+#include <slipstick/scene/declare.h>
+#include <slipstick/scene/sections.h>
+
+namespace slipstick::scene
+{
+  namespace
+  {
+    const std::string format = "x, y, or the name of a point in the mesh file";
+    // More points than a picture of a line shows.
+    constexpr unsigned int most_points = 100000;
+  } // namespace
+
+  template <int dim>
+  ProbeSection<dim>::ProbeSection(const std::string &own_name)
+    : name(own_name)
+  {}
+
+  template <int dim>
+  void ProbeSection<dim>::declare(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Probe " + name);
+    add_text(prm, "Body", body, "", "a name from Bodies", "body that is looked at; must be set");
+    add_text(prm, "Point", point, "mm", format, "a point of it; this or From and To must be set");
+    add_text(prm, "From", from, "mm", format, "beginning of a straight line");
+    add_text(prm, "To", to, "mm", format, "its end");
+    add_count(prm, "Number of points", n_points, 2, most_points, "points on the line, its ends among them");
+    prm.leave_subsection();
+  }
+
+  template <int dim>
+  Probe<dim> ProbeSection<dim>::read(const Parameters &parameters, const Scene<dim> &scene) const
+  {
+    const std::string section = "Probe " + name;
+    parameters.require(section + "/Body", "set the body that is looked at");
+    Probe<dim> probe;
+    probe.name     = name;
+    probe.n_points = n_points;
+    probe.body     = read_body(body, section + "/Body", parameters, scene.bodies);
+    const auto end = [&](const std::string &text, const std::string &which) {
+      probe.ends.push_back(read_point(text, section + "/" + which, parameters, probe.body, scene.bodies[probe.body]));
+    };
+    const bool is_line = !from.empty() || !to.empty();
+    if (is_line && !point.empty())
+      throw parameters.error(section + "/Point",
+                             "stands beside a line",
+                             "set either Point, or From and To, and leave the other away");
+    if (is_line)
+      {
+        end(from, "From");
+        end(to, "To");
+      }
+    else
+      end(point, "Point");
+    return probe;
+  }
+
+  template struct ProbeSection<2>;
+} // namespace slipstick::scene

@@ -1,0 +1,81 @@
+"""Motions that nothing resists and no load drives are set to zero and named, whatever mesh and scale; with a load along them
+there is no equilibrium."""
+
+import unittest
+
+import scenes
+from program import run, solve
+
+STEEL = {'Young modulus': '2.1e5', 'Poisson ratio': '0.3'}
+SMALL = {'Decomposition': {'Method': 'METIS', 'Subdomains': '3'}, 'Output': {'VTU': 'false'}}
+
+
+def shaft(radius, load, refinements=0, law='Coulomb', young='2.1e5', centre_only=True, **kinds):
+    """A shaft held at its centre in a ring that is loaded; nodes do not match."""
+    supports = {'centre': {'Body': 'shaft', 'Point': '0, 0', 'Displacement x': '0', 'Displacement y': '0'}}
+    if not centre_only:
+        supports['rim'] = {'Body': 'shaft', 'Point': '{}, 0'.format(radius), 'Displacement y': '0'}
+    joint = {'Slave': 'hub/inner', 'Master': 'shaft/arc', 'Law': law}
+    if law == 'Coulomb':
+        joint['Friction coefficient'] = '0.15'
+    return scenes.box(
+        'shaft', materials={'steel': {**STEEL, 'Young modulus': young}}, bodies={
+            'shaft': {'Shape': 'disc', 'Radius': radius, 'Cells along arc': '32', 'Material': 'steel'},
+            'hub': {'Shape': 'ring', 'Inner radius': '20', 'Radius': '40', 'Cells': '40, 4', 'Material': 'steel'}},
+        supports=supports, tractions={'load': {'Boundary': 'hub/outer', **load}}, contacts={'fit': joint},
+        Discretization={'Refinements': refinements}, **{**SMALL, **kinds})
+
+
+class FreeMotions(unittest.TestCase):
+
+    def converges(self, case, *words, ranks=1):
+        result = solve(case, ranks=ranks)
+        self.assertEqual(result.status, 0, result)
+        warnings = [text for text in result.summary['warnings'] if text.startswith('nothing resists')]
+        self.assertEqual(len(warnings), 1 if words else 0, result)
+        for word in words:
+            self.assertIn(word, warnings[0])
+        return result
+
+    def test_a_shaft_held_at_its_centre_alone(self):
+        turns = ('body shaft: rotation about (0, 0); body hub: rotation about (0, 0)', 'set to zero')
+        down = {'Traction y': '-1*(y>0)'}
+        for radius in ('20', '20.02', '19.98'):  # the distance of the sides is no lever
+            for refinements in (0, 1):
+                result = self.converges(shaft(radius, down, refinements), *turns, ranks=1 + refinements)
+                reactions = result.summary['results']['supports']
+                self.assertEqual([one['support'] for one in reactions], ['centre'])
+                load = result.summary['results']['loads'][0]['force'][1]
+                self.assertAlmostEqual(reactions[0]['force'][1] / load, -1, delta=1e-4)
+        self.converges(shaft('20', down, law='frictionless'), 'body shaft: rotation about (0, 0)',
+                       'body hub: rotation about (0, 0)')
+        checked = run(shaft('20.02', down), '--check')
+        self.assertEqual(checked.status, 0, checked)
+        self.assertIn(turns[0], checked.stdout)
+
+    def test_a_torque_on_it(self):
+        torque = {'Traction x': '-y/40', 'Traction y': 'x/40'}
+        for radius in ('20', '20.02'):
+            result = run(shaft(radius, torque), '--check')
+            self.assertEqual(result.status, 4, result)
+            self.assertIn('body hub: rotation about (0, 0), where the loads push', result.stderr)
+        later = shaft('20.02', {'Traction x': '-y/40*(t>1)', 'Traction y': 'x/40*(t>1)-(y>0)'},
+                      **{'Load steps': {'Factors': '1, 2'}})
+        result = solve(later)
+        self.assertEqual(result.status, 4, result)
+        self.assertEqual(len(result.summary['steps']), 1)
+
+    def test_a_small_load_across_a_clearance(self):
+        """The plate hangs on one node: it rocks freely about it."""
+        for young, pressures in (('2.1e5', ('1e-3', '5e-5', '1e-7')), ('2.1e11', ('10', ))):
+            for pressure in pressures:
+                result = solve(shaft('19.9', {'Traction y': '-{}*(y<0)'.format(pressure)}, young=young, centre_only=False))
+                self.assertEqual(result.status, 0, result)
+                results = result.summary['results']
+                load = results['loads'][0]['force'][1]
+                self.assertAlmostEqual(results['contact'][0]['force'][1] / load, -1, delta=1e-3)
+                self.assertAlmostEqual(results['max_displacement'], 0.1, delta=0.02)
+
+
+if __name__ == '__main__':
+    unittest.main()
