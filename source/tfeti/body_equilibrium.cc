@@ -2,11 +2,15 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
+
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace slipstick::tfeti
 {
@@ -38,22 +42,27 @@ namespace slipstick::tfeti
       return;
     const std::size_t n = motions.size();
 
-    const Eigen::MatrixXd jumps   = bodies.jumps(motions);
-    const double          largest = dealii::Utilities::MPI::max(jumps.size() ? jumps.cwiseAbs().maxCoeff() : 0., comm);
-    std::vector<std::uint64_t>       labels;
-    std::vector<std::vector<double>> values;
+    using Jumps = std::vector<std::pair<unsigned int, double>>; // of a row: motion, by how much
+    const Eigen::SparseMatrix<double, Eigen::RowMajor> jumps = bodies.jumps(motions);
+    const double                                       largest =
+      dealii::Utilities::MPI::max(jumps.nonZeros() > 0 ? jumps.coeffs().abs().maxCoeff() : 0., comm);
+    std::vector<std::uint64_t> labels;
+    std::vector<Jumps>         values;
     for (unsigned int r = 0; r < is_equality_row.size(); ++r)
-      if (!is_equality_row[r] && jumps.row(r).cwiseAbs().maxCoeff() > negligible_share * largest)
-        {
-          own.push_back(r);
-          labels.push_back(constraints.label[r]);
-          values.emplace_back();
-          for (std::size_t m = 0; m < n; ++m)
-            values.back().push_back(jumps(r, m));
-        }
-    std::map<std::uint64_t, std::vector<double>> all; // in an order that no number of ranks changes
-    const auto                                   labels_of = dealii::Utilities::MPI::all_gather(comm, labels);
-    const auto                                   values_of = dealii::Utilities::MPI::all_gather(comm, values);
+      {
+        Jumps of_row;
+        for (decltype(jumps)::InnerIterator jump(jumps, r); jump && !is_equality_row[r]; ++jump)
+          if (std::abs(jump.value()) > negligible_share * largest)
+            of_row.emplace_back(jump.col(), jump.value());
+        if (of_row.empty())
+          continue;
+        own.push_back(r);
+        labels.push_back(constraints.label[r]);
+        values.push_back(std::move(of_row));
+      }
+    std::map<std::uint64_t, Jumps> all; // in an order that no number of ranks changes
+    const auto                     labels_of = dealii::Utilities::MPI::all_gather(comm, labels);
+    const auto                     values_of = dealii::Utilities::MPI::all_gather(comm, values);
     for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
       for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
         all.emplace(labels_of[rank][i], values_of[rank][i]);
@@ -63,9 +72,8 @@ namespace slipstick::tfeti
       {
         const int i = place.size();
         place.emplace(label, i);
-        for (std::size_t m = 0; m < n; ++m)
-          if (std::abs(row[m]) > negligible_share * largest)
-            entries.emplace_back(i, m, row[m]);
+        for (const auto &[motion, jump] : row)
+          entries.emplace_back(i, motion, jump);
       }
     shares.resize(all.size(), n);
     shares.setFromTriplets(entries.begin(), entries.end());

@@ -310,7 +310,7 @@ namespace slipstick::tfeti
                             const std::vector<double>      &scale,
                             std::vector<bool>              &free) const
   {
-    const Eigen::MatrixXd            own = bodies->jumps(loose);
+    const Eigen::MatrixXd            own = bodies->jumps(loose).toDense();
     std::vector<std::vector<double>> candidates;
     std::vector<std::uint64_t>       labels;
     for (unsigned int r = 0; r < free.size(); ++r)
@@ -393,7 +393,7 @@ namespace slipstick::tfeti
                                 const DistributedVector        &x,
                                 Recovery                       &at) const
   {
-    const Eigen::MatrixXd            own  = bodies->jumps(loose);
+    const Eigen::MatrixXd            own  = bodies->jumps(loose).toDense();
     const DistributedVector          jump = jumps(at.u);
     std::vector<std::vector<double>> conditions; // jump on the right side, then its derivatives
     for (unsigned int r = 0; r < free.size(); ++r)

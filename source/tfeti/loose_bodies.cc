@@ -184,7 +184,7 @@ namespace slipstick::tfeti
     const auto loose = bodies->free(free, weak_resistance);
     if (loose.empty())
       return {};
-    const Eigen::MatrixXd            own = bodies->jumps(loose);
+    const Eigen::MatrixXd            own = bodies->jumps(loose).toDense();
     std::vector<std::vector<double>> numbers;
     std::vector<std::uint64_t>       labels;
     Eigen::VectorXd                  loads(loose.size());

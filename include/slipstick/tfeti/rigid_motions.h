@@ -4,6 +4,8 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/tfeti/dual_operator.h>
 
+#include <Eigen/SparseCore>
+
 namespace slipstick::tfeti
 {
   /// A rigid motion of one or more bodies: amplitudes of translation x, translation y, rotation of every body.
@@ -53,7 +55,7 @@ namespace slipstick::tfeti
     Eigen::VectorXd loads() const;
 
     /// Jumps B u of all rows that this rank owns (0 for gluing) under motions; rows x motions.
-    Eigen::MatrixXd jumps(const std::vector<RigidMotion> &motions) const;
+    Eigen::SparseMatrix<double, Eigen::RowMajor> jumps(const std::vector<RigidMotion> &motions) const;
 
     /// Displacements of subdomain p of this rank under a motion, all unknowns.
     Eigen::VectorXd displacements(const unsigned int p, const Eigen::VectorXd &amplitudes) const;
@@ -67,7 +69,8 @@ namespace slipstick::tfeti
       double          lever = 0; // of these, the part of the rotation that is due to the distance of the joined points
     };
 
-    void find_levers();
+    void                        find_levers();
+    Eigen::SparseMatrix<double> resistance_of(const std::vector<bool> &active) const;
 
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     MPI_Comm                                             comm;
