@@ -213,9 +213,14 @@ namespace slipstick::tfeti
                                        .select(0., motion.amplitudes.segment(b * k, k)); // without rounding
         if (part.cwiseAbs().maxCoeff() < named_part * largest)
           continue;
-        const Eigen::VectorXd translation = part.head(k - 1);
-        const double          rotation    = part[k - 1];
         text += (text.empty() ? "body " : "; body ") + body_names[b] + ": ";
+        if (k == 1)
+          {
+            text += part[0] < 0 ? "translation against the axis" : "translation along the axis";
+            continue;
+          }
+        const Eigen::VectorXd translation = part.head(n_translations(k));
+        const double          rotation    = part[k - 1];
         if (std::abs(rotation) < turning_part * translation.norm())
           text += format("translation along (%.3g, %.3g)",
                          translation[0] / translation.norm(),

@@ -4,7 +4,9 @@
 #include <slipstick/contact/result.h>
 #include <slipstick/output/directory.h>
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +33,8 @@ namespace slipstick::output
 
   struct ProblemSummary
   {
-    unsigned int  dimension        = 2;
+    unsigned int  dimension = 2;
+    std::string   plane_state;
     unsigned int  bodies           = 0;
     unsigned int  subdomains       = 0;
     std::uint64_t primal_dofs      = 0; // of the torn subdomains together
@@ -97,11 +100,12 @@ namespace slipstick::output
 
   struct ResultSummary
   {
-    double                           max_displacement = 0; // [mm]
-    double                           max_von_mises    = 0; // [MPa]
-    double                           strain_energy    = 0; // [N mm]
-    std::vector<contact::PairResult> contact;
-    ForceSummary                     forces;
+    double                               max_displacement = 0; // [mm]
+    double                               max_von_mises    = 0; // [MPa]
+    double                               strain_energy    = 0; // [N mm]
+    std::optional<std::array<double, 2>> hoop_stress;          // smallest and largest, of bodies of revolution [MPa]
+    std::vector<contact::PairResult>     contact;
+    ForceSummary                         forces;
   };
 
   /// Wall clock of rank 0, which waits for the others where they meet [s]. The stages add up to the total.
