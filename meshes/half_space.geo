@@ -5,7 +5,7 @@
 
 DefineConstant[
   circle = {5, Name "Radius of the circle [mm]"},
-  extent = {500, Name "Radius and height [mm]"},
+  extent = {2000, Name "Radius and height [mm]"},
   size   = {0.5, Name "Mesh/Cell size at the centre [mm]"},
   edge   = {0.1, Name "Mesh/Cell size at the edge of the circle [mm]"}
 ];

@@ -516,7 +516,7 @@ namespace slipstick::app
     s.results.max_von_mises          = stress.max_von_mises;
     s.results.strain_energy          = checks.energy / 2;
     if (stress.has_hoop_stress)
-      s.results.hoop_stress = {{stress.min_hoop_stress, stress.max_hoop_stress}};
+      s.results.hoop_stress = std::array<double, 2>{{stress.min_hoop_stress, stress.max_hoop_stress}};
     return s;
   }
 } // namespace slipstick::app
