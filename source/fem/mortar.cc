@@ -60,7 +60,7 @@ namespace slipstick::fem
       {
         std::vector<MortarRow<2>> result;
         for (unsigned int i = 0; i < sums.size(); ++i)
-          if (sums[i].measure > smallest_cover * pairing.nodes()[i].scale)
+          if (pairing.nodes()[i].measure > 0 && sums[i].measure > smallest_cover * pairing.nodes()[i].scale)
             result.push_back(row_of(pairing.nodes()[i], sums[i]));
         return result;
       }

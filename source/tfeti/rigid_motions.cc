@@ -216,7 +216,7 @@ namespace slipstick::tfeti
         text += (text.empty() ? "body " : "; body ") + body_names[b] + ": ";
         if (k == 1)
           {
-            text += part[0] < 0 ? "translation against the axis" : "translation along the axis";
+            text += "translation along the axis";
             continue;
           }
         const Eigen::VectorXd translation = part.head(n_translations(k));
