@@ -13,6 +13,8 @@ namespace slipstick::fem
     // Disc: a square with bent sides in the middle, rings of cells around it.
     constexpr double core_radius  = 0.55; // of the corners of the square, over the radius: cells of about equal size
     constexpr double core_bending = 0.4;  // 0: straight sides, 1: arcs
+    constexpr double core_corner =
+      1.15; // quarter disc: its core's outer corner, over the other two: angles of 116 degrees there
 
     /// Point of the unit circle at @p fraction of the whole circle; exact at the quarters.
     dealii::Tensor<1, 2> on_circle(const double fraction)
@@ -212,10 +214,11 @@ namespace slipstick::fem
                    std::round((1 - core_radius) / (1 + core_radius) * 2 * body.cells_along_arc / dealii::numbers::PI)))
         << refinements;
       const auto arc = [&](const unsigned int l) { return on_circle(.75 + .25 * l / n_loop); }; // from the lowest point
-      const auto core = [&](const unsigned int l) {
+      const auto core = [&](const unsigned int l) { // straight sides, the corner between them pulled outwards
+        const auto         end   = [&](const unsigned int k) { return (k == n ? core_corner : 1.) * arc(k); };
         const unsigned int first = l < n ? 0 : n;
         const double       s     = double(l - first) / n;
-        return core_radius * (core_bending * arc(l) + (1 - core_bending) * ((1 - s) * arc(first) + s * arc(first + n)));
+        return core_radius * ((1 - s) * end(first) + s * end(first + n));
       };
 
       MeshPiece<2> piece;
