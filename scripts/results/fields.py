@@ -44,6 +44,7 @@ FIELDS = {
     "stress_yy": ("stress yy", "MPa", lambda grid, centre: grid.point_fields["stress"][:, 4]),
     "stress_xy": ("shear stress xy", "MPa", lambda grid, centre: grid.point_fields["stress"][:, 1]),
     "stress_zz": ("stress zz", "MPa", lambda grid, centre: grid.point_fields["stress_zz"]),
+    "hoop_stress": ("hoop stress of a body of revolution", "MPa", lambda grid, centre: grid.point_fields["hoop_stress"]),
     "principal_stress_1": ("larger principal stress", "MPa", lambda grid, centre: grid.point_fields["principal_stress_1"]),
     "principal_stress_2": ("smaller principal stress", "MPa", lambda grid, centre: grid.point_fields["principal_stress_2"]),
     "hoop": ("hoop stress", "MPa", lambda grid, centre: Polar(grid, centre).hoop),

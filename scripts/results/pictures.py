@@ -53,6 +53,8 @@ class Painter:
         self.grids = grids or [run.grid(step) for step in range(len(run.grid_files))]
         self.factor = magnification(run, self.grids, options.scale)
         self.values = [fields.values(name, grid, options.centre) for grid in self.grids]
+        # of bodies of revolution the other half of the section too
+        self.mirrored = not options.box and run.summary.get("problem", {}).get("plane_state") == "axisymmetric"
         self.shown = inside(self.grids[0].points, options.box)
         if not self.shown.any():
             raise ValueError(f"--box: nothing of the scene is in it; the scene is in {self.extent(self.grids[0].points)}")
@@ -87,6 +89,8 @@ class Painter:
         if self.options.box:
             x0, x1, y0, y1 = self.options.box
             places = [np.array([[x0, y0], [x1, y1]])] + places
+        if self.mirrored:
+            places += [place * [-1, 1] for place in places]
         low = np.min([place.min(axis=0) for place in places], axis=0)
         high = np.max([place.max(axis=0) for place in places], axis=0)
         self.size = max(high - low) or 1.
@@ -129,9 +133,16 @@ class Painter:
         axes.set_aspect("equal")
         image = axes.tripcolor(grid.triangulation(points), np.nan_to_num(values, nan=self.limits[0]), shading="gouraud",
                                cmap=self.colours(), vmin=self.limits[0], vmax=self.limits[1], rasterized=True, zorder=1)
+        if self.mirrored:
+            axes.tripcolor(grid.triangulation(points * [-1, 1]), np.nan_to_num(values, nan=self.limits[0]), shading="gouraud",
+                           cmap=self.colours(), vmin=self.limits[0], vmax=self.limits[1], rasterized=True, zorder=1)
         for field, colour, line_width in (("subdomain", "white", 0.5), ("body", "black", 1.2)):
-            axes.add_collection(matplotlib.collections.LineCollection(points[grid.outlines(field)], colors=colour,
-                                                                      linewidths=line_width, capstyle="round", zorder=2))
+            lines = points[grid.outlines(field)]
+            if self.mirrored:  # the axis is no outline
+                lines = lines[np.abs(lines[:, :, 0]).max(axis=1) > 1e-9 * self.size]
+                lines = np.concatenate([lines, lines * [-1, 1]])
+            axes.add_collection(matplotlib.collections.LineCollection(lines, colors=colour, linewidths=line_width,
+                                                                      capstyle="round", zorder=2))
         found = self.largest(step)
         if found:
             axes.plot(*points[found[2]], marker="o", markersize=9, markerfacecolor="none", markeredgecolor="magenta",

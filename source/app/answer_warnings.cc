@@ -98,7 +98,7 @@ namespace slipstick::app
           take(pair, pressure_of, node.pressure, x, y);
           if (point.has_master && node.is_closed)
             take(pair, slip_of, std::abs(node.slip), x, y);
-          pair.edge = std::max(pair.edge, point.traction_area / scene.bodies[point.slave_body].thickness);
+          pair.edge = std::max(pair.edge, point.traction_length);
         }
       return over_all_ranks(own, comm);
     }

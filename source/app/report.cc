@@ -59,6 +59,20 @@ namespace slipstick::app
       return "";
     }
 
+    const char *name_of(const scene::PlaneState state)
+    {
+      switch (state)
+        {
+          case scene::PlaneState::plane_stress:
+            return "plane stress";
+          case scene::PlaneState::plane_strain:
+            return "plane strain";
+          case scene::PlaneState::axisymmetric:
+            return "axisymmetric";
+        }
+      return "";
+    }
+
     const char *name_of(const scene::DecompositionMethod method)
     {
       switch (method)
@@ -125,6 +139,10 @@ namespace slipstick::app
                          scene.discretization.degree,
                          solver.dual.operator_precision == tfeti::Precision::single_precision ? "single" : "double",
                          solver.prune_contact ? "pruned" : "all kept")));
+    if (scene.plane_state == scene::PlaneState::axisymmetric)
+      log.line(
+        line("axisymmetric",
+             "x is the radius, y the axis, zz the hoop direction; all forces are those over the whole circumference"));
   }
 
   void print_mesh(const Log &log, const scene::Scene<2> &scene, const fem::Mesh<2> &mesh, const fem::Spaces<2> &spaces)
@@ -309,16 +327,22 @@ namespace slipstick::app
 
   namespace
   {
-    std::string row(const std::string &what, const Resultant &sum)
+    std::string row(const std::string &what, const Resultant &sum, const bool is_revolution)
     {
+      if (is_revolution)
+        return format("             %-30s %14.6g %14.6g", what.c_str(), sum.force[0], sum.force[1]);
       return format("             %-30s %14.6g %14.6g %16.6g", what.c_str(), sum.force[0], sum.force[1], sum.moment);
     }
   } // namespace
 
   void print_forces(const Log &log, const scene::Scene<2> &scene, const output::ResultSummary &results)
   {
-    Resultant left;
-    log.line(format("forces       %-30s %14s %14s %16s", "on the bodies", "Fx [N]", "Fy [N]", "moment [N mm]"));
+    const bool is_revolution = scene.plane_state == scene::PlaneState::axisymmetric;
+    Resultant  left;
+    if (is_revolution)
+      log.line(format("forces       %-30s %14s %14s", "on the whole circumference", "radial [N]", "axial [N]"));
+    else
+      log.line(format("forces       %-30s %14s %14s %16s", "on the bodies", "Fx [N]", "Fy [N]", "moment [N mm]"));
     const auto count = [&left](const Resultant &sum) {
       for (unsigned int d = 0; d < 2; ++d)
         left.force[d] += sum.force[d];
@@ -327,18 +351,22 @@ namespace slipstick::app
     for (const auto *list : {&results.forces.loads, &results.forces.supports, &results.forces.foundations})
       for (const auto &one : *list)
         {
-          log.line(row(one.kind + " " + one.name, one.sum));
+          log.line(row(one.kind + " " + one.name, one.sum, is_revolution));
           count(one.sum);
         }
     for (unsigned int k = 0; k < results.contact.size(); ++k)
       {
         const auto &pair = scene.contacts[k];
         log.line(row("contact " + pair.name + (pair.master ? " on " + scene.bodies[pair.slave.body].name : ""),
-                     results.contact[k].on_slave));
+                     results.contact[k].on_slave,
+                     is_revolution));
         if (!pair.master)
           count(results.contact[k].on_slave);
       }
-    log.line(row("sum of all from outside", left));
+    if (is_revolution) // radial forces balance around the circumference
+      log.line(format("             %-30s %14s %14.6g", "sum of all from outside", "", left.force[1]));
+    else
+      log.line(row("sum of all from outside", left, is_revolution));
   }
 
   void print_result(const Log &log, const output::Summary &summary, const std::string &pvd)
@@ -447,6 +475,17 @@ namespace slipstick::app
       summary.residuals.*residual = std::max(summary.residuals.*residual, so_far.residuals.*residual);
   }
 
+  void drop_moments(const scene::Scene<2> &scene, output::ResultSummary &results)
+  {
+    if (scene.plane_state != scene::PlaneState::axisymmetric)
+      return;
+    for (auto *list : {&results.forces.loads, &results.forces.supports, &results.forces.foundations})
+      for (auto &one : *list)
+        one.sum.moment = 0;
+    for (auto &pair : results.contact)
+      pair.on_slave.moment = pair.moment_mismatch = 0;
+  }
+
   output::Summary make_summary(const scene::Scene<2>       &scene,
                                const fem::Mesh<2>          &mesh,
                                const fem::Spaces<2>        &spaces,
@@ -461,6 +500,7 @@ namespace slipstick::app
     s.status = passes(solution, checks, tolerance) ? output::RunStatus::converged : output::RunStatus::not_converged;
 
     s.problem.dimension          = 2;
+    s.problem.plane_state        = name_of(scene.plane_state);
     s.problem.bodies             = scene.bodies.size();
     s.problem.subdomains         = mesh.n_subdomains();
     s.problem.primal_dofs        = spaces.n_dofs;
@@ -502,6 +542,8 @@ namespace slipstick::app
     s.results.max_displacement       = checks.max_displacement;
     s.results.max_von_mises          = stress.max_von_mises;
     s.results.strain_energy          = checks.energy / 2;
+    if (stress.has_hoop_stress)
+      s.results.hoop_stress = std::array<double, 2>{{stress.min_hoop_stress, stress.max_hoop_stress}};
     return s;
   }
 } // namespace slipstick::app

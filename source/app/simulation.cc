@@ -319,6 +319,7 @@ namespace slipstick::app
             output::write_contact_vtp(directory, contact_steps.back());
             summary.results.contact = contact::pair_results(contact_steps.back().nodes, contact_names().pairs);
           }
+        drop_moments(scene, summary.results);
         clock.leave();
         add_step(so_far, t, summary);
         return summary;

@@ -449,10 +449,11 @@ namespace slipstick::contact
     const auto   on_bodies = balance(dual, forces, multipliers, n_bodies, largest[nodal_equilibrium]);
     for (unsigned int b = 0; b < n_bodies; ++b)
       {
-        const unsigned int last  = on_bodies.left.rows() - 1; // the rotation
+        const unsigned int k = on_bodies.left.rows(), n_forces = tfeti::n_translations(k); // the moments come last
         const double       scale = std::max(on_bodies.scale[b], no_force);
-        largest[force_balance].take(relative(on_bodies.left.col(b).head(last).norm(), scale), {true, b});
-        largest[moment_balance].take(relative(std::abs(on_bodies.left(last, b)), scale), {true, b});
+        largest[force_balance].take(relative(on_bodies.left.col(b).head(n_forces).norm(), scale), {true, b});
+        if (k > n_forces)
+          largest[moment_balance].take(relative(on_bodies.left.col(b).tail(k - n_forces).norm(), scale), {true, b});
       }
     checks.algebraic_error = std::sqrt(relative(checks.error_energy, energy));
     // of stiff bodies among soft ones, too, which hold little of the energy

@@ -214,12 +214,13 @@ namespace slipstick::fem
       unsigned int dim = 0, n_nodes = 0;
       if (type.empty() || key.parameters.count("INPUT") > 0)
         fail(type.empty() ? "*ELEMENT without TYPE" : "*ELEMENT with INPUT is not supported");
-      if (starts("CAX") || starts("CGAX") || starts("DCAX") || starts("ACAX") || starts("SAX") || starts("MAX"))
+      if (starts("CGAX") || starts("DCAX") || starts("ACAX") || starts("SAX") || starts("MAX") || starts("CAXA"))
         fail("elements of type " + type +
-             " are axisymmetric, which is not supported (only plane stress and plane strain)");
+             " are axisymmetric with twist, for heat or sound, or shells: only CAX3, CAX4, "
+             "CAX6 and CAX8 are supported");
       if (starts("C3D") || starts("SC"))
         dim = 3;
-      for (const std::string candidate : {"CPEG", "CPS", "CPE", "STRI", "DC2D", "AC2D", "M3D", "SFM3D", "S"})
+      for (const std::string candidate : {"CPEG", "CPS", "CPE", "CAX", "STRI", "DC2D", "AC2D", "M3D", "SFM3D", "S"})
         if (dim == 0 && starts(candidate) && type.size() > candidate.size() && std::isdigit(type[candidate.size()]))
           {
             dim     = 2;
@@ -248,6 +249,8 @@ namespace slipstick::fem
         mesh.plane_stress_types.insert(type);
       if (starts("CPE"))
         mesh.plane_strain_types.insert(type);
+      if (starts("CAX"))
+        mesh.axisymmetric_types.insert(type);
       const std::string               set = key["ELSET"];
       std::vector<unsigned long long> data; // of one element, which may take several lines
       for_data([&](const std::vector<std::string> &parts) {

@@ -3,6 +3,7 @@
 #include <slipstick/fem/assembly.h>
 #include <slipstick/fem/cell_values.h>
 #include <slipstick/fem/dilatation.h>
+#include <slipstick/fem/kinematics.h>
 #include <slipstick/fem/loads.h>
 #include <slipstick/fem/rigid_modes.h>
 
@@ -98,24 +99,67 @@ namespace slipstick::fem
           }
     }
 
-    /// Adds lambda times the product of the projected dilatations, times thickness.
+    /// Adds what bodies of revolution have besides to the section's stiffness, and weighs it: sum over points of lambda div div +
+    /// 2 mu eps : eps with hoop strain in div and eps, times circumference.
     template <int dim>
-    void add_projected_dilatation(const dealii::FEValues<dim>     &values,
+    void cell_stiffness(const CellValues<dim>       &at,
+                        const Kinematics<dim>       &kinematics,
+                        const dealii::FESystem<dim> &element,
+                        const LameCoefficients      &lame,
+                        dealii::FullMatrix<double>  &local)
+    {
+      static_assert(dim == 2, "the circumference of a radius");
+      const auto        &values  = *at;
+      const unsigned int n_nodes = values.dofs_per_cell;
+      local                      = 0;
+      for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
+        {
+          const auto   x      = at.point(q);
+          const double weight = values.JxW(q) * kinematics.measure(x);
+          for (unsigned int i = 0; i < n_nodes; ++i)
+            for (unsigned int j = 0; j < n_nodes; ++j)
+              {
+                const auto  &a = values.shape_grad(i, q), &b = values.shape_grad(j, q);
+                const double h_i = kinematics.hoop_strain(values.shape_value(i, q), x),
+                             h_j = kinematics.hoop_strain(values.shape_value(j, q), x);
+                for (unsigned int c = 0; c < dim; ++c)
+                  for (unsigned int d = 0; d < dim; ++d)
+                    {
+                      const double hoop_i = c == 0 ? h_i : 0., hoop_j = d == 0 ? h_j : 0.;
+                      local(element.component_to_system_index(c, i), element.component_to_system_index(d, j)) +=
+                        weight * (lame.lambda * (a[c] + hoop_i) * (b[d] + hoop_j) +
+                                  lame.mu * (a[d] * b[c] + (c == d ? a * b : 0.) + 2 * hoop_i * hoop_j));
+                    }
+              }
+        }
+    }
+
+    /// Adds lambda times the product of the projected dilatations, times thickness or circumference.
+    template <int dim>
+    void add_projected_dilatation(const CellValues<dim>           &at,
+                                  const Kinematics<dim>           &kinematics,
                                   const dealii::FESystem<dim>     &element,
                                   const DilatationProjection<dim> &projection,
                                   const double                     lambda,
                                   const double                     thickness,
                                   dealii::FullMatrix<double>      &local)
     {
+      const auto        &values   = *at;
       const unsigned int n_points = values.n_quadrature_points;
       Eigen::MatrixXd    divergence(n_points, local.m());
+      Eigen::VectorXd    weights(n_points);
       for (unsigned int q = 0; q < n_points; ++q)
-        for (unsigned int i = 0; i < values.dofs_per_cell; ++i)
-          for (unsigned int c = 0; c < dim; ++c)
-            divergence(q, element.component_to_system_index(c, i)) = values.shape_grad(i, q)[c];
+        {
+          weights[q] = values.JxW(q) * kinematics.measure(at.point(q));
+          for (unsigned int i = 0; i < values.dofs_per_cell; ++i)
+            for (unsigned int c = 0; c < dim; ++c)
+              divergence(q, element.component_to_system_index(c, i)) =
+                values.shape_grad(i, q)[c] + (c == 0 && kinematics.is_revolution()
+                                                ? kinematics.hoop_strain(values.shape_value(i, q), at.point(q))
+                                                : 0.);
+        }
       const Eigen::MatrixXd dilatation = projection.projected(divergence);
-      const auto weights = Eigen::Map<const Eigen::VectorXd>(values.get_JxW_values().data(), n_points).asDiagonal();
-      const Eigen::MatrixXd products = lambda * thickness * dilatation.transpose() * weights * dilatation;
+      const Eigen::MatrixXd products = lambda * thickness * dilatation.transpose() * weights.asDiagonal() * dilatation;
       for (unsigned int a = 0; a < local.m(); ++a)
         for (unsigned int b = 0; b < local.n(); ++b)
           local(a, b) += products(a, b);
@@ -131,24 +175,36 @@ namespace slipstick::fem
       const double           thickness = scene.bodies[body].thickness;
       const bool             project   = scene.discretization.element == scene::ElementKind::nearly_incompressible;
       const LameCoefficients as_displaced{project ? 0. : lame.lambda, lame.mu};
+      const Kinematics<dim>  kinematics(scene.plane_state);
       DilatationProjection<dim>                    projection(element);
       auto                                         lower = lower_pattern(dof_handler);
       CellValues<dim>                              values(*element.mapping,
                              *element.scalar,
-                             element.stiffness,
-                             project ? dealii::update_quadrature_points : dealii::update_default);
+                             kinematics.stiffness_rule(element),
+                             kinematics.is_revolution() ? dealii::update_quadrature_points | dealii::update_values
+                                                          : project ? dealii::update_quadrature_points
+                                                                    : dealii::update_default);
       dealii::FullMatrix<double>                   local(element.vector->n_dofs_per_cell());
       std::vector<dealii::types::global_dof_index> dofs(element.vector->n_dofs_per_cell());
       for (const auto &cell : dof_handler.active_cell_iterators())
         {
-          if (values.reinit(cell))
+          const bool is_new = values.reinit(cell);
+          if (is_new || kinematics.is_revolution()) // translations have another radius
             {
-              cell_stiffness(*values, *element.vector, as_displaced, thickness, local);
               if (project)
-                {
-                  projection.reinit(*values);
-                  add_projected_dilatation(*values, *element.vector, projection, lame.lambda, thickness, local);
-                }
+                projection.reinit(values, kinematics);
+              if (kinematics.is_revolution())
+                cell_stiffness(values, kinematics, *element.vector, as_displaced, local);
+              else
+                cell_stiffness(*values, *element.vector, as_displaced, thickness, local);
+              if (project)
+                add_projected_dilatation(values,
+                                         kinematics,
+                                         *element.vector,
+                                         projection,
+                                         lame.lambda,
+                                         thickness,
+                                         local);
             }
           cell->get_dof_indices(dofs);
           add_lower<dim>(local, dofs, lower);
@@ -206,10 +262,7 @@ namespace slipstick::fem
         system.stiffness     = assemble_stiffness(scene, subdomain.body, spaces.of(p), dof_handler);
         system.load          = std::move(loads[p]);
         system.boundary_dofs = boundary_dofs(dof_handler);
-        rigid_modes(spaces.of(p), dof_handler, frames[subdomain.body], system.kernel, system.body_modes);
-        for (unsigned int d = 0; d < dim; ++d)
-          system.frame.center[d] = frames[subdomain.body].center[d];
-        system.frame.length = frames[subdomain.body].length;
+        rigid_modes(spaces.of(p), dof_handler, frames[subdomain.body], Kinematics<dim>(scene.plane_state), system);
         systems.push_back(std::move(system));
       }
     return systems;

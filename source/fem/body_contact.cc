@@ -59,7 +59,12 @@ namespace slipstick::fem
       const double reach = pair.reach || !pair.law.acts_where_closed_alone()
                              ? near
                              : std::max(near, widest_reach(sides.slave, sides.master, *distance));
-      auto         rows  = mortar_rows(sides.slave, sides.master, {reach, near}, pair.discretization, pair.name);
+      auto         rows  = mortar_rows(sides.slave,
+                              sides.master,
+                              {reach, near},
+                              pair.discretization,
+                              pair.name,
+                              Kinematics<dim>(scene.plane_state));
       if (rows.empty())
         refuse_pair(scene, pair, sides, reach);
       check_sides(scene, mesh, pair, sides, all, rows);

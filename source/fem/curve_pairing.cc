@@ -48,7 +48,9 @@ namespace slipstick::fem
 
     /// The nodes of a curve with the means of its own normals.
     /// @return the nodes of every edge.
-    std::vector<std::array<unsigned int, 3>> find_nodes(const std::vector<Edge> &curve, std::vector<Node> &nodes)
+    std::vector<std::array<unsigned int, 3>> find_nodes(const std::vector<Edge> &curve,
+                                                        const Kinematics<2>     &kinematics,
+                                                        std::vector<Node>       &nodes)
     {
       std::map<NodeKey, std::vector<std::pair<unsigned int, unsigned int>>> at; // edge, node of the edge
       for (unsigned int e = 0; e < curve.size(); ++e)
@@ -70,6 +72,9 @@ namespace slipstick::fem
               node_of[e][i]      = first + side[k];
               nodes[first + side[k]].covered += curve[e].tributary_lengths()[i];
               nodes[first + side[k]].size += curve[e].chord();
+              const auto measures = curve[e].tributary_measures(kinematics);
+              nodes[first + side[k]].measure += measures[i];
+              nodes[first + side[k]].scale += measures[0] + measures[1] + measures[2];
             }
         }
       return node_of;
@@ -89,13 +94,16 @@ namespace slipstick::fem
     }
   } // namespace
 
-  CurvePairing::CurvePairing(const std::vector<Edge> &slave_, const std::vector<Edge> &master_, const Reach &reach_)
+  CurvePairing::CurvePairing(const std::vector<Edge> &slave_,
+                             const std::vector<Edge> &master_,
+                             const Reach             &reach_,
+                             const Kinematics<2>     &kinematics)
     : slave(slave_)
     , master(master_)
     , reach(reach_)
     , tree(master_)
   {
-    node_of = find_nodes(slave, all_nodes);
+    node_of = find_nodes(slave, kinematics, all_nodes);
     average_normals();
   }
 
@@ -103,7 +111,7 @@ namespace slipstick::fem
   void CurvePairing::average_normals()
   {
     std::vector<Node>   of_master;
-    const auto          nodes_of_master = find_nodes(master, of_master);
+    const auto          nodes_of_master = find_nodes(master, {}, of_master);
     std::vector<Tensor> facing(all_nodes.size());
     std::vector<bool>   is_done(all_nodes.size(), false);
     for (unsigned int e = 0; e < slave.size(); ++e)

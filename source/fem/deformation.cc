@@ -1,5 +1,6 @@
 #include <slipstick/fem/cell_values.h>
 #include <slipstick/fem/deformation.h>
+#include <slipstick/fem/kinematics.h>
 #include <slipstick/fem/rigid_modes.h>
 
 #include <deal.II/base/mpi.h>
@@ -47,11 +48,16 @@ namespace slipstick::fem
     void add_cells(const Element<dim>            &element,
                    const dealii::DoFHandler<dim> &dof_handler,
                    const unsigned int             body,
+                   const Kinematics<dim>         &kinematics,
                    const Eigen::VectorXd         &u,
                    Deformation<dim>              &largest)
     {
       static_assert(dim == 2, "one rotation");
-      CellValues<dim> values(*element.mapping, *element.scalar, element.cell_quadrature(1));
+      CellValues<dim>                              values(*element.mapping,
+                             *element.scalar,
+                             element.cell_quadrature(1),
+                             kinematics.is_revolution() ? dealii::update_values | dealii::update_quadrature_points
+                                                                                     : dealii::update_default);
       std::vector<dealii::types::global_dof_index> dofs;
       std::vector<unsigned int>                    nodes;
       for (const auto &cell : dof_handler.active_cell_iterators())
@@ -62,7 +68,13 @@ namespace slipstick::fem
           for (unsigned int i = 0; i < nodes.size(); ++i)
             for (unsigned int c = 0; c < dim; ++c)
               gradient[c] += u[dim * nodes[i] + c] * (*values).shape_grad(i, 0);
-          const double strain = principal_strain(gradient), rotation = std::abs(gradient[1][0] - gradient[0][1]) / 2;
+          double u_x = 0;
+          if (kinematics.is_revolution())
+            for (unsigned int i = 0; i < nodes.size(); ++i)
+              u_x += u[dim * nodes[i]] * (*values).shape_value(i, 0);
+          const double hoop     = kinematics.is_revolution() ? kinematics.hoop_strain(u_x, values.point(0)) : 0.;
+          const double strain   = std::max(principal_strain(gradient), std::abs(hoop)),
+                       rotation = std::abs(gradient[1][0] - gradient[0][1]) / 2;
           if (strain > largest.strain.value)
             largest.strain = {strain, body, cell->center()};
           if (rotation > largest.rotation.value)
@@ -102,7 +114,7 @@ namespace slipstick::fem
       {
         const auto        &subdomain = *mesh.subdomains[p];
         const unsigned int body      = subdomain.body;
-        add_cells(spaces.of(p), *spaces.dof_handlers[p], body, u[p], largest);
+        add_cells(spaces.of(p), *spaces.dof_handlers[p], body, Kinematics<dim>(scene.plane_state), u[p], largest);
         add_nodes(*spaces.dof_handlers[p], body, 2 * frames[body].length, u[p], largest.motion);
       }
     for (Peak<dim> *peak : {&largest.strain, &largest.rotation, &largest.motion})

@@ -3,8 +3,9 @@
 namespace slipstick::fem
 {
   template <int dim>
-  void DilatationProjection<dim>::reinit(const dealii::FEValues<dim> &values)
+  void DilatationProjection<dim>::reinit(const CellValues<dim> &at, const Kinematics<dim> &kinematics)
   {
+    const auto        &values = *at;
     const auto        &points = values.get_quadrature_points();
     const unsigned int n      = points.size();
     center                    = dealii::Point<dim>();
@@ -20,7 +21,7 @@ namespace slipstick::fem
     for (unsigned int q = 0; q < n; ++q)
       {
         basis.row(q)    = functions(points[q]);
-        weighted.col(q) = basis.row(q).transpose() * values.JxW(q);
+        weighted.col(q) = basis.row(q).transpose() * (values.JxW(q) * kinematics.measure(at.point(q)));
       }
     to_coefficients = (weighted * basis).ldlt().solve(weighted);
   }

@@ -10,22 +10,30 @@ namespace slipstick::fem
     const double E = material.young_modulus, nu = material.poisson_ratio;
     const double mu = E / (2 * (1 + nu));
     const double lambda =
-      state == scene::PlaneState::plane_strain ? E * nu / ((1 + nu) * (1 - 2 * nu)) : E * nu / (1 - nu * nu);
+      state == scene::PlaneState::plane_stress ? E * nu / (1 - nu * nu) : E * nu / ((1 + nu) * (1 - 2 * nu));
     return {lambda, mu};
   }
 
-  PlaneLaw::PlaneLaw(const scene::Material &material, const scene::PlaneState state)
+  ElasticLaw::ElasticLaw(const scene::Material &material, const scene::PlaneState state)
     : lame(lame_coefficients(material, state))
     , expansion(material.expansion)
+    , is_revolution(state == scene::PlaneState::axisymmetric)
   {
     const bool is_strain = state == scene::PlaneState::plane_strain;
-    volume_expansion     = (is_strain ? 3 : 2) * expansion;
+    volume_expansion     = (state == scene::PlaneState::plane_stress ? 2 : 3) * expansion;
     out_of_plane         = is_strain ? material.poisson_ratio : 0;
     out_of_plane_change  = is_strain ? -material.young_modulus * expansion : 0;
   }
 
-  double PlaneLaw::energy(const Eigen::Array3d &s) const
+  double ElasticLaw::energy(const Eigen::Array4d &s) const
   {
+    if (is_revolution)
+      {
+        const double trace = s[0] + s[1] + s[3];
+        return (s[0] * s[0] + s[1] * s[1] + s[3] * s[3] + 2 * s[2] * s[2] -
+                lame.lambda / (3 * lame.lambda + 2 * lame.mu) * trace * trace) /
+               (2 * lame.mu);
+      }
     const double mean = lame.lambda / (2 * (lame.lambda + lame.mu)) * (s[0] + s[1]);
     return (s[0] * (s[0] - mean) + s[1] * (s[1] - mean) + 2 * s[2] * s[2]) / (2 * lame.mu);
   }

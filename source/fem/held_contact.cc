@@ -26,6 +26,8 @@ namespace slipstick::fem
       for (const unsigned int h : holders)
         if (h < scene.supports.size())
           names += (names.empty() ? "Support " : ", Support ") + scene.supports[h].name;
+        else if (h == scene.supports.size() + scene.foundations.size() + scene.contacts.size())
+          names += names.empty() ? "the axis of revolution" : ", the axis of revolution";
         else if (h >= scene.supports.size() + scene.foundations.size())
           names += (names.empty() ? "bonded Contact " : ", bonded Contact ") +
                    scene.contacts[h - scene.supports.size() - scene.foundations.size()].name;

@@ -28,7 +28,7 @@ namespace slipstick::fem
 
     /// Adds to the tributary area of a node in the pair.
     template <int dim>
-    void add_area(InterfaceNode<dim> &node, const unsigned int pair, const double area)
+    void add_area(InterfaceNode<dim> &node, const unsigned int pair, const Tributary &area)
     {
       const auto found =
         std::find_if(node.areas.begin(), node.areas.end(), [pair](const auto &a) { return a.first == pair; });
@@ -62,6 +62,14 @@ namespace slipstick::fem
                                     entry.position[d] = x[d];
                                   on_face.push_back(&entry);
                                 });
+      const Kinematics<dim> kinematics(scene.plane_state);
+      for (auto *node : on_face)
+        if (kinematics.is_on_axis(node->point(), face->vertex(0).distance(face->vertex(1))))
+          hold(*node,
+               axis<dim>(0),
+               0.,
+               0,
+               {static_cast<unsigned int>(scene.supports.size() + scene.foundations.size() + scene.contacts.size())});
       if (face->boundary_id() == cut_id)
         return;
       const auto here = [&](const scene::BoundaryName &where) {
@@ -69,18 +77,19 @@ namespace slipstick::fem
       };
 
       // lengths and normals of the nodes, in the order of the face (the edge may run the other way)
-      const auto                                     edge    = surface_edge(subdomain, spaces, cell, f);
-      const auto                                     lengths = edge.tributary_lengths();
-      std::vector<double>                            areas(on_face.size());
+      const auto                                     edge     = surface_edge(subdomain, spaces, cell, f);
+      const auto                                     lengths  = edge.tributary_lengths();
+      const auto                                     measures = edge.tributary_measures(kinematics);
+      std::vector<Tributary>                         areas(on_face.size());
       std::vector<typename InterfaceNode<dim>::Side> sides(on_face.size());
       for (unsigned int i = 0; i < on_face.size(); ++i)
         {
           unsigned int on_edge = 0;
           while (edge.keys[on_edge] != on_face[i]->key)
             ++on_edge;
-          areas[i]          = lengths[on_edge] * scene.bodies[subdomain.body].thickness;
+          areas[i]          = {measures[on_edge] * scene.bodies[subdomain.body].thickness, lengths[on_edge]};
           const auto normal = edge.normal(edge.node_coordinate(on_edge));
-          sides[i].area     = areas[i];
+          sides[i].area     = areas[i].area;
           for (unsigned int d = 0; d < dim; ++d)
             sides[i].normal[d] = normal[d];
         }

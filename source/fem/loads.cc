@@ -3,6 +3,7 @@
 #include <slipstick/fem/cell_values.h>
 #include <slipstick/fem/dilatation.h>
 #include <slipstick/fem/elasticity.h>
+#include <slipstick/fem/kinematics.h>
 #include <slipstick/fem/loads.h>
 #include <slipstick/fem/points.h>
 #include <slipstick/fem/surface.h>
@@ -40,6 +41,7 @@ namespace slipstick::fem
         , dof_handler(*spaces.dof_handlers[p])
         , number(mesh.subdomains[p]->body)
         , body(scene.bodies[number])
+        , kinematics(scene.plane_state)
         , t(t_)
         , load(Eigen::VectorXd::Zero(dof_handler.n_dofs()))
       {
@@ -84,7 +86,8 @@ namespace slipstick::fem
                   const auto integral = [&](const CellValues<dim> &values, const unsigned int n) {
                     Vector sum;
                     for (unsigned int q = 0; q < n; ++q)
-                      sum += body_force(scene.body_forces[k], values.point(q)) * (*values).JxW(q) * body.thickness;
+                      sum +=
+                        body_force(scene.body_forces[k], values.point(q)) * (*values).JxW(q) * weight(values.point(q));
                     return sum;
                   };
                   const Vector a = integral(coarse, element.loads.size()), b = integral(fine, finer.size());
@@ -109,6 +112,12 @@ namespace slipstick::fem
 
     private:
       using Vector = dealii::Tensor<1, dim>;
+
+      /// Thickness, or circumference at @p x [mm].
+      double weight(const dealii::Point<dim> &x) const
+      {
+        return body.thickness * kinematics.measure(x);
+      }
 
       void add(const unsigned int node, const Vector &force)
       {
@@ -187,8 +196,8 @@ namespace slipstick::fem
               along += dN[i] * Vector(edge.node(i));
             }
           const double p     = traction.pressure.value(x, t); // against the normal (along_y, -along_x)
-          const Vector force = body.thickness * (along.norm() * vector(traction.components, x));
-          const double fx = force[0] - body.thickness * p * along[1], fy = force[1] + body.thickness * p * along[0];
+          const Vector force = weight(x) * (along.norm() * vector(traction.components, x));
+          const double fx = force[0] - weight(x) * p * along[1], fy = force[1] + weight(x) * p * along[0];
           return std::array<double, 6>{{N[0] * fx, N[0] * fy, N[1] * fx, N[1] * fy, N[2] * fx, N[2] * fy}};
         };
         const AdaptiveQuadrature<6> forces(force_at);
@@ -217,7 +226,7 @@ namespace slipstick::fem
             const auto  &x = values.quadrature_point(q);
             const Vector force =
               (vector(traction.components, x) - traction.pressure.value(x, t) * values.normal_vector(q)) *
-              values.JxW(q) * body.thickness;
+              values.JxW(q) * weight(x);
             sum.sum.add(force[0], force[1], x);
             for (unsigned int i = 0; i < nodes.size(); ++i)
               add(nodes[i], force * values.shape_value(i, q));
@@ -229,7 +238,8 @@ namespace slipstick::fem
       {
         const double density = scene.materials[body.material].density;
         const double omega   = load.angular_velocity.value(x, t);
-        return vector(load.force, x) + density * (vector(load.acceleration, x) + omega * omega * (x - load.axis));
+        return vector(load.force, x) +
+               density * (vector(load.acceleration, x) + omega * omega * kinematics.arm(x, load.axis));
       }
 
       void add_body_forces()
@@ -254,7 +264,7 @@ namespace slipstick::fem
                 Vector     force;
                 for (const unsigned int k : body_forces)
                   {
-                    const Vector one = body_force(scene.body_forces[k], x) * (*values).JxW(q) * body.thickness;
+                    const Vector one = body_force(scene.body_forces[k], x) * (*values).JxW(q) * weight(x);
                     sums[scene.tractions.size() + k].sum.add(one[0], one[1], x);
                     force += one;
                   }
@@ -270,15 +280,20 @@ namespace slipstick::fem
         const TemperatureOfBody<dim> temperature(scene, number, t);
         if (temperature.is_zero())
           return;
-        const PlaneLaw            law(scene.materials[body.material], scene.plane_state);
+        const ElasticLaw          law(scene.materials[body.material], scene.plane_state);
         const bool                project = scene.discretization.element == scene::ElementKind::nearly_incompressible;
         DilatationProjection<dim> projection(element);
-        CellValues<dim> values(*element.mapping, *element.scalar, element.stiffness, dealii::update_quadrature_points);
-        Eigen::VectorXd change(element.stiffness.size()), beside_lambda;
+        const auto                rule = kinematics.stiffness_rule(element);
+        CellValues<dim>           values(*element.mapping,
+                               *element.scalar,
+                               rule,
+                               dealii::update_quadrature_points |
+                                 (kinematics.is_revolution() ? dealii::update_values : dealii::update_default));
+        Eigen::VectorXd           change(rule.size()), beside_lambda;
         for (const auto &cell : dof_handler.active_cell_iterators())
           {
-            if (values.reinit(cell) && project)
-              projection.reinit(*values);
+            if (const bool is_new = values.reinit(cell); project && (is_new || kinematics.is_revolution()))
+              projection.reinit(values, kinematics);
             for (unsigned int q = 0; q < change.size(); ++q)
               change[q] = temperature(values.point(q));
             if (project)
@@ -290,8 +305,15 @@ namespace slipstick::fem
               {
                 const double stress = law.lame.lambda * law.volume_expansion * beside_lambda[q] +
                                       2 * law.lame.mu * law.expansion * change[q];
+                const auto   x         = values.point(q);
+                const double of_volume = stress * (*values).JxW(q) * weight(x);
                 for (unsigned int i = 0; i < nodes.size(); ++i)
-                  add(nodes[i], stress * (*values).JxW(q) * body.thickness * (*values).shape_grad(i, q));
+                  {
+                    Vector dilatation = (*values).shape_grad(i, q);
+                    if (kinematics.is_revolution())
+                      dilatation[0] += kinematics.hoop_strain((*values).shape_value(i, q), x);
+                    add(nodes[i], of_volume * dilatation);
+                  }
               }
           }
       }
@@ -305,6 +327,7 @@ namespace slipstick::fem
       const dealii::DoFHandler<dim>               &dof_handler;
       unsigned int                                 number;
       const scene::Body<dim>                      &body;
+      Kinematics<dim>                              kinematics;
       double                                       t;
       Eigen::VectorXd                              load;
       std::vector<unsigned int>                    body_forces; // on this body

@@ -1,13 +1,16 @@
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/log.h>
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/base/text.h>
 #include <slipstick/fem/boundary_parts.h>
+#include <slipstick/fem/kinematics.h>
 #include <slipstick/fem/make_body.h>
 #include <slipstick/fem/refinement.h>
 #include <slipstick/fem/smooth_outline.h>
 #include <slipstick/scene/boundary_part.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace slipstick::fem
@@ -89,15 +92,53 @@ namespace slipstick::fem
     template <int dim>
     void remark_on_plane_state(const scene::Scene<dim> &scene, MeshFile &file)
     {
-      const bool  is_stress = scene.plane_state == scene::PlaneState::plane_stress;
-      const auto &other     = is_stress ? file.plane_strain_types : file.plane_stress_types;
-      std::string types;
-      for (const std::string &type : other)
-        types += (types.empty() ? "" : ", ") + type;
-      if (!types.empty())
-        file.remarks.push_back(
-          "warning: mesh file " + file.file + " has elements of plane " + (is_stress ? "strain (" : "stress (") +
-          types + "), and the scene is computed in plane " + (is_stress ? "stress" : "strain") + ": see Plane state");
+      const auto names = [](const std::set<std::string> &types) {
+        std::string all;
+        for (const std::string &type : types)
+          all += (all.empty() ? "" : ", ") + type;
+        return all;
+      };
+      const std::string computed_in = scene.plane_state == scene::PlaneState::plane_stress   ? "in plane stress"
+                                      : scene.plane_state == scene::PlaneState::plane_strain ? "in plane strain"
+                                                                                             : "as axisymmetric";
+      if (scene.plane_state != scene::PlaneState::axisymmetric && !file.axisymmetric_types.empty())
+        throw InputError("mesh file " + file.file + " has axisymmetric elements (" + names(file.axisymmetric_types) +
+                           "), but the scene is computed " + computed_in,
+                         "set Plane state = axisymmetric, or mesh the bodies with plane elements");
+      const auto warn = [&](const std::set<std::string> &types, const std::string &kind) {
+        if (!types.empty())
+          file.remarks.push_back("warning: mesh file " + file.file + " has elements of plane " + kind + " (" +
+                                 names(types) + "), and the scene is computed " + computed_in + ": see Plane state");
+      };
+      if (scene.plane_state != scene::PlaneState::plane_stress)
+        warn(file.plane_stress_types, "stress");
+      if (scene.plane_state != scene::PlaneState::plane_strain)
+        warn(file.plane_strain_types, "strain");
+    }
+
+    /// Nodes within rounding of the axis of revolution come to lie on it; beyond it there must be none.
+    template <int dim>
+    void move_to_axis(const scene::Body<dim> &body, const Kinematics<dim> &kinematics, MeshPiece<dim> &piece)
+    {
+      if (!kinematics.is_revolution() || piece.vertices.empty())
+        return;
+      double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+      for (const auto &x : piece.vertices)
+        {
+          low  = std::min(low, x[0]);
+          high = std::max(high, x[0]);
+        }
+      for (auto &x : piece.vertices)
+        if (kinematics.is_on_axis(x, high - low))
+          x[0] = 0;
+        else if (x[0] < 0)
+          throw InputError(
+            format("Body %s: it reaches to x = %g mm, but where Plane state = axisymmetric x is the radius "
+                   "and the axis is x = 0",
+                   body.name.c_str(),
+                   low),
+            "mesh or place the half of its section where x >= 0 (Translation, Rotation; a ball is a half disc "
+            "turned by 90 degrees or a quarter disc), or set another Plane state");
     }
 
     /// Every boundary and point of body @p b that the scene uses must be there.
@@ -210,6 +251,7 @@ namespace slipstick::fem
     refine_towards_boundaries(body, mesh);
     mesh.piece.body = b;
     place(mesh.piece, body.placement);
+    move_to_axis(body, Kinematics<dim>(scene.plane_state), mesh.piece);
     add_boundary_parts(scene, b, mesh);
     return mesh;
   }

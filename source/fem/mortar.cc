@@ -32,8 +32,12 @@ namespace slipstick::fem
       using Edge   = SurfaceEdge<2>;
       using Tensor = dealii::Tensor<1, 2>;
 
-      MortarIntegrals(const std::vector<Edge> &slave_, const std::vector<Edge> &master_, const Reach &reach)
-        : pairing(slave_, master_, reach)
+      MortarIntegrals(const std::vector<Edge> &slave_,
+                      const std::vector<Edge> &master_,
+                      const Reach             &reach,
+                      const Kinematics<2>     &kinematics_)
+        : kinematics(kinematics_)
+        , pairing(slave_, master_, reach, kinematics)
         , slave(slave_)
         , master(master_)
         , gauss(n_gauss)
@@ -56,7 +60,7 @@ namespace slipstick::fem
       {
         std::vector<MortarRow<2>> result;
         for (unsigned int i = 0; i < sums.size(); ++i)
-          if (sums[i].length > smallest_cover * pairing.nodes()[i].size)
+          if (pairing.nodes()[i].measure > 0 && sums[i].measure > smallest_cover * pairing.nodes()[i].scale)
             result.push_back(row_of(pairing.nodes()[i], sums[i]));
         return result;
       }
@@ -64,8 +68,9 @@ namespace slipstick::fem
     private:
       struct Sums
       {
-        double                    length = 0; // D_i
-        Tensor                    rise;       // <phi_i (rise of the master - rise of the slave) n>
+        double                    measure = 0; // D_i
+        double                    length  = 0; // in the plane
+        Tensor                    rise;        // <phi_i (rise of the master - rise of the slave) n>
         double                    left_out = 0;
         std::map<NodeKey, double> slave, master; // D_ik, M_ij
       };
@@ -85,19 +90,21 @@ namespace slipstick::fem
 
         Eigen::MatrixXd                    mass     = Eigen::MatrixXd::Zero(n_test, n_test);       // <T_a T_b>
         Eigen::MatrixXd                    slave_   = Eigen::MatrixXd::Zero(n_test, edge.n_nodes); // <T_a N_k>
-        Eigen::VectorXd                    lengths  = Eigen::VectorXd::Zero(n_test);               // <T_a>
+        Eigen::VectorXd                    measures = Eigen::VectorXd::Zero(n_test);               // <T_a>
+        Eigen::VectorXd                    lengths  = Eigen::VectorXd::Zero(n_test);               // in the plane
         Eigen::MatrixXd                    rises    = Eigen::MatrixXd::Zero(n_test, 2);            // <T_a rise n>
         double                             left_out = 0;
         std::map<NodeKey, Eigen::VectorXd> other; // <T_a N_j(y)>
         for (const auto &part : parts)
           for (unsigned int q = 0; q < gauss.size(); ++q)
             {
-              const double s  = part.from + (part.to - part.from) * gauss.point(q)[0];
-              const double dx = gauss.weight(q) * (part.to - part.from) * edge.tangent(s).norm();
-              const auto   N  = edge.shape(s);
-              const auto   T  = is_linear ? std::array<double, 3>{{1 - s, s, 0}} : N;
-              const auto   y  = pairing.hit(e, s, part.master);
-              const Edge  &to = master[part.master];
+              const double s      = part.from + (part.to - part.from) * gauss.point(q)[0];
+              const double length = gauss.weight(q) * (part.to - part.from) * edge.tangent(s).norm();
+              const double dx     = length * kinematics.measure(edge.point(s));
+              const auto   N      = edge.shape(s);
+              const auto   T      = is_linear ? std::array<double, 3>{{1 - s, s, 0}} : N;
+              const auto   y      = pairing.hit(e, s, part.master);
+              const Edge  &to     = master[part.master];
               // a Gauss point at the very end of a segment may miss by rounding
               const double r =
                 y ? y->s
@@ -106,7 +113,8 @@ namespace slipstick::fem
               const Eigen::VectorXd test = Eigen::Map<const Eigen::VectorXd>(T.data(), n_test);
               mass += dx * test * test.transpose();
               slave_ += dx * test * Eigen::Map<const Eigen::RowVectorXd>(N.data(), edge.n_nodes);
-              lengths += dx * test;
+              measures += dx * test;
+              lengths += length * test;
               left_out = std::max(left_out, edge.curve.left_out + to.curve.left_out);
               if (edge.curve || to.curve)
                 {
@@ -120,22 +128,23 @@ namespace slipstick::fem
                   sum += dx * N_m[j] * test;
                 }
             }
-        // phi = diag(lengths) mass^-1 T, scaled: on a short part the entries are of very different size
+        // phi = diag(measures) mass^-1 T, scaled: on a short part the entries are of very different size
         const Eigen::VectorXd scale  = mass.diagonal().cwiseSqrt().cwiseInverse();
         const Eigen::MatrixXd scaled = scale.asDiagonal() * mass * scale.asDiagonal();
         const Eigen::MatrixXd dual =
-          lengths.asDiagonal() * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal()).eval();
+          measures.asDiagonal() * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal()).eval();
         const Eigen::MatrixXd D = dual * slave_, of_curves = dual * rises;
         for (unsigned int i = 0; i < n_test; ++i)
           {
             Sums &node = sums[pairing.nodes_of(e)[i]];
+            node.measure += measures[i];
             node.length += lengths[i];
             for (unsigned int d = 0; d < 2; ++d)
               node.rise[d] += of_curves(i, d);
             node.left_out = std::max(node.left_out, left_out);
             for (unsigned int k = 0; k < edge.n_nodes; ++k)
               if (!(n_test == edge.n_nodes && i != k)) // biorthogonal
-                node.slave[edge.keys[k]] += n_test == edge.n_nodes ? lengths[i] : D(i, k);
+                node.slave[edge.keys[k]] += n_test == edge.n_nodes ? measures[i] : D(i, k);
           }
         for (const auto &[key, sum] : other)
           {
@@ -169,13 +178,15 @@ namespace slipstick::fem
         row.side           = node.side;
         row.position       = node.position;
         row.normal         = node.normal;
+        row.measure        = sum.measure;
         row.length         = sum.length;
+        row.full_measure   = node.measure;
         row.full_length    = node.covered;
-        row.slave_weights  = normalised(sum.slave, sum.length);
-        row.master_weights = normalised(sum.master, sum.length);
+        row.slave_weights  = normalised(sum.slave, sum.measure);
+        row.master_weights = normalised(sum.master, sum.measure);
         row.left_out       = sum.left_out;
         measure(row);
-        row.gap += row.normal * sum.rise / sum.length;
+        row.gap += row.normal * sum.rise / sum.measure;
         return row;
       }
 
@@ -215,6 +226,7 @@ namespace slipstick::fem
       }
 
     private:
+      const Kinematics<2>                 kinematics;
       const CurvePairing                  pairing;
       const std::vector<Edge>            &slave, &master;
       const dealii::QGauss<1>             gauss;
@@ -257,9 +269,10 @@ namespace slipstick::fem
                                         const std::vector<SurfaceEdge<2>> &master,
                                         const Reach                       &reach,
                                         const scene::ContactDiscretization discretization,
-                                        const std::string                 &name)
+                                        const std::string                 &name,
+                                        const Kinematics<2>               &kinematics)
   {
-    const MortarIntegrals integrals(slave, master, reach);
+    const MortarIntegrals integrals(slave, master, reach, kinematics);
     auto                  rows = integrals.rows();
     if (discretization == scene::ContactDiscretization::mortar)
       return rows;

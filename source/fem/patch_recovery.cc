@@ -22,15 +22,20 @@ namespace slipstick::fem
     }
 
     template <int dim>
-    using Polynomial = Eigen::Matrix<double, PatchRecovery<dim>::n_monomials, PatchRecovery<dim>::n_components>;
+    using Polynomial = Eigen::Matrix<double,
+                                     PatchRecovery<dim>::n_monomials,
+                                     Eigen::Dynamic,
+                                     0,
+                                     PatchRecovery<dim>::n_monomials,
+                                     PatchRecovery<dim>::max_components>;
 
     /// Coefficients from the sums of one vertex; nothing if they do not determine them.
     template <int dim>
-    std::optional<Polynomial<dim>> fitted(const Eigen::RowVectorXd &sums)
+    std::optional<Polynomial<dim>> fitted(const Eigen::RowVectorXd &sums, const unsigned int n_components)
     {
       constexpr unsigned int      n = PatchRecovery<dim>::n_monomials;
       Eigen::Matrix<double, n, n> matrix;
-      Polynomial<dim>             right;
+      Polynomial<dim>             right(n, n_components);
       unsigned int                next = 0;
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = i; j < n; ++j)
@@ -49,9 +54,10 @@ namespace slipstick::fem
   } // namespace
 
   template <int dim>
-  PatchRecovery<dim>::PatchRecovery(const dealii::DoFHandler<dim> &dof_handler_)
-    : sums(Eigen::MatrixXd::Zero(dof_handler_.n_dofs() / dim, n_sums))
+  PatchRecovery<dim>::PatchRecovery(const dealii::DoFHandler<dim> &dof_handler_, const unsigned int n_components_)
+    : sums(Eigen::MatrixXd::Zero(dof_handler_.n_dofs() / dim, n_sums(n_components_)))
     , dof_handler(dof_handler_)
+    , n_components(n_components_)
   {}
 
   template <int dim>
@@ -82,29 +88,29 @@ namespace slipstick::fem
     std::vector<std::optional<std::optional<Polynomial<dim>>>> polynomials(sums.rows());
     const auto                                                 polynomial = [&](const unsigned int node) {
       if (!polynomials[node])
-        polynomials[node] = fitted<dim>(sums.row(node));
+        polynomials[node] = fitted<dim>(sums.row(node), n_components);
       return *polynomials[node];
     };
     for (const auto &cell : dof_handler.active_cell_iterators())
       for (const unsigned int l : cell->line_indices())
         {
-          const auto                             line   = cell->line(l);
-          const unsigned int                     middle = line->dof_index(0) / dim;
-          const dealii::Point<dim>               x      = line->center(true);
-          Eigen::Matrix<double, 1, n_components> sum    = Eigen::Matrix<double, 1, n_components>::Zero();
-          unsigned int                           n      = 0;
+          const auto               line   = cell->line(l);
+          const unsigned int       middle = line->dof_index(0) / dim;
+          const dealii::Point<dim> x      = line->center(true);
+          Eigen::RowVectorXd       sum    = Eigen::RowVectorXd::Zero(n_components);
+          unsigned int             n      = 0;
           for (unsigned int end = 0; end < 2; ++end)
             {
               const unsigned int node = line->vertex_dof_index(end, 0) / dim;
               if (const auto fit = polynomial(node))
                 {
-                  nodal.row(node).template head<n_components>() = fit->row(0);
+                  nodal.row(node).head(n_components) = fit->row(0);
                   sum += monomials<dim>(x - line->vertex(end)).transpose() * *fit;
                   ++n;
                 }
             }
           if (n > 0)
-            nodal.row(middle).template head<n_components>() = sum / n;
+            nodal.row(middle).head(n_components) = sum / n;
         }
   }
 

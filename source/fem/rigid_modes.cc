@@ -63,11 +63,26 @@ namespace slipstick::fem
   void rigid_modes(const Element<dim>            &element,
                    const dealii::DoFHandler<dim> &dof_handler,
                    const Frame<dim>              &body,
-                   Eigen::MatrixXd               &kernel,
-                   Eigen::MatrixXd               &body_modes)
+                   const Kinematics<dim>         &kinematics,
+                   tfeti::SubdomainMatrices      &system)
   {
     static_assert(dim == 2, "one rotation: two dimensions");
     const auto points = positions_of_unknowns(element, dof_handler);
+    system.positions.resize(dim, points.size() / dim);
+    for (unsigned int i = 0; i < points.size(); ++i)
+      system.positions(i % dim, i / dim) = points[i][i % dim];
+    for (unsigned int d = 0; d < dim; ++d)
+      system.frame.center[d] = body.center[d];
+    system.frame.length  = body.length;
+    const unsigned int k = kinematics.n_rigid_motions();
+    system.kernel        = Eigen::MatrixXd::Zero(points.size(), k);
+    system.body_modes    = Eigen::MatrixXd::Identity(k, k);
+    if (kinematics.is_revolution())
+      {
+        for (unsigned int i = 1; i < points.size(); i += dim) // along the axis, y
+          system.kernel(i, 0) = 1;
+        return;
+      }
 
     Frame<dim> own;
     for (const auto &x : points)
@@ -77,25 +92,23 @@ namespace slipstick::fem
       squares += x.distance_square(own.center);
     own.length = std::sqrt(squares / points.size());
 
-    kernel = Eigen::MatrixXd::Zero(points.size(), 3);
     for (unsigned int i = 0; i < points.size(); ++i)
       {
         const dealii::Tensor<1, dim> r = (points[i] - own.center) / own.length;
-        kernel(i, i % dim)             = 1;
-        kernel(i, dim)                 = i % dim == 0 ? -r[1] : r[0];
+        system.kernel(i, i % dim)      = 1;
+        system.kernel(i, dim)          = i % dim == 0 ? -r[1] : r[0];
       }
     // rotation about the body's centre = scaled own rotation + translation of the own centre
     const dealii::Tensor<1, dim> offset = (own.center - body.center) / body.length;
-    body_modes                          = Eigen::MatrixXd::Identity(3, 3);
-    body_modes(0, 2)                    = -offset[1];
-    body_modes(1, 2)                    = offset[0];
-    body_modes(2, 2)                    = own.length / body.length;
+    system.body_modes(0, 2)             = -offset[1];
+    system.body_modes(1, 2)             = offset[0];
+    system.body_modes(2, 2)             = own.length / body.length;
   }
 
   template std::vector<Frame<2>> body_frames(const scene::Scene<2> &, const Mesh<2> &);
   template void                  rigid_modes(const Element<2> &,
                                              const dealii::DoFHandler<2> &,
                                              const Frame<2> &,
-                                             Eigen::MatrixXd &,
-                                             Eigen::MatrixXd &);
+                                             const Kinematics<2> &,
+                                             tfeti::SubdomainMatrices &);
 } // namespace slipstick::fem

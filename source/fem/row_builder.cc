@@ -237,7 +237,7 @@ namespace slipstick::fem
   template <int dim>
   bool RowBuilder<dim>::touch_obstacle(const unsigned int i,
                                        const unsigned int pair,
-                                       const double       area,
+                                       const Tributary   &area,
                                        Touch             &touch) const
   {
     return !scene.contacts[pair].law.is_bonded && place_on_obstacle(i, pair, area, touch);
@@ -246,7 +246,7 @@ namespace slipstick::fem
   template <int dim>
   bool RowBuilder<dim>::place_on_obstacle(const unsigned int i,
                                           const unsigned int pair,
-                                          const double       area,
+                                          const Tributary   &area,
                                           Touch             &touch) const
   {
     const auto &node    = nodes[i];
@@ -255,13 +255,14 @@ namespace slipstick::fem
     touch.point.gap     = gap_of(where, node.point(), contact.gap, t);
     if (where.reach && touch.point.gap > *where.reach)
       return false;
-    touch.pair                = pair;
-    touch.normal              = contact.normal;
-    touch.slave               = {{i, 1.}};
-    touch.point.area          = area;
-    touch.point.length        = area / scene.bodies[node.body].thickness;
-    touch.point.traction_area = area;
-    return true;
+    touch.pair                  = pair;
+    touch.normal                = contact.normal;
+    touch.slave                 = {{i, 1.}};
+    touch.point.area            = area.area;
+    touch.point.length          = area.length;
+    touch.point.traction_area   = area.area;
+    touch.point.traction_length = area.length;
+    return area.area > 0;
   }
 
   template <int dim>
@@ -287,8 +288,9 @@ namespace slipstick::fem
     point.length = row.length;
     const double thickness =
       std::min(scene.bodies[where.slave.body].thickness, scene.bodies[where.master->body].thickness);
-    point.area          = row.length * thickness;
-    point.traction_area = std::max(row.length, smallest_covered_part * row.full_length) * thickness;
+    point.area            = row.measure * thickness;
+    point.traction_area   = std::max(row.measure, smallest_covered_part * row.full_measure) * thickness;
+    point.traction_length = std::max(row.length, smallest_covered_part * row.full_length);
     return true;
   }
 

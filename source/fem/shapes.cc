@@ -13,6 +13,8 @@ namespace slipstick::fem
     // Disc: a square with bent sides in the middle, rings of cells around it.
     constexpr double core_radius  = 0.55; // of the corners of the square, over the radius: cells of about equal size
     constexpr double core_bending = 0.4;  // 0: straight sides, 1: arcs
+    constexpr double core_corner =
+      1.15; // quarter disc: its core's outer corner, over the other two: angles of 116 degrees there
 
     /// Point of the unit circle at @p fraction of the whole circle; exact at the quarters.
     dealii::Tensor<1, 2> on_circle(const double fraction)
@@ -199,6 +201,72 @@ namespace slipstick::fem
       bend(piece, body, 0);
       return piece;
     }
+
+    /// Half of the lower half disc: a lattice of n x n cells at the centre and layers around its two outer sides, n the
+    /// half of the edges on the arc.
+    MeshPiece<2> quarter_disc(const scene::Body<2> &body, const unsigned int refinements)
+    {
+      const double       R = body.radius;
+      const unsigned int n = (body.cells_along_arc / 2) << refinements, n_loop = 2 * n;
+      const unsigned int n_layers =
+        static_cast<unsigned int>(
+          std::max(1.,
+                   std::round((1 - core_radius) / (1 + core_radius) * 2 * body.cells_along_arc / dealii::numbers::PI)))
+        << refinements;
+      const auto arc = [&](const unsigned int l) { return on_circle(.75 + .25 * l / n_loop); }; // from the lowest point
+      const auto core = [&](const unsigned int l) { // straight sides, the corner between them pulled outwards
+        const auto         end   = [&](const unsigned int k) { return (k == n ? core_corner : 1.) * arc(k); };
+        const unsigned int first = l < n ? 0 : n;
+        const double       s     = double(l - first) / n;
+        return core_radius * ((1 - s) * end(first) + s * end(first + n));
+      };
+
+      MeshPiece<2> piece;
+      const auto   lattice = [n](const unsigned int i, const unsigned int j) { return j * (n + 1) + i; };
+      for (unsigned int j = 0; j <= n; ++j) // downwards
+        for (unsigned int i = 0; i <= n; ++i)
+          {
+            const double u = double(i) / n, v = double(j) / n;
+            const auto   bottom = core(i), right = core(2 * n - j);
+            piece.vertices.push_back(body.center +
+                                     R * (i == n   ? right
+                                          : j == n ? bottom
+                                                   : u * right + v * bottom - u * v * core(n))); // top, left: straight
+          }
+      for (unsigned int j = 0; j < n; ++j)
+        for (unsigned int i = 0; i < n; ++i)
+          piece.cells.push_back(
+            quadrilateral<2>(lattice(i, j + 1), lattice(i + 1, j + 1), lattice(i + 1, j), lattice(i, j)));
+
+      const unsigned int first = piece.vertices.size();
+      const auto         layer = [&](const unsigned int l, const unsigned int k) {
+        return k > 0 ? first + (k - 1) * (n_loop + 1) + l : l <= n ? lattice(l, n) : lattice(n, n_loop - l);
+      };
+      for (unsigned int k = 1; k <= n_layers; ++k)
+        for (unsigned int l = 0; l <= n_loop; ++l)
+          {
+            const double s = double(k) / n_layers;
+            piece.vertices.push_back(body.center + R * (k == n_layers ? arc(l) : (1 - s) * core(l) + s * arc(l)));
+          }
+      for (unsigned int l = 0; l < n_loop; ++l)
+        {
+          for (unsigned int k = 0; k < n_layers; ++k)
+            piece.cells.push_back(quadrilateral<2>(layer(l, k), layer(l, k + 1), layer(l + 1, k + 1), layer(l + 1, k)));
+          piece.boundary_faces.push_back({{{layer(l, n_layers), layer(l + 1, n_layers)}}, 0});
+        }
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          piece.boundary_faces.push_back({{{lattice(i, 0), lattice(i + 1, 0)}}, 1});
+          piece.boundary_faces.push_back({{{lattice(0, i), lattice(0, i + 1)}}, 2});
+        }
+      for (unsigned int k = 0; k < n_layers; ++k)
+        {
+          piece.boundary_faces.push_back({{{layer(n_loop, k), layer(n_loop, k + 1)}}, 1});
+          piece.boundary_faces.push_back({{{layer(0, k), layer(0, k + 1)}}, 2});
+        }
+      bend(piece, body, 0);
+      return piece;
+    }
   } // namespace
 
   template <int dim>
@@ -223,6 +291,8 @@ namespace slipstick::fem
           return {{"arc", 0}};
         case scene::Shape::half_disc:
           return {{"arc", 0}, {"flat", 1}};
+        case scene::Shape::quarter_disc:
+          return {{"arc", 0}, {"flat", 1}, {"side", 2}};
         case scene::Shape::ring:
           return {{"inner", 0}, {"outer", 1}};
         case scene::Shape::quarter_ring:
@@ -247,6 +317,9 @@ namespace slipstick::fem
         case scene::Shape::disc:
         case scene::Shape::half_disc:
           mesh.piece = disc(body, refinements);
+          break;
+        case scene::Shape::quarter_disc:
+          mesh.piece = quarter_disc(body, refinements);
           break;
         case scene::Shape::ring:
         case scene::Shape::quarter_ring:

@@ -71,6 +71,12 @@ namespace slipstick::fem
               count          = {n * n / 8, body.shape == scene::Shape::disc ? n : 1.5 * n};
               break;
             }
+          case scene::Shape::quarter_disc:
+            {
+              const double n = body.cells_along_arc;
+              count          = {n * n / 2, 3 * n};
+              break;
+            }
           case scene::Shape::ring:
           case scene::Shape::quarter_ring:
             {

@@ -2,18 +2,19 @@
 #include <slipstick/fem/cell_values.h>
 #include <slipstick/fem/dilatation.h>
 #include <slipstick/fem/elasticity.h>
+#include <slipstick/fem/kinematics.h>
 #include <slipstick/fem/patch_recovery.h>
 #include <slipstick/fem/stress.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 
+#include <limits>
+
 namespace slipstick::fem
 {
   namespace
   {
-    constexpr unsigned int n_components = 3; // xx, yy, xy
-
     /// What one subdomain needs again and again.
     template <int dim>
     struct Subdomain
@@ -26,17 +27,21 @@ namespace slipstick::fem
         : element(spaces.of(p))
         , dof_handler(*spaces.dof_handlers[p])
         , thickness(scene.bodies[mesh.subdomains[p]->body].thickness)
+        , kinematics(scene.plane_state)
         , law(scene.materials[scene.bodies[mesh.subdomains[p]->body].material], scene.plane_state)
         , temperature(scene, mesh.subdomains[p]->body, t)
         , project(scene.discretization.element == scene::ElementKind::nearly_incompressible)
+        , n_components(kinematics.n_stress_components())
       {}
 
       const Element<dim>            &element;
       const dealii::DoFHandler<dim> &dof_handler;
       double                         thickness;
-      PlaneLaw                       law;
+      Kinematics<dim>                kinematics;
+      ElasticLaw                     law;
       TemperatureOfBody<dim>         temperature;
-      bool                           project; // the dilatation
+      bool                           project;      // the dilatation
+      unsigned int                   n_components; // xx, yy, xy, of bodies of revolution hoop
     };
 
     /// Stresses of the displacement at the points of a rule, one cell after the other.
@@ -48,17 +53,18 @@ namespace slipstick::fem
         : on(on_)
         , values(*on.element.mapping, *on.element.scalar, points, flags())
         , projection(on.element)
-        , stress(points.size(), n_components)
+        , stress(points.size(), on.n_components)
         , dilatation(points.size())
         , temperature(Eigen::VectorXd::Zero(points.size()))
-        , of_projection(on.element.stiffness.size())
+        , rule(on.kinematics.stiffness_rule(on.element))
+        , of_projection(rule.size())
         , real_points(points.size())
       {
         if (on.project)
-          all_values.emplace(*on.element.mapping, *on.element.scalar, on.element.stiffness, flags());
+          all_values.emplace(*on.element.mapping, *on.element.scalar, rule, flags());
       }
 
-      /// @p u: displacement at the nodes of the cell, dim x nodes. @return points x (xx, yy, xy).
+      /// @p u: displacement at the nodes of the cell, dim x nodes. @return points x (xx, yy, xy, of bodies of revolution hoop).
       const Eigen::MatrixXd &reinit(const typename CellValues<dim>::Cell &cell, const Eigen::MatrixXd &u)
       {
         values.reinit(cell);
@@ -69,10 +75,12 @@ namespace slipstick::fem
           project_dilatation(cell, u);
         for (unsigned int q = 0; q < temperature.size(); ++q)
           {
-            const auto gradient = gradient_at(*values, q, u);
+            const auto   gradient = gradient_at(*values, q, u);
+            const double hoop     = hoop_strain_at(values, q, u);
             if (!on.project)
-              dilatation[q] = trace(gradient) - on.law.volume_expansion * temperature[q];
-            stress.row(q) = on.law.stress(gradient, dilatation[q], temperature[q]).matrix().transpose();
+              dilatation[q] = trace(gradient) + hoop - on.law.volume_expansion * temperature[q];
+            stress.row(q) =
+              on.law.stress(gradient, hoop, dilatation[q], temperature[q]).head(on.n_components).matrix().transpose();
           }
         return stress;
       }
@@ -82,10 +90,29 @@ namespace slipstick::fem
         return (*values).JxW(q);
       }
 
+      /// JxW times thickness or circumference.
+      double weight(const unsigned int q) const
+      {
+        const double in_plane = (*values).JxW(q) * on.thickness;
+        return on.kinematics.is_revolution() ? in_plane * on.kinematics.measure(values.point(q)) : in_plane;
+      }
+
     private:
       dealii::UpdateFlags flags() const
       {
+        if (on.kinematics.is_revolution())
+          return dealii::update_quadrature_points | dealii::update_values;
         return on.project || !on.temperature.is_zero() ? dealii::update_quadrature_points : dealii::update_default;
+      }
+
+      double hoop_strain_at(const CellValues<dim> &at, const unsigned int q, const Eigen::MatrixXd &u) const
+      {
+        if (!on.kinematics.is_revolution())
+          return 0;
+        double u_x = 0;
+        for (unsigned int i = 0; i < u.cols(); ++i)
+          u_x += u(0, i) * (*at).shape_value(i, q);
+        return on.kinematics.hoop_strain(u_x, at.point(q));
       }
 
       static dealii::Tensor<2, dim> gradient_at(const dealii::FEValues<dim> &values,
@@ -102,11 +129,11 @@ namespace slipstick::fem
       /// As in the stiffness: projected from the points of its rule, then taken at our points.
       void project_dilatation(const typename CellValues<dim>::Cell &cell, const Eigen::MatrixXd &u)
       {
-        if (all_values->reinit(cell))
-          projection.reinit(**all_values);
+        if (all_values->reinit(cell) || on.kinematics.is_revolution())
+          projection.reinit(*all_values, on.kinematics);
         for (unsigned int q = 0; q < of_projection.size(); ++q)
           {
-            of_projection[q] = trace(gradient_at(**all_values, q, u));
+            of_projection[q] = trace(gradient_at(**all_values, q, u)) + hoop_strain_at(*all_values, q, u);
             if (!on.temperature.is_zero())
               of_projection[q] -= on.law.volume_expansion * on.temperature(all_values->point(q));
           }
@@ -120,7 +147,9 @@ namespace slipstick::fem
       std::optional<CellValues<dim>>  all_values; // at the points of the stiffness, if it is projected from there
       DilatationProjection<dim>       projection;
       Eigen::MatrixXd                 stress;
-      Eigen::VectorXd                 dilatation, temperature, of_projection;
+      Eigen::VectorXd                 dilatation, temperature;
+      dealii::Quadrature<dim>         rule; // of the stiffness
+      Eigen::VectorXd                 of_projection;
       std::vector<dealii::Point<dim>> real_points;
     };
 
@@ -159,6 +188,7 @@ namespace slipstick::fem
     {
       const auto                                  &element       = on.element;
       const auto                                  &points        = element.stress;
+      const unsigned int                           n_components  = on.n_components;
       const Eigen::MatrixXd                        extrapolation = extrapolation_to_nodes(element);
       CellStress<dim>                              stress(on, points);
       Eigen::MatrixXd                              sums = Eigen::MatrixXd::Zero(u.size() / dim, n_components + 1);
@@ -181,7 +211,7 @@ namespace slipstick::fem
           const Eigen::MatrixXd at_nodes = area * extrapolation * at_points;
           for (unsigned int i = 0; i < nodes.size(); ++i)
             {
-              sums.row(nodes[i]).template head<n_components>() += at_nodes.row(i);
+              sums.row(nodes[i]).head(n_components) += at_nodes.row(i);
               sums(nodes[i], n_components) += area;
             }
         }
@@ -244,12 +274,14 @@ namespace slipstick::fem
           double      error     = 0;
           for (unsigned int q = 0; q < points.size(); ++q)
             {
-              Eigen::Array3d difference = -at_points.row(q).transpose().array();
+              Eigen::Array4d at_point = Eigen::Array4d::Zero(), difference = Eigen::Array4d::Zero();
+              at_point.head(on.n_components)   = at_points.row(q).transpose().array();
+              difference.head(on.n_components) = -at_points.row(q).transpose().array();
               for (unsigned int i = 0; i < nodes.size(); ++i)
-                difference +=
-                  shapes(q, i) * stress.nodal.row(nodes[i]).template head<n_components>().transpose().array();
-              const double weight = computed.JxW(q) * on.thickness;
-              squares.first += on.law.energy(at_points.row(q).transpose().array()) * weight;
+                difference.head(on.n_components) +=
+                  shapes(q, i) * stress.nodal.row(nodes[i]).head(on.n_components).transpose().array();
+              const double weight = computed.weight(q);
+              squares.first += on.law.energy(at_point) * weight;
               error += on.law.energy(difference) * weight;
             }
           stress.error[cell->active_cell_index()] = std::sqrt(error);
@@ -265,10 +297,13 @@ namespace slipstick::fem
                                  const Eigen::MatrixXd    &sums,
                                  const PatchRecovery<dim> *patches)
     {
-      Eigen::MatrixXd nodal(sums.rows(), n_components + 1);
+      const unsigned int n_components = on.n_components;
+      Eigen::MatrixXd    nodal(sums.rows(), 4);
       nodal.leftCols(n_components) = sums.leftCols(n_components).array().colwise() / sums.col(n_components).array();
       if (patches)
         patches->recover(nodal);
+      if (on.kinematics.is_revolution())
+        return nodal; // the last component is that across the plane
       std::vector<dealii::Point<dim>> positions;
       if (!on.temperature.is_zero())
         {
@@ -290,13 +325,14 @@ namespace slipstick::fem
                               const std::vector<Eigen::VectorXd> &u,
                               const double                        t)
   {
-    std::vector<Eigen::MatrixXd>                     sums;
+    const unsigned int           n_components = Kinematics<dim>(scene.plane_state).n_stress_components();
+    std::vector<Eigen::MatrixXd> sums;
     std::vector<std::unique_ptr<PatchRecovery<dim>>> patches(u.size());
     collectively(mesh.comm, [&] { // a formula of the temperature may give no number on one rank alone
       for (unsigned int p = 0; p < u.size(); ++p)
         {
           if (needs_patches(spaces.of(p)))
-            patches[p] = std::make_unique<PatchRecovery<dim>>(*spaces.dof_handlers[p]);
+            patches[p] = std::make_unique<PatchRecovery<dim>>(*spaces.dof_handlers[p], n_components);
           sums.push_back(weighted_stress(Subdomain<dim>(scene, mesh, spaces, p, t), u[p], patches[p].get()));
         }
     });
@@ -310,9 +346,11 @@ namespace slipstick::fem
     const bool any_patches =
       std::any_of(patches.begin(), patches.end(), [](const auto &patch) { return patch != nullptr; });
     if (dealii::Utilities::MPI::max(any_patches ? 1 : 0, mesh.comm) > 0)
-      add_copies<dim>(constraints, of_patches, PatchRecovery<dim>::n_sums);
+      add_copies<dim>(constraints, of_patches, PatchRecovery<dim>::n_sums(n_components));
 
     StressResult result;
+    result.has_hoop_stress = Kinematics<dim>(scene.plane_state).is_revolution();
+    double min_zz = std::numeric_limits<double>::max(), max_zz = std::numeric_limits<double>::lowest();
     collectively(mesh.comm, [&] {
       for (unsigned int p = 0; p < u.size(); ++p)
         {
@@ -325,6 +363,8 @@ namespace slipstick::fem
             {
               const auto s         = stress.nodal.row(i);
               result.max_von_mises = std::max(result.max_von_mises, von_mises(s[0], s[1], s[2], s[3]));
+              min_zz               = std::min(min_zz, s[3]);
+              max_zz               = std::max(max_zz, s[3]);
             }
           const auto [energy, error] = estimate(on, u[p], stress);
           result.energy_squared += energy;
@@ -332,6 +372,11 @@ namespace slipstick::fem
           result.subdomains.push_back(std::move(stress));
         }
     });
+    if (result.has_hoop_stress)
+      {
+        result.min_hoop_stress = dealii::Utilities::MPI::min(min_zz, mesh.comm);
+        result.max_hoop_stress = dealii::Utilities::MPI::max(max_zz, mesh.comm);
+      }
     result.max_von_mises  = dealii::Utilities::MPI::max(result.max_von_mises, mesh.comm);
     result.energy_squared = dealii::Utilities::MPI::sum(result.energy_squared, mesh.comm);
     result.error_squared  = dealii::Utilities::MPI::sum(result.error_squared, mesh.comm);

@@ -14,6 +14,9 @@ namespace slipstick::fem
     // Gauss, three points on [0, 1]: exact for straight edges of both degrees
     const std::array<double, 3> gauss_points  = {{0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)}};
     const std::array<double, 3> gauss_weights = {{5. / 18, 8. / 18, 5. / 18}};
+    // Less than this part of an edge counts as nothing: the end of a quadratic edge on the axis of revolution, which has none
+    // when the edge is straight and next to none when it is curved; other nodes have a ninth or more.
+    constexpr double smallest_share = 0.01;
 
     /// Unit normal on the right of a way.
     template <int dim>
@@ -76,17 +79,21 @@ namespace slipstick::fem
   }
 
   template <int dim>
-  std::array<double, 3> SurfaceEdge<dim>::tributary_lengths() const
+  std::array<double, 3> SurfaceEdge<dim>::tributary_measures(const Kinematics<dim> &kinematics) const
   {
-    std::array<double, 3> lengths{};
+    std::array<double, 3> measures{};
     for (unsigned int q = 0; q < gauss_points.size(); ++q)
       {
-        const auto   N  = shape(gauss_points[q]);
-        const double dx = gauss_weights[q] * tangent(gauss_points[q]).norm();
+        const auto   N = shape(gauss_points[q]);
+        const double dx =
+          gauss_weights[q] * tangent(gauss_points[q]).norm() * kinematics.measure(point(gauss_points[q]));
         for (unsigned int i = 0; i < n_nodes; ++i)
-          lengths[i] += N[i] * dx;
+          measures[i] += N[i] * dx;
       }
-    return lengths;
+    for (double &measure : measures)
+      if (measure < smallest_share * (measures[0] + measures[1] + measures[2]))
+        measure = 0;
+    return measures;
   }
 
   template <int dim>

@@ -30,24 +30,28 @@ namespace slipstick::fem
             return {1, 2, 3};
           case 41: // plane stress
           case 51: // plane strain
+          case 81: // axisymmetric
           case 61: // plate
           case 74: // membrane
           case 91: // thin shell
             return {2, 3, 3};
           case 42:
           case 52:
+          case 82:
           case 62:
           case 72:
           case 92:
             return {2, 3, 6};
           case 44:
           case 54:
+          case 84:
           case 64:
           case 71:
           case 94:
             return {2, 4, 4};
           case 45:
           case 55:
+          case 85:
           case 65:
           case 75:
           case 95:
@@ -142,6 +146,8 @@ namespace slipstick::fem
             mesh.plane_stress_types.insert("type " + std::to_string(type));
           if (type >= 51 && type <= 55)
             mesh.plane_strain_types.insert("type " + std::to_string(type));
+          if (type >= 81 && type <= 85)
+            mesh.axisymmetric_types.insert("type " + std::to_string(type));
           mesh.is_curved = mesh.is_curved || (known.dim == 2 && known.n_nodes > known.n_corners);
           if (known.n_nodes == 0 && known.dim == 0) // springs, masses
             {

@@ -110,8 +110,8 @@ namespace slipstick::output
     }
 
     /// Computes the fields for users from displacement and stress components.
-    /// @param stress nodes x 4: xx, yy, xy, zz [MPa].
-    std::vector<Field> nodal_fields(const Eigen::VectorXd &u, const Eigen::MatrixXd &stress)
+    /// @param stress nodes x 4: xx, yy, xy, zz [MPa]; of bodies of revolution zz is the hoop stress, and part of the tensor.
+    std::vector<Field> nodal_fields(const Eigen::VectorXd &u, const Eigen::MatrixXd &stress, const bool has_hoop_stress)
     {
       std::vector<Field> fields = {{"displacement", 3, {}},
                                    {"stress", 9, {}},
@@ -119,6 +119,8 @@ namespace slipstick::output
                                    {"von_mises", 1, {}},
                                    {"principal_stress_1", 1, {}},
                                    {"principal_stress_2", 1, {}}};
+      if (has_hoop_stress)
+        fields.push_back({"hoop_stress", 1, {}});
       for (Field &field : fields)
         field.values.reserve(field.n_components * stress.rows());
       const auto add = [&fields](const unsigned int field, const std::initializer_list<double> values) {
@@ -130,11 +132,13 @@ namespace slipstick::output
           const double xx = stress(node, 0), yy = stress(node, 1), xy = stress(node, 2), zz = stress(node, 3);
           const double mean = (xx + yy) / 2, radius = std::hypot((xx - yy) / 2, xy);
           add(0, {u[2 * node], u[2 * node + 1], 0.});
-          add(1, {xx, xy, 0., xy, yy, 0., 0., 0., 0.}); // of the plane
+          add(1, {xx, xy, 0., xy, yy, 0., 0., 0., has_hoop_stress ? zz : 0.}); // of the plane
           add(2, {zz});
           add(3, {fem::von_mises(xx, yy, xy, zz)});
           add(4, {mean + radius});
           add(5, {mean - radius});
+          if (has_hoop_stress)
+            add(6, {zz});
         }
       return fields;
     }
@@ -271,11 +275,12 @@ namespace slipstick::output
                          const unsigned int          p,
                          const Eigen::VectorXd      &u,
                          const fem::SubdomainStress &stress,
+                         const bool                  has_hoop_stress,
                          const unsigned int          step)
     {
       const unsigned int subdomain = mesh.subdomains[p]->subdomain;
       Grid               grid      = grid_of(mesh, spaces, p, stress);
-      grid.nodal                   = nodal_fields(u, stress.nodal);
+      grid.nodal                   = nodal_fields(u, stress.nodal, has_hoop_stress);
       directory.write(vtu_name(step, subdomain), [&](std::ostream &out) { write_vtu(out, grid); });
       if (subdomain == 0)
         directory.write(pvtu_name(step), [&](std::ostream &out) {
@@ -297,7 +302,7 @@ namespace slipstick::output
   {
     collectively(mesh.comm, [&] {
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
-        write_subdomain(directory, mesh, spaces, p, u[p], stress.subdomains[p], step);
+        write_subdomain(directory, mesh, spaces, p, u[p], stress.subdomains[p], stress.has_hoop_stress, step);
     });
   }
 

@@ -15,6 +15,7 @@ namespace slipstick::output
     Json json(const ProblemSummary &problem)
     {
       return {{"dimension", problem.dimension},
+              {"plane_state", problem.plane_state},
               {"bodies", problem.bodies},
               {"subdomains", problem.subdomains},
               {"primal_dofs", problem.primal_dofs},
@@ -142,14 +143,20 @@ namespace slipstick::output
 
     Json json(const ResultSummary &results)
     {
-      return with({{"max_displacement", results.max_displacement},
-                   {"max_von_mises", results.max_von_mises},
-                   {"max_von_mises_at", json(results.max_von_mises_at)},
-                   {"singular", results.singular.empty() ? Json() : Json(results.singular)},
-                   {"strain_energy", results.strain_energy},
-                   {"contact", json(results.contact)},
-                   {"probes", json(results.probes)}},
-                  results.forces);
+      Json all = with({{"max_displacement", results.max_displacement},
+                       {"max_von_mises", results.max_von_mises},
+                       {"max_von_mises_at", json(results.max_von_mises_at)},
+                       {"singular", results.singular.empty() ? Json() : Json(results.singular)},
+                       {"strain_energy", results.strain_energy},
+                       {"contact", json(results.contact)},
+                       {"probes", json(results.probes)}},
+                      results.forces);
+      if (results.hoop_stress)
+        {
+          all["min_hoop_stress"] = (*results.hoop_stress)[0];
+          all["max_hoop_stress"] = (*results.hoop_stress)[1];
+        }
+      return all;
     }
 
     Json json(const TimeSummary &time)

@@ -15,6 +15,7 @@ namespace slipstick::scene
     const Choices<Shape> shapes = {{"rectangle", Shape::rectangle},
                                    {"disc", Shape::disc},
                                    {"half disc", Shape::half_disc},
+                                   {"quarter disc", Shape::quarter_disc},
                                    {"ring", Shape::ring},
                                    {"quarter ring", Shape::quarter_ring},
                                    {"mesh", Shape::mesh}};
@@ -29,10 +30,10 @@ namespace slipstick::scene
       {"Origin", {Shape::rectangle}},
       {"Size", {Shape::rectangle}},
       {"Cells", {Shape::rectangle, Shape::ring, Shape::quarter_ring}},
-      {"Center", {Shape::disc, Shape::half_disc, Shape::ring, Shape::quarter_ring}},
-      {"Radius", {Shape::disc, Shape::half_disc, Shape::ring, Shape::quarter_ring}},
+      {"Center", {Shape::disc, Shape::half_disc, Shape::quarter_disc, Shape::ring, Shape::quarter_ring}},
+      {"Radius", {Shape::disc, Shape::half_disc, Shape::quarter_disc, Shape::ring, Shape::quarter_ring}},
       {"Inner radius", {Shape::ring, Shape::quarter_ring}},
-      {"Cells along arc", {Shape::disc, Shape::half_disc}},
+      {"Cells along arc", {Shape::disc, Shape::half_disc, Shape::quarter_disc}},
       {"File", {Shape::mesh}},
       {"Part", {Shape::mesh}},
       {"Scale", {Shape::mesh}},
@@ -63,6 +64,8 @@ namespace slipstick::scene
           return {"arc"};
         case Shape::half_disc:
           return {"arc", "flat"};
+        case Shape::quarter_disc:
+          return {"arc", "flat", "side"};
         case Shape::ring:
           return {"inner", "outer"};
         case Shape::quarter_ring:
@@ -85,13 +88,14 @@ namespace slipstick::scene
   void BodySection<dim>::declare(dealii::ParameterHandler &prm)
   {
     prm.enter_subsection("Body " + name);
-    add_choice(prm,
-               "Shape",
-               body.shape,
-               shapes,
-               "geometry and names of the boundaries: rectangle: left, right, bottom, top; disc: arc; half disc (below "
-               "its centre): arc, flat; ring: inner, outer; quarter ring: inner, outer, start (on the x axis), end (on "
-               "the y axis); mesh: the physical names in the file; * is the whole outline of any body");
+    add_choice(
+      prm,
+      "Shape",
+      body.shape,
+      shapes,
+      "geometry and names of the boundaries: rectangle: left, right, bottom, top; disc: arc; half disc (below "
+      "its centre): arc, flat; quarter disc (below and to the right of its centre): arc, flat, side; ring: inner, outer; quarter ring: inner, outer, start (on the x axis), end (on "
+      "the y axis); mesh: the physical names in the file; * is the whole outline of any body");
     add_point(prm, "Origin", body.origin, "mm", Interval(), "rectangle: lower left corner");
     add_point(prm, "Size", body.size, "mm", Interval::above(0), "rectangle: edge lengths; must be set");
     add_counts_or_auto<dim>(
@@ -110,7 +114,7 @@ namespace slipstick::scene
       body.cells_along_arc,
       4,
       max_cells,
-      "disc: edges on the whole circle, a multiple of 4 and at least 8; half disc: on its half, an even number");
+      "disc: edges on the whole circle, a multiple of 4 and at least 8; half disc: on its half, quarter disc: on its quarter, an even number");
     add_text(prm,
              "File",
              body.file,
@@ -168,7 +172,12 @@ namespace slipstick::scene
               max_refinements,
               "how many times: each divides edges of quadrilaterals by 3, of triangles by 2");
     add_text(prm, "Material", material, "", "a name from Materials", "material of the body; must be set");
-    add_number(prm, "Thickness", body.thickness, "mm", Interval::above(0), "thickness out of the plane");
+    add_number(prm,
+               "Thickness",
+               body.thickness,
+               "mm",
+               Interval::above(0),
+               "thickness out of the plane; bodies of revolution have none");
     for (const Fit &fit : fits)
       defaults[fit.parameter] = prm.get(fit.parameter);
     prm.leave_subsection();
@@ -205,6 +214,7 @@ namespace slipstick::scene
           [[fallthrough]];
         case Shape::disc:
         case Shape::half_disc:
+        case Shape::quarter_disc:
           parameters.require(section + "/Radius", "set it in mm, for example: set Radius = 10");
       }
     if ((body.shape == Shape::ring || body.shape == Shape::quarter_ring) && body.inner_radius >= body.radius)
@@ -219,8 +229,10 @@ namespace slipstick::scene
       throw parameters.error(section + "/Cells along arc",
                              "a disc is meshed in four quarters of at least 2 edges",
                              "give a multiple of 4, at least 8");
-    if (body.shape == Shape::half_disc && body.cells_along_arc % 2 != 0)
-      throw parameters.error(section + "/Cells along arc", "a half disc needs an even number", "give an even number");
+    if ((body.shape == Shape::half_disc || body.shape == Shape::quarter_disc) && body.cells_along_arc % 2 != 0)
+      throw parameters.error(section + "/Cells along arc",
+                             "a " + name_of(body.shape) + " needs an even number",
+                             "give an even number");
   }
 
   template <int dim>

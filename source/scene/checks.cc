@@ -121,7 +121,7 @@ namespace slipstick::scene
                                "set it to auto, or Solver/Algorithm to semismooth newton");
     }
 
-    // Poisson's ratio above which standard elements in plane strain are much too stiff (bulk over shear modulus 100).
+    // Poisson's ratio above which standard elements in plane strain or of revolution are much too stiff (bulk over shear modulus 100).
     constexpr double locking_poisson_ratio = 0.495;
 
     template <int dim>
@@ -133,6 +133,26 @@ namespace slipstick::scene
                                "is for plane strain; there is no locking in plane stress",
                                "set it to standard, or Plane state = plane strain");
     }
+
+    /// What has no meaning where the section is revolved.
+    template <int dim>
+    void check_revolution(const Scene<dim> &scene, const Parameters &parameters)
+    {
+      if (scene.plane_state != PlaneState::axisymmetric)
+        return;
+      for (const Body<dim> &body : scene.bodies)
+        if (body.thickness != 1)
+          throw parameters.error("Body " + body.name + "/Thickness",
+                                 "has no meaning where Plane state = axisymmetric: the section is revolved, and forces "
+                                 "are those over the whole circumference",
+                                 "remove it, or set another Plane state");
+      for (const BodyForce<dim> &load : scene.body_forces)
+        if (load.axis.norm() > 0)
+          throw parameters.error("Body force " + load.name + "/Axis",
+                                 "has no meaning where Plane state = axisymmetric: bodies of revolution rotate about "
+                                 "their axis, x = 0",
+                                 "remove it");
+    }
   } // namespace
 
   template <int dim>
@@ -143,18 +163,21 @@ namespace slipstick::scene
     check_decomposition(scene, parameters);
     check_algorithm(scene, parameters);
     check_element(scene, parameters);
+    check_revolution(scene, parameters);
   }
 
   template <int dim>
   std::vector<std::string> warnings(const Scene<dim> &scene)
   {
     std::vector<std::string> texts;
-    if (scene.plane_state == PlaneState::plane_strain && scene.discretization.element == ElementKind::standard)
+    if (scene.plane_state != PlaneState::plane_stress && scene.discretization.element == ElementKind::standard)
       for (const Material &material : scene.materials)
         if (material.poisson_ratio > locking_poisson_ratio)
-          texts.push_back("warning: standard elements lock in plane strain with Poisson ratio " +
-                          number_text(material.poisson_ratio) + " (Material " + material.name +
-                          "): displacements will be too small; set Discretization/Element = nearly incompressible");
+          texts.push_back(
+            std::string("warning: standard elements lock ") +
+            (scene.plane_state == PlaneState::plane_strain ? "in plane strain" : "in bodies of revolution") +
+            " with Poisson ratio " + number_text(material.poisson_ratio) + " (Material " + material.name +
+            "): displacements will be too small; set Discretization/Element = nearly incompressible");
     return texts;
   }
 

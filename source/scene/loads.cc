@@ -211,7 +211,7 @@ namespace slipstick::scene
              angular_velocity,
              "1/s",
              field_format,
-             "omega of the centrifugal force, density omega^2 (x - axis)");
+             "omega of the centrifugal force, density omega^2 (x - axis); axisymmetric: about the axis of revolution");
     add_point(prm, "Axis", axis, "mm", Interval(), "centre of the rotation");
     prm.leave_subsection();
   }
@@ -265,7 +265,7 @@ namespace slipstick::scene
              "mm",
              point_format,
              "where: the mesh node nearest to it, at most half a cell away; must be set");
-    add_components<dim>(prm, "Force", force, "N", "force, over the whole thickness,");
+    add_components<dim>(prm, "Force", force, "N", "force, over the whole thickness or circumference,");
     prm.leave_subsection();
   }
 

@@ -125,12 +125,15 @@ namespace slipstick::scene
                "",
                "NAME = NUMBER; NAME = NUMBER; ...",
                "numbers that other values use as {NAME} or {10 - NAME/2}; later ones may use earlier ones");
-      add_choice(prm,
-                 "Plane state",
-                 options.plane_state,
-                 Choices<PlaneState>{{"plane stress", PlaneState::plane_stress},
-                                     {"plane strain", PlaneState::plane_strain}},
-                 "state of every body");
+      add_choice(
+        prm,
+        "Plane state",
+        options.plane_state,
+        Choices<PlaneState>{{"plane stress", PlaneState::plane_stress},
+                            {"plane strain", PlaneState::plane_strain},
+                            {"axisymmetric", PlaneState::axisymmetric}},
+        "what the section stands for, of all bodies; axisymmetric: half a section of bodies of revolution, x the "
+        "radius, y the axis, all forces over the whole circumference");
       add_choice(prm,
                  "Accuracy",
                  options.accuracy,

@@ -134,6 +134,8 @@ namespace slipstick::tfeti
   // either is one between bodies.
   void BodyMotions::find_levers()
   {
+    if (motions_of_body < 3) // bodies of revolution do not rotate
+      return;
     for (auto begin = shares.begin(); begin != shares.end();)
       {
         const auto end =
@@ -277,9 +279,14 @@ namespace slipstick::tfeti
                                        .select(0., motion.amplitudes.segment(b * k, k)); // without rounding
         if (part.cwiseAbs().maxCoeff() < named_part * largest)
           continue;
-        const Eigen::VectorXd translation = part.head(k - 1);
-        const double          rotation    = part[k - 1];
         text += (text.empty() ? "body " : "; body ") + body_names[b] + ": ";
+        if (k == 1)
+          {
+            text += "translation along the axis";
+            continue;
+          }
+        const Eigen::VectorXd translation = part.head(n_translations(k));
+        const double          rotation    = part[k - 1];
         if (std::abs(rotation) < turning_part * translation.norm())
           text += format("translation along (%.3g, %.3g)",
                          translation[0] / translation.norm(),

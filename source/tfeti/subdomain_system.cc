@@ -139,14 +139,13 @@ namespace slipstick::tfeti
       factorised({}).solve(x);
   }
 
-  // the rotation of the body is (-(y - y_c), x - x_c) / length at the two unknowns of a node
   std::array<double, 3> SubdomainSystem::position(const unsigned int unknown) const
   {
-    const unsigned int    first    = unknown - unknown % 2;
-    const Eigen::VectorXd rotation = matrices.body_modes.col(2);
-    return {{matrices.frame.center[0] + matrices.frame.length * matrices.kernel.row(first + 1).dot(rotation),
-             matrices.frame.center[1] - matrices.frame.length * matrices.kernel.row(first).dot(rotation),
-             0.}};
+    std::array<double, 3> x{{0, 0, 0}};
+    if (matrices.positions.size() > 0)
+      for (Eigen::Index d = 0; d < matrices.positions.rows(); ++d)
+        x[d] = matrices.positions(d, unknown / (n_unknowns() / matrices.positions.cols()));
+    return x;
   }
 
   Eigen::VectorXd SubdomainSystem::apply_touched_stiffness(const Eigen::VectorXd &x) const

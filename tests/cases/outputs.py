@@ -15,7 +15,7 @@ NUMBER, COUNT, TEXT, FLAG = (int, float), int, str, bool
 
 SUMMARY = {
     'case': TEXT, 'version': TEXT, 'ranks': COUNT, 'status': TEXT, 'converged': FLAG,
-    'problem': {'dimension': COUNT, 'bodies': COUNT, 'subdomains': COUNT, 'primal_dofs': COUNT,
+    'problem': {'dimension': COUNT, 'plane_state': TEXT, 'bodies': COUNT, 'subdomains': COUNT, 'primal_dofs': COUNT,
                 'kernel_dimension': COUNT, 'cells': COUNT,
                 'dual': {'total': COUNT, 'equality': COUNT, 'normal': COUNT, 'tangential': COUNT},
                 'contact_candidates': COUNT},

@@ -348,7 +348,7 @@ TEST(MeshFiles, edge_of_three_cells_is_refused)
 TEST(MeshFiles, unknown_names_are_refused_with_the_nearest_on_all_ranks)
 {
   const auto refused = [](const Scene &scene) {
-    return message_on_all_ranks<InputError>([&] { fem::make_mesh(scene, MPI_COMM_WORLD); });
+    return refusal([&] { fem::make_mesh(scene, MPI_COMM_WORLD); });
   };
   Scene scene = cut(two_parts(formats[0]), metis(3));
   support(scene, 0, "fot", "0", "0");
@@ -761,7 +761,7 @@ TEST(MeshFiles, every_item_of_an_abaqus_file_is_used_refused_or_listed)
   EXPECT_SAYS(read("Some, S3", "None, S3"), "'None' is not the number");
   EXPECT_SAYS(read("*ELEMENT, TYPE=CPS4,", "*ELEMENT,"), "*ELEMENT without TYPE");
   EXPECT_SAYS(read("TYPE=CPS4", "TYPE=QUAD4"), "type QUAD4 are not supported");
-  EXPECT_SAYS(read("TYPE=CPS4", "TYPE=CAX4R"), "CAX4R are axisymmetric");
+  EXPECT_SAYS(read("TYPE=CPS4", "TYPE=CGAX4R"), "CGAX4R are axisymmetric with twist");
   EXPECT_SAYS(read("1, 2\n*ELSET", "1, 2, 77\n*ELSET"), "set 'FOOT' has node 77, which is not in the file");
   EXPECT_SAYS(read("ELSET=Some\n1", "ELSET=Some\n1, 3"), "set 'SOME' has element 3");
   EXPECT_SAYS(read("*NSET, NSET=Foot\n1, 2", "*NSET, NSET=Foot, GENERATE\n1, 9000000, 1"), "there are 6 nodes only");
@@ -804,5 +804,23 @@ TEST(MeshFiles, elements_that_contradict_the_plane_state_are_warned_of)
       for (const auto &remark : remarks)
         EXPECT_SAYS(remark, "warning: mesh file " + name.string() + " has elements of plane strain (CPE3)");
     }
+  std::ofstream(name) << "*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n*ELEMENT, TYPE=CAX3, ELSET=Plate\n1, 1, 2, 3\n";
+  const auto message = refusal([&] { fem::make_mesh(scene, MPI_COMM_SELF); });
+  EXPECT_SAYS(message, "has axisymmetric elements (CAX3), but the scene is computed in plane strain");
+  scene.plane_state = scene::PlaneState::axisymmetric;
+  EXPECT_EQ(fem::make_mesh(scene, MPI_COMM_SELF).remarks.size(), 0u);
   std::filesystem::remove(name);
+}
+
+TEST(MeshFiles, sections_of_bodies_of_revolution_do_not_reach_beyond_the_axis)
+{
+  Scene scene;
+  add_body(scene, "pin", Point(-1e-12, 0), Point(2, 3), {{2, 3}});
+  scene.plane_state = scene::PlaneState::axisymmetric;
+  scene             = cut(scene, whole());
+  for (const auto &subdomain : fem::make_mesh(scene, MPI_COMM_SELF).subdomains)
+    for (const auto &x : subdomain->triangulation.get_vertices())
+      EXPECT_TRUE(x[0] == 0 || x[0] > 0.5);
+  scene.bodies[0].origin[0] = -0.25;
+  EXPECT_SAYS(refusal([&] { fem::make_mesh(scene, MPI_COMM_SELF); }), "Body pin: it reaches to x = -0.25 mm");
 }

@@ -29,7 +29,12 @@ namespace
     return body;
   }
 
-  const std::vector<Shape> round_shapes = {Shape::disc, Shape::half_disc, Shape::ring, Shape::quarter_ring};
+  const std::vector<Shape> round_shapes = {Shape::disc, Shape::half_disc, Shape::quarter_disc, Shape::ring, Shape::quarter_ring};
+
+  bool is_disc(const Shape shape)
+  {
+    return shape == Shape::disc || shape == Shape::half_disc || shape == Shape::quarter_disc;
+  }
 
   fem::BodyMesh<2> make(const scene::Body<2> &body)
   {
@@ -42,7 +47,7 @@ namespace
   double exact_area(const scene::Body<2> &body)
   {
     const double disc = M_PI * body.radius * body.radius, hole = M_PI * body.inner_radius * body.inner_radius;
-    return body.shape == Shape::disc ? disc : body.shape == Shape::half_disc ? disc / 2 : body.shape == Shape::ring ? disc - hole : (disc - hole) / 4;
+    return body.shape == Shape::disc ? disc : body.shape == Shape::half_disc ? disc / 2 : body.shape == Shape::quarter_disc ? disc / 4 : body.shape == Shape::ring ? disc - hole : (disc - hole) / 4;
   }
 } // namespace
 
@@ -78,11 +83,11 @@ TEST(Shapes, vertices_of_arcs_lie_on_the_arc)
     {
       auto body                 = body_of(shape);
       body.refinements          = 1;
-      body.refined_boundaries   = {shape == Shape::disc || shape == Shape::half_disc ? "arc" : "inner"};
+      body.refined_boundaries   = {is_disc(shape) ? "arc" : "inner"};
       body.boundary_refinements = 2;
       const auto mesh           = make(body);
       const auto radius         = [&](const unsigned int id) {
-        return shape == Shape::disc || shape == Shape::half_disc || id == 1 ? body.radius : body.inner_radius;
+        return is_disc(shape) || id == 1 ? body.radius : body.inner_radius;
       };
       for (const auto &face : mesh.piece.boundary_faces)
         if (face.curve)
@@ -98,8 +103,8 @@ TEST(Shapes, boundaries_have_their_lengths)
       const auto body  = body_of(shape);
       const auto mesh  = make(body);
       const auto at    = [&](const std::string &name) { return length_of(mesh.piece, mesh.boundary_ids.at(name)); };
-      const double turn = shape == Shape::half_disc ? M_PI : shape == Shape::quarter_ring ? M_PI / 2 : 2 * M_PI;
-      if (shape == Shape::disc || shape == Shape::half_disc)
+      const double turn = shape == Shape::half_disc ? M_PI : shape == Shape::quarter_ring || shape == Shape::quarter_disc ? M_PI / 2 : 2 * M_PI;
+      if (is_disc(shape))
         EXPECT_NEAR(at("arc") / (turn * 5), 1, .01);
       else
         {
@@ -108,6 +113,11 @@ TEST(Shapes, boundaries_have_their_lengths)
         }
       if (shape == Shape::half_disc)
         EXPECT_NEAR(at("flat"), 10, 1e-13);
+      if (shape == Shape::quarter_disc)
+        {
+          EXPECT_NEAR(at("flat"), 5, 1e-13);
+          EXPECT_NEAR(at("side"), 5, 1e-13);
+        }
       if (shape == Shape::quarter_ring)
         {
           EXPECT_NEAR(at("start"), 3, 1e-13);

@@ -57,7 +57,7 @@ TEST(Summary, problem_has_the_keys_of_the_contract)
   EXPECT_EQ(
     keys(problem),
     Keys(
-      {"dimension", "bodies", "subdomains", "primal_dofs", "kernel_dimension", "cells", "dual", "contact_candidates"}));
+      {"dimension", "plane_state", "bodies", "subdomains", "primal_dofs", "kernel_dimension", "cells", "dual", "contact_candidates"}));
   EXPECT_EQ(keys(problem["dual"]), Keys({"total", "equality", "normal", "tangential"}));
 }
 

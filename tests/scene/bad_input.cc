@@ -74,7 +74,7 @@ TEST(bad_input, unknown_words_are_refused_with_what_is_available)
   refused({"Contact search/Mode=on"}, {"'on'", "declared, automatic"});
   refused({"Solver/Tolerance=automatic"}, {"'automatic'", "auto, or a number in (0, 1)"});
   refused({"Body box/Shape=dics"},
-          {"'dics'", "available: rectangle, disc, half disc, ring, quarter ring, mesh", "did you mean 'disc'"});
+          {"'dics'", "available: rectangle, disc, half disc, quarter disc, ring, quarter ring, mesh", "did you mean 'disc'"});
   refused({"Obstacle disc/Shape=halfplane"}, {"'halfplane'", "circle, hole, half plane, polyline, function"});
 }
 
@@ -103,6 +103,20 @@ TEST(bad_input, lengths)
   refused({"Body box/Size=10, inf"}, {"Body box/Size", "'10, inf'"});
   refused({"Body box/Thickness=0"}, {"Body box/Thickness", "'0'", "> 0"});
   refused({"Obstacle disc/Radius=-20"}, {"Obstacle disc/Radius", "'-20'", "> 0"});
+}
+
+TEST(bad_input, what_bodies_of_revolution_do_not_have)
+{
+  refused({"Plane state=axissymmetric"}, {"plane stress, plane strain, axisymmetric", "did you mean 'axisymmetric'"});
+  refused({"Plane state=axisymmetric", "Body box/Thickness=3"},
+          {"Body box/Thickness", "no meaning where Plane state = axisymmetric", "remove it"});
+  refused({"Plane state=axisymmetric",
+           "Material elastic/Density=1",
+           "Body forces=spin",
+           "Body force spin/Bodies=box",
+           "Body force spin/Angular velocity=10",
+           "Body force spin/Axis=1, 0"},
+          {"Body force spin/Axis", "rotate about their axis"});
 }
 
 TEST(bad_input, vectors_need_two_numbers)

@@ -52,6 +52,9 @@ namespace slipstick::app
   /// Appends the step that @p summary describes to those before it: counts add up, the worst residuals stay.
   void add_step(const output::Summary &so_far, const double load_factor, output::Summary &summary);
 
+  /// Forces around a circumference have no moment: of bodies of revolution all moments become 0.
+  void drop_moments(const scene::Scene<2> &scene, output::ResultSummary &results);
+
   /// Everything in summary.json but times and memory.
   output::Summary make_summary(const scene::Scene<2>       &scene,
                                const fem::Mesh<2>          &mesh,

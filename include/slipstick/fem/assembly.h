@@ -7,7 +7,8 @@
 
 namespace slipstick::fem
 {
-  /// K_p, f_p (at load factor @p t), R_p of the subdomains of this rank. Loads are forces of the body's thickness. With
+  /// K_p, f_p (at load factor @p t), R_p of the subdomains of this rank. Loads are forces of the body's thickness, or
+  /// of the whole circumference. With
   /// the nearly incompressible element K = sum of 2 mu eps : eps + lambda (P div)(P div), P: see DilatationProjection.
   /// Collective (rigid motions refer to the centre of the whole body).
   /// @throws InputError on all ranks for triangles of degree 1 that shall be nearly incompressible, and as

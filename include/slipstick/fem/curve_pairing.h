@@ -34,6 +34,8 @@ namespace slipstick::fem
       Tensor           normal;      // outward, unit length
       double           size    = 0; // of the edges there, their chords [mm]
       double           covered = 0; // integral of the shape function over these edges [mm]
+      double           measure = 0; // the same with the measure of the kinematics
+      double           scale   = 0; // of that measure: of the edges there
     };
 
     /// Where a ray from a slave point meets a master edge.
@@ -51,7 +53,10 @@ namespace slipstick::fem
     };
 
     /// The edges are not copied.
-    CurvePairing(const std::vector<Edge> &slave, const std::vector<Edge> &master, const Reach &reach);
+    CurvePairing(const std::vector<Edge> &slave,
+                 const std::vector<Edge> &master,
+                 const Reach             &reach,
+                 const Kinematics<2>     &kinematics = {});
 
     const std::vector<Node> &nodes() const
     {

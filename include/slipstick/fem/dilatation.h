@@ -1,9 +1,8 @@
 // The dilatation that the elements work with: that of the displacement, or a projection of it.
 #pragma once
 
-#include <slipstick/fem/spaces.h>
-
-#include <deal.II/fe/fe_values.h>
+#include <slipstick/fem/cell_values.h>
+#include <slipstick/fem/kinematics.h>
 
 #include <Eigen/Dense>
 
@@ -20,8 +19,8 @@ namespace slipstick::fem
       : n_functions(element.degree == 2 && !element.cell.is_simplex() ? dim + 1 : 1)
     {}
 
-    /// @p values with quadrature points and JxW.
-    void reinit(const dealii::FEValues<dim> &values);
+    /// @p values with quadrature points and JxW; the squares are weighted with the circumference too, if there is one.
+    void reinit(const CellValues<dim> &values, const Kinematics<dim> &kinematics);
 
     /// The projection of what has the values @p at_points (quadrature points x anything), at the quadrature points.
     Eigen::MatrixXd projected(const Eigen::MatrixXd &at_points) const

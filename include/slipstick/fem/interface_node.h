@@ -9,6 +9,31 @@
 
 namespace slipstick::fem
 {
+  /// What a node stands for on the boundary of a pair: integrals of its shape function.
+  struct Tributary
+  {
+    double area   = 0; // with thickness or circumference [mm^2]
+    double length = 0; // [mm]
+
+    Tributary &operator+=(const Tributary &other)
+    {
+      area += other.area;
+      length += other.length;
+      return *this;
+    }
+
+    bool operator<(const Tributary &other) const
+    {
+      return std::tie(area, length) < std::tie(other.area, other.length);
+    }
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &area &length;
+    }
+  };
+
   /// One copy of a node, or (with several entries in `copies`) everything known about it.
   template <int dim>
   struct InterfaceNode
@@ -16,10 +41,11 @@ namespace slipstick::fem
     /// A direction in which the displacement is prescribed.
     struct Held
     {
-      std::array<double, dim>   direction{}; // unit length
-      double                    value = 0;   // [mm]
-      unsigned int              which = 0;   // component, or dim + k for the k-th along a normal
-      std::vector<unsigned int> by; // who says so: as Side::condition, behind them contact pairs (bonds to obstacles)
+      std::array<double, dim> direction{}; // unit length
+      double                  value = 0;   // [mm]
+      unsigned int            which = 0;   // component, or dim + k for the k-th along a normal
+      std::vector<unsigned int>
+        by; // who says so: as Side::condition, behind them contact pairs (bonds to obstacles), then the axis
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)
@@ -57,9 +83,9 @@ namespace slipstick::fem
     NodeKey                                            key{{0, 0}};
     std::array<double, dim>                            position{};
     unsigned int                                       body = 0;
-    std::vector<Held>                                  held;   // independent directions
-    std::vector<std::pair<unsigned int, unsigned int>> copies; // subdomain, node there; sorted
-    std::vector<std::pair<unsigned int, double>>       areas;  // pair with an obstacle, tributary area [mm^2]; sorted
+    std::vector<Held>                                  held;              // independent directions
+    std::vector<std::pair<unsigned int, unsigned int>> copies;            // subdomain, node there; sorted
+    std::vector<std::pair<unsigned int, Tributary>>    areas;             // by pair with an obstacle; sorted
     bool                                               is_paired = false; // weights of a pair of bodies touch it
     std::vector<Side>                                  sides;
     std::vector<Spring>                                springs; // made from the sides, at most dim

@@ -26,9 +26,10 @@ namespace slipstick::fem
                                              const Spaces<dim>       &spaces,
                                              const double             t);
 
-  /// f_p [N] at load factor @p t, by subdomain of this rank. Forces per area and per volume act on the body's thickness;
+  /// f_p [N] at load factor @p t, by subdomain of this rank. Forces per area and per volume act on the body's thickness, or
+  /// on the whole circumference;
   /// pressure acts against the outward normal of the undeformed boundary; a point load acts on one copy of the node
-  /// nearest to it, whole (no thickness). Formulas of tractions are integrated by AdaptiveQuadrature, jumps included. Thermal strain enters as the force of the stress that would hold it back.
+  /// nearest to it, whole (no thickness, no circumference). Formulas of tractions are integrated by AdaptiveQuadrature, jumps included. Thermal strain enters as the force of the stress that would hold it back.
   /// Collective.
   /// @throws InputError on all ranks for a formula that gives no number and for a point load outside its body.
   template <int dim>

@@ -15,11 +15,17 @@ namespace slipstick::fem
   class PatchRecovery
   {
   public:
-    static constexpr unsigned int n_components = dim * (dim + 1) / 2;       // xx, yy, xy
-    static constexpr unsigned int n_monomials  = (dim + 1) * (dim + 2) / 2; // 1, x, y, xx, xy, yy
-    static constexpr unsigned int n_sums = n_monomials * (n_monomials + 1) / 2 + n_monomials * n_components; // a vertex
+    static constexpr unsigned int n_monomials    = (dim + 1) * (dim + 2) / 2; // 1, x, y, xx, xy, yy
+    static constexpr unsigned int max_components = dim * (dim + 1) / 2 + 1;   // xx, yy, xy, hoop
 
-    explicit PatchRecovery(const dealii::DoFHandler<dim> &dof_handler);
+    /// @param n_components of the stress, at most max_components.
+    PatchRecovery(const dealii::DoFHandler<dim> &dof_handler, const unsigned int n_components);
+
+    /// Columns of `sums`.
+    static constexpr unsigned int n_sums(const unsigned int n_components)
+    {
+      return n_monomials * (n_monomials + 1) / 2 + n_monomials * n_components;
+    }
 
     /// Adds the stresses @p values (points x components) at the real @p points of a cell.
     void add(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
@@ -35,5 +41,6 @@ namespace slipstick::fem
 
   private:
     const dealii::DoFHandler<dim> &dof_handler;
+    unsigned int                   n_components;
   };
 } // namespace slipstick::fem

@@ -1,7 +1,8 @@
 // Rigid motions from coordinates: the kernels of the torn subdomains.
 #pragma once
 
-#include <slipstick/fem/spaces.h>
+#include <slipstick/fem/kinematics.h>
+#include <slipstick/tfeti/subdomain_matrices.h>
 
 #include <Eigen/Dense>
 
@@ -19,12 +20,13 @@ namespace slipstick::fem
   template <int dim>
   std::vector<Frame<dim>> body_frames(const scene::Scene<dim> &scene, const Mesh<dim> &mesh);
 
-  /// Columns (1,0), (0,1), (-(y - y_c), x - x_c) / L at every node, with centre and length of the subdomain; and the
-  /// k x k matrix that turns them into the same motions about the body's frame.
+  /// Fills kernel: columns (1,0), (0,1), (-(y - y_c), x - x_c) / L at every node, with centre and length of the subdomain, of
+  /// bodies of revolution (0,1) alone; body_modes, which turns them into the same motions about the body's frame; frame; and
+  /// positions.
   template <int dim>
   void rigid_modes(const Element<dim>            &element,
                    const dealii::DoFHandler<dim> &dof_handler,
                    const Frame<dim>              &body,
-                   Eigen::MatrixXd               &kernel,
-                   Eigen::MatrixXd               &body_modes);
+                   const Kinematics<dim>         &kinematics,
+                   tfeti::SubdomainMatrices      &system);
 } // namespace slipstick::fem

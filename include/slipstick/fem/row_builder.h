@@ -85,9 +85,9 @@ namespace slipstick::fem
     void add(const unsigned int node);
 
     std::vector<Touch> touches_of(const unsigned int node) const;
-    bool touch_obstacle(const unsigned int node, const unsigned int pair, const double area, Touch &touch) const;
-    /// Gap, normal and area, of bonds too; false beyond the Reach.
-    bool place_on_obstacle(const unsigned int node, const unsigned int pair, const double area, Touch &touch) const;
+    bool touch_obstacle(const unsigned int node, const unsigned int pair, const Tributary &area, Touch &touch) const;
+    /// Gap, normal and area, of bonds too; false beyond the Reach, and on the axis of revolution for nodes without area.
+    bool place_on_obstacle(const unsigned int node, const unsigned int pair, const Tributary &area, Touch &touch) const;
     /// What any touch of a node says of the node itself.
     void complete(const unsigned int node, Touch &touch) const;
     bool touch_body(const unsigned int node, const unsigned int pair, const MortarRow<dim> &row, Touch &touch) const;

@@ -11,15 +11,17 @@ namespace slipstick::fem
   /// Recovered stress on one subdomain.
   struct SubdomainStress
   {
-    Eigen::MatrixXd nodal; // nodes x 4: xx, yy, xy, zz [MPa]
+    Eigen::MatrixXd nodal; // nodes x 4: xx, yy, xy, zz (of bodies of revolution the hoop stress) [MPa]
     Eigen::VectorXd error; // by active cell: energy norm of recovered minus computed stress [sqrt(N mm)]
   };
 
   struct StressResult
   {
-    std::vector<SubdomainStress> subdomains;        // of this rank
-    double                       max_von_mises = 0; // over all nodes and ranks [MPa]
-    double energy_squared = 0; // integral of sigma : C^-1 : sigma in the plane, twice the elastic energy [N mm]
+    std::vector<SubdomainStress> subdomains;              // of this rank
+    bool                         has_hoop_stress = false; // zz is it
+    double min_hoop_stress = 0, max_hoop_stress = 0;      // over all nodes and ranks, where there is one [MPa]
+    double max_von_mises  = 0;                            // over all nodes and ranks [MPa]
+    double energy_squared = 0; // integral of sigma : C^-1 : sigma, twice the elastic energy [N mm]
     double error_squared  = 0; // sum of the squares of the cells' errors [N mm]
   };
 

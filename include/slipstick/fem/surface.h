@@ -1,7 +1,7 @@
 // Boundary edges of bodies as curves of their own: nodes, shape functions, normals.
 #pragma once
 
-#include <slipstick/fem/spaces.h>
+#include <slipstick/fem/kinematics.h>
 
 #include <boost/serialization/array.hpp>
 
@@ -67,7 +67,14 @@ namespace slipstick::fem
     }
 
     /// Integral of the shape function of every node over the edge [mm]; all positive.
-    std::array<double, 3> tributary_lengths() const;
+    std::array<double, 3> tributary_lengths() const
+    {
+      return tributary_measures(Kinematics<dim>());
+    }
+
+    /// The same with the measure of the kinematics [mm], [mm^2]. The end node of a quadratic edge that is on the axis of
+    /// revolution has none.
+    std::array<double, 3> tributary_measures(const Kinematics<dim> &kinematics) const;
 
     /// Order of the edges of all bodies that does not depend on the decomposition.
     bool operator<(const SurfaceEdge &other) const

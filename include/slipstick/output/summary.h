@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ namespace slipstick::output
 
   struct ProblemSummary
   {
-    unsigned int  dimension        = 2;
+    unsigned int  dimension = 2;
+    std::string   plane_state;
     unsigned int  bodies           = 0;
     unsigned int  subdomains       = 0;
     std::uint64_t primal_dofs      = 0; // of the torn subdomains together
@@ -129,9 +131,10 @@ namespace slipstick::output
     Place                    max_von_mises_at;
     std::string              singular; // why stress is infinite there: "a re-entrant corner", ..; empty: it is not
     std::vector<ProbeResult> probes;
-    double                   strain_energy = 0; // [N mm]
-    std::vector<contact::PairResult> contact;
-    ForceSummary                     forces;
+    double                   strain_energy = 0;       // [N mm]
+    std::optional<std::array<double, 2>> hoop_stress; // smallest and largest, of bodies of revolution [MPa]
+    std::vector<contact::PairResult>     contact;
+    ForceSummary                         forces;
   };
 
   /// Wall clock of rank 0, which waits for the others where they meet [s]. The stages add up to the total.

@@ -14,10 +14,12 @@
 
 namespace slipstick::scene
 {
+  /// What a section in the plane stands for.
   enum class PlaneState
   {
     plane_stress,
-    plane_strain
+    plane_strain,
+    axisymmetric // half a section of a body of revolution: x is the radius, y the axis
   };
 
   /// Isotropic linear elasticity.
@@ -35,6 +37,7 @@ namespace slipstick::scene
     rectangle,    // left, right, bottom, top
     disc,         // arc
     half_disc,    // arc, flat; the half below its centre, flat side up
+    quarter_disc, // arc, flat, side; the quarter below and to the right of its centre
     ring,         // inner, outer
     quarter_ring, // inner, outer, start (on the x axis), end (on the y axis)
     mesh          // from a file; boundaries by the physical names there
@@ -74,7 +77,7 @@ namespace slipstick::scene
     std::vector<std::string> refined_boundaries;       // cells at these boundaries are refined further ...
     unsigned int             boundary_refinements = 0; // ... so many times
     unsigned int             material             = 0; // index into Scene::materials
-    double                   thickness            = 1; // [mm], > 0
+    double                   thickness            = 1; // [mm], > 0; 1 where the section is revolved
   };
 
   /// A boundary of a body, written BODY/BOUNDARY in the .prm. Of a body from a mesh file the name is checked when the
@@ -135,7 +138,7 @@ namespace slipstick::scene
     std::vector<unsigned int>   bodies;           // indices into Scene::bodies
     std::array<Field<dim>, dim> force;            // [N/mm^3]
     std::array<Field<dim>, dim> acceleration;     // [mm/s^2]; gravity is 0, -9810
-    Field<dim>                  angular_velocity; // [1/s], about `axis`
+    Field<dim>                  angular_velocity; // [1/s], about `axis`; axisymmetric: about the axis of revolution
     dealii::Point<dim>          axis;             // [mm]
   };
 

@@ -44,12 +44,13 @@ namespace slipstick::tfeti
     unsigned int          slave_body = 0, master_body = 0;
     std::array<double, 3> master_position{{0, 0, 0}}; // weighted mean of the master nodes, where the force acts
     double                gap           = 0;          // reference configuration [mm]
-    double                area          = 0;          // tributary length times thickness [mm^2]
+    double                area          = 0;          // tributary: length times thickness, or of revolution [mm^2]
     double                length        = 0;          // tributary length [mm]
-    double                traction_area = 0;  // that tractions are given for: where less than half of the node's
-                                              // full tributary length faces the other side half of it counts, since
-                                              // the force on a sliver over its own area is meaningless [mm^2]
-    std::array<std::uint64_t, 2> key{{0, 0}}; // the mesh's name of the node
+    double                traction_area = 0; // that tractions are given for: where less than half of the node's
+                                             // full tributary length faces the other side half of it counts, since
+                                             // the force on a sliver over its own area is meaningless [mm^2]
+    double                       traction_length = 0;          // of the node, taken in the same way [mm]
+    std::array<std::uint64_t, 2> key{{0, 0}};                  // the mesh's name of the node
     unsigned int                 normal_row     = invalid_row; // owned rows; invalid where a support takes their place
     unsigned int                 tangential_row = invalid_row;
     unsigned int                 interface_dof  = 0; // owned number of the node's first interface unknown
@@ -62,7 +63,7 @@ namespace slipstick::tfeti
     std::array<double, 3> direction{{0, 0, 0}};
     std::array<double, 3> position{{0, 0, 0}};
     std::vector<unsigned int>
-      holders; // equal sharers: numbers of supports, behind them foundations, then contact pairs
+      holders; // equal sharers: numbers of supports, behind them foundations, then contact pairs, then the axis
   };
 
   /// B, c and the contact nodes, distributed: every row has one owner; a rank whose subdomains a row touches has it as

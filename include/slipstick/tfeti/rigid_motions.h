@@ -8,10 +8,11 @@
 
 namespace slipstick::tfeti
 {
-  /// A rigid motion of one or more bodies: amplitudes of translation x, translation y, rotation of every body.
+  /// A rigid motion of one or more bodies: amplitudes of translation x, translation y, rotation of every body; of bodies
+  /// of revolution the translation along the axis alone.
   struct RigidMotion
   {
-    Eigen::VectorXd        amplitudes; // 3 a body, of unit length
+    Eigen::VectorXd        amplitudes; // as many a body as it has motions, of unit length
     double                 work = 0;   // of the loads along it, over |loads| [-]
     std::vector<BodyFrame> frames;     // of the bodies
     double                 load = 0;   // along it [N]
@@ -51,7 +52,7 @@ namespace slipstick::tfeti
 
     static constexpr double rounding_of_resistance = 1e-12;
 
-    /// Loads along the motions of all bodies, 3 a body [N]; 0 where the loads cancel to rounding. Collective.
+    /// Loads along the motions of all bodies [N]; 0 where the loads cancel to rounding. Collective.
     Eigen::VectorXd loads() const;
 
     /// Jumps B u of all rows that this rank owns (0 for gluing) under motions; rows x motions.
@@ -75,7 +76,7 @@ namespace slipstick::tfeti
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     MPI_Comm                                             comm;
     unsigned int                                         n_owned_rows;
-    unsigned int                                         motions_of_body; // 3 in the plane
+    unsigned int                                         motions_of_body; // 3 in the plane, 1 where it is revolved
     unsigned int                                         n_motions;       // of all bodies
     std::vector<BodyFrame>                               frames;
     std::vector<Share>                                   shares; // sorted by row
@@ -87,7 +88,7 @@ namespace slipstick::tfeti
                           const unsigned int                                   n_bodies,
                           const MPI_Comm                                       comm);
 
-  /// "body box: translation along (1, 0)", "body a: rotation about (0, 5)"; names the bodies that move most.
+  /// "body box: translation along (1, 0)", "body a: rotation about (0, 5)", "body pin: translation along the axis"; names the bodies that move most.
   std::string describe(const RigidMotion &motion, const std::vector<std::string> &body_names);
 
   /// The same motions, each of which moves a component that no other does (reduced echelon form).

@@ -37,6 +37,13 @@ namespace slipstick::tfeti
     }
   };
 
+  /// How many of the k rigid motions of a body are translations, which come first; the others are rotations. Solids have six,
+  /// sections of the plane three, bodies of revolution one: along their axis.
+  constexpr unsigned int n_translations(const unsigned int k)
+  {
+    return k == 6 ? 3 : k == 3 ? 2 : k;
+  }
+
   /// K_p, f_p, R_p of one floating subdomain with n unknowns and k rigid motions.
   struct SubdomainMatrices
   {
@@ -46,6 +53,7 @@ namespace slipstick::tfeti
     Eigen::VectorXd           load;          // n [N]
     Eigen::MatrixXd           kernel;        // n x k: motions of unit size about the subdomain's centre
     Eigen::MatrixXd           body_modes;    // k x k: kernel * body_modes = rigid motions of the body, seen here
+    Eigen::MatrixXd           positions;     // of the nodes, a column each [mm]: where messages say things are
     BodyFrame                 frame;         // of the body's motions
     std::vector<unsigned int> boundary_dofs; // unknowns on the boundary of the subdomain, sorted
   };

@@ -93,7 +93,7 @@ namespace slipstick::tfeti
     {
       return matrices.frame;
     }
-    /// Where the node of an unknown lies [mm], as the rotation of the body tells (two dimensions).
+    /// Where the node of an unknown lies [mm].
     std::array<double, 3> position(const unsigned int unknown) const;
     unsigned int          subdomain() const
     {
