@@ -4,6 +4,7 @@
 #include <slipstick/fem/cell_values.h>
 #include <slipstick/fem/dilatation.h>
 #include <slipstick/fem/kinematics.h>
+#include <slipstick/fem/spaces.h>
 #include <slipstick/fem/loads.h>
 #include <slipstick/fem/rigid_modes.h>
 

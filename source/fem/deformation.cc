@@ -1,6 +1,7 @@
 #include <slipstick/fem/cell_values.h>
 #include <slipstick/fem/deformation.h>
 #include <slipstick/fem/kinematics.h>
+#include <slipstick/fem/spaces.h>
 #include <slipstick/fem/rigid_modes.h>
 
 #include <deal.II/base/mpi.h>

@@ -4,6 +4,7 @@
 #include <slipstick/fem/dilatation.h>
 #include <slipstick/fem/elasticity.h>
 #include <slipstick/fem/kinematics.h>
+#include <slipstick/fem/spaces.h>
 #include <slipstick/fem/loads.h>
 #include <slipstick/fem/points.h>
 #include <slipstick/fem/surface.h>

@@ -3,6 +3,7 @@
 #include <slipstick/fem/dilatation.h>
 #include <slipstick/fem/elasticity.h>
 #include <slipstick/fem/kinematics.h>
+#include <slipstick/fem/spaces.h>
 #include <slipstick/fem/patch_recovery.h>
 #include <slipstick/fem/stress.h>
 

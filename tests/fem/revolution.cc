@@ -2,6 +2,7 @@
 
 #include <slipstick/base/exceptions.h>
 #include <slipstick/fem/kinematics.h>
+#include <slipstick/fem/spaces.h>
 #include <slipstick/fem/surface.h>
 
 using namespace slipstick;

@@ -3,6 +3,7 @@
 
 #include <slipstick/fem/cell_values.h>
 #include <slipstick/fem/kinematics.h>
+#include <slipstick/fem/spaces.h>
 
 #include <Eigen/Dense>
 

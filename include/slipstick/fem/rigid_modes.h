@@ -2,6 +2,7 @@
 #pragma once
 
 #include <slipstick/fem/kinematics.h>
+#include <slipstick/fem/spaces.h>
 #include <slipstick/tfeti/subdomain_matrices.h>
 
 #include <Eigen/Dense>
