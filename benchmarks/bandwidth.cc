@@ -4,9 +4,9 @@
 // prints Markdown. Status 1 when the ratio of the medians is above the limit.
 #include "common.h"
 
-#include <slipstick/fem/assembly.h>
-#include <slipstick/fem/contact_constraints.h>
-#include <slipstick/fem/decomposition.h>
+#include <slipstick/interface/contact_constraints.h>
+#include <slipstick/mechanics/assembly.h>
+#include <slipstick/mesh/decomposition.h>
 #include <slipstick/scene/read.h>
 #include <slipstick/tfeti/dual_operator.h>
 
@@ -44,10 +44,10 @@ namespace
   {
     const MPI_Comm       comm  = MPI_COMM_WORLD;
     const auto           scene = scene::read_scene(file, overrides);
-    const auto           mesh  = fem::make_mesh(scene, comm);
-    const fem::Spaces<2> spaces(mesh, scene.discretization.degree);
-    const auto           constraints = fem::contact_constraints(scene, mesh, spaces, 1.);
-    auto                 matrices    = fem::assemble(scene, mesh, spaces, 1.);
+    const auto                 mesh  = mesh::make_mesh(scene, comm);
+    const mechanics::Spaces<2> spaces(mesh, scene.discretization.degree);
+    const auto                 constraints = interface::contact_constraints(scene, mesh, spaces, 1.);
+    auto                       matrices    = mechanics::assemble(scene, mesh, spaces, 1.);
 
     const auto                                           session = std::make_shared<tfeti::CholmodSession>();
     std::vector<std::unique_ptr<tfeti::SubdomainSystem>> systems;

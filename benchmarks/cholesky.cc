@@ -3,9 +3,9 @@
 // the repetitions, all variants in turn in each of them; prints Markdown.
 #include "common.h"
 
-#include <slipstick/fem/assembly.h>
-#include <slipstick/fem/contact_constraints.h>
-#include <slipstick/fem/decomposition.h>
+#include <slipstick/interface/contact_constraints.h>
+#include <slipstick/mechanics/assembly.h>
+#include <slipstick/mesh/decomposition.h>
 #include <slipstick/scene/read.h>
 #include <slipstick/tfeti/dual_operator.h>
 
@@ -164,13 +164,13 @@ namespace
   }
 
   /// Explicit against implicit F of the whole scene: set-up (factor, and blocks) and one product.
-  void compare_operators(const scene::Scene<2> &scene,
-                         const fem::Mesh<2>    &mesh,
-                         const fem::Spaces<2>  &spaces,
-                         const unsigned int     repetitions)
+  void compare_operators(const scene::Scene<2>      &scene,
+                         const mesh::Mesh<2>        &mesh,
+                         const mechanics::Spaces<2> &spaces,
+                         const unsigned int          repetitions)
   {
-    const auto constraints = fem::contact_constraints(scene, mesh, spaces, 1.);
-    const auto matrices    = fem::assemble(scene, mesh, spaces, 1.);
+    const auto constraints = interface::contact_constraints(scene, mesh, spaces, 1.);
+    const auto matrices    = mechanics::assemble(scene, mesh, spaces, 1.);
 
     std::vector<double>                   factor_times[2], block_times[2], product_times[2];
     double                                megabytes[2] = {0, 0};
@@ -250,12 +250,12 @@ int main(int argc, char **argv)
 {
   return benchmark::main_of("benchmark_cholesky", argc, argv, 21, [](const benchmark::Case &given) {
     const auto           scene = scene::read_scene(given.file, given.overrides);
-    const auto           mesh  = fem::make_mesh(scene, MPI_COMM_WORLD);
-    const fem::Spaces<2> spaces(mesh, scene.discretization.degree);
+    const auto                 mesh  = mesh::make_mesh(scene, MPI_COMM_WORLD);
+    const mechanics::Spaces<2> spaces(mesh, scene.discretization.degree);
 
     // The matrix of the first subdomain, held at unknowns chosen as SubdomainSystem does.
-    const auto   constraints = fem::contact_constraints(scene, mesh, spaces, 1.);
-    auto         matrices    = fem::assemble(scene, mesh, spaces, 1.);
+    const auto   constraints = interface::contact_constraints(scene, mesh, spaces, 1.);
+    auto         matrices    = mechanics::assemble(scene, mesh, spaces, 1.);
     auto         last        = tfeti::LocalGluing::make(constraints.blocks[0]).second;
     const auto   fixing      = tfeti::fixing_unknowns(matrices[0].kernel, last).first;
     Matrix       A           = matrices[0].stiffness;

@@ -2,7 +2,7 @@
 // slipstick with: a primal semismooth Newton method (primal-dual active set; Hueber, Wohlmuth 2005) on the untorn body,
 // sparse Cholesky factorisations by CHOLMOD. benchmarks/primal_newton runs it; prints one line of JSON.
 //
-// What makes it quick: same matrices as slipstick's (its fem layer, Decomposition/Method = none), normal and tangential
+// What makes it quick: same matrices as slipstick's (its layer of mechanics, Decomposition/Method = none), normal and tangential
 // unknowns at the contact nodes, so that an active set fixes unknowns and the pattern of the matrix never changes: one
 // symbolic analysis, only the entries near the contact rewritten, the factor and all workspace used again; supports are
 // eliminated; the mesh is freed before the factorisation.
@@ -15,9 +15,9 @@
 // --analysis-only               one analysis and one factorisation, to choose the ordering
 // --tolerance EPS, --threads N (of BLAS), --openmp (CHOLMOD's OpenMP regions as they come), --set NAME=VALUE
 #include <slipstick/base/log.h>
-#include <slipstick/fem/assembly.h>
-#include <slipstick/fem/contact_constraints.h>
-#include <slipstick/fem/decomposition.h>
+#include <slipstick/interface/contact_constraints.h>
+#include <slipstick/mechanics/assembly.h>
+#include <slipstick/mesh/decomposition.h>
 #include <slipstick/scene/read.h>
 #include <slipstick/tfeti/process.h>
 
@@ -152,11 +152,11 @@ namespace
   {
     clock.enter("mesh");
     const auto scene       = scene::read_scene(options.file, overrides);
-    const auto mesh        = std::make_unique<const fem::Mesh<2>>(fem::make_mesh(scene, MPI_COMM_WORLD));
-    const auto spaces      = std::make_unique<const fem::Spaces<2>>(*mesh, scene.discretization.degree);
-    const auto constraints = fem::contact_constraints(scene, *mesh, *spaces, 1.);
+    const auto mesh        = std::make_unique<const mesh::Mesh<2>>(mesh::make_mesh(scene, MPI_COMM_WORLD));
+    const auto spaces      = std::make_unique<const mechanics::Spaces<2>>(*mesh, scene.discretization.degree);
+    const auto constraints = interface::contact_constraints(scene, *mesh, *spaces, 1.);
     clock.enter("assembly");
-    auto matrices = fem::assemble(scene, *mesh, *spaces, 1.);
+    auto matrices = mechanics::assemble(scene, *mesh, *spaces, 1.);
     if (matrices.size() != 1)
       throw std::runtime_error("one body and one rank, please");
 

@@ -3,9 +3,9 @@
 // solver changed at a time. The dual problem of every N is set up once; times are of the solver alone, over all cells.
 // --only takes the beginning of a table's name. Prints Markdown on rank 0.
 #include <slipstick/contact/friction.h>
-#include <slipstick/fem/assembly.h>
-#include <slipstick/fem/contact_constraints.h>
-#include <slipstick/fem/decomposition.h>
+#include <slipstick/interface/contact_constraints.h>
+#include <slipstick/mechanics/assembly.h>
+#include <slipstick/mesh/decomposition.h>
 #include <slipstick/scene/read.h>
 #include <slipstick/tfeti/process.h>
 
@@ -135,10 +135,10 @@ namespace
       return scene::read_scene(file, all);
     };
     const auto               scene = read(500);
-    const auto               mesh  = fem::make_mesh(scene, comm);
-    const fem::Spaces<2>     spaces(mesh, scene.discretization.degree);
-    const tfeti::DualProblem dual(fem::assemble(scene, mesh, spaces, 1.),
-                                  fem::contact_constraints(scene, mesh, spaces, 1.),
+    const auto                 mesh  = mesh::make_mesh(scene, comm);
+    const mechanics::Spaces<2> spaces(mesh, scene.discretization.degree);
+    const tfeti::DualProblem   dual(mechanics::assemble(scene, mesh, spaces, 1.),
+                                  interface::contact_constraints(scene, mesh, spaces, 1.),
                                   contact::resolved_options(scene).dual,
                                   {"box"},
                                   comm);

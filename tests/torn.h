@@ -2,9 +2,9 @@
 // bodies as an independent reference.
 #pragma once
 
-#include <slipstick/fem/assembly.h>
-#include <slipstick/fem/contact_constraints.h>
-#include <slipstick/fem/decomposition.h>
+#include <slipstick/interface/contact_constraints.h>
+#include <slipstick/mechanics/assembly.h>
+#include <slipstick/mesh/decomposition.h>
 #include <slipstick/tfeti/dual_problem.h>
 
 #include <deal.II/base/mpi.h>
@@ -197,10 +197,10 @@ namespace slipstick::test
     explicit Torn(const Scene &scene_, const MPI_Comm comm_ = MPI_COMM_WORLD, const double t = 1)
       : scene(scene_)
       , comm(comm_)
-      , mesh(fem::make_mesh(scene, comm))
+      , mesh(mesh::make_mesh(scene, comm))
       , spaces(mesh, scene.discretization.degree)
-      , matrices(fem::assemble(scene, mesh, spaces, t))
-      , constraints(fem::contact_constraints(scene, mesh, spaces, t))
+      , matrices(mechanics::assemble(scene, mesh, spaces, t))
+      , constraints(interface::contact_constraints(scene, mesh, spaces, t))
     {}
 
     std::unique_ptr<tfeti::DualProblem> dual(const tfeti::DualOptions &options) const
@@ -214,8 +214,8 @@ namespace slipstick::test
 
     Scene                                 scene;
     MPI_Comm                              comm;
-    fem::Mesh<2>                          mesh;
-    fem::Spaces<2>                        spaces;
+    mesh::Mesh<2>                         mesh;
+    mechanics::Spaces<2>                  spaces;
     std::vector<tfeti::SubdomainMatrices> matrices;
     tfeti::Constraints                    constraints;
   };
@@ -381,7 +381,7 @@ namespace slipstick::test
 
   using NodalField = std::vector<std::array<double, 4>>; // x, y, u_x, u_y
 
-  inline std::vector<Point> node_positions(const fem::Spaces<2> &spaces, const unsigned int p)
+  inline std::vector<Point> node_positions(const mechanics::Spaces<2> &spaces, const unsigned int p)
   {
     std::vector<Point> of_unknowns(spaces.dof_handlers[p]->n_dofs()), of_nodes;
     dealii::DoFTools::map_dofs_to_support_points(*spaces.of(p).mapping, *spaces.dof_handlers[p], of_unknowns);

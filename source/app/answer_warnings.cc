@@ -1,7 +1,7 @@
 #include <slipstick/app/answer_warnings.h>
 #include <slipstick/app/curve_doubts.h>
 #include <slipstick/base/log.h>
-#include <slipstick/fem/deformation.h>
+#include <slipstick/mechanics/deformation.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -152,7 +152,7 @@ namespace slipstick::app
         places.begin()->second);
     }
 
-    std::string place(const scene::Scene<2> &scene, const fem::Peak<2> &peak)
+    std::string place(const scene::Scene<2> &scene, const mechanics::Peak<2> &peak)
     {
       return format("of body %s at (%.6g, %.6g)",
                     scene.bodies[peak.body].name.c_str(),
@@ -162,8 +162,8 @@ namespace slipstick::app
   } // namespace
 
   std::map<std::string, std::string> answer_warnings(const scene::Scene<2>                   &scene,
-                                                     const fem::Mesh<2>                      &mesh,
-                                                     const fem::Spaces<2>                    &spaces,
+                                                     const mesh::Mesh<2>                     &mesh,
+                                                     const mechanics::Spaces<2>              &spaces,
                                                      const tfeti::DualProblem                &dual,
                                                      const std::vector<bool>                 &free,
                                                      const std::vector<contact::ContactNode> &nodes,
@@ -206,7 +206,7 @@ namespace slipstick::app
                    pair.pressure_y,
                    modulus(scene, scene.contacts[k]));
       }
-    const auto        large = fem::largest_deformation(scene, mesh, spaces, u);
+    const auto        large = mechanics::largest_deformation(scene, mesh, spaces, u);
     const char *const remedy =
       "the linear theory of small displacements does not hold there; check loads, moduli and units";
     if (large.strain.value > largest_strain)

@@ -1,7 +1,7 @@
 #include <slipstick/app/curve_doubts.h>
 #include <slipstick/base/log.h>
-#include <slipstick/fem/body_contact.h>
-#include <slipstick/fem/smooth_outline.h>
+#include <slipstick/interface/body_contact.h>
+#include <slipstick/mesh/smooth_outline.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -66,16 +66,16 @@ namespace slipstick::app
   } // namespace
 
   std::map<std::string, std::string> doubts_of_curves(const scene::Scene<2>                   &scene,
-                                                      const fem::Mesh<2>                      &mesh,
-                                                      const fem::Spaces<2>                    &spaces,
+                                                      const mesh::Mesh<2>                     &mesh,
+                                                      const mechanics::Spaces<2>              &spaces,
                                                       const std::vector<tfeti::ContactPoint>  &points,
                                                       const std::vector<contact::ContactNode> &nodes)
   {
     std::map<std::string, std::string> texts;
-    if (!fem::leaves_out_curves(mesh)) // nearly always
+    if (!mesh::leaves_out_curves(mesh)) // nearly always
       return texts;
-    std::map<std::pair<unsigned int, fem::NodeKey>, double> left_out;
-    const auto                                              contacts = fem::pair_bodies(scene, mesh, spaces);
+    std::map<std::pair<unsigned int, mechanics::NodeKey>, double> left_out;
+    const auto contacts = interface::pair_bodies(scene, mesh, spaces);
     for (unsigned int k = 0; k < contacts.rows.size(); ++k)
       for (const auto &row : contacts.rows[k])
         left_out[{k, row.slave}] = std::max(left_out[{k, row.slave}], row.left_out);

@@ -22,7 +22,7 @@ namespace slipstick::app
     // A Reach is proposed with so many digits of reserve.
     constexpr double reserve = 1.1;
 
-    std::string place(const fem::Penetration &deepest)
+    std::string place(const interface::Penetration &deepest)
     {
       return format("(%.6g, %.6g)", deepest.at[0], deepest.at[1]);
     }
@@ -35,7 +35,7 @@ namespace slipstick::app
     }
   } // namespace
 
-  GeometryFindings judge(const scene::Scene<2> &scene, const fem::Penetrations &found, const double largest)
+  GeometryFindings judge(const scene::Scene<2> &scene, const interface::Penetrations &found, const double largest)
   {
     GeometryFindings                                findings;
     std::set<std::pair<unsigned int, unsigned int>> joined;

@@ -24,13 +24,13 @@ namespace slipstick::app
   {
     const auto   gaps  = contact::gaps_of(held, u);
     const double noise = check_limit(scene.solver.tolerance) * contact.checks.max_displacement;
-    fem::refuse_held_penetration(scene, held, gaps, noise, dual.communicator());
+    interface::refuse_held_penetration(scene, held, gaps, noise, dual.communicator());
     std::vector<bool> touches, sticks;
     for (unsigned int i = 0; i < held.points.size(); ++i)
       {
         const auto &point = held.points[i];
         touches.push_back(point.is_bonded ||
-                          gaps[i] <= fem::held_contact_tolerance(point) + (point.is_known ? 0. : noise));
+                          gaps[i] <= interface::held_contact_tolerance(point) + (point.is_known ? 0. : noise));
         sticks.push_back(scene.contacts[point.contact.pair].law.has_tangential_row());
       }
     contact::add_held_nodes(dual, held, multipliers, gaps, touches, sticks, contact);

@@ -3,7 +3,7 @@
 #include <slipstick/app/simulation.h>
 #include <slipstick/base/collective.h>
 #include <slipstick/base/printable.h>
-#include <slipstick/fem/size_check.h>
+#include <slipstick/mesh/size_check.h>
 #include <slipstick/scene/read.h>
 #include <slipstick/tfeti/process.h>
 
@@ -96,7 +96,7 @@ namespace
                       command_line.quiet                           ? Verbosity::quiet
                        : command_line.verbose || command_line.check ? Verbosity::verbose
                                                                     : Verbosity::normal);
-        fem::check_size(scene, command_line.force, comm);
+        mesh::check_size(scene, command_line.force, comm);
         if (command_line.check)
           {
             app::check_scene(scene, command_line.picture, log, comm);

@@ -145,7 +145,10 @@ namespace slipstick::app
              "x is the radius, y the axis, zz the hoop direction; all forces are those over the whole circumference"));
   }
 
-  void print_mesh(const Log &log, const scene::Scene<2> &scene, const fem::Mesh<2> &mesh, const fem::Spaces<2> &spaces)
+  void print_mesh(const Log                  &log,
+                  const scene::Scene<2>      &scene,
+                  const mesh::Mesh<2>        &mesh,
+                  const mechanics::Spaces<2> &spaces)
   {
     log.line(line("mesh",
                   format("bodies: %zu, cells: %llu of degree %u, subdomains: %u (%s), unknowns: %llu",
@@ -168,7 +171,7 @@ namespace slipstick::app
       }
   }
 
-  std::vector<std::string> warnings_before(const scene::Scene<2> &scene, const fem::Mesh<2> &mesh)
+  std::vector<std::string> warnings_before(const scene::Scene<2> &scene, const mesh::Mesh<2> &mesh)
   {
     const std::string        mark = "warning: ";
     std::vector<std::string> texts;
@@ -486,13 +489,13 @@ namespace slipstick::app
       pair.on_slave.moment = pair.moment_mismatch = 0;
   }
 
-  output::Summary make_summary(const scene::Scene<2>       &scene,
-                               const fem::Mesh<2>          &mesh,
-                               const fem::Spaces<2>        &spaces,
-                               const tfeti::DualProblem    &dual,
-                               const contact::DualSolution &solution,
-                               const contact::Checks       &checks,
-                               const fem::StressResult     &stress)
+  output::Summary make_summary(const scene::Scene<2>         &scene,
+                               const mesh::Mesh<2>           &mesh,
+                               const mechanics::Spaces<2>    &spaces,
+                               const tfeti::DualProblem      &dual,
+                               const contact::DualSolution   &solution,
+                               const contact::Checks         &checks,
+                               const mechanics::StressResult &stress)
   {
     const auto     &n         = dual.constraints().counts;
     const double    tolerance = tolerance_of(scene.solver, solution);

@@ -7,11 +7,11 @@
 #include <slipstick/app/simulation.h>
 #include <slipstick/app/step_solver.h>
 #include <slipstick/contact/resultants.h>
-#include <slipstick/fem/arc_length.h>
-#include <slipstick/fem/elasticity.h>
-#include <slipstick/fem/loads.h>
-#include <slipstick/fem/probes.h>
-#include <slipstick/fem/singular_points.h>
+#include <slipstick/interface/arc_length.h>
+#include <slipstick/mechanics/elasticity.h>
+#include <slipstick/mechanics/loads.h>
+#include <slipstick/mechanics/probes.h>
+#include <slipstick/mechanics/singular_points.h>
 #include <slipstick/output/conditions.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/fields.h>
@@ -44,12 +44,12 @@ namespace slipstick::app
     /// Contact nodes of all ranks on rank 0, with their arc lengths.
     /// @param total_slip gets the slip of this step added, on rank 0.
     output::ContactStep gather_contact(const scene::Scene<dim>       &scene,
-                                       const fem::Mesh<dim>          &mesh,
-                                       const fem::Spaces<dim>        &spaces,
+                                       const mesh::Mesh<dim>         &mesh,
+                                       const mechanics::Spaces<dim>  &spaces,
                                        const contact::CheckedContact &own,
                                        TotalSlip                     &total_slip)
     {
-      const auto          lengths = fem::arc_lengths(scene, mesh, spaces);
+      const auto          lengths = interface::arc_lengths(scene, mesh, spaces);
       const auto          nodes   = dealii::Utilities::MPI::gather(mesh.comm, own.nodes);
       const auto          keys    = dealii::Utilities::MPI::gather(mesh.comm, own.keys);
       output::ContactStep step;
@@ -293,8 +293,9 @@ namespace slipstick::app
           warn(
             {{"unresisted",
               set_to_zero(tfeti::describe(tfeti::plainest(answer->recovery.unresisted), solver.dual().body_names()))}});
-        const auto geometry =
-          judge(scene, fem::penetrations(scene, solver.mesh(), solver.spaces(), u, t), contact.checks.max_displacement);
+        const auto geometry = judge(scene,
+                                    interface::penetrations(scene, solver.mesh(), solver.spaces(), u, t),
+                                    contact.checks.max_displacement);
         warn(geometry.warnings);
         if (geometry.failure)
           log.warning(*geometry.failure);
@@ -326,10 +327,10 @@ namespace slipstick::app
       }
 
       /// Where stress and error are largest, and whether more than the mesh is in the way there.
-      void add_places(const fem::StressResult &stress, output::Summary &summary) const
+      void add_places(const mechanics::StressResult &stress, output::Summary &summary) const
       {
-        const auto places   = fem::stress_places(solver.mesh(), solver.spaces(), stress);
-        const auto as_place = [&](const fem::Peak<dim> &peak) {
+        const auto places   = mechanics::stress_places(solver.mesh(), solver.spaces(), stress);
+        const auto as_place = [&](const mechanics::Peak<dim> &peak) {
           return output::Place{scene.bodies[peak.body].name, {{peak.position[0], peak.position[1]}}};
         };
         summary.results.max_von_mises_at = as_place(places.von_mises);
@@ -337,7 +338,8 @@ namespace slipstick::app
         if (stress.error_squared > 0)
           summary.error.largest_part = places.error.value * places.error.value / stress.error_squared;
         double nearest = cells_of_singularity * places.size;
-        for (const auto &point : fem::singular_points(scene, solver.mesh(), solver.spaces(), solver.n_given_supports()))
+        for (const auto &point :
+             mechanics::singular_points(scene, solver.mesh(), solver.spaces(), solver.n_given_supports()))
           if (point.body == places.von_mises.body && point.position.distance(places.von_mises.position) < nearest)
             {
               nearest                  = point.position.distance(places.von_mises.position);
@@ -346,7 +348,7 @@ namespace slipstick::app
       }
 
       std::vector<output::ProbeResult> probe_results(const std::vector<Eigen::VectorXd> &u,
-                                                     const fem::StressResult            &stress) const
+                                                     const mechanics::StressResult      &stress) const
       {
         std::vector<output::ProbeResult> results;
         for (const auto &points : probes.values(u, stress))
@@ -365,7 +367,8 @@ namespace slipstick::app
                     values.displacement[d] = point.displacement[d];
                   }
                 values.stress    = point.stress;
-                values.von_mises = fem::von_mises(point.stress[0], point.stress[1], point.stress[2], point.stress[3]);
+                values.von_mises =
+                  mechanics::von_mises(point.stress[0], point.stress[1], point.stress[2], point.stress[3]);
                 result.points.push_back(values);
               }
             results.push_back(std::move(result));
@@ -377,7 +380,7 @@ namespace slipstick::app
       output::ForceSummary forces(const StepSolver::Answer &answer, const double t)
       {
         output::ForceSummary sums;
-        const auto           loads = fem::load_resultants(scene, solver.mesh(), solver.spaces(), t);
+        const auto           loads = mechanics::load_resultants(scene, solver.mesh(), solver.spaces(), t);
         unsigned int         next  = 0;
         const auto           take  = [&](const auto &list, const std::string &kind) {
           for (const auto &load : list)
@@ -437,7 +440,7 @@ namespace slipstick::app
       StageClock                       clock;
       StepSolver                       solver;
       const scene::Scene<dim>         &scene; // with the contact pairs that are found
-      fem::Probes<dim>                 probes;
+      mechanics::Probes<dim>           probes;
       std::vector<output::ContactStep> contact_steps;
       TotalSlip                        total_slip;
       std::vector<std::string>         warnings;
@@ -455,7 +458,7 @@ namespace slipstick::app
   {
     StageClock clock;
     StepSolver solver(scene, log, clock, comm);
-    fem::Probes<dim>(scene, solver.mesh(), solver.spaces());
+    mechanics::Probes<dim>(scene, solver.mesh(), solver.spaces());
     solver.build();
     if (!solver.unheld().empty())
       log.line("warning: " + set_to_zero(solver.unheld()));

@@ -4,13 +4,13 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/contact/refinement.h>
-#include <slipstick/fem/assembly.h>
-#include <slipstick/fem/contact_search.h>
-#include <slipstick/fem/decomposition.h>
-#include <slipstick/fem/loads.h>
-#include <slipstick/fem/pair_checks.h>
-#include <slipstick/fem/shared_sides.h>
-#include <slipstick/fem/still_points.h>
+#include <slipstick/interface/contact_search.h>
+#include <slipstick/interface/pair_checks.h>
+#include <slipstick/interface/shared_sides.h>
+#include <slipstick/mechanics/assembly.h>
+#include <slipstick/mechanics/loads.h>
+#include <slipstick/mechanics/still_points.h>
+#include <slipstick/mesh/decomposition.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -136,17 +136,17 @@ namespace slipstick::app
                                  options.dual.operator_precision == tfeti::Precision::single_precision;
     print_header(log, scene, comm);
     clock.enter("mesh");
-    the_mesh   = std::make_unique<fem::Mesh<dim>>(fem::make_mesh(scene, comm));
-    the_spaces = std::make_unique<fem::Spaces<dim>>(*the_mesh, scene.discretization.degree);
+    the_mesh   = std::make_unique<mesh::Mesh<dim>>(mesh::make_mesh(scene, comm));
+    the_spaces = std::make_unique<mechanics::Spaces<dim>>(*the_mesh, scene.discretization.degree);
     print_mesh(log, scene, *the_mesh, *the_spaces);
-    for (auto &pair : fem::find_contacts(scene, *the_mesh, *the_spaces))
+    for (auto &pair : interface::find_contacts(scene, *the_mesh, *the_spaces))
       {
         log.line("contact      found between " + pair.name);
         scene.contacts.push_back(std::move(pair));
       }
-    fem::check_overlap(scene, *the_mesh, *the_spaces);
-    fem::check_obstacle_pairs(scene, *the_mesh, *the_spaces);
-    fem::check_shared_sides(scene, *the_mesh, *the_spaces);
+    interface::check_overlap(scene, *the_mesh, *the_spaces);
+    interface::check_obstacle_pairs(scene, *the_mesh, *the_spaces);
+    interface::check_shared_sides(scene, *the_mesh, *the_spaces);
   }
 
   void StepSolver::build()
@@ -270,7 +270,7 @@ namespace slipstick::app
         std::vector<Eigen::VectorXd> motions;
         for (const auto &motion : unheld.motions)
           motions.push_back(motion.amplitudes);
-        for (auto &support : fem::still_points(*the_mesh, *the_spaces, motions, unheld.motions.front().frames))
+        for (auto &support : mechanics::still_points(*the_mesh, *the_spaces, motions, unheld.motions.front().frames))
           scene.supports.push_back(std::move(support));
         make_dual_as_it_is(t);
       }
@@ -281,13 +281,13 @@ namespace slipstick::app
     clock.enter("assembly");
     if (subdomains)
       {
-        auto loads = fem::assemble_loads(scene, *the_mesh, *the_spaces, t);
+        auto loads = mechanics::assemble_loads(scene, *the_mesh, *the_spaces, t);
         drop_rounding(loads);
         subdomains->set_loads(std::move(loads));
       }
     else
       {
-        auto                         matrices = fem::assemble(scene, *the_mesh, *the_spaces, t);
+        auto                         matrices = mechanics::assemble(scene, *the_mesh, *the_spaces, t);
         std::vector<Eigen::VectorXd> loads;
         for (const auto &subdomain : matrices)
           loads.push_back(subdomain.load);
@@ -297,7 +297,7 @@ namespace slipstick::app
     auto rows = contact_rows(t);
     pruned    = std::move(rows.pruned);
     held      = std::move(rows.held);
-    fem::refuse_held_penetration(scene, held, comm);
+    interface::refuse_held_penetration(scene, held, comm);
     print_constraints(log, rows.active);
 
     clock.enter("dual setup");
@@ -311,17 +311,17 @@ namespace slipstick::app
     print_dual(log, *the_dual);
   }
 
-  fem::ContactRows StepSolver::contact_rows(const double t)
+  interface::ContactRows StepSolver::contact_rows(const double t)
   {
     if (!contacts)
-      contacts = fem::pair_bodies(scene, *the_mesh, *the_spaces);
-    return fem::contact_rows(scene, *the_mesh, *the_spaces, *contacts, t, kept_part);
+      contacts = interface::pair_bodies(scene, *the_mesh, *the_spaces);
+    return interface::contact_rows(scene, *the_mesh, *the_spaces, *contacts, t, kept_part);
   }
 
   bool StepSolver::advance(const double t)
   {
     clock.enter("assembly");
-    auto loads = fem::assemble_loads(scene, *the_mesh, *the_spaces, t);
+    auto loads = mechanics::assemble_loads(scene, *the_mesh, *the_spaces, t);
     auto rows  = contact_rows(t);
     drop_rounding(loads);
     const bool is_same =
@@ -331,7 +331,7 @@ namespace slipstick::app
       {
         pruned = std::move(rows.pruned);
         held   = std::move(rows.held);
-        fem::refuse_held_penetration(scene, held, comm);
+        interface::refuse_held_penetration(scene, held, comm);
         clock.enter("dual setup");
         the_dual->set_step(std::move(loads), std::move(rows.active.c));
       }
@@ -364,7 +364,7 @@ namespace slipstick::app
                                     scene.bodies.size(),
                                     history);
     add_held_nodes(scene, *the_dual, held, x, u, *answer.contact);
-    answer.stress = fem::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), u, t);
+    answer.stress = mechanics::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), u, t);
   }
 
   bool StepSolver::is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t)
@@ -434,7 +434,7 @@ namespace slipstick::app
                 answer           = std::make_unique<Answer>();
                 answer->recovery = recovered();
               }
-            const double penetration = fem::largest_penetration(pruned, answer->recovery.u, comm);
+            const double penetration = interface::largest_penetration(pruned, answer->recovery.u, comm);
             if (!(penetration > 0))
               return answer;
             reason = format("contact nodes without multipliers would penetrate by %.3g mm", penetration);

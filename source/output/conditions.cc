@@ -1,5 +1,5 @@
-#include <slipstick/fem/points.h>
-#include <slipstick/fem/surface.h>
+#include <slipstick/mechanics/points.h>
+#include <slipstick/mechanics/surface.h>
 #include <slipstick/output/conditions.h>
 #include <slipstick/output/csv.h>
 
@@ -67,16 +67,16 @@ namespace slipstick::output
   } // namespace
 
   template <int dim>
-  void write_conditions(const OutputDirectory   &directory,
-                        const scene::Scene<dim> &scene,
-                        const fem::Mesh<dim>    &mesh,
-                        const fem::Spaces<dim>  &spaces)
+  void write_conditions(const OutputDirectory        &directory,
+                        const scene::Scene<dim>      &scene,
+                        const mesh::Mesh<dim>        &mesh,
+                        const mechanics::Spaces<dim> &spaces)
   {
     const auto        boundaries = boundaries_of(scene);
     std::vector<bool> wanted(scene.bodies.size());
     for (const auto &boundary : boundaries)
       wanted[boundary.where.body] = true;
-    const auto outlines = fem::outlines(mesh, spaces, wanted);
+    const auto outlines = mechanics::outlines(mesh, spaces, wanted);
 
     const auto                         named = points_of(scene);
     std::vector<scene::PointName<dim>> points;
@@ -86,7 +86,7 @@ namespace slipstick::output
         points.push_back(point.where);
         owners.push_back(point.kind + " " + point.name);
       }
-    const auto nodes = fem::nodes_at(scene, mesh, spaces, points, owners);
+    const auto nodes = mechanics::nodes_at(scene, mesh, spaces, points, owners);
 
     directory.write_from_root("conditions.csv", [&](std::ostream &out) {
       const auto row =
@@ -95,7 +95,7 @@ namespace slipstick::output
         };
       out << "kind,name,side,body,x1,y1,x2,y2\n";
       for (const auto &boundary : boundaries)
-        for (const auto &edge : fem::edges_on(mesh, outlines, boundary.where))
+        for (const auto &edge : mechanics::edges_on(mesh, outlines, boundary.where))
           {
             row(boundary.kind, boundary.name, boundary.side, boundary.where.body);
             out << at(edge.node(0)) << at(edge.node(1)) << '\n';
@@ -110,6 +110,6 @@ namespace slipstick::output
 
   template void write_conditions<2>(const OutputDirectory &,
                                     const scene::Scene<2> &,
-                                    const fem::Mesh<2> &,
-                                    const fem::Spaces<2> &);
+                                    const mesh::Mesh<2> &,
+                                    const mechanics::Spaces<2> &);
 } // namespace slipstick::output

@@ -1,6 +1,6 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/base/log.h>
-#include <slipstick/fem/elasticity.h>
+#include <slipstick/mechanics/elasticity.h>
 #include <slipstick/output/fields.h>
 
 #include <deal.II/base/data_out_base.h>
@@ -63,10 +63,10 @@ namespace slipstick::output
 
     /// Positions and cells of a subdomain, and the fields that are constant in a cell.
     template <int dim>
-    Grid grid_of(const fem::Mesh<dim>       &mesh,
-                 const fem::Spaces<dim>     &spaces,
-                 const unsigned int          p,
-                 const fem::SubdomainStress &stress)
+    Grid grid_of(const mesh::Mesh<dim>            &mesh,
+                 const mechanics::Spaces<dim>     &spaces,
+                 const unsigned int                p,
+                 const mechanics::SubdomainStress &stress)
     {
       static_assert(dim == 2, "cell types of the plane");
       const auto                                  &subdomain   = *mesh.subdomains[p];
@@ -134,7 +134,7 @@ namespace slipstick::output
           add(0, {u[2 * node], u[2 * node + 1], 0.});
           add(1, {xx, xy, 0., xy, yy, 0., 0., 0., has_hoop_stress ? zz : 0.}); // of the plane
           add(2, {zz});
-          add(3, {fem::von_mises(xx, yy, xy, zz)});
+          add(3, {mechanics::von_mises(xx, yy, xy, zz)});
           add(4, {mean + radius});
           add(5, {mean - radius});
           if (has_hoop_stress)
@@ -269,14 +269,14 @@ namespace slipstick::output
 
     /// One .vtu; the subdomain that comes first also writes the .pvtu, whose fields are the same.
     template <int dim>
-    void write_subdomain(const OutputDirectory      &directory,
-                         const fem::Mesh<dim>       &mesh,
-                         const fem::Spaces<dim>     &spaces,
-                         const unsigned int          p,
-                         const Eigen::VectorXd      &u,
-                         const fem::SubdomainStress &stress,
-                         const bool                  has_hoop_stress,
-                         const unsigned int          step)
+    void write_subdomain(const OutputDirectory            &directory,
+                         const mesh::Mesh<dim>            &mesh,
+                         const mechanics::Spaces<dim>     &spaces,
+                         const unsigned int                p,
+                         const Eigen::VectorXd            &u,
+                         const mechanics::SubdomainStress &stress,
+                         const bool                        has_hoop_stress,
+                         const unsigned int                step)
     {
       const unsigned int subdomain = mesh.subdomains[p]->subdomain;
       Grid               grid      = grid_of(mesh, spaces, p, stress);
@@ -294,10 +294,10 @@ namespace slipstick::output
 
   template <int dim>
   void write_fields(const OutputDirectory              &directory,
-                    const fem::Mesh<dim>               &mesh,
-                    const fem::Spaces<dim>             &spaces,
+                    const mesh::Mesh<dim>              &mesh,
+                    const mechanics::Spaces<dim>       &spaces,
                     const std::vector<Eigen::VectorXd> &u,
-                    const fem::StressResult            &stress,
+                    const mechanics::StressResult      &stress,
                     const unsigned int                  step)
   {
     collectively(mesh.comm, [&] {
@@ -317,9 +317,9 @@ namespace slipstick::output
   }
 
   template void write_fields(const OutputDirectory &,
-                             const fem::Mesh<2> &,
-                             const fem::Spaces<2> &,
+                             const mesh::Mesh<2> &,
+                             const mechanics::Spaces<2> &,
                              const std::vector<Eigen::VectorXd> &,
-                             const fem::StressResult &,
+                             const mechanics::StressResult &,
                              const unsigned int);
 } // namespace slipstick::output

@@ -1,6 +1,6 @@
 #include <slipstick/base/log.h>
-#include <slipstick/fem/points.h>
-#include <slipstick/fem/surface.h>
+#include <slipstick/mechanics/points.h>
+#include <slipstick/mechanics/surface.h>
 #include <slipstick/output/scene_picture.h>
 
 #include <deal.II/base/mpi.h>
@@ -57,7 +57,7 @@ namespace slipstick::output
       Point  low, high;
       double scale;
 
-      explicit View(const std::vector<fem::SurfaceEdge<2>> &outlines)
+      explicit View(const std::vector<mechanics::SurfaceEdge<2>> &outlines)
         : low(outlines.front().node(0))
         , high(low)
       {
@@ -93,7 +93,7 @@ namespace slipstick::output
       }
     };
 
-    std::string path_of(const fem::SurfaceEdge<2> &edge, const View &view)
+    std::string path_of(const mechanics::SurfaceEdge<2> &edge, const View &view)
     {
       std::string text = "M" + view.at(edge.node(0));
       if (edge.n_nodes == 3)
@@ -102,7 +102,7 @@ namespace slipstick::output
     }
 
     /// Corners of the cells of all ranks on rank 0; nothing where there are too many.
-    std::vector<std::vector<Point>> cells_of(const fem::Mesh<2> &mesh)
+    std::vector<std::vector<Point>> cells_of(const mesh::Mesh<2> &mesh)
     {
       std::vector<std::vector<Point>> cells;
       if (mesh.n_cells > max_drawn_cells)
@@ -153,7 +153,7 @@ namespace slipstick::output
         , view(view_)
       {}
 
-      void named(const std::string &kind, const std::string &name, const std::vector<fem::SurfaceEdge<2>> &edges)
+      void named(const std::string &kind, const std::string &name, const std::vector<mechanics::SurfaceEdge<2>> &edges)
       {
         const Style &style = style_of(kind);
         out << "<path class=\"" << kind << "\" fill=\"none\" stroke-linecap=\"round\" stroke=\"" << style.colour
@@ -245,13 +245,13 @@ namespace slipstick::output
     }
   } // namespace
 
-  void write_scene_picture(const OutputDirectory &directory,
-                           const std::string     &file,
-                           const scene::Scene<2> &scene,
-                           const fem::Mesh<2>    &mesh,
-                           const fem::Spaces<2>  &spaces)
+  void write_scene_picture(const OutputDirectory      &directory,
+                           const std::string          &file,
+                           const scene::Scene<2>      &scene,
+                           const mesh::Mesh<2>        &mesh,
+                           const mechanics::Spaces<2> &spaces)
   {
-    const auto outlines = fem::outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
+    const auto outlines = mechanics::outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
     const auto cells    = cells_of(mesh);
 
     std::vector<scene::PointName<2>> points;
@@ -267,13 +267,13 @@ namespace slipstick::output
         points.push_back(load.where);
         owners.push_back("Point load " + load.name);
       }
-    const auto nodes = fem::nodes_at(scene, mesh, spaces, points, owners);
+    const auto nodes = mechanics::nodes_at(scene, mesh, spaces, points, owners);
 
     directory.write_from_root(file, [&](std::ostream &out) {
       const View        view(outlines);
       const std::size_t n_lines = scene.supports.size() + scene.foundations.size() + scene.tractions.size() +
                                   scene.point_loads.size() + 2 * scene.contacts.size();
-      const auto on = [&](const scene::BoundaryName &where) { return fem::edges_on(mesh, outlines, where); };
+      const auto on = [&](const scene::BoundaryName &where) { return mechanics::edges_on(mesh, outlines, where); };
       out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
           << "font-family=\"sans-serif\" font-size=\"14\" "
           << format("width=\"%.0f\" height=\"%.0f\">\n",

@@ -60,7 +60,7 @@ class Figures(unittest.TestCase):
                         for row in result.contact:
                             self.near(row['pressure'], 10, 2e-10)
 
-    def test_moments_of_the_two_sides_agree(self):  # and to second order: tests/fem/mortar.cc
+    def test_moments_of_the_two_sides_agree(self):  # and to second order: tests/interface/mortar.cc
         mismatch = []
         for n in (0, 1, 2):
             pair, = pairs(scene('hertz', ('Body cylinder/Refine levels', 2), ('Body block/Refine levels', 2),

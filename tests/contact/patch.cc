@@ -2,7 +2,7 @@
 #include "solved.h"
 
 #include <slipstick/base/exceptions.h>
-#include <slipstick/fem/body_contact.h>
+#include <slipstick/interface/body_contact.h>
 
 using namespace slipstick;
 using namespace slipstick::test;
@@ -64,7 +64,7 @@ TEST(ContactPatch, matching_meshes_have_node_to_node_rows)
   for (const unsigned int degree : {1, 2})
     {
       const Torn torn(two_blocks({{5, 2}}, {{5, 2}}, degree, 0.3, "frictionless"));
-      for (const auto &rows : fem::pair_bodies(torn.scene, torn.mesh, torn.spaces).rows)
+      for (const auto &rows : interface::pair_bodies(torn.scene, torn.mesh, torn.spaces).rows)
         for (const auto &row : rows)
           EXPECT_EQ(row.master_weights.size(), 1u);
     }

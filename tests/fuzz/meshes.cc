@@ -2,7 +2,7 @@
 // InputError or gives a mesh whose cells nowhere lie on top of each other, which points thrown at random tell. Status 0 when all
 // do; 1 with the seed of the first that does not. fuzz_meshes --show SEED FOLDER...: that file, on standard output.
 #include <slipstick/base/exceptions.h>
-#include <slipstick/fem/body_mesh.h>
+#include <slipstick/mesh/body_mesh.h>
 
 #include <algorithm>
 #include <csignal>
@@ -189,19 +189,19 @@ namespace
     const std::vector<Source> &sources;
   };
 
-  fem::MeshFile parse(const Source &source)
+  mesh::MeshFile parse(const Source &source)
   {
     if (source.extension != ".msh" && source.text.find('\0') != std::string::npos)
       throw InputError("a byte that is 0", "read_mesh_file() refuses those");
-    return source.extension == ".msh"   ? fem::parse_gmsh(source.name, source.text)
-           : source.extension == ".inp" ? fem::parse_abaqus(source.name, source.text)
-           : source.extension == ".vtk" ? fem::parse_vtk(source.name, source.text)
-           : source.extension == ".unv" ? fem::parse_unv(source.name, source.text)
-                                        : fem::parse_ucd(source.name, source.text);
+    return source.extension == ".msh"   ? mesh::parse_gmsh(source.name, source.text)
+           : source.extension == ".inp" ? mesh::parse_abaqus(source.name, source.text)
+           : source.extension == ".vtk" ? mesh::parse_vtk(source.name, source.text)
+           : source.extension == ".unv" ? mesh::parse_unv(source.name, source.text)
+                                        : mesh::parse_ucd(source.name, source.text);
   }
 
   /// Whether a point lies inside of two cells.
-  bool overlaps(const fem::MeshPiece<2> &piece, std::mt19937_64 &random)
+  bool overlaps(const mesh::MeshPiece<2> &piece, std::mt19937_64 &random)
   {
     for (unsigned int k = 0; k < n_points; ++k)
       {
@@ -209,10 +209,10 @@ namespace
         const auto      &cell = piece.cells[random() % piece.cells.size()];
         dealii::Point<2> x;
         double           sum = 0;
-        for (unsigned int v = 0; v < fem::n_corners<2>(cell); ++v)
+        for (unsigned int v = 0; v < mesh::n_corners<2>(cell); ++v)
           {
             const double weight = .05 + (random() % 1000) / 1000.;
-            x += weight * piece.vertices[fem::corner<2>(cell, v)];
+            x += weight * piece.vertices[mesh::corner<2>(cell, v)];
             sum += weight;
           }
         x /= sum;
@@ -220,10 +220,10 @@ namespace
         for (const auto &other : piece.cells)
           {
             bool is_inside = true;
-            for (unsigned int v = 0; v < fem::n_corners<2>(other); ++v)
+            for (unsigned int v = 0; v < mesh::n_corners<2>(other); ++v)
               {
-                const auto a      = piece.vertices[fem::corner<2>(other, v)],
-                           b      = piece.vertices[fem::corner<2>(other, v + 1)];
+                const auto a      = piece.vertices[mesh::corner<2>(other, v)],
+                           b      = piece.vertices[mesh::corner<2>(other, v + 1)];
                 const double area = (b[0] - a[0]) * (x[1] - a[1]) - (b[1] - a[1]) * (x[0] - a[0]);
                 is_inside         = is_inside && area > 1e-3 * (b - a).norm_square(); // slits may be off by 1e-4
               }
@@ -273,7 +273,7 @@ int main(int argc, char **argv)
           scene::Body<2> body;
           body.name       = "mutant";
           body.shape      = scene::Shape::mesh;
-          const auto mesh = fem::body_from_file(body, parse(mutation.result));
+          const auto mesh = mesh::body_from_file(body, parse(mutation.result));
           ++taken;
           if (overlaps(mesh.piece, mutation.random))
             {

@@ -110,7 +110,7 @@ def make_case(seed, folder):
             arguments += ['--set', setting]
     else:
         name = rng.choice(MESHES)
-        data = (ROOT / 'tests/fem/meshes' / name).read_bytes()
+        data = (ROOT / 'tests/mesh/meshes' / name).read_bytes()
         mesh = folder / name
         if rng.random() < 0.7 and b'\0' not in data:
             mesh.write_text(mutated_lines(rng, data.decode()), encoding='latin1', errors='replace')

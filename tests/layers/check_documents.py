@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
-LAYERS = "base|scene|fem|tfeti|qp|contact|output|app"
+LAYERS = "base|scene|mesh|mechanics|interface|tfeti|qp|contact|output|app"
 UNIT = re.compile(rf"(?<![\w/])((?:{LAYERS})/[a-z_]+)(\.h|\.cc)?\b")
 DECISION = re.compile(r"doc/decisions/(\d{4})")
 HEADING = re.compile(r"# (\d{4})\. (.+)")
@@ -78,12 +78,12 @@ def faults(root):
 # The self test: files of a small tree, and a word of the fault that they must cause (None: they must pass).
 INDEX = "| [0001](0001-a.md) | A | date | accepted |"
 FIXTURES = {
-    "clean tree": ({"README.md": "[x](doc/method.md#1-a) [y](https://z)", "doc/method.md": "fem/mesh, fem/mesh.h",
-                    "include/slipstick/fem/mesh.h": "// doc/decisions/0001", "doc/decisions/README.md": INDEX,
+    "clean tree": ({"README.md": "[x](doc/method.md#1-a) [y](https://z)", "doc/method.md": "mesh/mesh, mesh/mesh.h",
+                    "include/slipstick/mesh/mesh.h": "// doc/decisions/0001", "doc/decisions/README.md": INDEX,
                     "doc/decisions/0001-a.md": "# 0001. A"}, None),
     "dead link": ({"doc/a.md": "[x](b.md)"}, "link to b.md"),
-    "unit that moved": ({"doc/method.md": "see fem/mesh"}, "no fem/mesh"),
-    "header that is none": ({"doc/method.md": "fem/mesh.h", "source/fem/mesh.cc": ""}, "no fem/mesh.h"),
+    "unit that moved": ({"doc/method.md": "see mesh/mesh"}, "no mesh/mesh"),
+    "header that is none": ({"doc/method.md": "mesh/mesh.h", "source/mesh/mesh.cc": ""}, "no mesh/mesh.h"),
     "title that differs": ({"doc/decisions/README.md": INDEX, "doc/decisions/0001-a.md": "# 0001. B"}, "has no line"),
     "gap in the numbers": ({"doc/decisions/README.md": "| [0002](0002-a.md) | A |", "doc/decisions/0002-a.md": "# 0002. A"},
                            "0001 is expected"),

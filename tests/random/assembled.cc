@@ -1,11 +1,11 @@
 #include "assembled.h"
 
 #include <slipstick/base/exceptions.h>
-#include <slipstick/fem/assembly.h>
-#include <slipstick/fem/contact_constraints.h>
-#include <slipstick/fem/contact_search.h>
-#include <slipstick/fem/decomposition.h>
-#include <slipstick/fem/pair_checks.h>
+#include <slipstick/interface/contact_constraints.h>
+#include <slipstick/interface/contact_search.h>
+#include <slipstick/interface/pair_checks.h>
+#include <slipstick/mechanics/assembly.h>
+#include <slipstick/mesh/decomposition.h>
 
 #include <deal.II/base/exceptions.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -25,7 +25,7 @@ namespace slipstick::random
     };
 
     /// Nodes that gluing rows hold together get one number.
-    Numbering number_nodes(const fem::Mesh<2>                          &mesh,
+    Numbering number_nodes(const mesh::Mesh<2>                         &mesh,
                            const std::vector<tfeti::SubdomainMatrices> &matrices,
                            const tfeti::Constraints                    &constraints,
                            const unsigned int                           n_bodies)
@@ -65,8 +65,8 @@ namespace slipstick::random
       return numbering;
     }
 
-    void add_bodies(const fem::Mesh<2>                          &mesh,
-                    const fem::Spaces<2>                        &spaces,
+    void add_bodies(const mesh::Mesh<2>                         &mesh,
+                    const mechanics::Spaces<2>                  &spaces,
                     const std::vector<tfeti::SubdomainMatrices> &matrices,
                     const Numbering                             &numbering,
                     Problem                                     &problem)
@@ -144,17 +144,17 @@ namespace slipstick::random
     constexpr double t = 1;
     if (untorn)
       scene.decomposition.method = scene::DecompositionMethod::none;
-    const auto           mesh = fem::make_mesh(scene, comm);
-    const fem::Spaces<2> spaces(mesh, scene.discretization.degree);
-    fem::check_overlap(scene, mesh, spaces);
-    fem::check_obstacle_pairs(scene, mesh, spaces);
-    const auto  matrices    = fem::assemble(scene, mesh, spaces, t);
-    const auto  all_rows    = fem::contact_rows(scene,
-                                            mesh,
-                                            spaces,
-                                            fem::pair_bodies(scene, mesh, spaces),
-                                            t,
-                                            std::numeric_limits<double>::infinity());
+    const auto                 mesh = mesh::make_mesh(scene, comm);
+    const mechanics::Spaces<2> spaces(mesh, scene.discretization.degree);
+    interface::check_overlap(scene, mesh, spaces);
+    interface::check_obstacle_pairs(scene, mesh, spaces);
+    const auto  matrices    = mechanics::assemble(scene, mesh, spaces, t);
+    const auto  all_rows    = interface::contact_rows(scene,
+                                                  mesh,
+                                                  spaces,
+                                                  interface::pair_bodies(scene, mesh, spaces),
+                                                  t,
+                                                  std::numeric_limits<double>::infinity());
     const auto &constraints = all_rows.active;
     const auto  numbering   = number_nodes(mesh, matrices, constraints, scene.bodies.size());
 

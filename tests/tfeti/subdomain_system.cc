@@ -1,7 +1,7 @@
 #include "torn.h"
 
 #include <slipstick/base/exceptions.h>
-#include <slipstick/fem/triangulate.h>
+#include <slipstick/mesh/triangulate.h>
 
 using namespace slipstick;
 using namespace slipstick::test;
@@ -72,20 +72,20 @@ namespace
   }
 
 
-  fem::Mesh<2> mesh_of(const fem::MeshPiece<2> &piece)
+  mesh::Mesh<2> mesh_of(const mesh::MeshPiece<2> &piece)
   {
-    fem::Mesh<2> mesh;
+    mesh::Mesh<2> mesh;
     mesh.comm            = MPI_COMM_SELF;
     mesh.first_subdomain = {0, 1};
     mesh.boundary_ids.resize(1);
-    mesh.subdomains.push_back(fem::triangulate(piece));
+    mesh.subdomains.push_back(mesh::triangulate(piece));
     return mesh;
   }
 
   /// Two squares of n x n cells that share a corner.
-  fem::MeshPiece<2> hinged_squares(const unsigned int n, const double skew)
+  mesh::MeshPiece<2> hinged_squares(const unsigned int n, const double skew)
   {
-    fem::MeshPiece<2>                           piece;
+    mesh::MeshPiece<2>                          piece;
     std::map<std::pair<int, int>, unsigned int> number;
     const auto                                  vertex = [&](const int i, const int j) {
       const auto [entry, is_new] = number.emplace(std::make_pair(i, j), piece.vertices.size());
@@ -251,9 +251,9 @@ TEST(SubdomainSystem, hinge_is_named)
       {
         SCOPED_TRACE(std::to_string(n) + " cells, skew " + std::to_string(skew));
         const Scene          scene = box(n);
-        const fem::Mesh<2>   mesh  = mesh_of(hinged_squares(n, skew));
-        const fem::Spaces<2> spaces(mesh, 1);
-        expect_named(fem::assemble(scene, mesh, spaces, 1.)[0]);
+        const mesh::Mesh<2>        mesh  = mesh_of(hinged_squares(n, skew));
+        const mechanics::Spaces<2> spaces(mesh, 1);
+        expect_named(mechanics::assemble(scene, mesh, spaces, 1.)[0]);
       }
 }
 

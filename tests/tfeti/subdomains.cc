@@ -25,9 +25,9 @@ namespace
 TEST(Subdomains, those_touched_elsewhere_alone_are_factorised_again)
 {
   const Torn torn(box_on_small_circle());
-  const auto pairs = fem::pair_bodies(torn.scene, torn.mesh, torn.spaces);
+  const auto pairs = interface::pair_bodies(torn.scene, torn.mesh, torn.spaces);
   const auto rows  = [&](const double part) {
-    return fem::contact_rows(torn.scene, torn.mesh, torn.spaces, pairs, 1., part).active;
+    return interface::contact_rows(torn.scene, torn.mesh, torn.spaces, pairs, 1., part).active;
   };
   for (const auto kind : {tfeti::DualOperatorKind::implicit, tfeti::DualOperatorKind::explicit_blocks})
     for (const bool keeps_factors : {true, false})

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <slipstick/contact/checks.h>
-#include <slipstick/fem/spaces.h>
+#include <slipstick/mechanics/spaces.h>
 
 #include <map>
 
@@ -15,8 +15,8 @@ namespace slipstick::app
   /// @param free owned rows whose multiplier is strictly inside its bounds.
   /// @param nodes contact nodes of this rank with the points that they belong to at the front of Constraints.
   std::map<std::string, std::string> answer_warnings(const scene::Scene<2>                   &scene,
-                                                     const fem::Mesh<2>                      &mesh,
-                                                     const fem::Spaces<2>                    &spaces,
+                                                     const mesh::Mesh<2>                     &mesh,
+                                                     const mechanics::Spaces<2>              &spaces,
                                                      const tfeti::DualProblem                &dual,
                                                      const std::vector<bool>                 &free,
                                                      const std::vector<contact::ContactNode> &nodes,

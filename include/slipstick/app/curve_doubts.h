@@ -2,7 +2,7 @@
 #pragma once
 
 #include <slipstick/contact/result.h>
-#include <slipstick/fem/spaces.h>
+#include <slipstick/mechanics/spaces.h>
 #include <slipstick/tfeti/constraints.h>
 
 #include <map>
@@ -13,8 +13,8 @@ namespace slipstick::app
   /// that is not small against what the pressure presses in or, where nothing touches, against the gap. Collective.
   /// @param nodes contact nodes of this rank with the points that they belong to at the front of Constraints.
   std::map<std::string, std::string> doubts_of_curves(const scene::Scene<2>                   &scene,
-                                                      const fem::Mesh<2>                      &mesh,
-                                                      const fem::Spaces<2>                    &spaces,
+                                                      const mesh::Mesh<2>                     &mesh,
+                                                      const mechanics::Spaces<2>              &spaces,
                                                       const std::vector<tfeti::ContactPoint>  &points,
                                                       const std::vector<contact::ContactNode> &nodes);
 } // namespace slipstick::app

@@ -1,7 +1,7 @@
 // Places inside each other after loading that the rows of contact do not watch.
 #pragma once
 
-#include <slipstick/fem/penetration.h>
+#include <slipstick/interface/penetration.h>
 
 #include <optional>
 
@@ -17,5 +17,5 @@ namespace slipstick::app
   };
 
   /// @param largest displacement [mm], to compare with.
-  GeometryFindings judge(const scene::Scene<2> &scene, const fem::Penetrations &found, const double largest);
+  GeometryFindings judge(const scene::Scene<2> &scene, const interface::Penetrations &found, const double largest);
 } // namespace slipstick::app

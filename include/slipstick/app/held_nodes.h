@@ -2,7 +2,7 @@
 #pragma once
 
 #include <slipstick/contact/held.h>
-#include <slipstick/fem/held_contact.h>
+#include <slipstick/interface/held_contact.h>
 
 namespace slipstick::app
 {

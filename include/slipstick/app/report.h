@@ -4,7 +4,7 @@
 #include <slipstick/base/log.h>
 #include <slipstick/contact/checks.h>
 #include <slipstick/contact/friction.h>
-#include <slipstick/fem/stress.h>
+#include <slipstick/mechanics/stress.h>
 #include <slipstick/output/summary.h>
 
 namespace slipstick::app
@@ -17,9 +17,12 @@ namespace slipstick::app
   std::string name_of(const tfeti::Preconditioner preconditioner);
 
   /// Sizes of the problem, one line a stage.
-  void print_mesh(const Log &log, const scene::Scene<2> &scene, const fem::Mesh<2> &mesh, const fem::Spaces<2> &spaces);
+  void print_mesh(const Log                  &log,
+                  const scene::Scene<2>      &scene,
+                  const mesh::Mesh<2>        &mesh,
+                  const mechanics::Spaces<2> &spaces);
   /// Texts of the warnings that this printed, without "warning: ".
-  std::vector<std::string> warnings_before(const scene::Scene<2> &scene, const fem::Mesh<2> &mesh);
+  std::vector<std::string> warnings_before(const scene::Scene<2> &scene, const mesh::Mesh<2> &mesh);
   void                     print_constraints(const Log &log, const tfeti::Constraints &constraints);
   void                     print_dual(const Log &log, const tfeti::DualProblem &dual);
 
@@ -56,11 +59,11 @@ namespace slipstick::app
   void drop_moments(const scene::Scene<2> &scene, output::ResultSummary &results);
 
   /// Everything in summary.json but times and memory.
-  output::Summary make_summary(const scene::Scene<2>       &scene,
-                               const fem::Mesh<2>          &mesh,
-                               const fem::Spaces<2>        &spaces,
-                               const tfeti::DualProblem    &dual,
-                               const contact::DualSolution &solution,
-                               const contact::Checks       &checks,
-                               const fem::StressResult     &stress);
+  output::Summary make_summary(const scene::Scene<2>         &scene,
+                               const mesh::Mesh<2>           &mesh,
+                               const mechanics::Spaces<2>    &spaces,
+                               const tfeti::DualProblem      &dual,
+                               const contact::DualSolution   &solution,
+                               const contact::Checks         &checks,
+                               const mechanics::StressResult &stress);
 } // namespace slipstick::app

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <slipstick/app/step_state.h>
-#include <slipstick/fem/interface_node.h>
+#include <slipstick/interface/interface_node.h>
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/summary.h>
 #include <slipstick/scene/scene.h>
@@ -13,7 +13,7 @@
 namespace slipstick::app
 {
   /// Of contact nodes, by pair and node: the slip of all load steps so far [mm].
-  using TotalSlip = std::map<std::pair<unsigned int, fem::NodeKey>, double>;
+  using TotalSlip = std::map<std::pair<unsigned int, mechanics::NodeKey>, double>;
 
   /// What one rank knows after a load step.
   struct RunState

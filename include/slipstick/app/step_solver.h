@@ -5,8 +5,8 @@
 #include <slipstick/base/log.h>
 #include <slipstick/contact/checks.h>
 #include <slipstick/contact/friction.h>
-#include <slipstick/fem/contact_constraints.h>
-#include <slipstick/fem/stress.h>
+#include <slipstick/interface/contact_constraints.h>
+#include <slipstick/mechanics/stress.h>
 #include <slipstick/output/convergence.h>
 #include <slipstick/scene/scene.h>
 #include <slipstick/tfeti/dual_problem.h>
@@ -28,7 +28,7 @@ namespace slipstick::app
     {
       tfeti::DualProblem::Recovery           recovery;
       std::optional<contact::CheckedContact> contact;
-      std::optional<fem::StressResult>       stress;
+      std::optional<mechanics::StressResult> stress;
     };
 
     /// Makes the mesh, and finds the contact pairs that the scene leaves to a search.
@@ -53,11 +53,11 @@ namespace slipstick::app
     {
       return scene;
     }
-    const fem::Mesh<dim> &mesh() const
+    const mesh::Mesh<dim> &mesh() const
     {
       return *the_mesh;
     }
-    const fem::Spaces<dim> &spaces() const
+    const mechanics::Spaces<dim> &spaces() const
     {
       return *the_spaces;
     }
@@ -106,7 +106,7 @@ namespace slipstick::app
     void drop_rounding(std::vector<Eigen::VectorXd> &loads);
 
     /// The rows of contact at load factor t, as far as they are not pruned.
-    fem::ContactRows contact_rows(const double t);
+    interface::ContactRows contact_rows(const double t);
 
     /// Loads and right-hand sides of a later step; slip starts from where the step before ended.
     /// @return whether the multipliers of the step before fit the rows.
@@ -151,11 +151,11 @@ namespace slipstick::app
     scene::SolverOptions options;
 
     // the same in all load steps
-    std::optional<fem::BodyContacts<dim>> contacts;
+    std::optional<interface::BodyContacts<dim>> contacts;
     std::shared_ptr<tfeti::Subdomains>    subdomains;
 
-    std::unique_ptr<fem::Mesh<dim>>     the_mesh;
-    std::unique_ptr<fem::Spaces<dim>>   the_spaces;
+    std::unique_ptr<mesh::Mesh<dim>>        the_mesh;
+    std::unique_ptr<mechanics::Spaces<dim>> the_spaces;
     std::unique_ptr<tfeti::DualProblem> the_dual;
     tfeti::Constraints                  pruned;  // normal rows of the contact nodes without multipliers
     tfeti::HeldContacts                 held;    // contact nodes whose gap supports prescribe

@@ -1,7 +1,7 @@
 // conditions.csv: where supports, loads and contact pairs are, for those who draw the scene.
 #pragma once
 
-#include <slipstick/fem/spaces.h>
+#include <slipstick/mechanics/spaces.h>
 #include <slipstick/output/directory.h>
 
 namespace slipstick::output
@@ -10,8 +10,8 @@ namespace slipstick::output
   /// traction or contact pair names, and for every point that a support or point load names (both ends are then the
   /// node). Collective.
   template <int dim>
-  void write_conditions(const OutputDirectory   &directory,
-                        const scene::Scene<dim> &scene,
-                        const fem::Mesh<dim>    &mesh,
-                        const fem::Spaces<dim>  &spaces);
+  void write_conditions(const OutputDirectory        &directory,
+                        const scene::Scene<dim>      &scene,
+                        const mesh::Mesh<dim>        &mesh,
+                        const mechanics::Spaces<dim> &spaces);
 } // namespace slipstick::output

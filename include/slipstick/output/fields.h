@@ -1,7 +1,7 @@
 // Fields for ParaView: one .vtu a subdomain, the .pvtu that joins them, the .pvd over the load steps.
 #pragma once
 
-#include <slipstick/fem/stress.h>
+#include <slipstick/mechanics/stress.h>
 #include <slipstick/output/directory.h>
 
 namespace slipstick::output
@@ -12,10 +12,10 @@ namespace slipstick::output
   /// and error estimate [sqrt(N mm)] by cell. Compressed binary. Collective.
   template <int dim>
   void write_fields(const OutputDirectory              &directory,
-                    const fem::Mesh<dim>               &mesh,
-                    const fem::Spaces<dim>             &spaces,
+                    const mesh::Mesh<dim>              &mesh,
+                    const mechanics::Spaces<dim>       &spaces,
                     const std::vector<Eigen::VectorXd> &u,
-                    const fem::StressResult            &stress,
+                    const mechanics::StressResult      &stress,
                     const unsigned int                  step);
 
   /// Writes solution.pvd over the steps, with the load factor of each as its time. Collective.

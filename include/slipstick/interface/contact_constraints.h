@@ -1,0 +1,47 @@
+// From meshes, supports and contact pairs to the rows of B.
+#pragma once
+
+#include <slipstick/interface/body_contact.h>
+#include <slipstick/tfeti/constraints.h>
+
+#include <Eigen/Dense>
+
+namespace slipstick::interface
+{
+  /// The rows of B, and those of the contact nodes that are left without any because they are far apart.
+  struct ContactRows
+  {
+    tfeti::Constraints  active;
+    tfeti::Constraints  pruned; // rows, blocks, kind, c of their normal rows
+    tfeti::HeldContacts held;
+  };
+
+  /// As contact_constraints(), but without rows for contact nodes whose gap exceeds the smallest one of their pair by
+  /// more than @p part of the length of its slave boundary and two mesh sizes; laws that act on open nodes keep all.
+  /// @param contacts as pair_bodies() found them, which depends on neither t nor part.
+  template <int dim>
+  ContactRows contact_rows(const scene::Scene<dim>      &scene,
+                           const mesh::Mesh<dim>        &mesh,
+                           const mechanics::Spaces<dim> &spaces,
+                           const BodyContacts<dim>      &contacts,
+                           const double                  t,
+                           const double                  part);
+
+  /// Largest penetration [mm] of the pruned nodes at the displacements @p u of this rank's subdomains; 0 for none.
+  /// Collective.
+  double largest_penetration(const tfeti::Constraints           &pruned,
+                             const std::vector<Eigen::VectorXd> &u,
+                             const MPI_Comm                      comm);
+
+  /// Gluing, bonds, prescribed displacements (at load factor @p t), foundations and contact of the scene, distributed
+  /// over the ranks. Copies of a node meet on a rank found from its key; of global data there are the outlines of bodies
+  /// in contact with each other alone, on every rank. Gluing rows are non-redundant chains over the copies; rows that
+  /// share a node are owned by one rank. Which rows a node has: RowBuilder; what they say: mortar_rows(), contact_with().
+  /// Collective.
+  /// @throws InputError on all ranks when supports contradict each other, or the sides of a contact pair do not meet.
+  template <int dim>
+  tfeti::Constraints contact_constraints(const scene::Scene<dim>      &scene,
+                                         const mesh::Mesh<dim>        &mesh,
+                                         const mechanics::Spaces<dim> &spaces,
+                                         const double                  t);
+} // namespace slipstick::interface

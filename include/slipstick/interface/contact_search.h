@@ -1,0 +1,21 @@
+// Which bodies touch, without being told.
+#pragma once
+
+#include <slipstick/mechanics/spaces.h>
+
+namespace slipstick::interface
+{
+  /// The pairs that `Contact search` finds: bodies whose outlines face each other closer than its Reach (a millionth of a
+  /// cell when that is 0) and that no pair of the scene joins. Slave is the body with the finer edges there, of equals the
+  /// first one in the scene; the name is "a-b"; law and so on are those of the section, the reach too, so that only edges
+  /// within it take part. Nothing when the search is not automatic. The same on all ranks. Collective.
+  template <int dim>
+  std::vector<scene::ContactPair<dim>> find_contacts(const scene::Scene<dim>      &scene,
+                                                     const mesh::Mesh<dim>        &mesh,
+                                                     const mechanics::Spaces<dim> &spaces);
+
+  /// @throws InputError on all ranks when a vertex on the outline of a body lies inside another by more than a tenth of
+  /// the other's edge there, unless a contact pair joins the two. Collective.
+  template <int dim>
+  void check_overlap(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh, const mechanics::Spaces<dim> &spaces);
+} // namespace slipstick::interface

@@ -1,0 +1,102 @@
+// Which points of two curves face each other.
+#pragma once
+
+#include <slipstick/interface/edge_tree.h>
+
+#include <optional>
+
+namespace slipstick::interface
+{
+  /// How far a slave looks for its master along its normal, outwards and (for overlaps) inwards [mm].
+  struct Reach
+  {
+    double ahead = 0, behind = 0;
+  };
+
+  // Curves face each other where the product of their normals is below this.
+  constexpr double facing_cosine = -0.25; // 104 degrees
+
+  /// Slave and master edges joined by rays from the slave along a continuous field of normals: at the nodes the mean of both
+  /// sides' normals, linear in the shape functions between them. Two equal bodies then touch along their plane of symmetry,
+  /// whichever is the slave; along the slave's own normals a gap of curved bodies that closes would look like slip.
+  class CurvePairing
+  {
+  public:
+    using Edge   = mechanics::SurfaceEdge<2>;
+    using Tensor = dealii::Tensor<1, 2>;
+
+    /// A slave node; one at a corner of the slave boundary is there once for each side.
+    struct Node
+    {
+      mechanics::NodeKey key{};
+      unsigned int       side = 0;
+      dealii::Point<2>   position;    // [mm]
+      Tensor             normal;      // outward, unit length
+      double             size    = 0; // of the edges there, their chords [mm]
+      double             covered = 0; // integral of the shape function over these edges [mm]
+      double             measure = 0; // the same with the measure of the kinematics
+      double             scale   = 0; // of that measure: of the edges there
+    };
+
+    /// Where a ray from a slave point meets a master edge.
+    struct Hit
+    {
+      double s   = 0; // on the master edge
+      double gap = 0; // along the ray [mm]
+    };
+
+    /// Part of a slave edge.
+    struct Segment
+    {
+      double       from = 0, to = 0; // on the slave edge
+      unsigned int master = 0;       // edge
+    };
+
+    /// The edges are not copied.
+    CurvePairing(const std::vector<Edge>   &slave,
+                 const std::vector<Edge>   &master,
+                 const Reach               &reach,
+                 const mesh::Kinematics<2> &kinematics = {});
+
+    const std::vector<Node> &nodes() const
+    {
+      return all_nodes;
+    }
+
+    /// The nodes of slave edge e (two or three numbers).
+    const std::array<unsigned int, 3> &nodes_of(const unsigned int e) const
+    {
+      return node_of[e];
+    }
+
+    /// Parts of slave edge e over which one master edge faces it within reach; the first crossing decides.
+    std::vector<Segment> segments(const unsigned int e) const;
+
+    /// Where the ray from slave edge e at s meets master edge m.
+    std::optional<Hit> hit(const unsigned int e, const double s, const unsigned int m) const;
+
+    /// Unit vector along that ray.
+    Tensor direction(const unsigned int e, const double s) const
+    {
+      const Tensor n = field(e, s);
+      return n / n.norm();
+    }
+
+    /// Distance of y from that ray, positive on its left, times a factor that is the same for all y.
+    double side(const unsigned int e, const double s, const dealii::Point<2> &y) const;
+
+  private:
+    Tensor                      field(const unsigned int e, const double s) const;
+    std::optional<unsigned int> partner(const unsigned int               e,
+                                        const double                     s,
+                                        const std::vector<unsigned int> &candidates) const;
+    std::vector<unsigned int>   candidates(const unsigned int e) const;
+    void                        average_normals();
+
+    const std::vector<Edge>                 &slave, &master;
+    const Reach                              reach;
+    const EdgeTree                           tree; // of the master
+    std::vector<Node>                        all_nodes;
+    std::vector<std::array<unsigned int, 3>> node_of; // by slave edge
+  };
+} // namespace slipstick::interface

@@ -1,0 +1,122 @@
+// A node that several subdomains share, or that supports, foundations or contact act on.
+#pragma once
+
+#include <slipstick/mechanics/spaces.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
+
+namespace slipstick::interface
+{
+  /// What a node stands for on the boundary of a pair: integrals of its shape function.
+  struct Tributary
+  {
+    double area   = 0; // with thickness or circumference [mm^2]
+    double length = 0; // [mm]
+
+    Tributary &operator+=(const Tributary &other)
+    {
+      area += other.area;
+      length += other.length;
+      return *this;
+    }
+
+    bool operator<(const Tributary &other) const
+    {
+      return std::tie(area, length) < std::tie(other.area, other.length);
+    }
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &area &length;
+    }
+  };
+
+  /// One copy of a node, or (with several entries in `copies`) everything known about it.
+  template <int dim>
+  struct InterfaceNode
+  {
+    /// A direction in which the displacement is prescribed.
+    struct Held
+    {
+      std::array<double, dim> direction{}; // unit length
+      double                  value = 0;   // [mm]
+      unsigned int            which = 0;   // component, or dim + k for the k-th along a normal
+      std::vector<unsigned int>
+        by; // who says so: as Side::condition, behind them contact pairs (bonds to obstacles), then the axis
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &direction &value &which &by;
+      }
+    };
+
+    /// What one edge at the node says of a support along the normal or of a foundation.
+    struct Side
+    {
+      unsigned int            condition = 0; // index into Scene::supports, behind them Scene::foundations
+      std::array<double, dim> normal{};      // outward
+      double                  area = 0;      // tributary [mm^2]
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &condition &normal &area;
+      }
+
+      bool operator<(const Side &other) const
+      {
+        return std::tie(condition, normal, area) < std::tie(other.condition, other.normal, other.area);
+      }
+    };
+
+    /// An elastic support of a node in one of its principal directions.
+    struct Spring
+    {
+      dealii::Tensor<1, dim> direction;
+      double                 stiffness = 0; // [N/mm], > 0
+    };
+
+    mechanics::NodeKey                                 key{{0, 0}};
+    std::array<double, dim>                            position{};
+    unsigned int                                       body = 0;
+    std::vector<Held>                                  held;              // independent directions
+    std::vector<std::pair<unsigned int, unsigned int>> copies;            // subdomain, node there; sorted
+    std::vector<std::pair<unsigned int, Tributary>>    areas;             // by pair with an obstacle; sorted
+    bool                                               is_paired = false; // weights of a pair of bodies touch it
+    std::vector<Side>                                  sides;
+    std::vector<Spring>                                springs; // made from the sides, at most dim
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &key &position &body &held &copies &areas &is_paired &sides;
+    }
+
+    dealii::Point<dim> point() const
+    {
+      dealii::Point<dim> x;
+      for (unsigned int d = 0; d < dim; ++d)
+        x[d] = position[d];
+      return x;
+    }
+
+    /// Is there an outside force: a support, a foundation, contact?
+    bool is_acted_on() const
+    {
+      return !held.empty() || !areas.empty() || is_paired || !sides.empty();
+    }
+
+    /// The smallest displacement with the values that are prescribed [mm].
+    dealii::Tensor<1, dim> held_displacement() const;
+
+    /// The part of a displacement that supports leave free.
+    dealii::Tensor<1, dim> free_part(const dealii::Tensor<1, dim> &direction) const;
+  };
+
+  // A direction whose free part is shorter than this is held.
+  constexpr double held_direction_tolerance = 1e-8;
+} // namespace slipstick::interface

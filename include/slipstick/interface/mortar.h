@@ -1,0 +1,62 @@
+// The mortar integrals between two curves.
+//
+// Notation: N_k shape functions of a slave edge, phi_i its test functions, y(x) the point of the master that the ray from
+// x along the normal field of the pairing meets, <.> the integral over that part of the slave that has such a point, with the
+// measure of the kinematics (of bodies of revolution the slave's circumference). A row says
+// n_i . (sum_k d_ik u_k - sum_j m_ij u_j) <= gap with d_ik = <phi_i N_k> / D_i, m_ij = <phi_i N_j(y)> / D_i, D_i = <phi_i>.
+#pragma once
+
+#include <slipstick/interface/curve_pairing.h>
+
+namespace slipstick::interface
+{
+  using Weights = std::vector<std::pair<mechanics::NodeKey, double>>; // sorted by node, sum 1
+
+  /// One slave node and what faces it.
+  template <int dim>
+  struct MortarRow
+  {
+    mechanics::NodeKey     slave{};
+    unsigned int           side = 0;          // a node at a corner of the slave boundary has one row for each side
+    dealii::Point<dim>     position;          // of the slave node [mm]
+    dealii::Tensor<1, dim> normal;            // outward, mean of both sides (CurvePairing)
+    Weights                slave_weights;     // d_ik
+    Weights                master_weights;    // m_ij
+    dealii::Point<dim>     master_position;   // sum_j m_ij y_j [mm]
+    double                 gap      = 0;      // along n_i [mm], negative when overlapping
+    double                 measure  = 0;      // D_i [mm], of bodies of revolution [mm^2]
+    double                 length   = 0;      // the same in the plane [mm]
+    double                 left_out = 0;      // sagitta that the edges there leave out, both sides [mm]
+    double full_measure = 0, full_length = 0; // if all edges of the slave boundary on this side were covered
+  };
+
+  /// The rows of the slave nodes that have a master within @p reach along the normal, on either side; in the order
+  /// of their nodes. Sides must face each other: the first crossing of the ray decides.
+  ///
+  /// Mortar: phi_i are the functions biorthogonal to N_k on the covered part of the edge (D_i is then the integral of
+  /// N_i), so that whole edges give d_ik = 1 for i = k and 0 else (Wohlmuth 2000; at overhangs Cichosz, Bischoff 2011). On
+  /// curved or quadratic edges that are covered in part phi_i are those of the linear shape functions: their midside nodes
+  /// have no row. Equal pressures at all nodes are then equal pressure on both sides, sums of weights are 1 and forces
+  /// balance; moments balance where the gap is closed, else up to the square of the mesh size.
+  /// The gap is n_i . (sum_j m_ij y_j - sum_k d_ik x_k), that of the edges, plus what the curves that they stand for
+  /// (SurfaceEdge::curve) are above them: n_i . <phi_i (rise of the master - rise of the slave) n> / D_i. So it is that of
+  /// the curves, while the weights, and with them the forces, are those of the edges.
+  /// The end node of a quadratic edge on the axis of revolution has D_i = 0, and no row: equal pressure puts no force on it.
+  /// Node to node: m is 1 at the master node across, d is 1 at the slave node. `automatic` takes it where every slave
+  /// node has a master node exactly across.
+  /// @throws InputError, with @p name of the pair, when node to node is asked for and the meshes do not match.
+  template <int dim>
+  std::vector<MortarRow<dim>> mortar_rows(const std::vector<mechanics::SurfaceEdge<dim>> &slave,
+                                          const std::vector<mechanics::SurfaceEdge<dim>> &master,
+                                          const Reach                                    &reach,
+                                          const scene::ContactDiscretization              discretization,
+                                          const std::string                              &name,
+                                          const mesh::Kinematics<dim>                    &kinematics = {});
+
+  /// Smallest distance of two curves where they face each other (nodes and middles of edges of one to the chords of the
+  /// other) [mm]; empty when nothing faces or nothing is closer than @p bound.
+  template <int dim>
+  std::optional<double> facing_distance(const std::vector<mechanics::SurfaceEdge<dim>> &a,
+                                        const std::vector<mechanics::SurfaceEdge<dim>> &b,
+                                        const double bound = std::numeric_limits<double>::max());
+} // namespace slipstick::interface

@@ -1,0 +1,22 @@
+// Distance to a rigid obstacle that needs no mesh.
+#pragma once
+
+#include <slipstick/scene/scene.h>
+
+namespace slipstick::interface
+{
+  template <int dim>
+  struct ObstacleContact
+  {
+    dealii::Tensor<1, dim> normal; // from the node towards the obstacle, unit length
+    double                 gap;    // along the normal [mm], negative inside
+  };
+
+  /// Distance of @p x to @p obstacle at load factor @p t. Circle and hole: along the ray through the centre. Polyline:
+  /// to its nearest point; its first and last segments go on straight unless it is closed (ends where it begins), and at
+  /// a corner that sticks out the normal turns with the point. Function: to the nearest point of y = h(x, t), or, where
+  /// the search for that does not settle, to the tangent at the point above or below.
+  /// @throws InputError for a node at the very centre of a circle or hole.
+  template <int dim>
+  ObstacleContact<dim> contact_with(const scene::Obstacle<dim> &obstacle, const dealii::Point<dim> &x, const double t);
+} // namespace slipstick::interface

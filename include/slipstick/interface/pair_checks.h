@@ -1,0 +1,57 @@
+// Contact pairs that cannot mean what they say: sides that face away from each other or are out of reach.
+#pragma once
+
+#include <slipstick/interface/mortar.h>
+
+namespace slipstick::interface
+{
+  /// The two sides of a contact pair of bodies, and the whole outlines of these bodies.
+  template <int dim>
+  struct PairSides
+  {
+    std::vector<mechanics::SurfaceEdge<dim>> slave, master;
+    std::vector<mechanics::SurfaceEdge<dim>> slave_outline, master_outline;
+  };
+
+  /// Diagonal of the box around the nodes of some edges [mm].
+  template <int dim>
+  double extent(const std::vector<mechanics::SurfaceEdge<dim>> &edges);
+
+  /// BODY/BOUNDARY
+  template <int dim>
+  std::string describe(const scene::Scene<dim> &scene, const scene::BoundaryName &where);
+
+  /// Does every row find its master on the far side of the slave's body: deeper than a tenth of a mean slave edge though
+  /// no point of one side is inside the other body (which would be an overlap)? False when there are no rows.
+  template <int dim>
+  bool lies_behind(const PairSides<dim> &sides, const std::vector<MortarRow<dim>> &rows);
+
+  /// Why there is no row within @p reach [mm].
+  /// @throws InputError always: sides that face away, that have no opposed normals, or that are too far apart.
+  template <int dim>
+  [[noreturn]] void refuse_pair(const scene::Scene<dim>       &scene,
+                                const scene::ContactPair<dim> &pair,
+                                const PairSides<dim>          &sides,
+                                const double                   reach);
+
+  /// Checks the rows of a pair of bodies. With an automatic reach the gap of the nearest row, offset included, must not be
+  /// larger in all load steps than the larger of the two sides plus the largest prescribed displacement of the scene;
+  /// with a Reach or a Gap of its own a pair may begin as far apart as it says. The same on all ranks.
+  /// @throws InputError for sides that face away from each other (lies_behind) or are out of reach.
+  template <int dim>
+  void check_sides(const scene::Scene<dim>                        &scene,
+                   const mesh::Mesh<dim>                          &mesh,
+                   const scene::ContactPair<dim>                  &pair,
+                   const PairSides<dim>                           &sides,
+                   const std::vector<mechanics::SurfaceEdge<dim>> &all,
+                   const std::vector<MortarRow<dim>>              &rows);
+
+  /// Checks the pairs with obstacles: some node must have an outward normal against the obstacle (facing_cosine) and a gap
+  /// within the Reach; with an automatic one the rule is that of check_sides with the size of the slave boundary (and the
+  /// diameter of a circle if that is larger). Bonds to obstacles are supports: they are not checked. Collective.
+  /// @throws InputError on all ranks.
+  template <int dim>
+  void check_obstacle_pairs(const scene::Scene<dim>      &scene,
+                            const mesh::Mesh<dim>        &mesh,
+                            const mechanics::Spaces<dim> &spaces);
+} // namespace slipstick::interface

@@ -1,0 +1,42 @@
+// What is inside what after loading, by the geometry alone: places that no row of contact watches.
+#pragma once
+
+#include <slipstick/mechanics/spaces.h>
+
+#include <Eigen/Dense>
+
+#include <optional>
+
+namespace slipstick::interface
+{
+  struct Penetration
+  {
+    double                depth = 0;  // [mm]
+    std::array<double, 2> at{{0, 0}}; // reference configuration [mm]
+    double                edge = 0;   // length of the shorter of the edges there [mm]
+    double                gap  = 0;   // before loading, beyond_reach: of the node [mm]
+  };
+
+  struct Penetrations
+  {
+    /// By contact pair: the deepest slave node that is not paired since it is farther away than the pair's Reach, along the
+    /// normal (linearised like the rows).
+    std::vector<std::optional<Penetration>> beyond_reach;
+
+    /// By contact pair with an obstacle: the deepest place between the nodes of the slave boundary, nodes included. Bonds and
+    /// pairs with a Gap of their own are left out.
+    std::vector<std::optional<Penetration>> in_obstacle;
+
+    /// By the bodies (the first one is inside the second one): the deepest node or middle of an edge, less its depth before
+    /// loading. Bodies that a bond joins or a pair with an Offset or a Gap of its own are left out.
+    std::map<std::pair<unsigned int, unsigned int>, Penetration> of_bodies;
+  };
+
+  /// @param u displacements of this rank's subdomains [mm], at load factor @p t. The same on all ranks. Collective.
+  template <int dim>
+  Penetrations penetrations(const scene::Scene<dim>            &scene,
+                            const mesh::Mesh<dim>              &mesh,
+                            const mechanics::Spaces<dim>       &spaces,
+                            const std::vector<Eigen::VectorXd> &u,
+                            const double                        t);
+} // namespace slipstick::interface

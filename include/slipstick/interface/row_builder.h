@@ -1,0 +1,136 @@
+// The rows of the nodes that one rank owns, before they are numbered over the ranks.
+#pragma once
+
+#include <slipstick/interface/echelon.h>
+#include <slipstick/interface/interface_nodes.h>
+#include <slipstick/tfeti/constraints.h>
+
+#include <limits>
+#include <set>
+
+namespace slipstick::interface
+{
+  /// An entry of B, or one of an interface unknown, for the rank of its subdomain.
+  struct RowEntry
+  {
+    std::uint64_t index; // row or interface unknown: owned number, then global
+    unsigned int  subdomain;
+    unsigned int  dof;
+    double        value;
+    bool          is_row;
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &index &subdomain &dof &value &is_row;
+    }
+  };
+
+  /// Of one contact pair: smallest gap, length of the slave boundary and number of its nodes.
+  struct PairExtent
+  {
+    double        gap     = std::numeric_limits<double>::infinity(); // [mm]
+    double        length  = 0;                                       // [mm]
+    std::uint64_t n_nodes = 0;
+  };
+
+  /// Makes the rows of interface nodes: contact, bonds, supports, foundations, gluing.
+  ///
+  /// Rows of contact that the supports of their nodes and the bonds (of all connected nodes) already imply are left
+  /// out; the tangential row goes before the normal one. So are rows of bonds, as where three bonded bodies meet in a
+  /// point: the pair that comes last in the scene gives way. A node that may touch several obstacles has a normal row for each (for parallel
+  /// normals the nearer obstacle only) and one tangential row, that of the nearest obstacle. So has a node at a corner of
+  /// the slave boundary with one and the same master node on both its sides.
+  template <int dim>
+  class RowBuilder
+  {
+  public:
+    /// All nodes are owned by this rank; @p contacts must live as long as this.
+    RowBuilder(const scene::Scene<dim>               &scene,
+               const std::vector<InterfaceNode<dim>> &nodes,
+               const BodyContacts<dim>               &contacts,
+               const double                           t,
+               tfeti::Constraints                    &constraints);
+
+    /// Of every pair, as far as this rank owns its slave nodes.
+    std::vector<PairExtent> extents() const;
+
+    /// Nodes of pair k with a gap above limits[k] get no rows (where ContactLaw::acts_where_closed_alone()); they go to `pruned`.
+    void limit_gaps(std::vector<double> limits);
+
+    /// Fills kind, c, compliance, label, contact points, reactions, interface_held and counts of the constraints.
+    void build();
+
+    std::vector<RowEntry> entries;
+    tfeti::Constraints    pruned;         // kind and c of the normal rows of pruned nodes ...
+    std::vector<RowEntry> pruned_entries; // ... and their entries
+    tfeti::HeldContacts   held;           // the same of nodes whose gap is prescribed
+    std::vector<RowEntry> held_entries;
+    std::uint64_t         n_interface = 0;
+
+  private:
+    using Tensor = dealii::Tensor<1, dim>;
+    using Vector = Echelon::Vector; // by dim * node + component
+
+    /// One other side that a slave node may touch.
+    struct Touch
+    {
+      unsigned int                                 pair = 0, side = 0;
+      Tensor                                       normal;
+      std::vector<std::pair<unsigned int, double>> slave, master; // nodes and weights
+      tfeti::ContactPoint                          point;
+      bool                                         has_tangent = false;
+    };
+
+    void add(const unsigned int node);
+
+    std::vector<Touch> touches_of(const unsigned int node) const;
+    bool touch_obstacle(const unsigned int node, const unsigned int pair, const Tributary &area, Touch &touch) const;
+    /// Gap, normal and area, of bonds too; false beyond the Reach, and on the axis of revolution for nodes without area.
+    bool place_on_obstacle(const unsigned int node, const unsigned int pair, const Tributary &area, Touch &touch) const;
+    /// What any touch of a node says of the node itself.
+    void complete(const unsigned int node, Touch &touch) const;
+    bool touch_body(const unsigned int node, const unsigned int pair, const MortarRow<dim> &row, Touch &touch) const;
+    void add_contact(const unsigned int node);
+    void find_bonds();
+    /// Row of a bond along the normal (0) or the tangent (1).
+    Vector bond(const Touch &touch, const unsigned int direction) const;
+    bool   is_pruned(const Touch &touch) const;
+    /// Do supports hold it apart, and does its law act where contact is closed alone?
+    bool is_held_open(const tfeti::HeldContacts::Point &point) const;
+    /// Adds @p coefficients to @p to as row @p row.
+    void fill(const unsigned int row, const Vector &coefficients, std::vector<RowEntry> &to) const;
+    void add_pruned(const Touch &touch, const Vector &coefficients);
+    void add_held(const unsigned int node, const Touch &touch, const Vector &coefficients);
+    void add_bonds_to_obstacles(const unsigned int node);
+    void add_held_rows(const unsigned int node);
+    void add_reaction(const unsigned int               node,
+                      const unsigned int               row,
+                      const Tensor                    &direction,
+                      const std::vector<unsigned int> &holders);
+    void choose_tangents(std::vector<Touch> &touches) const;
+
+    /// Jump of the displacement along @p direction, slave less master.
+    Vector jump(const Touch &touch, const Tensor &direction) const;
+
+    /// What supports leave of a row.
+    Vector free_part(const Vector &row) const;
+
+    unsigned int new_row(const tfeti::RowKind      kind,
+                         const double              c,
+                         const mechanics::NodeKey &key,
+                         const std::uint64_t       which);
+    void         fill(const unsigned int row, const Vector &coefficients);
+
+    const scene::Scene<dim>                   &scene;
+    const std::vector<InterfaceNode<dim>>     &nodes;
+    const double                               t;
+    tfeti::Constraints                        &constraints;
+    std::vector<double>                        limits; // gaps, by pair [mm]
+    std::map<mechanics::NodeKey, unsigned int> number;
+    Echelon                                    bonds;      // their free parts
+    std::set<std::array<unsigned int, 4>>      kept_bonds; // node, pair, side, direction of those that no others imply
+    std::map<mechanics::NodeKey, std::vector<std::pair<unsigned int, const MortarRow<dim> *>>>
+      pairs_of; // of slave nodes
+  };
+} // namespace slipstick::interface

@@ -1,0 +1,99 @@
+// Finite element spaces on the subdomains and the nodes that they share.
+#pragma once
+
+#include <slipstick/mesh/kinematics.h>
+#include <slipstick/mesh/mesh.h>
+
+#include <deal.II/base/quadrature.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/mapping.h>
+
+#include <array>
+
+namespace slipstick::mechanics
+{
+  /// Identity of a node across subdomains and ranks: its vertex twice, or the two vertices of its edge.
+  using NodeKey = std::array<mesh::GlobalVertex, 2>;
+
+  /// Lagrange element of one cell type, with its mapping and quadratures. Nodes lie on vertices (degree 1) and also in the middle
+  /// of edges (degree 2; quadrilaterals have one more inside). Mappings are isoparametric: with degree 2 the edges follow
+  /// the manifolds of the triangulation, of quadrilaterals and triangles alike.
+  template <int dim>
+  struct Element
+  {
+    /// @p cell: quadrilateral or triangle; @p degree: 1 or 2; @p is_curved: does the mesh have manifolds to follow?
+    Element(const dealii::ReferenceCell cell, const unsigned int degree, const bool is_curved = true);
+
+    dealii::ReferenceCell                             cell;
+    unsigned int                                      degree;
+    bool                                              is_curved; // else the mapping is of degree 1
+    std::unique_ptr<const dealii::FiniteElement<dim>> scalar;
+    std::unique_ptr<const dealii::FESystem<dim>>      vector; // dim times scalar
+    std::unique_ptr<const dealii::Mapping<dim>>       mapping;
+    dealii::Quadrature<dim>                           stiffness; // exact for the stiffness of affine cells
+    dealii::Quadrature<dim>                           loads;     // finer: loads may be formulas
+    dealii::Quadrature<dim>                           stress;    // where stresses are most accurate
+
+    unsigned int n_nodes() const
+    {
+      return scalar->n_dofs_per_cell();
+    }
+
+    /// Gauss rule of n points per direction (triangles: of the same order).
+    dealii::Quadrature<dim> cell_quadrature(const unsigned int n) const;
+
+    /// Integrates the stiffness and what belongs to it. Of triangles of degree 1 the hoop strain of a body of revolution
+    /// is not constant.
+    dealii::Quadrature<dim> stiffness_rule(const mesh::Kinematics<dim> &kinematics) const;
+
+    /// Rule for the edges: Gauss, n points.
+    dealii::Quadrature<dim - 1> face_quadrature(const unsigned int n) const;
+
+    /// Nodes of a cell of the displacement space, in the order of the scalar element; @p dofs is scratch.
+    void nodes_of(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+                  std::vector<dealii::types::global_dof_index>                 &dofs,
+                  std::vector<unsigned int>                                    &nodes) const;
+  };
+
+  /// Displacement space of every subdomain of this rank. The unknowns of node i are dim * i ... dim * i + dim - 1. All
+  /// cells of a subdomain are of one type; subdomains may differ.
+  template <int dim>
+  struct Spaces
+  {
+    Spaces(const mesh::Mesh<dim> &mesh, const unsigned int degree);
+
+    unsigned int                                          degree;
+    std::vector<std::unique_ptr<dealii::DoFHandler<dim>>> dof_handlers; // by subdomain of this rank
+    unsigned long long                                    n_dofs = 0;   // over all ranks and subdomains
+
+    /// The element of subdomain p of this rank.
+    const Element<dim> &of(const unsigned int p) const
+    {
+      return *element_of[p];
+    }
+
+    /// Calls f(node, key, position) for the nodes of a face, in deal.II's order of the face (which may run against the
+    /// order of the cell that it is seen from).
+    template <class F>
+    void for_each_face_node(const mesh::SubdomainMesh<dim>                               &mesh,
+                            const typename dealii::DoFHandler<dim>::active_face_iterator &face,
+                            const F                                                      &f) const
+    {
+      std::array<mesh::GlobalVertex, 2> ends;
+      for (unsigned int v = 0; v < 2; ++v)
+        {
+          ends[v] = mesh.global_vertices[face->vertex_index(v)];
+          f(face->vertex_dof_index(v, 0) / dim, NodeKey{{ends[v], ends[v]}}, face->vertex(v));
+        }
+      if (degree == 2)
+        f(face->dof_index(0) / dim,
+          NodeKey{{std::min(ends[0], ends[1]), std::max(ends[0], ends[1])}},
+          face->center(true)); // on the manifold of the edge, as in the mapping
+    }
+
+  private:
+    std::vector<std::unique_ptr<const Element<dim>>> elements; // of every cell type on this rank
+    std::vector<const Element<dim> *>                element_of;
+  };
+} // namespace slipstick::mechanics

@@ -1,0 +1,41 @@
+// The mesh of one whole body, before it is cut into subdomains.
+#pragma once
+
+#include <slipstick/mesh/mesh_file.h>
+#include <slipstick/mesh/mesh_piece.h>
+
+#include <set>
+
+namespace slipstick::mesh
+{
+  /// Cells of a body with the names of its boundaries and points. Global vertices count from 0.
+  template <int dim>
+  struct BodyMesh
+  {
+    MeshPiece<dim>                                                             piece;
+    std::map<std::string, dealii::types::boundary_id>                          boundary_ids; // by name
+    std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>> combined_ids; // as in Mesh
+    std::map<std::string, unsigned int>                                        points;       // by name: local vertex
+    std::map<typename MeshPiece<dim>::Face, dealii::Point<dim>> middles; // mid nodes of the outline in the file
+    std::vector<std::string>                                    remarks;
+
+    // by name: why the boundary or point cannot be used, as parts of it are not of the outline or it is several points
+    std::map<std::string, std::string> incomplete_boundaries, ambiguous_points;
+  };
+
+  /// The cells of @p file that make the body, scaled, not yet placed, refined or smoothed: those of Body::part, or all. Lines
+  /// with physical names that bound the body are its boundaries; those with lines that do not are listed.
+  /// @throws InputError for a part that is not there; for a file that is not of plane cells; for cells that are
+  /// turned over (unless all are), degenerate, cross themselves or lie on top of each other; for edges of three cells;
+  /// for nodes inside of edges and two at one place (see conformity.h); for a body in pieces.
+  template <int dim>
+  BodyMesh<dim> body_from_file(const scene::Body<dim> &body, const MeshFile &file);
+
+  /// A remark for every file with cells that no body of the scene takes.
+  template <int dim>
+  std::vector<std::string> unused_parts(const scene::Scene<dim> &scene, const std::map<std::string, MeshFile> &files);
+
+  /// The mesh of a body of built-in shape (see shapes.h), refined @p refinements times, not yet placed.
+  template <int dim>
+  BodyMesh<dim> body_from_shape(const scene::Scene<dim> &scene, const scene::Body<dim> &body);
+} // namespace slipstick::mesh

@@ -1,0 +1,34 @@
+// Whether cells make a mesh: no cell on top of others, no node inside an edge, no two nodes at one place.
+#pragma once
+
+#include <slipstick/mesh/mesh_piece.h>
+
+#include <optional>
+#include <set>
+
+namespace slipstick::mesh
+{
+  /// What keeps cells from being a mesh, and where.
+  template <int dim>
+  struct ConformityFault
+  {
+    enum class Kind
+    {
+      overlap,      // two cells on top of each other
+      hanging_node, // a vertex inside of an edge of another cell
+      twin_nodes    // two vertices at one place
+    };
+
+    Kind               kind;
+    dealii::Point<dim> place;
+    unsigned int       first_cell, second_cell;
+  };
+
+  /// The first fault of a piece whose cells are all counterclockwise, with no more than two at an edge. As the number of cells
+  /// above a point is the winding number of the outline around it, only the edges of the outline are examined: none may lie on,
+  /// cross or touch another, and none may have a cell on both sides. The two flanks of a slit may lie on each other where all
+  /// their edges are among @p named.
+  template <int dim>
+  std::optional<ConformityFault<dim>> find_fault(const MeshPiece<dim>                          &piece,
+                                                 const std::set<typename MeshPiece<dim>::Face> &named);
+} // namespace slipstick::mesh

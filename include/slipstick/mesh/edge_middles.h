@@ -1,0 +1,46 @@
+// Curved edges of cells of degree 2: a manifold that knows the middles of edges.
+#pragma once
+
+#include <slipstick/mesh/mesh_piece.h>
+
+#include <deal.II/grid/manifold.h>
+
+namespace slipstick::mesh
+{
+  /// By vertices in ascending order.
+  template <int dim>
+  using Middles = std::map<typename MeshPiece<dim>::Face, dealii::Point<dim>>;
+
+  /// Manifold of edges whose middles are given, flat for all others. Mappings of degree 2 ask for nothing else.
+  template <int dim>
+  class EdgeMiddles : public dealii::FlatManifold<dim>
+  {
+  public:
+    static constexpr dealii::types::manifold_id id = 1;
+
+    explicit EdgeMiddles(Middles<dim> middles);
+
+    std::unique_ptr<dealii::Manifold<dim>> clone() const override;
+
+    dealii::Point<dim> get_new_point_on_line(
+      const typename dealii::Triangulation<dim>::line_iterator &line) const override;
+
+  private:
+    const Middles<dim> middles;
+  };
+
+  /// Middles of the curves of boundary faces (@p boundary, boundary_by_vertices() of the piece). Left out are faces that do
+  /// not bend their cell, and all faces of a cell that a mapping of degree 2 would turn over or flatten somewhere, as where
+  /// two edges on one circle meet at nearly 180 degrees.
+  template <int dim>
+  Middles<dim> middles_of_edges(
+    const MeshPiece<dim>                                                                 &piece,
+    const std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> &boundary);
+
+  /// Whether the sagitta of a curve over face @p f of @p cell is small against the height of the cell over that face.
+  template <int dim>
+  bool has_room_for(const EdgeCurve<dim>                &curve,
+                    const MeshPiece<dim>                &piece,
+                    const typename MeshPiece<dim>::Cell &cell,
+                    const unsigned int                   f);
+} // namespace slipstick::mesh

@@ -1,0 +1,73 @@
+// What a section in the plane stands for: what a displacement strains, what an area weighs, which motions are rigid.
+#pragma once
+
+#include <slipstick/scene/scene.h>
+
+#include <deal.II/base/numbers.h>
+#include <deal.II/base/point.h>
+
+#include <cmath>
+
+namespace slipstick::mesh
+{
+  /// The one place that knows how bodies of revolution differ from those of the plane. Of a section of the plane (of its
+  /// thickness) every point stands for itself; of half a section of a body of revolution, x the radius and y the axis, for the
+  /// circle 2 pi x. The hoop strain u_x / x takes the place of the strain along z. Integrals over the section or its
+  /// outline are weighted with measure(), and with the thickness of the body, which is 1 for bodies of revolution; forces are
+  /// those of the whole circumference.
+  template <int dim>
+  class Kinematics
+  {
+  public:
+    /// Of the plane.
+    Kinematics() = default;
+
+    explicit Kinematics(const scene::PlaneState state)
+      : is_revolved(state == scene::PlaneState::axisymmetric)
+    {}
+
+    bool is_revolution() const
+    {
+      return is_revolved;
+    }
+
+    /// 1, or the circumference at @p x [mm].
+    double measure(const dealii::Point<dim> &x) const
+    {
+      return is_revolved ? 2 * dealii::numbers::PI * x[0] : 1.;
+    }
+
+    /// Hoop strain at @p x that a displacement @p u_x there makes; 0 in the plane. Not on the axis.
+    double hoop_strain(const double u_x, const dealii::Point<dim> &x) const
+    {
+      return is_revolved ? u_x / x[0] : 0.;
+    }
+
+    /// From the axis of a rotation to @p x [mm]; bodies of revolution spin about their own.
+    dealii::Tensor<1, dim> arm(const dealii::Point<dim> &x, const dealii::Point<dim> &axis) const;
+
+    /// xx, yy, xy and, where it is not a function of them, hoop stress.
+    unsigned int n_stress_components() const
+    {
+      return is_revolved ? 4 : 3;
+    }
+
+    /// Of a body: two translations and a rotation, or that along the axis: a radial motion strains every ring.
+    unsigned int n_rigid_motions() const
+    {
+      return is_revolved ? 1 : dim * (dim + 1) / 2;
+    }
+
+    /// Is @p x on the axis of revolution, where the radial displacement is 0? @param size of the body [mm].
+    bool is_on_axis(const dealii::Point<dim> &x, const double size) const
+    {
+      return is_revolved && std::abs(x[0]) <= on_axis * size;
+    }
+
+    // Part of the size of a body: files give coordinates with some seven digits, placements round.
+    static constexpr double on_axis = 1e-7;
+
+  private:
+    bool is_revolved = false;
+  };
+} // namespace slipstick::mesh

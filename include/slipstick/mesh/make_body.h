@@ -1,0 +1,15 @@
+// From the description of a body to its mesh.
+#pragma once
+
+#include <slipstick/mesh/body_mesh.h>
+
+namespace slipstick::mesh
+{
+  /// The complete mesh of body number @p b: read or made, refined, placed. @p files keeps what was read, by path.
+  /// A body of triangles and quadrilaterals is turned into quadrilaterals when it is refined towards a boundary or
+  /// when its parts of one kind are many and small.
+  /// @throws InputError as body_from_file() does, and when a boundary or point that the scene uses is not there, or not
+  /// whole.
+  template <int dim>
+  BodyMesh<dim> make_body(const scene::Scene<dim> &scene, const unsigned int b, std::map<std::string, MeshFile> &files);
+} // namespace slipstick::mesh

@@ -1,0 +1,85 @@
+// Mesh files: Gmsh's .msh, Abaqus' .inp, .vtk, .unv and .ucd.
+#pragma once
+
+#include <deal.II/base/point.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace slipstick::mesh
+{
+  /// Contents of a mesh file as written there: in its own units, including unused nodes.
+  struct MeshFile
+  {
+    struct Element
+    {
+      unsigned int                dim     = 0;     // 0 point, 1 line, 2 triangle or quadrilateral
+      unsigned int                n       = 0;     // number of corners
+      std::array<unsigned int, 4> corners = {};    // indices into nodes; counterclockwise or all clockwise
+      unsigned int                group   = 0;     // index into groups
+      unsigned long long          number  = 0;     // in the file, for messages
+      bool                        implied = false; // an edge between nodes of a set, which may lie inside of a body
+    };
+
+    std::string                                      file;
+    std::vector<dealii::Point<3>>                    nodes;
+    std::vector<Element>                             elements;
+    std::vector<std::vector<int>>                    groups;            // sets of physical numbers that elements carry
+    std::map<std::pair<int, int>, std::string>       names;             // by dimension and physical number
+    bool                                             is_curved = false; // had nodes besides the corners
+    std::map<std::string, std::vector<unsigned int>> node_sets;         // by name: nodes whose edges are a boundary
+    std::vector<std::string>                         remarks;           // what of the file is not used, for the log
+    std::set<std::string> plane_stress_types, plane_strain_types, axisymmetric_types; // types of elements that say so
+
+    /// Mid nodes of the edges of cells of second order, by the two corners in ascending order.
+    std::map<std::pair<unsigned int, unsigned int>, unsigned int> middles;
+
+    /// Keeps node number @p k (from 0, corners first) of a cell of second order, whose corners are there, if it is the
+    /// middle of an edge.
+    void keep_middle(const Element &cell, const unsigned int k, const unsigned int node)
+    {
+      if (k < cell.n || k >= 2 * cell.n)
+        return;
+      const unsigned int a = cell.corners[k - cell.n], b = cell.corners[(k - cell.n + 1) % cell.n];
+      middles[{std::min(a, b), std::max(a, b)}] = node;
+    }
+
+    /// Physical name of a number, or the number itself where it has none.
+    std::string name_of(const unsigned int dim, const int physical) const;
+
+    /// Whether the element carries @p part, a physical name or number; an empty one means all.
+    bool is_in(const Element &element, const std::string &part) const;
+
+    /// Lines of @p group for all edges of cells between two nodes of node_sets[name], a point for a single node.
+    void add_edges_of_node_set(const std::string &name, const unsigned int group);
+
+    /// Lines of number 0 for the edges of single cells that have no line yet: the outline is boundary number 0.
+    void add_outline();
+  };
+
+  /// Reads .msh (Gmsh 2.0 to 2.2 and 4.1, ASCII and binary), .inp (Abaqus), .ucd (and UCD's .inp), .vtk, whose boundaries and
+  /// parts have numbers in place of names, and .unv.
+  /// @throws InputError that names the file, what is wrong with it and a remedy.
+  MeshFile read_mesh_file(const std::string &file);
+
+  /// Gmsh's format from @p text, the whole content of @p file.
+  MeshFile parse_gmsh(const std::string &file, const std::string &text);
+
+  /// Abaqus' format. Sets of elements are parts (and lines boundaries), surfaces are boundaries; a set of nodes is the
+  /// boundary of all edges between two of its nodes, one node alone is a point.
+  MeshFile parse_abaqus(const std::string &file, const std::string &text);
+
+  /// VTK's legacy format in ASCII, unstructured grids of versions 2 to 5. Groups are the integers of the first data of cells
+  /// named in it (MaterialID, CellEntityIds, ...).
+  MeshFile parse_vtk(const std::string &file, const std::string &text);
+
+  /// I-deas' universal format: data sets 2411 (nodes), 2412 (elements), 2467 and 2477 (groups).
+  MeshFile parse_unv(const std::string &file, const std::string &text);
+
+  /// AVS' unstructured cell data in ASCII: groups are the material numbers.
+  MeshFile parse_ucd(const std::string &file, const std::string &text);
+} // namespace slipstick::mesh

@@ -1,0 +1,146 @@
+// A piece of mesh as plain lists: what is cut, sent between ranks and made into a triangulation.
+#pragma once
+
+#include <slipstick/mesh/mesh.h>
+
+#include <deal.II/base/geometry_info.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/map.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace slipstick::mesh
+{
+  /// Cells, vertices and boundary faces of one subdomain (or of a whole body before it is cut).
+  template <int dim>
+  struct MeshPiece
+  {
+    static constexpr unsigned int vertices_per_cell = dealii::GeometryInfo<dim>::vertices_per_cell;
+    static constexpr unsigned int vertices_per_face = dealii::GeometryInfo<dim>::vertices_per_face;
+
+    /// Stands behind the last vertex of a simplex.
+    static constexpr unsigned int no_vertex = std::numeric_limits<unsigned int>::max();
+
+    /// Local vertices in deal.II's order: lexicographic for quadrilaterals, counterclockwise for triangles.
+    using Cell = std::array<unsigned int, vertices_per_cell>;
+
+    /// Local vertices of a face.
+    using Face = std::array<unsigned int, vertices_per_face>;
+
+    struct BoundaryFace
+    {
+      Face                       vertices;
+      dealii::types::boundary_id id;
+      EdgeCurve<dim>             curve      = {};   // runs from the first vertex to the second
+      bool                       bends_cell = true; // new nodes lie on the curve; else on the chord
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &vertices &id &curve &bends_cell;
+      }
+    };
+
+    unsigned int                    subdomain = 0;
+    unsigned int                    body      = 0;
+    std::vector<dealii::Point<dim>> vertices;
+    std::vector<GlobalVertex>       global_vertices;
+    std::vector<Cell>               cells;
+    std::vector<BoundaryFace>       boundary_faces;  // of the body; all others are cut
+    bool                            ordered = false; // lines of neighbouring cells already run the same way
+
+    /// For sending between ranks (Boost serialization, through deal.II's MPI utilities).
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &subdomain &body &vertices &global_vertices &cells &boundary_faces &ordered;
+    }
+  };
+
+  template <int dim>
+  bool is_simplex(const typename MeshPiece<dim>::Cell &cell)
+  {
+    return cell.back() == MeshPiece<dim>::no_vertex;
+  }
+
+  /// Number of vertices, which in the plane is that of faces, too.
+  template <int dim>
+  unsigned int n_corners(const typename MeshPiece<dim>::Cell &cell)
+  {
+    static_assert(dim == 2, "triangles and quadrilaterals");
+    return is_simplex<dim>(cell) ? 3 : 4;
+  }
+
+  /// Corner @p k of a cell, counted counterclockwise (and around again: 0 after the last).
+  template <int dim>
+  unsigned int corner(const typename MeshPiece<dim>::Cell &cell, const unsigned int k)
+  {
+    constexpr std::array<unsigned int, 4> around = {{0, 1, 3, 2}};
+    return is_simplex<dim>(cell) ? cell[k % 3] : cell[around[k % 4]];
+  }
+
+  /// Cell of the given corners, counterclockwise.
+  template <int dim>
+  typename MeshPiece<dim>::Cell triangle(const unsigned int a, const unsigned int b, const unsigned int c)
+  {
+    return {{a, b, c, MeshPiece<dim>::no_vertex}};
+  }
+
+  /// Cell of the given corners, counterclockwise.
+  template <int dim>
+  typename MeshPiece<dim>::Cell quadrilateral(const unsigned int a,
+                                              const unsigned int b,
+                                              const unsigned int c,
+                                              const unsigned int d)
+  {
+    return {{a, b, d, c}};
+  }
+
+  /// Face from corner @p f to the next, vertices in ascending order: the same from both sides.
+  template <int dim>
+  typename MeshPiece<dim>::Face face_of_cell(const typename MeshPiece<dim>::Cell &cell, const unsigned int f)
+  {
+    const unsigned int a = corner<dim>(cell, f), b = corner<dim>(cell, f + 1);
+    return {{std::min(a, b), std::max(a, b)}};
+  }
+
+  /// All faces with the cells behind them (one at the boundary, two inside), sorted by face.
+  template <int dim>
+  std::vector<std::pair<typename MeshPiece<dim>::Face, unsigned int>> faces_with_cells(const MeshPiece<dim> &piece);
+
+  /// Boundary ids by face, vertices in ascending order.
+  template <int dim>
+  std::map<typename MeshPiece<dim>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<dim> &piece);
+
+  /// The boundary faces by their vertices in ascending order; so are their own, and their curves run that way.
+  template <int dim>
+  std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> boundary_by_vertices(
+    const MeshPiece<dim> &piece);
+
+  /// Block @p block (of n_blocks per direction) of a rectangle meshed by a lattice of equal cells, not yet placed.
+  template <int dim>
+  MeshPiece<dim> rectangle_piece(const scene::Body<dim>              &body,
+                                 const std::array<unsigned int, dim> &n_cells,
+                                 const std::array<unsigned int, dim> &n_blocks,
+                                 const std::array<unsigned int, dim> &block);
+
+  /// Mirrors, turns and moves @p piece. Cells stay counterclockwise; equal vertices stay equal to the last bit.
+  template <int dim>
+  void place(MeshPiece<dim> &piece, const scene::Placement<dim> &placement);
+
+  /// Cuts @p whole along @p part (a part number for every cell). Parts without cells are left out; parts that hang
+  /// together through no face fall apart into several pieces. Pieces come in order of part and first cell.
+  template <int dim>
+  std::vector<MeshPiece<dim>> cut(const MeshPiece<dim> &whole, const std::vector<unsigned int> &part);
+
+  /// METIS partition of the cells of @p piece, which must be connected through faces. @return a part number for
+  /// every cell.
+  template <int dim>
+  std::vector<unsigned int> metis_parts(const MeshPiece<dim> &piece,
+                                        const unsigned int    n_parts,
+                                        const unsigned int    seed = 0);
+} // namespace slipstick::mesh

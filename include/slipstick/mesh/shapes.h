@@ -1,0 +1,14 @@
+// Meshes of quadrilaterals for the built-in shapes of bodies.
+#pragma once
+
+#include <slipstick/mesh/body_mesh.h>
+
+namespace slipstick::mesh
+{
+  /// Cells of a rectangle per direction, refinements included.
+  template <int dim>
+  std::array<unsigned int, dim> rectangle_cells(const scene::Scene<dim> &scene, const scene::Body<dim> &body);
+
+  /// Boundary ids of a built-in shape, in the order of scene::boundary_names().
+  std::map<std::string, dealii::types::boundary_id> shape_boundary_ids(const scene::Shape shape);
+} // namespace slipstick::mesh

@@ -1,0 +1,49 @@
+// Words and numbers of a mesh file in ASCII, with the line where they stand.
+#pragma once
+
+#include <string>
+
+namespace slipstick::mesh
+{
+  /// Reads @p text, the content of @p file, from its start.
+  class WordReader
+  {
+  public:
+    /// @param remedy for all that may be wrong in the file.
+    WordReader(const std::string &file, const std::string &text, const std::string &remedy);
+
+    /// @throws InputError that names file and line.
+    [[noreturn]] void fail(const std::string &problem) const;
+
+    /// fail() as the present section does not hold what belongs there.
+    [[noreturn]] void fail_corrupt() const;
+
+    /// The next word, empty at the end of the file.
+    std::string word();
+
+    /// The rest of the present line, without its end; then goes to the next.
+    std::string line();
+
+    /// Whether the next line is there; blank ones count.
+    bool at_end() const;
+
+    /// The next word as a number. @throws InputError when it is none.
+    long long integer();
+    double    real(); // Fortran's exponents (1.0D+00), too; finite
+
+    /// A count of things of at least @p least characters each, no more than the rest of the file holds.
+    std::size_t count(const std::size_t least);
+
+    /// Whether the next word is @p expected, which is then skipped.
+    bool skip(const std::string &expected);
+
+    std::string section; // for messages
+
+  private:
+    const std::string  file;
+    const std::string &text;
+    const std::string  remedy;
+    std::size_t        at          = 0;
+    std::size_t        line_number = 1;
+  };
+} // namespace slipstick::mesh

@@ -1,0 +1,142 @@
+#include <slipstick/interface/body_contact.h>
+#include <slipstick/interface/pair_checks.h>
+
+#include <algorithm>
+
+namespace slipstick::interface
+{
+  namespace
+  {
+    template <int dim>
+    double mean_chord(const std::vector<mechanics::SurfaceEdge<dim>> &edges)
+    {
+      double sum = 0;
+      for (const auto &edge : edges)
+        sum += edge.chord();
+      return sum / edges.size();
+    }
+
+    template <int dim>
+    double automatic_reach(const std::vector<mechanics::SurfaceEdge<dim>> &slave,
+                           const std::vector<mechanics::SurfaceEdge<dim>> &master,
+                           const double                                    distance)
+    {
+      return distance + std::max(2 * std::max(mean_chord(slave), mean_chord(master)),
+                                 0.1 * std::min(extent(slave), extent(master)));
+    }
+
+    template <int dim>
+    double widest_reach(const std::vector<mechanics::SurfaceEdge<dim>> &slave,
+                        const std::vector<mechanics::SurfaceEdge<dim>> &master,
+                        const double                                    distance)
+    {
+      return distance + 0.5 * std::min(extent(slave), extent(master));
+    }
+
+    template <int dim>
+    std::vector<mechanics::SurfaceEdge<dim>> outline_of(const std::vector<mechanics::SurfaceEdge<dim>> &all,
+                                                        const unsigned int                              body)
+    {
+      std::vector<mechanics::SurfaceEdge<dim>> outline;
+      std::copy_if(all.begin(), all.end(), std::back_inserter(outline), [&](const auto &e) { return e.body == body; });
+      return outline;
+    }
+
+    template <int dim>
+    std::vector<MortarRow<dim>> rows_of(const scene::Scene<dim>                        &scene,
+                                        const mesh::Mesh<dim>                          &mesh,
+                                        const scene::ContactPair<dim>                  &pair,
+                                        const std::vector<mechanics::SurfaceEdge<dim>> &all)
+    {
+      const PairSides<dim> sides{mechanics::edges_on(mesh, all, pair.slave),
+                                 mechanics::edges_on(mesh, all, *pair.master),
+                                 outline_of(all, pair.slave.body),
+                                 outline_of(all, pair.master->body)};
+      const auto           distance = facing_distance(sides.slave, sides.master);
+      if (!distance) // of empty sides too
+        refuse_pair(scene, pair, sides, 0.);
+      const double near = pair.reach ? *pair.reach : automatic_reach(sides.slave, sides.master, *distance);
+      // nodes that are farther apart have no rows at first, but are checked again when the solution is known
+      const double reach = pair.reach || !pair.law.acts_where_closed_alone()
+                             ? near
+                             : std::max(near, widest_reach(sides.slave, sides.master, *distance));
+      auto         rows  = mortar_rows(sides.slave,
+                              sides.master,
+                              {reach, near},
+                              pair.discretization,
+                              pair.name,
+                              mesh::Kinematics<dim>(scene.plane_state));
+      if (rows.empty())
+        refuse_pair(scene, pair, sides, reach);
+      check_sides(scene, mesh, pair, sides, all, rows);
+      return rows;
+    }
+
+    /// Connected nodes.
+    class Groups
+    {
+    public:
+      void join(const mechanics::NodeKey &a, const mechanics::NodeKey &b)
+      {
+        const mechanics::NodeKey first = find(a), second = find(b);
+        parent[std::max(first, second)] = std::min(first, second);
+      }
+
+      mechanics::NodeKey find(mechanics::NodeKey key)
+      {
+        mechanics::NodeKey root = key;
+        for (auto at = parent.emplace(root, root).first; at->second != root; at = parent.find(root))
+          root = at->second;
+        while (key != root)
+          key = std::exchange(parent[key], root);
+        return root;
+      }
+
+      std::map<mechanics::NodeKey, mechanics::NodeKey> parent;
+    };
+  } // namespace
+
+  template <int dim>
+  BodyContacts<dim> pair_bodies(const scene::Scene<dim>      &scene,
+                                const mesh::Mesh<dim>        &mesh,
+                                const mechanics::Spaces<dim> &spaces)
+  {
+    BodyContacts<dim> contacts;
+    contacts.rows.resize(scene.contacts.size());
+    std::vector<bool> wanted(scene.bodies.size(), false);
+    for (const auto &pair : scene.contacts)
+      if (pair.master)
+        wanted[pair.slave.body] = wanted[pair.master->body] = true;
+    if (std::find(wanted.begin(), wanted.end(), true) == wanted.end())
+      return contacts;
+    const auto all = mechanics::outlines(mesh, spaces, wanted);
+
+    Groups groups;
+    for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+      if (scene.contacts[k].master)
+        {
+          contacts.rows[k] = rows_of(scene, mesh, scene.contacts[k], all);
+          for (const auto &row : contacts.rows[k])
+            for (const Weights *weights : {&row.slave_weights, &row.master_weights})
+              for (const auto &[key, weight] : *weights)
+                groups.join(row.slave, key);
+        }
+
+    std::map<mechanics::NodeKey, unsigned int> first; // subdomain, by root
+    for (const auto &edge : all)
+      for (unsigned int i = 0; i < edge.n_nodes; ++i)
+        if (groups.parent.count(edge.keys[i]) != 0)
+          {
+            const auto [entry, is_new] = first.emplace(groups.find(edge.keys[i]), edge.subdomain);
+            entry->second              = std::min(entry->second, edge.subdomain);
+          }
+    std::vector<mechanics::NodeKey> keys;
+    for (const auto &[key, parent] : groups.parent)
+      keys.push_back(key);
+    for (const auto &key : keys)
+      contacts.owner[key] = first.at(groups.find(key));
+    return contacts;
+  }
+
+  template BodyContacts<2> pair_bodies(const scene::Scene<2> &, const mesh::Mesh<2> &, const mechanics::Spaces<2> &);
+} // namespace slipstick::interface

@@ -1,0 +1,245 @@
+#include <slipstick/interface/curve_pairing.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace slipstick::interface
+{
+  namespace
+  {
+    using Edge   = CurvePairing::Edge;
+    using Node   = CurvePairing::Node;
+    using Tensor = CurvePairing::Tensor;
+
+    // Parts of an edge (of its length) that are shorter than this are left out.
+    constexpr double smallest_segment = 1e-12;
+    // Crossings at distances that differ by no more than this part of an edge are one: at a node of the master.
+    constexpr double same_place = 1e-9;
+
+    /// Zero of a continuous f with f(low) f(high) <= 0: false position made safe (Illinois) between bisections.
+    template <class F>
+    double zero_between(const F &f, double low, double high, double f_low, double f_high)
+    {
+      for (unsigned int i = 0; i < 200 && high - low > 1e-16 && f_low != f_high; ++i)
+        {
+          const double s = i % 4 == 3 ? 0.5 * (low + high) : (low * f_high - high * f_low) / (f_high - f_low);
+          if (!(s > low && s < high))
+            return s <= low ? low : high;
+          const double value = f(s);
+          if (value == 0)
+            return s;
+          if ((value < 0) == (f_low < 0))
+            {
+              low   = s;
+              f_low = value;
+              f_high /= 2;
+            }
+          else
+            {
+              high   = s;
+              f_high = value;
+              f_low /= 2;
+            }
+        }
+      return 0.5 * (low + high);
+    }
+
+    /// The nodes of a curve with the means of its own normals.
+    /// @return the nodes of every edge.
+    std::vector<std::array<unsigned int, 3>> find_nodes(const std::vector<Edge>   &curve,
+                                                        const mesh::Kinematics<2> &kinematics,
+                                                        std::vector<Node>         &nodes)
+    {
+      std::map<mechanics::NodeKey, std::vector<std::pair<unsigned int, unsigned int>>> at; // edge, node of the edge
+      for (unsigned int e = 0; e < curve.size(); ++e)
+        for (unsigned int i = 0; i < curve[e].n_nodes; ++i)
+          at[curve[e].keys[i]].emplace_back(e, i);
+      std::vector<std::array<unsigned int, 3>> node_of(curve.size());
+      for (const auto &[key, places] : at)
+        {
+          std::vector<Tensor> normals, means;
+          for (const auto &[e, i] : places)
+            normals.push_back(curve[e].outline_normal(Edge::node_coordinate(i)));
+          const auto         side  = mechanics::smooth_normals(normals, means);
+          const unsigned int first = nodes.size();
+          for (unsigned int g = 0; g < means.size(); ++g)
+            nodes.push_back({key, g, curve[places[0].first].node(places[0].second), means[g]});
+          for (unsigned int k = 0; k < places.size(); ++k)
+            {
+              const auto &[e, i] = places[k];
+              node_of[e][i]      = first + side[k];
+              nodes[first + side[k]].covered += curve[e].tributary_lengths()[i];
+              nodes[first + side[k]].size += curve[e].chord();
+              const auto measures = curve[e].tributary_measures(kinematics);
+              nodes[first + side[k]].measure += measures[i];
+              nodes[first + side[k]].scale += measures[0] + measures[1] + measures[2];
+            }
+        }
+      return node_of;
+    }
+
+    /// The normals of the nodes of an edge between them, not of unit length.
+    Tensor interpolated(const Edge                        &edge,
+                        const std::array<unsigned int, 3> &node_of,
+                        const std::vector<Node>           &nodes,
+                        const double                       s)
+    {
+      const auto N = edge.shape(s);
+      Tensor     n;
+      for (unsigned int i = 0; i < edge.n_nodes; ++i)
+        n += N[i] * nodes[node_of[i]].normal;
+      return n;
+    }
+  } // namespace
+
+  CurvePairing::CurvePairing(const std::vector<Edge>   &slave_,
+                             const std::vector<Edge>   &master_,
+                             const Reach               &reach_,
+                             const mesh::Kinematics<2> &kinematics)
+    : slave(slave_)
+    , master(master_)
+    , reach(reach_)
+    , tree(master_)
+  {
+    node_of = find_nodes(slave, kinematics, all_nodes);
+    average_normals();
+  }
+
+  /// The slave's normals become the means of both sides' where the slave's own one meets a master that faces it.
+  void CurvePairing::average_normals()
+  {
+    std::vector<Node>   of_master;
+    const auto          nodes_of_master = find_nodes(master, {}, of_master);
+    std::vector<Tensor> facing(all_nodes.size());
+    std::vector<bool>   is_done(all_nodes.size(), false);
+    for (unsigned int e = 0; e < slave.size(); ++e)
+      {
+        const auto near = candidates(e);
+        for (unsigned int i = 0; i < slave[e].n_nodes; ++i)
+          {
+            const unsigned int at = node_of[e][i];
+            const double       s  = Edge::node_coordinate(i);
+            if (is_done[at])
+              continue;
+            is_done[at]      = true;
+            const auto first = partner(e, s, near);
+            if (!first)
+              continue;
+            // at a node of the master the side that faces the slave most, however the edges are numbered
+            const double gap  = hit(e, s, *first)->gap;
+            double       best = 0;
+            for (const unsigned int m : near)
+              if (const auto found = hit(e, s, m); found && std::abs(found->gap - gap) <= same_place * slave[e].chord())
+                {
+                  const Tensor n     = interpolated(master[m], nodes_of_master[m], of_master, found->s);
+                  const double along = n * all_nodes[at].normal / n.norm();
+                  if (along < std::min(best, facing_cosine))
+                    {
+                      best       = along;
+                      facing[at] = n / n.norm();
+                    }
+                }
+          }
+      }
+    for (unsigned int i = 0; i < all_nodes.size(); ++i)
+      {
+        const Tensor sum    = all_nodes[i].normal - facing[i];
+        all_nodes[i].normal = sum / sum.norm();
+      }
+  }
+
+  Tensor CurvePairing::field(const unsigned int e, const double s) const
+  {
+    return interpolated(slave[e], node_of[e], all_nodes, s);
+  }
+
+  double CurvePairing::side(const unsigned int e, const double s, const dealii::Point<2> &y) const
+  {
+    return mechanics::cross(field(e, s), y - slave[e].point(s));
+  }
+
+  std::optional<CurvePairing::Hit> CurvePairing::hit(const unsigned int e, const double s, const unsigned int m) const
+  {
+    const Edge            &edge = master[m];
+    const dealii::Point<2> x    = slave[e].point(s);
+    const Tensor           n    = field(e, s);
+    const double           f0 = mechanics::cross(n, edge.node(0) - x), f1 = mechanics::cross(n, edge.node(1) - x);
+    if (f0 * f1 > 0 || f0 == f1)
+      return {};
+    Hit result;
+    result.s   = edge.n_nodes == 2
+                   ? f0 / (f0 - f1)
+                   : zero_between([&](const double r) { return mechanics::cross(n, edge.point(r) - x); }, 0., 1., f0, f1);
+    result.gap = (edge.point(result.s) - x) * n / n.norm();
+    return result;
+  }
+
+  /// The master edge that the ray from a point of slave edge e meets first and from outside, if any.
+  std::optional<unsigned int> CurvePairing::partner(const unsigned int               e,
+                                                    const double                     s,
+                                                    const std::vector<unsigned int> &near) const
+  {
+    const Tensor n = field(e, s) / field(e, s).norm();
+    // ahead and behind: the first crossing
+    std::array<double, 2>       distance{{reach.ahead, reach.behind}};
+    std::array<unsigned int, 2> first{};
+    std::array<bool, 2>         is_facing{{false, false}};
+    for (const unsigned int m : near)
+      if (const auto found = hit(e, s, m))
+        {
+          const double       along = master[m].normal(found->s) * n;
+          const unsigned int way   = found->gap < 0;
+          if (std::abs(along) < -facing_cosine || std::abs(found->gap) > distance[way])
+            continue;
+          distance[way]  = std::abs(found->gap);
+          first[way]     = m;
+          is_facing[way] = along < 0;
+        }
+    if (!is_facing[0] && !is_facing[1])
+      return {};
+    const unsigned int way = is_facing[0] && (!is_facing[1] || distance[0] <= distance[1]) ? 0 : 1;
+    return first[way];
+  }
+
+  /// Master edges near slave edge e.
+  std::vector<unsigned int> CurvePairing::candidates(const unsigned int e) const
+  {
+    std::vector<dealii::Point<2>> around;
+    for (const double s : {0., 0.25, 0.5, 0.75, 1.})
+      for (const double way : {-reach.behind, reach.ahead})
+        around.push_back(slave[e].point(s) + way * field(e, s) / field(e, s).norm());
+    auto box = EdgeTree::box_around(around);
+    // a little larger: the field turns, and exact touching is on the border
+    const double more = 0.05 * slave[e].chord();
+    box.min_corner()  = {box.min_corner().get<0>() - more, box.min_corner().get<1>() - more};
+    box.max_corner()  = {box.max_corner().get<0>() + more, box.max_corner().get<1>() + more};
+    return tree.near(box);
+  }
+
+  std::vector<CurvePairing::Segment> CurvePairing::segments(const unsigned int e) const
+  {
+    const auto          near   = candidates(e);
+    std::vector<double> breaks = {0., 1.};
+    for (const unsigned int m : near)
+      for (const unsigned int i : {0, 1})
+        {
+          const auto   y  = master[m].node(i);
+          const double f0 = side(e, 0., y), f1 = side(e, 1., y);
+          if (f0 * f1 < 0)
+            breaks.push_back(zero_between([&](const double s) { return side(e, s, y); }, 0., 1., f0, f1));
+        }
+    std::sort(breaks.begin(), breaks.end());
+    std::vector<Segment> parts;
+    double               from = 0;
+    for (const double to : breaks)
+      if (to - from > smallest_segment)
+        {
+          if (const auto m = partner(e, 0.5 * (from + to), near))
+            parts.push_back({from, to, *m});
+          from = to;
+        }
+    return parts;
+  }
+} // namespace slipstick::interface

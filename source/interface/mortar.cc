@@ -1,0 +1,321 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/base/log.h>
+#include <slipstick/interface/mortar.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <Eigen/Dense>
+
+#include <cmath>
+
+namespace slipstick::interface
+{
+  namespace
+  {
+    // Edges and nodes of which no more than this part is covered are left out.
+    constexpr double smallest_cover = 1e-10;
+    // An edge is covered as a whole when no more than this part is missing.
+    constexpr double whole_edge = 1e-9;
+    // Nodes lie on their curve when they are off by no more than this part of the edge.
+    constexpr double on_curve = 1e-12;
+    // Weights that are no more than rounding.
+    constexpr double smallest_weight = 1e-11;
+    // Master nodes lie across slave nodes when they are off by no more than this part of the tributary length ...
+    constexpr double       across_automatic = 1e-6; // ... to be taken for matching meshes
+    constexpr double       across_asked_for = 0.1;  // ... when node to node is asked for
+    constexpr unsigned int n_gauss          = 5; // per segment; exact between straight parallel edges of both degrees
+
+    /// The integrals of all slave edges, by node.
+    class MortarIntegrals
+    {
+    public:
+      using Edge   = mechanics::SurfaceEdge<2>;
+      using Tensor = dealii::Tensor<1, 2>;
+
+      MortarIntegrals(const std::vector<Edge>   &slave_,
+                      const std::vector<Edge>   &master_,
+                      const Reach               &reach,
+                      const mesh::Kinematics<2> &kinematics_)
+        : kinematics(kinematics_)
+        , pairing(slave_, master_, reach, kinematics)
+        , slave(slave_)
+        , master(master_)
+        , gauss(n_gauss)
+        , sums(pairing.nodes().size())
+      {
+        for (const auto *side : {&slave, &master})
+          for (const auto &edge : *side)
+            for (unsigned int i = 0; i < edge.n_nodes; ++i)
+              places[edge.keys[i]] = {&edge, Edge::node_coordinate(i)};
+        for (const auto &edge : master)
+          for (unsigned int i = 0; i < edge.n_nodes; ++i)
+            master_positions[edge.keys[i]] = edge.node(i);
+        for (const auto &node : pairing.nodes())
+          slave_positions[node.key] = node.position;
+        for (unsigned int e = 0; e < slave.size(); ++e)
+          integrate(e, pairing.segments(e));
+      }
+
+      std::vector<MortarRow<2>> rows() const
+      {
+        std::vector<MortarRow<2>> result;
+        for (unsigned int i = 0; i < sums.size(); ++i)
+          if (pairing.nodes()[i].measure > 0 && sums[i].measure > smallest_cover * pairing.nodes()[i].scale)
+            result.push_back(row_of(pairing.nodes()[i], sums[i]));
+        return result;
+      }
+
+    private:
+      struct Sums
+      {
+        double                               measure = 0; // D_i
+        double                               length  = 0; // in the plane
+        Tensor                               rise;        // <phi_i (rise of the master - rise of the slave) n>
+        double                               left_out = 0;
+        std::map<mechanics::NodeKey, double> slave, master; // D_ik, M_ij
+      };
+
+      /// Adds what slave edge e gives to the integrals of its nodes.
+      void integrate(const unsigned int e, const std::vector<CurvePairing::Segment> &parts)
+      {
+        const Edge &edge    = slave[e];
+        double      covered = 0;
+        for (const auto &part : parts)
+          covered += part.to - part.from;
+        if (covered < smallest_cover)
+          return;
+        // test functions are made of linear shape functions where a quadratic edge is covered in part
+        const unsigned int n_test    = covered > 1 - whole_edge ? edge.n_nodes : 2;
+        const bool         is_linear = n_test == 2;
+
+        Eigen::MatrixXd                               mass   = Eigen::MatrixXd::Zero(n_test, n_test);       // <T_a T_b>
+        Eigen::MatrixXd                               slave_ = Eigen::MatrixXd::Zero(n_test, edge.n_nodes); // <T_a N_k>
+        Eigen::VectorXd                               measures = Eigen::VectorXd::Zero(n_test);             // <T_a>
+        Eigen::VectorXd                               lengths  = Eigen::VectorXd::Zero(n_test);    // in the plane
+        Eigen::MatrixXd                               rises    = Eigen::MatrixXd::Zero(n_test, 2); // <T_a rise n>
+        double                                        left_out = 0;
+        std::map<mechanics::NodeKey, Eigen::VectorXd> other; // <T_a N_j(y)>
+        for (const auto &part : parts)
+          for (unsigned int q = 0; q < gauss.size(); ++q)
+            {
+              const double s      = part.from + (part.to - part.from) * gauss.point(q)[0];
+              const double length = gauss.weight(q) * (part.to - part.from) * edge.tangent(s).norm();
+              const double dx     = length * kinematics.measure(edge.point(s));
+              const auto   N      = edge.shape(s);
+              const auto   T      = is_linear ? std::array<double, 3>{{1 - s, s, 0}} : N;
+              const auto   y      = pairing.hit(e, s, part.master);
+              const Edge  &to     = master[part.master];
+              // a Gauss point at the very end of a segment may miss by rounding
+              const double r =
+                y ? y->s
+                  : (std::abs(pairing.side(e, s, to.node(0))) < std::abs(pairing.side(e, s, to.node(1))) ? 0. : 1.);
+              const auto            N_m  = to.shape(r);
+              const Eigen::VectorXd test = Eigen::Map<const Eigen::VectorXd>(T.data(), n_test);
+              mass += dx * test * test.transpose();
+              slave_ += dx * test * Eigen::Map<const Eigen::RowVectorXd>(N.data(), edge.n_nodes);
+              measures += dx * test;
+              lengths += length * test;
+              left_out = std::max(left_out, edge.curve.left_out + to.curve.left_out);
+              if (edge.curve || to.curve)
+                {
+                  const Tensor n    = pairing.direction(e, s);
+                  const Tensor rise = (to.rise(r, n) - edge.rise(s, n)) * n;
+                  rises += dx * test * Eigen::RowVector2d(rise[0], rise[1]);
+                }
+              for (unsigned int j = 0; j < to.n_nodes; ++j)
+                {
+                  auto &sum = other.emplace(to.keys[j], Eigen::VectorXd::Zero(n_test)).first->second;
+                  sum += dx * N_m[j] * test;
+                }
+            }
+        // phi = diag(measures) mass^-1 T, scaled: on a short part the entries are of very different size
+        const Eigen::VectorXd scale  = mass.diagonal().cwiseSqrt().cwiseInverse();
+        const Eigen::MatrixXd scaled = scale.asDiagonal() * mass * scale.asDiagonal();
+        const Eigen::MatrixXd dual =
+          measures.asDiagonal() * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal()).eval();
+        const Eigen::MatrixXd D = dual * slave_, of_curves = dual * rises;
+        for (unsigned int i = 0; i < n_test; ++i)
+          {
+            Sums &node = sums[pairing.nodes_of(e)[i]];
+            node.measure += measures[i];
+            node.length += lengths[i];
+            for (unsigned int d = 0; d < 2; ++d)
+              node.rise[d] += of_curves(i, d);
+            node.left_out = std::max(node.left_out, left_out);
+            for (unsigned int k = 0; k < edge.n_nodes; ++k)
+              if (!(n_test == edge.n_nodes && i != k)) // biorthogonal
+                node.slave[edge.keys[k]] += n_test == edge.n_nodes ? measures[i] : D(i, k);
+          }
+        for (const auto &[key, sum] : other)
+          {
+            const Eigen::VectorXd M = dual * sum;
+            for (unsigned int i = 0; i < n_test; ++i)
+              sums[pairing.nodes_of(e)[i]].master[key] += M[i];
+          }
+      }
+
+      /// Weights over their sum, without what is rounding; the largest makes the sum 1 exactly.
+      static Weights normalised(const std::map<mechanics::NodeKey, double> &raw, const double sum)
+      {
+        Weights weights;
+        for (const auto &[key, value] : raw)
+          if (std::abs(value) > smallest_weight * sum)
+            weights.emplace_back(key, value / sum);
+        const auto by_size = [](const auto &a, const auto &b) { return std::abs(a.second) < std::abs(b.second); };
+        const auto largest = std::max_element(weights.begin(), weights.end(), by_size);
+        double     others  = 0;
+        for (auto w = weights.begin(); w != weights.end(); ++w)
+          if (w != largest)
+            others += w->second;
+        largest->second = 1 - others;
+        return weights;
+      }
+
+      MortarRow<2> row_of(const CurvePairing::Node &node, const Sums &sum) const
+      {
+        MortarRow<2> row;
+        row.slave          = node.key;
+        row.side           = node.side;
+        row.position       = node.position;
+        row.normal         = node.normal;
+        row.measure        = sum.measure;
+        row.length         = sum.length;
+        row.full_measure   = node.measure;
+        row.full_length    = node.covered;
+        row.slave_weights  = normalised(sum.slave, sum.measure);
+        row.master_weights = normalised(sum.master, sum.measure);
+        row.left_out       = sum.left_out;
+        measure(row);
+        row.gap += row.normal * sum.rise / sum.measure;
+        return row;
+      }
+
+    public:
+      /// Gap and mean master position from the weights.
+      void measure(MortarRow<2> &row) const
+      {
+        dealii::Point<2> x;
+        row.master_position = {};
+        for (const auto &[key, weight] : row.slave_weights)
+          x += weight * Tensor(slave_positions.at(key));
+        for (const auto &[key, weight] : row.master_weights)
+          row.master_position += weight * Tensor(master_positions.at(key));
+        row.gap = row.normal * (row.master_position - x);
+      }
+
+      /// How far the curve is above the edges at a node, along the normal of a row: nothing but for midside nodes of straight
+      /// edges and nodes of edges that could not be bent.
+      double rise(const MortarRow<2> &row, const mechanics::NodeKey &key) const
+      {
+        const auto &[edge, s] = places.at(key);
+        const double distance = edge->rise(s, row.normal);
+        return std::abs(distance) > on_curve * edge->chord() ? distance : 0.;
+      }
+
+      /// The master node across a slave node, and how far off it is to the side.
+      std::pair<mechanics::NodeKey, double> across(const MortarRow<2> &row) const
+      {
+        std::pair<mechanics::NodeKey, double> best{{{0, 0}}, std::numeric_limits<double>::max()};
+        for (const auto &[key, weight] : row.master_weights)
+          {
+            const double off = std::abs(mechanics::cross(row.normal, master_positions.at(key) - row.position));
+            if (off < best.second)
+              best = {key, off};
+          }
+        return best;
+      }
+
+    private:
+      const mesh::Kinematics<2>                      kinematics;
+      const CurvePairing                             pairing;
+      const std::vector<Edge>                       &slave, &master;
+      const dealii::QGauss<1>                        gauss;
+      std::vector<Sums>                              sums; // by node of the pairing
+      std::map<mechanics::NodeKey, dealii::Point<2>> slave_positions, master_positions;
+
+      std::map<mechanics::NodeKey, std::pair<const Edge *, double>>
+        places; // an edge of every node, and where it is there
+    };
+
+    /// Nearest point of the chord of an edge.
+    dealii::Point<2> nearest_on(const mechanics::SurfaceEdge<2> &edge, const dealii::Point<2> &x)
+    {
+      const auto   along = edge.node(1) - edge.node(0);
+      const double s     = std::min(1., std::max(0., (x - edge.node(0)) * along / along.norm_square()));
+      return edge.node(0) + s * along;
+    }
+
+    void one_way(const std::vector<mechanics::SurfaceEdge<2>> &a,
+                 const std::vector<mechanics::SurfaceEdge<2>> &b,
+                 double                                       &smallest)
+    {
+      const EdgeTree tree(b);
+      for (const auto &edge : a)
+        for (const double s : {0., 0.5, 1.})
+          {
+            const auto x = edge.point(s);
+            const auto n = edge.normal(s);
+            tree.for_each_by_distance(
+              x,
+              [&] { return smallest; },
+              [&](const unsigned int m) {
+                if (b[m].normal(0.5) * n < facing_cosine)
+                  smallest = std::min(smallest, x.distance(nearest_on(b[m], x)));
+                return true;
+              });
+          }
+    }
+  } // namespace
+
+  template <>
+  std::vector<MortarRow<2>> mortar_rows(const std::vector<mechanics::SurfaceEdge<2>> &slave,
+                                        const std::vector<mechanics::SurfaceEdge<2>> &master,
+                                        const Reach                                  &reach,
+                                        const scene::ContactDiscretization            discretization,
+                                        const std::string                            &name,
+                                        const mesh::Kinematics<2>                    &kinematics)
+  {
+    const MortarIntegrals integrals(slave, master, reach, kinematics);
+    auto                  rows = integrals.rows();
+    if (discretization == scene::ContactDiscretization::mortar)
+      return rows;
+    const bool   is_asked_for = discretization == scene::ContactDiscretization::node_to_node;
+    const double tolerance    = is_asked_for ? across_asked_for : across_automatic;
+    auto         to_nodes     = rows;
+    for (auto &row : to_nodes)
+      {
+        const auto [key, off] = integrals.across(row);
+        if (off > tolerance * row.length)
+          {
+            if (!is_asked_for)
+              return rows;
+            throw InputError(
+              format("Contact %s: Discretization = node to node, but the meshes do not match: the master "
+                     "node nearest to the slave node at (%g, %g) is %g mm off to the side",
+                     name.c_str(),
+                     row.position[0],
+                     row.position[1],
+                     off),
+              "set Discretization = auto or mortar, or give both boundaries the same nodes");
+          }
+        row.slave_weights  = {{row.slave, 1.}};
+        row.master_weights = {{key, 1.}};
+        integrals.measure(row);
+        row.gap += integrals.rise(row, key) - integrals.rise(row, row.slave);
+      }
+    return to_nodes;
+  }
+
+  template <>
+  std::optional<double> facing_distance(const std::vector<mechanics::SurfaceEdge<2>> &a,
+                                        const std::vector<mechanics::SurfaceEdge<2>> &b,
+                                        const double                                  bound)
+  {
+    double smallest = bound;
+    one_way(a, b, smallest);
+    one_way(b, a, smallest);
+    if (smallest < bound)
+      return smallest;
+    return {};
+  }
+} // namespace slipstick::interface

@@ -1,0 +1,208 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/base/log.h>
+#include <slipstick/interface/nodal_conditions.h>
+#include <slipstick/mechanics/surface.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::interface
+{
+  namespace
+  {
+    // Two supports agree when their values differ by less than this part of the larger.
+    constexpr double same_value_tolerance = 1e-12;
+    // Stiffness of a spring against that across it, below which it is rounding.
+    constexpr double smallest_stiffness = 1e-12;
+
+    template <int dim>
+    dealii::Tensor<1, dim> tensor(const std::array<double, dim> &v)
+    {
+      dealii::Tensor<1, dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = v[d];
+      return result;
+    }
+
+    template <int dim>
+    std::string describe(const dealii::Tensor<1, dim> &direction, const unsigned int which)
+    {
+      if (which < dim)
+        return format("displacement %c", "xyz"[which]);
+      return format("displacement along (%.3g, %.3g)", direction[0], direction[1]);
+    }
+
+    /// Adds those who are not there yet.
+    void share(std::vector<unsigned int> &all, const std::vector<unsigned int> &more)
+    {
+      for (const unsigned int one : more)
+        if (std::find(all.begin(), all.end(), one) == all.end())
+          all.push_back(one);
+    }
+
+    /// Supports along normals: what edges agree in value is averaged where there is no corner.
+    template <int dim>
+    void hold_along_normals(InterfaceNode<dim> &node, const scene::Scene<dim> &scene, const double t)
+    {
+      struct Normals
+      {
+        std::vector<dealii::Tensor<1, dim>> all;
+        std::vector<unsigned int>           by;
+      };
+      std::map<double, Normals> normals; // by value
+      for (const auto &side : node.sides)
+        if (side.condition < scene.supports.size())
+          {
+            auto &list = normals[scene.supports[side.condition].normal->value(node.point(), t)];
+            list.all.push_back(tensor<dim>(side.normal));
+            list.by.push_back(side.condition);
+          }
+      unsigned int which = dim;
+      for (const auto &[value, list] : normals)
+        {
+          std::vector<dealii::Tensor<1, dim>> means;
+          const auto                          group = mechanics::smooth_normals(list.all, means);
+          for (unsigned int g = 0; g < means.size(); ++g)
+            {
+              std::vector<unsigned int> by;
+              for (unsigned int i = 0; i < group.size(); ++i)
+                if (group[i] == g)
+                  share(by, {list.by[i]});
+              hold(node, means[g], value, which++, by);
+            }
+        }
+    }
+
+    /// Normals of the edges are averaged where there is no corner, as for supports: else a curved boundary on springs along
+    /// its normal would hold its nodes along the tangent too, by springs so soft that they spoil the scale of F.
+    template <int dim>
+    void add_springs(InterfaceNode<dim> &node, const scene::Scene<dim> &scene)
+    {
+      std::vector<typename InterfaceNode<dim>::Side> sides;
+      std::vector<dealii::Tensor<1, dim>>            normals, means;
+      for (const auto &side : node.sides)
+        if (side.condition >= scene.supports.size())
+          {
+            sides.push_back(side);
+            normals.push_back(tensor<dim>(side.normal));
+          }
+      const auto                      group     = mechanics::smooth_normals(normals, means);
+      Eigen::Matrix<double, dim, dim> stiffness = Eigen::Matrix<double, dim, dim>::Zero();
+      for (unsigned int i = 0; i < sides.size(); ++i)
+        {
+          const auto &foundation = scene.foundations[sides[i].condition - scene.supports.size()];
+          const Eigen::Map<const Eigen::Matrix<double, dim, 1>> n(means[group[i]].begin_raw());
+          const Eigen::Matrix<double, dim, dim>                 nn = n * n.transpose();
+          stiffness +=
+            sides[i].area * (foundation.normal_stiffness * nn +
+                             foundation.tangential_stiffness * (Eigen::Matrix<double, dim, dim>::Identity() - nn));
+        }
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>> principal(stiffness);
+      for (unsigned int k = 0; k < dim; ++k)
+        if (principal.eigenvalues()[k] > smallest_stiffness * principal.eigenvalues()[dim - 1])
+          {
+            typename InterfaceNode<dim>::Spring spring;
+            spring.stiffness = principal.eigenvalues()[k];
+            for (unsigned int d = 0; d < dim; ++d)
+              spring.direction[d] = principal.eigenvectors()(d, k);
+            if (node.free_part(spring.direction).norm() > held_direction_tolerance)
+              node.springs.push_back(spring);
+          }
+    }
+  } // namespace
+
+  template <int dim>
+  dealii::Tensor<1, dim> InterfaceNode<dim>::free_part(const dealii::Tensor<1, dim> &direction) const
+  {
+    static_assert(dim == 2, "one held direction or all");
+    if (held.size() >= dim)
+      return {};
+    if (held.empty())
+      return direction;
+    const auto d = tensor<dim>(held[0].direction);
+    return direction - (direction * d) * d;
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim> InterfaceNode<dim>::held_displacement() const
+  {
+    static_assert(dim == 2, "one held direction or all");
+    dealii::Tensor<1, dim> u;
+    if (held.empty())
+      return u;
+    const auto a = tensor<dim>(held[0].direction);
+    if (held.size() == 1)
+      return held[0].value * a;
+    const auto   b    = tensor<dim>(held[1].direction);
+    const double area = mechanics::cross(a, b);
+    u[0]              = (held[0].value * b[1] - held[1].value * a[1]) / area;
+    u[1]              = (held[1].value * a[0] - held[0].value * b[0]) / area;
+    return u;
+  }
+
+  template <int dim>
+  void hold(InterfaceNode<dim>              &node,
+            const dealii::Tensor<1, dim>    &direction,
+            const double                     value,
+            const unsigned int               which,
+            const std::vector<unsigned int> &by)
+  {
+    if (node.free_part(direction).norm() > held_direction_tolerance)
+      {
+        typename InterfaceNode<dim>::Held held;
+        for (unsigned int d = 0; d < dim; ++d)
+          held.direction[d] = direction[d];
+        held.value = value;
+        held.which = which;
+        held.by    = by;
+        node.held.push_back(held);
+        return;
+      }
+    const auto nearest = std::max_element(node.held.begin(), node.held.end(), [&](const auto &a, const auto &b) {
+      return std::abs(tensor<dim>(a.direction) * direction) < std::abs(tensor<dim>(b.direction) * direction);
+    });
+    share(nearest->by, by);
+    // the value that is implied: sum of w_k value_k with direction = sum of w_k direction_k
+    double there = 0, size = std::abs(value);
+    if (node.held.size() == 1)
+      there = (tensor<dim>(node.held[0].direction) * direction) * node.held[0].value;
+    else
+      {
+        const auto   a = tensor<dim>(node.held[0].direction), b = tensor<dim>(node.held[1].direction);
+        const double area = mechanics::cross(a, b);
+        there =
+          (mechanics::cross(direction, b) * node.held[0].value + mechanics::cross(a, direction) * node.held[1].value) /
+          area;
+        const double turn = std::abs(area); // rounding of a nearly singular pair of directions
+        size              = std::max(size, (std::abs(node.held[0].value) + std::abs(node.held[1].value)) / turn);
+      }
+    size = std::max(size, std::abs(there));
+    if (std::abs(there - value) > same_value_tolerance * size)
+      throw InputError(format("supports prescribe both %g and %g for %s at (%g, %g)",
+                              there,
+                              value,
+                              describe(direction, which).c_str(),
+                              node.position[0],
+                              node.position[1]),
+                       "free that component in one of the supports, or make the values agree where boundaries meet");
+  }
+
+  template <int dim>
+  void resolve_sides(InterfaceNode<dim> &node, const scene::Scene<dim> &scene, const double t)
+  {
+    std::sort(node.sides.begin(), node.sides.end());
+    hold_along_normals(node, scene, t);
+    add_springs(node, scene);
+    std::sort(node.held.begin(), node.held.end(), [](const auto &a, const auto &b) { return a.which < b.which; });
+  }
+
+  template struct InterfaceNode<2>;
+  template void hold(InterfaceNode<2> &,
+                     const dealii::Tensor<1, 2> &,
+                     const double,
+                     const unsigned int,
+                     const std::vector<unsigned int> &);
+  template void resolve_sides(InterfaceNode<2> &, const scene::Scene<2> &, const double);
+} // namespace slipstick::interface

@@ -1,0 +1,115 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/interface/obstacle.h>
+
+#include <cmath>
+
+namespace slipstick::interface
+{
+  namespace
+  {
+    using Point  = dealii::Point<2>;
+    using Tensor = dealii::Tensor<1, 2>;
+
+    Tensor unit(const double x, const double y)
+    {
+      Tensor v;
+      v[0] = x;
+      v[1] = y;
+      return v / v.norm();
+    }
+
+    ObstacleContact<2> with_circle(const scene::Obstacle<2> &obstacle, const Point &x)
+    {
+      const Tensor ray      = obstacle.center - x;
+      const double distance = ray.norm();
+      if (!(distance > 0))
+        throw InputError("a contact node lies at the centre of obstacle " + obstacle.name + ", where it has no normal",
+                         "move the obstacle, or give the contact another slave boundary");
+      if (obstacle.shape == scene::ObstacleShape::hole)
+        return {-ray / distance, obstacle.radius - distance};
+      return {ray / distance, distance - obstacle.radius};
+    }
+
+    ObstacleContact<2> with_polyline(const std::vector<Point> &points, const Point &x)
+    {
+      const unsigned int n         = points.size() - 1; // segments
+      const bool         is_closed = n > 2 && points.front().distance(points.back()) == 0;
+      const auto         left      = [&](const unsigned int k) { // of segment k: where the bodies are
+        const Tensor along = points[k + 1] - points[k];
+        return unit(-along[1], along[0]);
+      };
+      double       best = std::numeric_limits<double>::max();
+      unsigned int k    = 0;
+      double       s    = 0;
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          const Tensor along = points[i + 1] - points[i];
+          double       at    = (x - points[i]) * along / along.norm_square();
+          if (i > 0 || is_closed)
+            at = std::max(at, 0.);
+          if (i + 1 < n || is_closed)
+            at = std::min(at, 1.);
+          const double distance = x.distance(points[i] + at * along);
+          if (distance < best)
+            {
+              best = distance;
+              k    = i;
+              s    = at;
+            }
+        }
+      const bool is_start = s == 0 && (k > 0 || is_closed), is_end = s == 1 && (k + 1 < n || is_closed);
+      if (!is_start && !is_end)
+        return {-left(k), (x - points[k]) * left(k)};
+      // at a corner: the nearest point is the same for both segments
+      const Tensor both = left(k) + left(is_start ? (k + n - 1) % n : (k + 1) % n);
+      const Tensor ray  = x - points[is_start ? k : k + 1];
+      if (ray.norm() == 0)
+        return {-unit(both[0], both[1]), 0.};
+      const double sign = ray * both >= 0 ? 1. : -1.;
+      return {-sign * ray / ray.norm(), sign * ray.norm()};
+    }
+
+    ObstacleContact<2> with_function(const scene::Field<2> &height, const Point &x, const double t)
+    {
+      const auto h     = [&](const double at) { return height.value(Point(at, x[1]), t); };
+      const auto slope = [&](const double at) {
+        const double step = 1e-5 * std::max(1., std::abs(at)); // error of the slope about 1e-10
+        return (h(at + step) - h(at - step)) / (2 * step);
+      };
+      const auto onto_tangent = [&](const double at) -> ObstacleContact<2> {
+        const Tensor normal = unit(slope(at), -1);
+        return {normal, (Point(at, h(at)) - x) * normal};
+      };
+      double foot = x[0];
+      for (unsigned int i = 0; i < 100; ++i)
+        {
+          const double m    = slope(foot);
+          const double next = foot + ((x[0] - foot) + (x[1] - h(foot)) * m) / (1 + m * m);
+          const double step = std::abs(next - foot);
+          foot              = next;
+          if (step <= 1e-10 * std::max(1., std::abs(foot)))
+            return onto_tangent(foot);
+        }
+      return onto_tangent(x[0]);
+    }
+  } // namespace
+
+  template <>
+  ObstacleContact<2> contact_with(const scene::Obstacle<2> &obstacle, const dealii::Point<2> &x, const double t)
+  {
+    switch (obstacle.shape)
+      {
+        case scene::ObstacleShape::circle:
+        case scene::ObstacleShape::hole:
+          return with_circle(obstacle, x);
+        case scene::ObstacleShape::half_plane:
+          return {-obstacle.normal, (x - obstacle.center) * obstacle.normal};
+        case scene::ObstacleShape::polyline:
+          return with_polyline(obstacle.points, x);
+        case scene::ObstacleShape::function:
+          return with_function(obstacle.height, x, t);
+      }
+    AssertThrow(false, dealii::ExcInternalError());
+    return {};
+  }
+} // namespace slipstick::interface

@@ -1,0 +1,299 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/base/log.h>
+#include <slipstick/interface/edge_tree.h>
+#include <slipstick/interface/obstacle.h>
+#include <slipstick/interface/pair_checks.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slipstick::interface
+{
+  template <>
+  std::string describe(const scene::Scene<2> &scene, const scene::BoundaryName &where)
+  {
+    return scene.bodies[where.body].name + "/" + where.boundary;
+  }
+
+  template <>
+  double extent(const std::vector<mechanics::SurfaceEdge<2>> &edges)
+  {
+    dealii::Point<2> low = edges[0].node(0), high = low;
+    for (const auto &edge : edges)
+      for (unsigned int i = 0; i < edge.n_nodes; ++i)
+        for (unsigned int d = 0; d < 2; ++d)
+          {
+            low[d]  = std::min(low[d], edge.at[i][d]);
+            high[d] = std::max(high[d], edge.at[i][d]);
+          }
+    return low.distance(high);
+  }
+
+  namespace
+  {
+    // A master is behind its slave when it is deeper than this part of a mean slave edge.
+    constexpr double deep = 0.1;
+    // Sides nearer than this part of their extent touch.
+    constexpr double touching = 1e-9;
+    // Normals that are compared for a message, per side.
+    constexpr unsigned int n_compared = 500;
+    constexpr double       infinity   = std::numeric_limits<double>::infinity();
+
+    using Edges = std::vector<mechanics::SurfaceEdge<2>>;
+
+    double degrees(const double cosine)
+    {
+      return std::acos(std::min(1., std::max(-1., cosine))) * 180 / dealii::numbers::PI;
+    }
+
+    bool any_inside(const Edges &side, const ClosedOutline &body)
+    {
+      for (const auto &edge : side)
+        for (const double s : {0.05, 0.25, 0.5, 0.75, 0.95})
+          if (body.contains(edge.point(s)))
+            return true;
+      return false;
+    }
+
+    /// Largest angle between outward normals of two sides [degrees].
+    double largest_angle(const Edges &a, const Edges &b)
+    {
+      const unsigned int step_a = a.size() / n_compared + 1, step_b = b.size() / n_compared + 1;
+      double             least = 1;
+      for (unsigned int i = 0; i < a.size(); i += step_a)
+        for (unsigned int j = 0; j < b.size(); j += step_b)
+          least = std::min(least, a[i].normal(0.5) * b[j].normal(0.5));
+      return degrees(least);
+    }
+
+    double least_gap(const std::vector<MortarRow<2>> &rows)
+    {
+      double least = infinity;
+      for (const auto &row : rows)
+        least = std::min(least, std::abs(row.gap));
+      return least;
+    }
+
+    std::string between(const scene::Scene<2> &scene, const scene::ContactPair<2> &pair)
+    {
+      return "Contact " + pair.name + ": " + describe(scene, pair.slave) + " and " + describe(scene, *pair.master);
+    }
+
+    [[noreturn]] void refuse_facing_away(const scene::Scene<2>           &scene,
+                                         const scene::ContactPair<2>     &pair,
+                                         const std::vector<MortarRow<2>> &rows)
+    {
+      throw InputError(
+        between(scene, pair) +
+          format(
+            " face away from each other: the slave finds the master only against its outward normal, through %g mm or more of its own "
+            "body",
+            least_gap(rows)),
+        "choose the boundaries that lie between the two bodies, or move, mirror or rotate a body");
+    }
+
+    /// Largest displacement that a support prescribes at any load factor [mm].
+    double largest_prescribed(const scene::Scene<2> &scene, const mesh::Mesh<2> &mesh, const Edges &all)
+    {
+      double largest = 0;
+      for (const auto &support : scene.supports)
+        {
+          std::vector<dealii::Point<2>> places;
+          if (!support.point)
+            for (const auto &edge : mechanics::edges_on(mesh, all, support.where))
+              for (unsigned int i = 0; i < edge.n_nodes; ++i)
+                places.push_back(edge.node(i));
+          else if (support.point->coordinates)
+            places.push_back(*support.point->coordinates);
+          else
+            places.push_back(mesh.points[support.point->body].at(support.point->point).position);
+          for (const double t : scene.load_factors)
+            for (const auto &x : places)
+              {
+                double squares = 0;
+                for (const auto &component : support.components)
+                  if (component)
+                    squares += std::pow(component->value(x, t), 2);
+                if (support.normal)
+                  squares += std::pow(support.normal->value(x, t), 2);
+                largest = std::max(largest, std::sqrt(squares));
+              }
+        }
+      return largest;
+    }
+
+    /// @param size of the sides, @param gap the smallest one of all load steps.
+    void check_automatic_reach(const scene::Scene<2>       &scene,
+                               const mesh::Mesh<2>         &mesh,
+                               const scene::ContactPair<2> &pair,
+                               const Edges                 &all,
+                               const std::string           &names,
+                               const double                 size,
+                               const double                 gap)
+    {
+      if (gap <= size) // the common case, without a look at the supports
+        return;
+      const double prescribed = largest_prescribed(scene, mesh, all);
+      if (gap > size + prescribed)
+        throw InputError(names +
+                           format(" are out of reach of each other: the smallest gap is %g mm, the automatic reach "
+                                  "is %g mm (extent %g mm, prescribed displacements up to %g mm)",
+                                  gap,
+                                  size + prescribed,
+                                  size,
+                                  prescribed),
+                         "move the bodies, or set Contact " + pair.name + "/Reach to more than that gap");
+    }
+
+    /// Outward normals and gaps at the nodes of a slave boundary against its obstacle.
+    struct AgainstObstacle
+    {
+      double cosine = -1; // largest product of the outward normal with the direction into the obstacle
+      double gap    = infinity;
+    };
+
+    AgainstObstacle against_obstacle(const scene::Scene<2>       &scene,
+                                     const scene::ContactPair<2> &pair,
+                                     const Edges                 &slave)
+    {
+      AgainstObstacle result;
+      for (const double t : scene.load_factors)
+        for (const auto &edge : slave)
+          for (unsigned int i = 0; i < edge.n_nodes; ++i)
+            {
+              const auto   x       = edge.node(i);
+              const auto   contact = contact_with(scene.obstacles[pair.obstacle], x, t);
+              const double gap     = pair.gap ? pair.gap->value(x, t) : contact.gap;
+              result.cosine        = std::max(result.cosine, contact.normal * edge.normal(edge.node_coordinate(i)));
+              result.gap           = std::min(result.gap, gap + pair.offset.value(x, t));
+            }
+      return result;
+    }
+
+    void check_obstacle_pair(const scene::Scene<2>       &scene,
+                             const mesh::Mesh<2>         &mesh,
+                             const scene::ContactPair<2> &pair,
+                             const Edges                 &all)
+    {
+      const auto  slave    = mechanics::edges_on(mesh, all, pair.slave);
+      const auto &obstacle = scene.obstacles[pair.obstacle];
+      const auto names = "Contact " + pair.name + ": " + describe(scene, pair.slave) + " and obstacle " + obstacle.name;
+      const auto found = against_obstacle(scene, pair, slave);
+      if (found.cosine <= -facing_cosine)
+        throw InputError(names +
+                           format(" face away from each other: the outward normals of the slave are %g degrees or "
+                                  "more from the direction to the obstacle; less than %g is allowed",
+                                  degrees(found.cosine),
+                                  degrees(-facing_cosine)),
+                         "choose the boundary on the side of the obstacle, move the body, or reverse the obstacle");
+      if (pair.reach && found.gap > *pair.reach)
+        throw InputError(names + format(" are out of reach of each other: the smallest gap is %g mm, Reach is %g mm",
+                                        found.gap,
+                                        *pair.reach),
+                         "move the body or the obstacle, or set Contact " + pair.name + "/Reach to more than that gap");
+      const bool is_round =
+        obstacle.shape == scene::ObstacleShape::circle || obstacle.shape == scene::ObstacleShape::hole;
+      if (!pair.reach && !pair.gap)
+        check_automatic_reach(scene,
+                              mesh,
+                              pair,
+                              all,
+                              names,
+                              std::max(extent(slave), is_round ? 2 * obstacle.radius : 0.),
+                              found.gap);
+    }
+  } // namespace
+
+  template <>
+  bool lies_behind(const PairSides<2> &sides, const std::vector<MortarRow<2>> &rows)
+  {
+    double chords = 0;
+    for (const auto &edge : sides.slave)
+      chords += edge.chord();
+    for (const auto &row : rows)
+      if (row.gap > -deep * chords / sides.slave.size())
+        return false;
+    if (!rows.empty() && sides.slave.front().body == sides.master.front().body)
+      return true; // their outline is one: all points of both are on it
+    return !rows.empty() && !any_inside(sides.slave, ClosedOutline(sides.master_outline)) &&
+           !any_inside(sides.master, ClosedOutline(sides.slave_outline));
+  }
+
+  template <>
+  void refuse_pair(const scene::Scene<2>       &scene,
+                   const scene::ContactPair<2> &pair,
+                   const PairSides<2>          &sides,
+                   const double                 reach)
+  {
+    const std::string normals_remedy = "choose boundaries whose outward normals are opposed, or move the bodies";
+    if (sides.slave.empty() || sides.master.empty())
+      throw InputError(between(scene, pair) + " do not face each other anywhere", normals_remedy);
+    const auto distance = facing_distance(sides.slave, sides.master);
+    if (!distance)
+      throw InputError(between(scene, pair) +
+                         format(" do not face each other anywhere: the angle between their outward "
+                                "normals is %g degrees or less; more than %g is needed",
+                                largest_angle(sides.slave, sides.master),
+                                degrees(facing_cosine)),
+                       normals_remedy);
+    auto both = sides.slave;
+    both.insert(both.end(), sides.master.begin(), sides.master.end());
+    const double any = extent(both);
+    const auto   rows =
+      mortar_rows(sides.slave, sides.master, {any, any}, scene::ContactDiscretization::mortar, pair.name);
+    if (lies_behind(sides, rows))
+      refuse_facing_away(scene, pair, rows);
+    if (*distance <= touching * any) // corner on corner
+      throw InputError(between(scene, pair) +
+                         " do not meet: they touch in single points, and no normal of the slave hits the master",
+                       "move the bodies until the sides overlap, or exchange slave and master");
+    throw InputError(between(scene, pair) +
+                       format(" do not meet within the reach of %g mm along the normals of the slave; "
+                              "where they face each other they are %g mm apart",
+                              reach,
+                              *distance),
+                     "raise Contact " + pair.name + "/Reach, move the bodies, or exchange slave and master");
+  }
+
+  template <>
+  void check_sides(const scene::Scene<2>           &scene,
+                   const mesh::Mesh<2>             &mesh,
+                   const scene::ContactPair<2>     &pair,
+                   const PairSides<2>              &sides,
+                   const Edges                     &all,
+                   const std::vector<MortarRow<2>> &rows)
+  {
+    if (lies_behind(sides, rows))
+      refuse_facing_away(scene, pair, rows);
+    if (pair.reach || pair.gap)
+      return;
+    double gap = infinity;
+    for (const double t : scene.load_factors)
+      for (const auto &row : rows)
+        gap = std::min(gap, row.gap + pair.offset.value(row.position, t));
+    check_automatic_reach(scene,
+                          mesh,
+                          pair,
+                          all,
+                          between(scene, pair),
+                          std::max(extent(sides.slave), extent(sides.master)),
+                          gap);
+  }
+
+  template <>
+  void check_obstacle_pairs(const scene::Scene<2> &scene, const mesh::Mesh<2> &mesh, const mechanics::Spaces<2> &spaces)
+  {
+    const auto        is_checked = [](const auto &pair) { return !pair.master && !pair.law.is_bonded; };
+    std::vector<bool> wanted(scene.bodies.size(), false);
+    for (const auto &pair : scene.contacts)
+      if (is_checked(pair))
+        wanted[pair.slave.body] = true;
+    if (std::find(wanted.begin(), wanted.end(), true) == wanted.end())
+      return;
+    const auto all = mechanics::outlines(mesh, spaces, wanted);
+    for (const auto &pair : scene.contacts)
+      if (is_checked(pair))
+        check_obstacle_pair(scene, mesh, pair, all);
+  }
+} // namespace slipstick::interface

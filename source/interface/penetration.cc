@@ -1,0 +1,344 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/interface/edge_tree.h>
+#include <slipstick/interface/obstacle.h>
+#include <slipstick/interface/pair_checks.h>
+#include <slipstick/interface/penetration.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace slipstick::interface
+{
+  namespace
+  {
+    using Edge   = mechanics::SurfaceEdge<2>;
+    using Edges  = std::vector<Edge>;
+    using Point  = dealii::Point<2>;
+    using Tensor = dealii::Tensor<1, 2>;
+    using Moves  = std::map<mechanics::NodeKey, Tensor>; // displacements of nodes
+
+    // Places on an edge where obstacles are looked for, ends included: what is narrower than this part may hide between them
+    // (corners of polylines are found at any size).
+    constexpr unsigned int n_places = 33;
+
+    struct Move
+    {
+      mechanics::NodeKey    key{};
+      std::array<double, 2> u{};
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &key &u;
+      }
+    };
+
+    Moves moves_of_outlines(const mesh::Mesh<2>                &mesh,
+                            const mechanics::Spaces<2>         &spaces,
+                            const std::vector<Eigen::VectorXd> &u)
+    {
+      std::vector<Move> own;
+      for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+        for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
+          for (const unsigned int f : cell->face_indices())
+            if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != mesh::cut_id)
+              spaces.for_each_face_node(*mesh.subdomains[p],
+                                        cell->face(f),
+                                        [&](const unsigned int node, const mechanics::NodeKey &key, const Point &) {
+                                          own.push_back({key, {{u[p][2 * node], u[p][2 * node + 1]}}});
+                                        });
+      Moves all;
+      for (const auto &list : dealii::Utilities::MPI::all_gather(mesh.comm, own))
+        for (const auto &move : list)
+          {
+            Tensor &to = all[move.key];
+            to[0]      = move.u[0];
+            to[1]      = move.u[1];
+          }
+      return all;
+    }
+
+    Edges moved(Edges edges, const Moves &moves)
+    {
+      for (auto &edge : edges)
+        for (unsigned int i = 0; i < edge.n_nodes; ++i)
+          for (unsigned int d = 0; d < 2; ++d)
+            edge.at[i][d] += moves.at(edge.keys[i])[d];
+      return edges;
+    }
+
+    /// By the shape functions, straight or with three nodes.
+    Point at(const Edge &edge, const double s)
+    {
+      const auto N = edge.shape(s);
+      Point      x;
+      for (unsigned int i = 0; i < edge.n_nodes; ++i)
+        x += N[i] * Tensor(edge.node(i));
+      return x;
+    }
+
+    void take(std::optional<Penetration> &deepest,
+              const double                depth,
+              const Point                &x,
+              const double                edge,
+              const double                gap)
+    {
+      if (depth > 0 && (!deepest || depth > deepest->depth))
+        deepest = Penetration{depth, {{x[0], x[1]}}, edge, gap};
+    }
+
+    bool is_watched(const scene::ContactPair<2> &pair)
+    {
+      return !pair.law.is_bonded && !pair.gap;
+    }
+
+    /// Slave nodes that have no row within the Reach of the pair, but one without it.
+    void find_beyond_reach(const scene::ContactPair<2> &pair,
+                           const Edges                 &slave,
+                           const Edges                 &master,
+                           const Moves                 &moves,
+                           const double                 t,
+                           std::optional<Penetration>  &deepest)
+    {
+      auto both = slave;
+      both.insert(both.end(), master.begin(), master.end());
+      const auto rows_within = [&](const double ahead) {
+        return mortar_rows(slave, master, {ahead, *pair.reach}, scene::ContactDiscretization::mortar, pair.name);
+      };
+      std::set<std::pair<mechanics::NodeKey, unsigned int>> paired;
+      for (const auto &row : rows_within(*pair.reach))
+        paired.insert({row.slave, row.side});
+      for (const auto &row : rows_within(extent(both)))
+        if (paired.count({row.slave, row.side}) == 0)
+          {
+            Tensor closing;
+            for (const auto &[key, weight] : row.slave_weights)
+              closing += weight * moves.at(key);
+            for (const auto &[key, weight] : row.master_weights)
+              closing -= weight * moves.at(key);
+            const double gap = row.gap + pair.offset.value(row.position, t);
+            take(deepest, closing * row.normal - gap, row.position, row.full_length, gap);
+          }
+    }
+
+    void find_beyond_reach(const scene::Obstacle<2>    &obstacle,
+                           const scene::ContactPair<2> &pair,
+                           const Edges                 &slave,
+                           const Moves                 &moves,
+                           const double                 t,
+                           std::optional<Penetration>  &deepest)
+    {
+      for (const auto &edge : slave)
+        for (unsigned int i = 0; i < edge.n_nodes; ++i)
+          {
+            const auto   x       = edge.node(i);
+            const auto   contact = contact_with(obstacle, x, t);
+            const double gap     = contact.gap + pair.offset.value(x, t);
+            if (gap > *pair.reach)
+              take(deepest, contact.normal * moves.at(edge.keys[i]) - gap, x, edge.chord(), gap);
+          }
+    }
+
+    /// Of a function the height decides what is inside: the foot that is found on a narrow bump may be that of its far side.
+    std::optional<double> gap_at(const scene::Obstacle<2> &obstacle, const Point &x, const double t)
+    {
+      try
+        {
+          const double gap = contact_with(obstacle, x, t).gap;
+          if (obstacle.shape != scene::ObstacleShape::function)
+            return gap;
+          const double above = x[1] - obstacle.height.value(x, t);
+          return above >= 0 ? above : -std::min(std::abs(gap), -above);
+        }
+      catch (const InputError &) // the centre of a circle, where it has no normal
+        {
+          return {};
+        }
+    }
+
+    struct Nearest
+    {
+      unsigned int edge     = 0;
+      double       s        = 0; // where on its chord
+      double       distance = std::numeric_limits<double>::max();
+    };
+
+    Nearest nearest(const ClosedOutline &outline, const Point &x)
+    {
+      Nearest best;
+      outline.tree.for_each_by_distance(
+        x,
+        [&] { return best.distance; },
+        [&](const unsigned int e) {
+          const auto   a = outline.edges[e].node(0), b = outline.edges[e].node(1);
+          const double s        = std::min(1., std::max(0., (x - a) * (b - a) / (b - a).norm_square()));
+          const double distance = x.distance(a + s * (b - a));
+          if (distance < best.distance)
+            best = {e, s, distance};
+          return true;
+        });
+      return best;
+    }
+
+    /// @param now the slave boundary after loading, @param slave before.
+    void find_in_obstacle(const scene::Scene<2>       &scene,
+                          const mesh::Mesh<2>         &mesh,
+                          const scene::ContactPair<2> &pair,
+                          const Edges                 &slave,
+                          const Edges                 &now,
+                          const ClosedOutline         &body,
+                          const double                 t,
+                          std::optional<Penetration>  &deepest)
+    {
+      const auto &obstacle = scene.obstacles[pair.obstacle];
+      for (unsigned int e = 0; e < slave.size(); ++e)
+        for (unsigned int i = 0; i < n_places; ++i)
+          {
+            const double s = double(i) / (n_places - 1);
+            const Point  x = at(slave[e], s);
+            if (const auto gap = gap_at(obstacle, at(now[e], s), t))
+              take(deepest, -(*gap + pair.offset.value(x, t)), x, slave[e].chord(), 0.);
+          }
+      if (obstacle.shape == scene::ObstacleShape::polyline)
+        for (const auto &corner : obstacle.points)
+          if (body.contains(corner))
+            {
+              const auto  at_corner = nearest(body, corner);
+              const auto &edge      = body.edges[at_corner.edge];
+              if (mesh.on_boundary(pair.slave, edge.boundary))
+                take(deepest, at_corner.distance - pair.offset.value(corner, t), corner, edge.chord(), 0.);
+            }
+    }
+
+    /// One body before and after loading.
+    struct Body
+    {
+      explicit Body(Edges before_, const Moves &moves)
+        : before(std::move(before_))
+        , now(moved(before, moves))
+        , outline_before(before)
+        , outline_now(now)
+        , low(now[0].node(0))
+        , high(low)
+      {
+        for (const auto &edge : now)
+          for (unsigned int i = 0; i < edge.n_nodes; ++i)
+            for (unsigned int d = 0; d < 2; ++d)
+              {
+                low[d]  = std::min(low[d], edge.at[i][d]);
+                high[d] = std::max(high[d], edge.at[i][d]);
+              }
+      }
+
+      bool is_in_box(const Point &x) const
+      {
+        return low[0] < x[0] && x[0] < high[0] && low[1] < x[1] && x[1] < high[1];
+      }
+
+      const Edges         before, now;
+      const ClosedOutline outline_before, outline_now;
+      Point               low, high;
+    };
+
+    /// How far the outline lies inside of the chord of an edge, @p before and @p now: hollow sides, whose chords reach into what
+    /// they touch.
+    double hollow(const Edge &before, const Edge &now, const double s)
+    {
+      const Point  on_chord = now.node(0) + s * (now.node(1) - now.node(0));
+      const double bend     = (at(now, s) - on_chord) * now.normal(s);
+      return std::max(0., -bend - before.rise(s, before.normal(s)));
+    }
+
+    /// Depth of the outline at s inside a body below its outline, 0 when it is not inside.
+    Penetration depth_in(const ClosedOutline &outline,
+                         const Edges         &before,
+                         const Edge          &edge_before,
+                         const Edge          &edge,
+                         const double         s)
+    {
+      const Point x = at(edge, s);
+      if (!outline.contains(x))
+        return {};
+      const auto  there = nearest(outline, x);
+      const auto &other = outline.edges[there.edge];
+      // x is that of a bent edge already, the curve of a straight one may be farther inside
+      const double own   = std::max(0., -edge_before.rise(s, edge_before.normal(s)));
+      const double depth = there.distance - hollow(before[there.edge], other, there.s) - own;
+      return {std::max(0., depth), {}, other.chord(), 0.};
+    }
+
+    void find_in_body(const Body &a, const Body &b, std::optional<Penetration> &deepest)
+    {
+      for (unsigned int e = 0; e < a.now.size(); ++e)
+        for (const double s : {0., 0.5})
+          if (b.is_in_box(at(a.now[e], s)))
+            if (const auto now = depth_in(b.outline_now, b.before, a.before[e], a.now[e], s); now.depth > 0)
+              {
+                const auto before = depth_in(b.outline_before, b.before, a.before[e], a.before[e], s);
+                take(deepest, now.depth - before.depth, at(a.before[e], s), std::min(a.now[e].chord(), now.edge), 0.);
+              }
+    }
+  } // namespace
+
+  template <>
+  Penetrations penetrations(const scene::Scene<2>              &scene,
+                            const mesh::Mesh<2>                &mesh,
+                            const mechanics::Spaces<2>         &spaces,
+                            const std::vector<Eigen::VectorXd> &u,
+                            const double                        t)
+  {
+    const auto         moves = moves_of_outlines(mesh, spaces, u);
+    const auto         all   = mechanics::outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
+    std::vector<Edges> by_body(scene.bodies.size());
+    for (const auto &edge : all)
+      by_body[edge.body].push_back(edge);
+    std::vector<std::unique_ptr<const Body>> bodies;
+    for (auto &edges : by_body)
+      bodies.push_back(std::make_unique<const Body>(std::move(edges), moves));
+
+    Penetrations found;
+    found.beyond_reach.resize(scene.contacts.size());
+    found.in_obstacle.resize(scene.contacts.size());
+    std::set<std::pair<unsigned int, unsigned int>> not_watched;
+    for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+      {
+        const auto &pair = scene.contacts[k];
+        if (pair.master && (!is_watched(pair) || !pair.offset.is_constant() || pair.offset.value(Point(), t) != 0))
+          {
+            not_watched.insert({pair.slave.body, pair.master->body});
+            not_watched.insert({pair.master->body, pair.slave.body});
+          }
+        if (!is_watched(pair))
+          continue;
+        const auto slave = mechanics::edges_on(mesh, all, pair.slave);
+        if (pair.master && pair.reach)
+          find_beyond_reach(pair, slave, mechanics::edges_on(mesh, all, *pair.master), moves, t, found.beyond_reach[k]);
+        if (!pair.master && pair.reach)
+          find_beyond_reach(scene.obstacles[pair.obstacle], pair, slave, moves, t, found.beyond_reach[k]);
+        if (!pair.master)
+          find_in_obstacle(scene,
+                           mesh,
+                           pair,
+                           slave,
+                           moved(slave, moves),
+                           bodies[pair.slave.body]->outline_now,
+                           t,
+                           found.in_obstacle[k]);
+      }
+    for (unsigned int a = 0; a < bodies.size(); ++a)
+      for (unsigned int b = 0; b < bodies.size(); ++b)
+        if (a != b && not_watched.count({a, b}) == 0)
+          {
+            std::optional<Penetration> deepest;
+            find_in_body(*bodies[a], *bodies[b], deepest);
+            if (deepest)
+              found.of_bodies[{a, b}] = *deepest;
+          }
+    return found;
+  }
+} // namespace slipstick::interface

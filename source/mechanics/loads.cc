@@ -1,0 +1,470 @@
+#include <slipstick/base/collective.h>
+#include <slipstick/mechanics/adaptive_quadrature.h>
+#include <slipstick/mechanics/cell_values.h>
+#include <slipstick/mechanics/dilatation.h>
+#include <slipstick/mechanics/elasticity.h>
+#include <slipstick/mechanics/loads.h>
+#include <slipstick/mechanics/points.h>
+#include <slipstick/mechanics/spaces.h>
+#include <slipstick/mechanics/surface.h>
+#include <slipstick/mesh/kinematics.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+
+#include <algorithm>
+
+namespace slipstick::mechanics
+{
+  namespace
+  {
+    // Points a direction of the quadrature that body forces are compared with ...
+    constexpr unsigned int finer_order = 6;
+    // ... and by how much the sum over the cells may differ, part of the force.
+    constexpr double allowed_misfit = 0.01;
+
+    /// One subdomain and its load at load factor t.
+    template <int dim>
+    class SubdomainLoad
+    {
+    public:
+      SubdomainLoad(const scene::Scene<dim> &scene_,
+                    const mesh::Mesh<dim>   &mesh_,
+                    const Spaces<dim>       &spaces_,
+                    const unsigned int       p,
+                    const double             t_)
+        : scene(scene_)
+        , mesh(mesh_)
+        , subdomain(*mesh.subdomains[p])
+        , spaces(spaces_)
+        , element(spaces.of(p))
+        , sums(scene.tractions.size() + scene.body_forces.size())
+        , dof_handler(*spaces.dof_handlers[p])
+        , number(mesh.subdomains[p]->body)
+        , body(scene.bodies[number])
+        , kinematics(scene.plane_state)
+        , t(t_)
+        , load(Eigen::VectorXd::Zero(dof_handler.n_dofs()))
+      {
+        add_tractions();
+        add_body_forces();
+        add_thermal_strain();
+      }
+
+      Eigen::VectorXd take()
+      {
+        return std::move(load);
+      }
+
+      /// How far a finer quadrature of the body forces that are formulas is off, by body force.
+      struct Misfit
+      {
+        double                size = 0, difference = 0; // sums of magnitudes over the cells [N]
+        double                largest = -1;             // difference in a cell
+        std::array<double, 2> at{{0, 0}};               // that cell
+      };
+
+      std::vector<Misfit> misfits_of_body_forces()
+      {
+        std::vector<Misfit> result(scene.body_forces.size());
+        const bool          any = std::any_of(body_forces.begin(), body_forces.end(), [this](const unsigned int k) {
+          return !is_constant(scene.body_forces[k]);
+        });
+        if (!any)
+          return result;
+        const auto      finer = element.cell.is_simplex()
+                                  ? dealii::Quadrature<dim>(dealii::QWitherdenVincentSimplex<dim>(finer_order))
+                                  : dealii::Quadrature<dim>(dealii::QGauss<dim>(finer_order));
+        CellValues<dim> coarse(*element.mapping, *element.scalar, element.loads, dealii::update_quadrature_points),
+          fine(*element.mapping, *element.scalar, finer, dealii::update_quadrature_points);
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          {
+            coarse.reinit(cell);
+            fine.reinit(cell);
+            for (const unsigned int k : body_forces)
+              if (!is_constant(scene.body_forces[k]))
+                {
+                  const auto integral = [&](const CellValues<dim> &values, const unsigned int n) {
+                    Vector sum;
+                    for (unsigned int q = 0; q < n; ++q)
+                      sum +=
+                        body_force(scene.body_forces[k], values.point(q)) * (*values).JxW(q) * weight(values.point(q));
+                    return sum;
+                  };
+                  const Vector a = integral(coarse, element.loads.size()), b = integral(fine, finer.size());
+                  Misfit      &misfit = result[k];
+                  misfit.size += b.norm();
+                  misfit.difference += (a - b).norm();
+                  if ((a - b).norm() > misfit.largest)
+                    {
+                      misfit.largest = (a - b).norm();
+                      misfit.at      = {{cell->center()[0], cell->center()[1]}};
+                    }
+                }
+          }
+        return result;
+      }
+
+      /// Of tractions and body forces on this subdomain.
+      const std::vector<LoadResultant> &resultants() const
+      {
+        return sums;
+      }
+
+    private:
+      using Vector = dealii::Tensor<1, dim>;
+
+      /// Thickness, or circumference at @p x [mm].
+      double weight(const dealii::Point<dim> &x) const
+      {
+        return body.thickness * kinematics.measure(x);
+      }
+
+      void add(const unsigned int node, const Vector &force)
+      {
+        for (unsigned int c = 0; c < dim; ++c)
+          load[dim * node + c] += force[c];
+      }
+
+      Vector vector(const std::array<scene::Field<dim>, dim> &fields, const dealii::Point<dim> &x) const
+      {
+        Vector v;
+        for (unsigned int c = 0; c < dim; ++c)
+          v[c] = fields[c].value(x, t);
+        return v;
+      }
+
+      void add_tractions()
+      {
+        const bool any = std::any_of(scene.tractions.begin(), scene.tractions.end(), [this](const auto &traction) {
+          return traction.where.body == number;
+        });
+        if (!any)
+          return;
+        dealii::FEFaceValues<dim> values(*element.mapping,
+                                         *element.scalar,
+                                         element.face_quadrature(element.degree + 2), // loads may be formulas
+                                         dealii::update_values | dealii::update_quadrature_points |
+                                           dealii::update_normal_vectors | dealii::update_JxW_values);
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          for (const unsigned int f : cell->face_indices())
+            if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != mesh::cut_id)
+              for (unsigned int k = 0; k < scene.tractions.size(); ++k)
+                if (const auto &traction = scene.tractions[k];
+                    traction.where.body == number && mesh.on_boundary(traction.where, cell->face(f)->boundary_id()))
+                  {
+                    if (!is_constant(traction))
+                      {
+                        add_formula(traction, cell, f, sums[k]);
+                        continue;
+                      }
+                    values.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell), f);
+                    element.nodes_of(cell, dofs, nodes);
+                    add_traction(traction, values, sums[k]);
+                  }
+      }
+
+      static bool is_constant(const scene::Traction<dim> &traction)
+      {
+        return traction.pressure.is_constant() &&
+               std::all_of(traction.components.begin(), traction.components.end(), [](const auto &component) {
+                 return component.is_constant();
+               });
+      }
+
+      static bool is_constant(const scene::BodyForce<dim> &load)
+      {
+        const auto all_constant = [](const auto &fields) {
+          return std::all_of(fields.begin(), fields.end(), [](const auto &field) { return field.is_constant(); });
+        };
+        return all_constant(load.force) && all_constant(load.acceleration) && load.angular_velocity.is_constant();
+      }
+
+      void add_formula(const scene::Traction<dim>                                   &traction,
+                       const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+                       const unsigned int                                            f,
+                       LoadResultant                                                &sum)
+      {
+        static_assert(dim == 2, "the edge of a plane body");
+        const auto edge     = surface_edge(subdomain, spaces, cell, f);
+        const auto force_at = [&](const double s) {
+          const auto         N = edge.shape(s), dN = edge.shape_derivative(s);
+          dealii::Point<dim> x;
+          Vector             along;
+          for (unsigned int i = 0; i < edge.n_nodes; ++i)
+            {
+              x += N[i] * Vector(edge.node(i));
+              along += dN[i] * Vector(edge.node(i));
+            }
+          const double p     = traction.pressure.value(x, t); // against the normal (along_y, -along_x)
+          const Vector force = weight(x) * (along.norm() * vector(traction.components, x));
+          const double fx = force[0] - weight(x) * p * along[1], fy = force[1] + weight(x) * p * along[0];
+          return std::array<double, 6>{{N[0] * fx, N[0] * fy, N[1] * fx, N[1] * fy, N[2] * fx, N[2] * fy}};
+        };
+        const AdaptiveQuadrature<6> forces(force_at);
+        spaces.for_each_face_node(subdomain,
+                                  cell->face(f),
+                                  [&](const unsigned int node, const NodeKey &key, const dealii::Point<dim> &x) {
+                                    unsigned int i = 0;
+                                    while (edge.keys[i] != key)
+                                      ++i;
+                                    Vector force;
+                                    for (unsigned int c = 0; c < dim; ++c)
+                                      force[c] = forces.integral[2 * i + c];
+                                    add(node, force);
+                                    sum.sum.add(force[0], force[1], x);
+                                  });
+        if (!forces.is_resolved && !sum.unresolved)
+          sum.unresolved = std::array<double, 2>{{edge.point(0.5)[0], edge.point(0.5)[1]}};
+      }
+
+      void add_traction(const scene::Traction<dim>      &traction,
+                        const dealii::FEFaceValues<dim> &values,
+                        LoadResultant                   &sum)
+      {
+        for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
+          {
+            const auto  &x = values.quadrature_point(q);
+            const Vector force =
+              (vector(traction.components, x) - traction.pressure.value(x, t) * values.normal_vector(q)) *
+              values.JxW(q) * weight(x);
+            sum.sum.add(force[0], force[1], x);
+            for (unsigned int i = 0; i < nodes.size(); ++i)
+              add(nodes[i], force * values.shape_value(i, q));
+          }
+      }
+
+      /// Force per volume [N/mm^3].
+      Vector body_force(const scene::BodyForce<dim> &load, const dealii::Point<dim> &x) const
+      {
+        const double density = scene.materials[body.material].density;
+        const double omega   = load.angular_velocity.value(x, t);
+        return vector(load.force, x) +
+               density * (vector(load.acceleration, x) + omega * omega * kinematics.arm(x, load.axis));
+      }
+
+      void add_body_forces()
+      {
+        for (unsigned int k = 0; k < scene.body_forces.size(); ++k)
+          if (const auto &bodies = scene.body_forces[k].bodies;
+              std::find(bodies.begin(), bodies.end(), number) != bodies.end())
+            body_forces.push_back(k);
+        if (body_forces.empty())
+          return;
+        CellValues<dim> values(*element.mapping,
+                               *element.scalar,
+                               element.loads,
+                               dealii::update_values | dealii::update_quadrature_points);
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          {
+            values.reinit(cell);
+            element.nodes_of(cell, dofs, nodes);
+            for (unsigned int q = 0; q < element.loads.size(); ++q)
+              {
+                const auto x = values.point(q);
+                Vector     force;
+                for (const unsigned int k : body_forces)
+                  {
+                    const Vector one = body_force(scene.body_forces[k], x) * (*values).JxW(q) * weight(x);
+                    sums[scene.tractions.size() + k].sum.add(one[0], one[1], x);
+                    force += one;
+                  }
+                for (unsigned int i = 0; i < nodes.size(); ++i)
+                  add(nodes[i], force * (*values).shape_value(i, q));
+              }
+          }
+      }
+
+      /// Integral of (lambda e_V T + 2 mu e T) div v; where the dilatation is projected, T is too beside lambda.
+      void add_thermal_strain()
+      {
+        const TemperatureOfBody<dim> temperature(scene, number, t);
+        if (temperature.is_zero())
+          return;
+        const ElasticLaw          law(scene.materials[body.material], scene.plane_state);
+        const bool                project = scene.discretization.element == scene::ElementKind::nearly_incompressible;
+        DilatationProjection<dim> projection(element);
+        const auto                rule = element.stiffness_rule(kinematics);
+        CellValues<dim>           values(*element.mapping,
+                               *element.scalar,
+                               rule,
+                               dealii::update_quadrature_points |
+                                 (kinematics.is_revolution() ? dealii::update_values : dealii::update_default));
+        Eigen::VectorXd           change(rule.size()), beside_lambda;
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          {
+            if (const bool is_new = values.reinit(cell); project && (is_new || kinematics.is_revolution()))
+              projection.reinit(values, kinematics);
+            for (unsigned int q = 0; q < change.size(); ++q)
+              change[q] = temperature(values.point(q));
+            if (project)
+              beside_lambda = projection.projected(change);
+            else
+              beside_lambda = change;
+            element.nodes_of(cell, dofs, nodes);
+            for (unsigned int q = 0; q < change.size(); ++q)
+              {
+                const double stress = law.lame.lambda * law.volume_expansion * beside_lambda[q] +
+                                      2 * law.lame.mu * law.expansion * change[q];
+                const auto   x         = values.point(q);
+                const double of_volume = stress * (*values).JxW(q) * weight(x);
+                for (unsigned int i = 0; i < nodes.size(); ++i)
+                  {
+                    Vector dilatation = (*values).shape_grad(i, q);
+                    if (kinematics.is_revolution())
+                      dilatation[0] += kinematics.hoop_strain((*values).shape_value(i, q), x);
+                    add(nodes[i], of_volume * dilatation);
+                  }
+              }
+          }
+      }
+
+      const scene::Scene<dim>                     &scene;
+      const mesh::Mesh<dim>                       &mesh;
+      const mesh::SubdomainMesh<dim>              &subdomain;
+      const Spaces<dim>                           &spaces;
+      const Element<dim>                          &element;
+      std::vector<LoadResultant>                   sums;
+      const dealii::DoFHandler<dim>               &dof_handler;
+      unsigned int                                 number;
+      const scene::Body<dim>                      &body;
+      mesh::Kinematics<dim>                        kinematics;
+      double                                       t;
+      Eigen::VectorXd                              load;
+      std::vector<unsigned int>                    body_forces; // on this body
+      std::vector<dealii::types::global_dof_index> dofs;        // of the present cell
+      std::vector<unsigned int>                    nodes;
+    };
+
+    /// Calls f(number of the load, its node).
+    template <int dim, class F>
+    void for_each_point_load(const scene::Scene<dim> &scene,
+                             const mesh::Mesh<dim>   &mesh,
+                             const Spaces<dim>       &spaces,
+                             const F                 &f)
+    {
+      if (scene.point_loads.empty())
+        return;
+      std::vector<scene::PointName<dim>> points;
+      std::vector<std::string>           owners;
+      for (const auto &load : scene.point_loads)
+        {
+          points.push_back(load.where);
+          owners.push_back("Point load " + load.name);
+        }
+      const auto found = nodes_at(scene, mesh, spaces, points, owners);
+      collectively(mesh.comm, [&] {
+        for (unsigned int k = 0; k < found.size(); ++k)
+          f(k, found[k]);
+      });
+    }
+
+    /// Sums over the ranks; of the places where a formula is not resolved that of the first rank.
+    std::vector<LoadResultant> over_all_ranks(const std::vector<LoadResultant> &own, const MPI_Comm comm)
+    {
+      std::vector<double> numbers;
+      for (const auto &load : own)
+        numbers.insert(numbers.end(),
+                       {load.sum.force[0],
+                        load.sum.force[1],
+                        load.sum.moment,
+                        load.unresolved ? 1. : 0.,
+                        load.unresolved ? (*load.unresolved)[0] : 0.,
+                        load.unresolved ? (*load.unresolved)[1] : 0.});
+      std::vector<LoadResultant> all(own.size());
+      for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
+        for (unsigned int k = 0; k < all.size(); ++k)
+          {
+            const double *n = of_rank.data() + 6 * k;
+            for (unsigned int d = 0; d < 2; ++d)
+              all[k].sum.force[d] += n[d];
+            all[k].sum.moment += n[2];
+            if (n[3] > 0 && !all[k].unresolved)
+              all[k].unresolved = std::array<double, 2>{{n[4], n[5]}};
+          }
+      return all;
+    }
+  } // namespace
+
+  template <int dim>
+  std::vector<Eigen::VectorXd> assemble_loads(const scene::Scene<dim> &scene,
+                                              const mesh::Mesh<dim>   &mesh,
+                                              const Spaces<dim>       &spaces,
+                                              const double             t)
+  {
+    std::vector<Eigen::VectorXd> loads;
+    collectively(mesh.comm, [&] { // a formula may give no number on one rank alone
+      for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+        loads.push_back(SubdomainLoad<dim>(scene, mesh, spaces, p, t).take());
+    });
+    for_each_point_load(scene, mesh, spaces, [&](const unsigned int k, const PointNode<dim> &at) {
+      for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+        if (mesh.subdomains[p]->subdomain == at.subdomain)
+          for (unsigned int c = 0; c < dim; ++c)
+            loads[p][dim * at.node + c] += scene.point_loads[k].force[c].value(at.position, t);
+    });
+    return loads;
+  }
+
+  template <int dim>
+  std::vector<LoadResultant> load_resultants(const scene::Scene<dim> &scene,
+                                             const mesh::Mesh<dim>   &mesh,
+                                             const Spaces<dim>       &spaces,
+                                             const double             t)
+  {
+    const unsigned int                               n_spread = scene.tractions.size() + scene.body_forces.size();
+    std::vector<LoadResultant>                       sums(n_spread);
+    std::vector<typename SubdomainLoad<dim>::Misfit> misfits(scene.body_forces.size());
+    collectively(mesh.comm, [&] {
+      for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+        {
+          SubdomainLoad<dim> load(scene, mesh, spaces, p, t);
+          const auto         own_misfits = load.misfits_of_body_forces();
+          for (unsigned int k = 0; k < misfits.size(); ++k)
+            {
+              misfits[k].size += own_misfits[k].size;
+              misfits[k].difference += own_misfits[k].difference;
+              if (own_misfits[k].largest > misfits[k].largest)
+                {
+                  misfits[k].largest = own_misfits[k].largest;
+                  misfits[k].at      = own_misfits[k].at;
+                }
+            }
+          for (unsigned int k = 0; k < n_spread; ++k)
+            {
+              const auto &own = load.resultants()[k];
+              for (unsigned int d = 0; d < 2; ++d)
+                sums[k].sum.force[d] += own.sum.force[d];
+              sums[k].sum.moment += own.sum.moment;
+              if (!sums[k].unresolved)
+                sums[k].unresolved = own.unresolved;
+            }
+        }
+    });
+    for (unsigned int k = 0; k < misfits.size(); ++k)
+      {
+        const double size       = dealii::Utilities::MPI::sum(misfits[k].size, mesh.comm);
+        const double difference = dealii::Utilities::MPI::sum(misfits[k].difference, mesh.comm);
+        const double largest    = dealii::Utilities::MPI::max(misfits[k].largest, mesh.comm);
+        if (difference > allowed_misfit * size && misfits[k].largest == largest)
+          sums[scene.tractions.size() + k].unresolved = misfits[k].at;
+      }
+    sums = over_all_ranks(sums, mesh.comm);
+    for_each_point_load(scene, mesh, spaces, [&](const unsigned int k, const PointNode<dim> &at) {
+      const auto &force = scene.point_loads[k].force;
+      sums.emplace_back();
+      sums.back().sum.add(force[0].value(at.position, t), force[1].value(at.position, t), at.position);
+    });
+    return sums;
+  }
+
+  template std::vector<LoadResultant> load_resultants(const scene::Scene<2> &,
+                                                      const mesh::Mesh<2> &,
+                                                      const Spaces<2> &,
+                                                      const double);
+
+  template std::vector<Eigen::VectorXd> assemble_loads(const scene::Scene<2> &,
+                                                       const mesh::Mesh<2> &,
+                                                       const Spaces<2> &,
+                                                       const double);
+} // namespace slipstick::mechanics

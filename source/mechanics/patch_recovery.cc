@@ -1,0 +1,118 @@
+#include <slipstick/mechanics/patch_recovery.h>
+
+#include <deal.II/dofs/dof_accessor.h>
+
+#include <optional>
+
+namespace slipstick::mechanics
+{
+  namespace
+  {
+    // Normal equations, scaled to a unit diagonal, count as singular when a pivot falls below this.
+    constexpr double least_pivot = 1e-8;
+
+    /// Monomials of degree 2 in the distance from a vertex.
+    template <int dim>
+    Eigen::Matrix<double, PatchRecovery<dim>::n_monomials, 1> monomials(const dealii::Tensor<1, dim> &x)
+    {
+      static_assert(dim == 2, "1, x, y, xx, xy, yy");
+      Eigen::Matrix<double, PatchRecovery<dim>::n_monomials, 1> result;
+      result << 1, x[0], x[1], x[0] * x[0], x[0] * x[1], x[1] * x[1];
+      return result;
+    }
+
+    template <int dim>
+    using Polynomial = Eigen::Matrix<double,
+                                     PatchRecovery<dim>::n_monomials,
+                                     Eigen::Dynamic,
+                                     0,
+                                     PatchRecovery<dim>::n_monomials,
+                                     PatchRecovery<dim>::max_components>;
+
+    /// Coefficients from the sums of one vertex; nothing if they do not determine them.
+    template <int dim>
+    std::optional<Polynomial<dim>> fitted(const Eigen::RowVectorXd &sums, const unsigned int n_components)
+    {
+      constexpr unsigned int      n = PatchRecovery<dim>::n_monomials;
+      Eigen::Matrix<double, n, n> matrix;
+      Polynomial<dim>             right(n, n_components);
+      unsigned int                next = 0;
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = i; j < n; ++j)
+          matrix(i, j) = matrix(j, i) = sums[next++];
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int c = 0; c < right.cols(); ++c)
+          right(i, c) = sums[next++];
+      if (!(matrix.diagonal().minCoeff() > 0))
+        return {};
+      const Eigen::Matrix<double, n, 1>              scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+      const Eigen::LDLT<Eigen::Matrix<double, n, n>> factor(scale.asDiagonal() * matrix * scale.asDiagonal());
+      if (!(factor.vectorD().minCoeff() > least_pivot))
+        return {};
+      return Polynomial<dim>(scale.asDiagonal() * factor.solve(scale.asDiagonal() * right));
+    }
+  } // namespace
+
+  template <int dim>
+  PatchRecovery<dim>::PatchRecovery(const dealii::DoFHandler<dim> &dof_handler_, const unsigned int n_components_)
+    : sums(Eigen::MatrixXd::Zero(dof_handler_.n_dofs() / dim, n_sums(n_components_)))
+    , dof_handler(dof_handler_)
+    , n_components(n_components_)
+  {}
+
+  template <int dim>
+  void PatchRecovery<dim>::add(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+                               const std::vector<dealii::Point<dim>>                        &points,
+                               const Eigen::MatrixXd                                        &values)
+  {
+    for (const unsigned int v : cell->vertex_indices())
+      {
+        auto at_vertex = sums.row(cell->vertex_dof_index(v, 0) / dim);
+        for (unsigned int q = 0; q < points.size(); ++q)
+          {
+            const auto   p    = monomials<dim>(points[q] - cell->vertex(v));
+            unsigned int next = 0;
+            for (unsigned int i = 0; i < n_monomials; ++i)
+              for (unsigned int j = i; j < n_monomials; ++j)
+                at_vertex[next++] += p[i] * p[j];
+            for (unsigned int i = 0; i < n_monomials; ++i)
+              for (unsigned int c = 0; c < n_components; ++c)
+                at_vertex[next++] += p[i] * values(q, c);
+          }
+      }
+  }
+
+  template <int dim>
+  void PatchRecovery<dim>::recover(Eigen::MatrixXd &nodal) const
+  {
+    std::vector<std::optional<std::optional<Polynomial<dim>>>> polynomials(sums.rows());
+    const auto                                                 polynomial = [&](const unsigned int node) {
+      if (!polynomials[node])
+        polynomials[node] = fitted<dim>(sums.row(node), n_components);
+      return *polynomials[node];
+    };
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      for (const unsigned int l : cell->line_indices())
+        {
+          const auto               line   = cell->line(l);
+          const unsigned int       middle = line->dof_index(0) / dim;
+          const dealii::Point<dim> x      = line->center(true);
+          Eigen::RowVectorXd       sum    = Eigen::RowVectorXd::Zero(n_components);
+          unsigned int             n      = 0;
+          for (unsigned int end = 0; end < 2; ++end)
+            {
+              const unsigned int node = line->vertex_dof_index(end, 0) / dim;
+              if (const auto fit = polynomial(node))
+                {
+                  nodal.row(node).head(n_components) = fit->row(0);
+                  sum += monomials<dim>(x - line->vertex(end)).transpose() * *fit;
+                  ++n;
+                }
+            }
+          if (n > 0)
+            nodal.row(middle).head(n_components) = sum / n;
+        }
+  }
+
+  template class PatchRecovery<2>;
+} // namespace slipstick::mechanics

@@ -1,0 +1,196 @@
+#include <slipstick/mechanics/elasticity.h>
+#include <slipstick/mechanics/points.h>
+#include <slipstick/mechanics/singular_points.h>
+#include <slipstick/mechanics/surface.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include <cmath>
+#include <map>
+
+namespace slipstick::mechanics
+{
+  namespace
+  {
+    constexpr double degree = M_PI / 180;
+    // An outline goes in where its direction turns by this angle or more, as much as makes a corner by default.
+    constexpr double least_turn = 35 * degree;
+    // Between a held and a free side stress is infinite from an angle of 63 (nu = 0) to 51 degrees (nu = 0.5) on, plane strain
+    // (Williams 1952); where one displacement is held, beyond a right angle.
+    constexpr double least_angle_of_clamp = 63 * degree, least_angle_of_roller = 95 * degree;
+    // Values that differ by less than this part are equal: symmetric places.
+    constexpr double same_value = 1e-6;
+
+    /// Displacements that supports hold along an edge: none, one (which), both.
+    template <int dim>
+    std::array<bool, 2> held_along(const scene::Scene<dim> &scene,
+                                   const mesh::Mesh<dim>   &mesh,
+                                   const unsigned int       n_supports,
+                                   const SurfaceEdge<dim>  &edge)
+    {
+      std::array<bool, 2> held{{false, false}};
+      for (unsigned int s = 0; s < n_supports; ++s)
+        if (const auto &support = scene.supports[s];
+            !support.point && support.where.body == edge.body && mesh.on_boundary(support.where, edge.boundary))
+          for (unsigned int c = 0; c < dim; ++c)
+            held[c] = held[c] || support.components[c];
+      return held;
+    }
+
+    /// What a corner of an outline, or a change of supports along it, is; empty: nothing.
+    template <int dim>
+    std::string what_is_between(const SurfaceEdge<dim>    &in,
+                                const SurfaceEdge<dim>    &out,
+                                const std::array<bool, 2> &held_in,
+                                const std::array<bool, 2> &held_out)
+    {
+      const auto   n = in.outline_normal(1), m = out.outline_normal(0);
+      const double turn  = std::atan2(cross(n, m), n * m); // positive to the left, where the body is
+      const double angle = M_PI - turn;
+      const auto   all   = [](const std::array<bool, 2> &held) { return held[0] && held[1]; };
+      if (all(held_in) && all(held_out))
+        return "";
+      if (turn <= -least_turn)
+        return "a re-entrant corner";
+      if (held_in == held_out)
+        return "";
+      return angle >= (all(held_in) || all(held_out) ? least_angle_of_clamp : least_angle_of_roller)
+               ? "the end of a support"
+               : "";
+    }
+
+    template <int dim>
+    struct Spot
+    {
+      double                  value = -1, size = 0;
+      unsigned int            body = 0;
+      std::array<double, dim> position{};
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &value &size &body &position;
+      }
+
+      bool comes_before(const Spot &other) const
+      {
+        if (std::abs(value - other.value) > same_value * std::max(value, other.value))
+          return value > other.value;
+        return std::tie(body, position) < std::tie(other.body, other.position);
+      }
+
+      void take(const double v, const double s, const unsigned int b, const dealii::Point<dim> &x)
+      {
+        Spot other;
+        other.value = v;
+        other.size  = s;
+        other.body  = b;
+        for (unsigned int d = 0; d < dim; ++d)
+          other.position[d] = x[d];
+        if (b == body && value >= 0 && other.position == position)
+          size = std::max(size, s); // the same node, seen from another cell
+        else if (other.comes_before(*this))
+          *this = other;
+      }
+
+      Peak<dim> peak() const
+      {
+        Peak<dim> result;
+        result.value = std::max(0., value);
+        result.body  = body;
+        for (unsigned int d = 0; d < dim; ++d)
+          result.position[d] = position[d];
+        return result;
+      }
+    };
+  } // namespace
+
+  template <int dim>
+  std::vector<SingularPoint<dim>> singular_points(const scene::Scene<dim> &scene,
+                                                  const mesh::Mesh<dim>   &mesh,
+                                                  const Spaces<dim>       &spaces,
+                                                  const unsigned int       n_supports)
+  {
+    std::vector<scene::PointName<dim>> points;
+    std::vector<std::string>           names;
+    for (unsigned int s = 0; s < n_supports; ++s)
+      if (scene.supports[s].point)
+        {
+          points.push_back(*scene.supports[s].point);
+          names.push_back("the point support " + scene.supports[s].name);
+        }
+    for (const auto &load : scene.point_loads)
+      {
+        points.push_back(load.where);
+        names.push_back("the point load " + load.name);
+      }
+    std::vector<SingularPoint<dim>> result;
+    const auto                      nodes = nodes_at(scene, mesh, spaces, points, names);
+    for (unsigned int k = 0; k < points.size(); ++k)
+      result.push_back({points[k].body, nodes[k].position, names[k]});
+
+    const auto edges = outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
+    std::map<std::pair<unsigned int, NodeKey>, unsigned int> from;
+    for (unsigned int e = 0; e < edges.size(); ++e)
+      from.emplace(std::make_pair(edges[e].body, edges[e].keys[0]), e);
+    for (const auto &in : edges)
+      if (const auto found = from.find({in.body, in.keys[1]}); found != from.end())
+        {
+          const auto       &out = edges[found->second];
+          const std::string what =
+            what_is_between(in, out, held_along(scene, mesh, n_supports, in), held_along(scene, mesh, n_supports, out));
+          if (!what.empty())
+            result.push_back({in.body, in.node(1), what});
+        }
+    return result;
+  }
+
+  template <int dim>
+  StressPlaces<dim> stress_places(const mesh::Mesh<dim> &mesh, const Spaces<dim> &spaces, const StressResult &stress)
+  {
+    std::vector<Spot<dim>>                       spots(2); // stress, error
+    std::vector<dealii::types::global_dof_index> dofs;
+    std::vector<unsigned int>                    nodes;
+    for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+      {
+        const auto        &element = spaces.of(p);
+        const unsigned int body    = mesh.subdomains[p]->body;
+        for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
+          {
+            spots[1].take(stress.subdomains[p].error[cell->active_cell_index()],
+                          cell->diameter(),
+                          body,
+                          cell->center());
+            element.nodes_of(cell, dofs, nodes);
+            for (unsigned int i = 0; i < nodes.size(); ++i)
+              {
+                const auto   s     = stress.subdomains[p].nodal.row(nodes[i]);
+                const double value = von_mises(s[0], s[1], s[2], s[3]);
+                if (value >= spots[0].value * (1 - same_value))
+                  spots[0].take(
+                    value,
+                    cell->diameter(),
+                    body,
+                    i < cell->n_vertices()
+                      ? cell->vertex(i)
+                      : element.mapping->transform_unit_to_real_cell(cell, element.scalar->unit_support_point(i)));
+              }
+          }
+      }
+    for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.comm, spots))
+      for (unsigned int k = 0; k < spots.size(); ++k)
+        if (of_rank[k].comes_before(spots[k]))
+          spots[k] = of_rank[k];
+    return {spots[0].peak(), spots[0].size, spots[1].peak()};
+  }
+
+  template struct SingularPoint<2>;
+  template std::vector<SingularPoint<2>> singular_points(const scene::Scene<2> &,
+                                                         const mesh::Mesh<2> &,
+                                                         const Spaces<2> &,
+                                                         const unsigned int);
+  template StressPlaces<2>               stress_places(const mesh::Mesh<2> &, const Spaces<2> &, const StressResult &);
+} // namespace slipstick::mechanics

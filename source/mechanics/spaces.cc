@@ -1,0 +1,144 @@
+#include <slipstick/mechanics/spaces.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/fe/mapping_fe.h>
+#include <deal.II/fe/mapping_q.h>
+
+#include <algorithm>
+
+namespace slipstick::mechanics
+{
+  namespace
+  {
+    /// Mapping of triangles of degree 1 or 2 whose edges follow their own manifolds. deal.II 9.4's MappingFE asks the
+    /// manifold of the cell alone, which leaves curved boundaries straight, and asserts that the edges have no other.
+    template <int dim>
+    class SimplexMapping : public dealii::MappingFE<dim>
+    {
+    public:
+      using dealii::MappingFE<dim>::MappingFE;
+
+      std::unique_ptr<dealii::Mapping<dim>> clone() const override
+      {
+        return std::make_unique<SimplexMapping<dim>>(*this);
+      }
+
+    protected:
+      std::vector<dealii::Point<dim>> compute_mapping_support_points(
+        const typename dealii::Triangulation<dim>::cell_iterator &cell) const override
+      {
+        std::vector<dealii::Point<dim>> points;
+        for (const unsigned int v : cell->vertex_indices())
+          points.push_back(cell->vertex(v));
+        if (this->get_degree() == 2)
+          for (const unsigned int e : cell->face_indices())
+            points.push_back(cell->face(e)->center(true));
+        return points;
+      }
+    };
+
+    template <int dim>
+    std::unique_ptr<const dealii::FiniteElement<dim>> scalar_element(const dealii::ReferenceCell cell,
+                                                                     const unsigned int          degree)
+    {
+      if (cell.is_simplex())
+        return std::make_unique<dealii::FE_SimplexP<dim>>(degree);
+      return std::make_unique<dealii::FE_Q<dim>>(degree);
+    }
+
+    template <int dim>
+    std::unique_ptr<const dealii::Mapping<dim>> isoparametric(const dealii::ReferenceCell cell,
+                                                              const unsigned int          degree)
+    {
+      if (!cell.is_simplex())
+        return std::make_unique<dealii::MappingQ<dim>>(degree);
+      return std::make_unique<SimplexMapping<dim>>(dealii::FE_SimplexP<dim>(degree));
+    }
+    template <int dim>
+    bool is_curved(const dealii::Triangulation<dim> &triangulation)
+    {
+      for (const auto id : triangulation.get_manifold_ids())
+        if (id != dealii::numbers::flat_manifold_id)
+          return true;
+      return false;
+    }
+  } // namespace
+
+  template <int dim>
+  Element<dim>::Element(const dealii::ReferenceCell cell_, const unsigned int degree_, const bool is_curved_)
+    : cell(cell_)
+    , degree(degree_)
+    , is_curved(is_curved_)
+    , scalar(scalar_element<dim>(cell, degree))
+    , vector(std::make_unique<dealii::FESystem<dim>>(*scalar, dim))
+    , mapping(isoparametric<dim>(cell, is_curved ? degree : 1))
+    , stiffness(cell_quadrature(cell.is_simplex() && degree == 1 ? 1 : degree + 1))
+    , loads(cell_quadrature(degree + 2))
+    , stress(cell_quadrature(degree))
+  {
+    static_assert(dim == 2, "cell types and edges of two dimensions");
+    AssertThrow(degree == 1 || degree == 2, dealii::ExcMessage("a face node is identified by its edge: degree 1 or 2"));
+  }
+
+  template <int dim>
+  dealii::Quadrature<dim> Element<dim>::cell_quadrature(const unsigned int n) const
+  {
+    if (cell.is_simplex())
+      return dealii::QGaussSimplex<dim>(n);
+    return dealii::QGauss<dim>(n);
+  }
+
+  template <int dim>
+  dealii::Quadrature<dim - 1> Element<dim>::face_quadrature(const unsigned int n) const
+  {
+    return dealii::QGauss<dim - 1>(n);
+  }
+
+  template <int dim>
+  void Element<dim>::nodes_of(const typename dealii::DoFHandler<dim>::active_cell_iterator &on,
+                              std::vector<dealii::types::global_dof_index>                 &dofs,
+                              std::vector<unsigned int>                                    &nodes) const
+  {
+    dofs.resize(vector->n_dofs_per_cell());
+    nodes.resize(n_nodes());
+    on->get_dof_indices(dofs);
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      nodes[i] = dofs[vector->component_to_system_index(0, i)] / dim;
+  }
+
+  template <int dim>
+  Spaces<dim>::Spaces(const mesh::Mesh<dim> &mesh, const unsigned int degree_)
+    : degree(degree_)
+  {
+    for (const auto &subdomain : mesh.subdomains)
+      {
+        const auto &types = subdomain->triangulation.get_reference_cells();
+        AssertThrow(types.size() == 1, dealii::ExcMessage("the cells of a subdomain must be of one type"));
+        const bool curved = is_curved(subdomain->triangulation);
+        auto       found  = std::find_if(elements.begin(), elements.end(), [&](const auto &e) {
+          return e->cell == types[0] && e->is_curved == curved;
+        });
+        if (found == elements.end())
+          found = elements.insert(elements.end(), std::make_unique<Element<dim>>(types[0], degree, curved));
+        element_of.push_back(found->get());
+        dof_handlers.push_back(std::make_unique<dealii::DoFHandler<dim>>(subdomain->triangulation));
+        dof_handlers.back()->distribute_dofs(*element_of.back()->vector);
+        n_dofs += dof_handlers.back()->n_dofs();
+      }
+    n_dofs = dealii::Utilities::MPI::sum(n_dofs, mesh.comm);
+  }
+
+  template <int dim>
+  dealii::Quadrature<dim> Element<dim>::stiffness_rule(const mesh::Kinematics<dim> &kinematics) const
+  {
+    if (kinematics.is_revolution() && cell.is_simplex() && degree == 1)
+      return cell_quadrature(2);
+    return stiffness;
+  }
+
+  template struct Element<2>;
+  template struct Spaces<2>;
+} // namespace slipstick::mechanics

@@ -1,0 +1,141 @@
+#include <slipstick/mechanics/still_points.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include <cmath>
+
+namespace slipstick::mechanics
+{
+  namespace
+  {
+    // Nodes on an outline are taken only if those inside move by less than this part of what they do.
+    constexpr double least_part_inside = 0.1;
+    // Amounts that differ by less than this part are equal: the place decides, the same for every number of ranks.
+    constexpr double same_amount = 1e-9;
+
+    /// One displacement of one node.
+    template <int dim>
+    struct Candidate
+    {
+      double                  amount    = 0; // by which the motions that are left move it
+      unsigned int            body      = 0;
+      unsigned int            component = 0;
+      std::array<double, dim> position{};
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &amount &body &component &position;
+      }
+
+      bool comes_before(const Candidate &other) const
+      {
+        if (std::abs(amount - other.amount) > same_amount * std::max(amount, other.amount))
+          return amount > other.amount;
+        return std::tie(body, position, component) < std::tie(other.body, other.position, other.component);
+      }
+    };
+
+    /// Displacement component of a place of a body under every motion.
+    Eigen::VectorXd displacements(const std::vector<Eigen::VectorXd>  &motions,
+                                  const std::vector<tfeti::BodyFrame> &frames,
+                                  const Candidate<2>                  &at)
+    {
+      constexpr unsigned int k     = 3; // amplitudes a body
+      const auto            &frame = frames[at.body];
+      const double    turn = at.component == 0 ? frame.center[1] - at.position[1] : at.position[0] - frame.center[0];
+      Eigen::VectorXd values(motions.size());
+      for (unsigned int m = 0; m < motions.size(); ++m)
+        values[m] = motions[m][at.body * k + at.component] + motions[m][at.body * k + k - 1] * turn / frame.length;
+      return values;
+    }
+
+    /// Nodes of this rank: those inside bodies, then those on outlines.
+    template <int dim>
+    std::array<std::vector<Candidate<dim>>, 2> nodes_of(const mesh::Mesh<dim> &mesh, const Spaces<dim> &spaces)
+    {
+      std::array<std::vector<Candidate<dim>>, 2> result;
+      for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+        {
+          const auto            &subdomain = *mesh.subdomains[p];
+          std::set<unsigned int> on_outline;
+          for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
+            for (const unsigned int f : cell->face_indices())
+              if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != mesh::cut_id)
+                spaces.for_each_face_node(subdomain,
+                                          cell->face(f),
+                                          [&](const unsigned int node, const NodeKey &, const dealii::Point<dim> &) {
+                                            on_outline.insert(node);
+                                          });
+          std::vector<dealii::types::global_dof_index> dofs;
+          std::vector<unsigned int>                    nodes;
+          for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
+            {
+              spaces.of(p).nodes_of(cell, dofs, nodes);
+              for (const unsigned int v : cell->vertex_indices()) // the vertices come first
+                for (unsigned int d = 0; d < dim; ++d)
+                  {
+                    Candidate<dim> one;
+                    one.body      = subdomain.body;
+                    one.component = d;
+                    for (unsigned int e = 0; e < dim; ++e)
+                      one.position[e] = cell->vertex(v)[e];
+                    result[on_outline.count(nodes[v])].push_back(one);
+                  }
+            }
+        }
+      return result;
+    }
+  } // namespace
+
+  template <int dim>
+  std::vector<scene::PrescribedDisplacement<dim>> still_points(const mesh::Mesh<dim>               &mesh,
+                                                               const Spaces<dim>                   &spaces,
+                                                               const std::vector<Eigen::VectorXd>  &motions,
+                                                               const std::vector<tfeti::BodyFrame> &frames)
+  {
+    static_assert(dim == 2, "rotations in the plane");
+    auto                                            nodes = nodes_of(mesh, spaces);
+    Eigen::MatrixXd                                 left  = Eigen::MatrixXd::Identity(motions.size(), motions.size());
+    std::vector<scene::PrescribedDisplacement<dim>> supports;
+    while (left.cols() > 0)
+      {
+        std::vector<Candidate<dim>> best(2); // inside, on an outline
+        for (unsigned int k = 0; k < 2; ++k)
+          for (auto &candidate : nodes[k])
+            {
+              candidate.amount = (left.transpose() * displacements(motions, frames, candidate)).norm();
+              if (candidate.comes_before(best[k]))
+                best[k] = candidate;
+            }
+        for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.comm, best))
+          for (unsigned int k = 0; k < 2; ++k)
+            if (of_rank[k].comes_before(best[k]))
+              best[k] = of_rank[k];
+        const auto &chosen = best[best[0].amount > least_part_inside * best[1].amount ? 0 : 1];
+
+        scene::PrescribedDisplacement<dim> support;
+        support.name       = "still point " + std::to_string(supports.size() + 1);
+        support.where.body = chosen.body;
+        support.point.emplace();
+        support.point->body = chosen.body;
+        support.point->coordinates.emplace(chosen.position[0], chosen.position[1]);
+        support.components[chosen.component].emplace();
+        supports.push_back(support);
+
+        // what this one leaves: combinations that do not move it
+        const Eigen::VectorXd moved = left.transpose() * displacements(motions, frames, chosen);
+        const Eigen::MatrixXd q     = Eigen::HouseholderQR<Eigen::MatrixXd>(moved).householderQ();
+        left                        = (left * q.rightCols(left.cols() - 1)).eval();
+      }
+    return supports;
+  }
+
+  template std::vector<scene::PrescribedDisplacement<2>> still_points(const mesh::Mesh<2> &,
+                                                                      const Spaces<2> &,
+                                                                      const std::vector<Eigen::VectorXd> &,
+                                                                      const std::vector<tfeti::BodyFrame> &);
+} // namespace slipstick::mechanics

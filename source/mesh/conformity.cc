@@ -1,0 +1,244 @@
+#include <slipstick/mesh/conformity.h>
+
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <boost/geometry/strategies/strategies.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace slipstick::mesh
+{
+  namespace
+  {
+    // Closer than this part of the shorter edge a node lies on an edge: files have six digits of large coordinates at times,
+    // and nothing is meshed finer than it is wide.
+    constexpr double on_edge = 1e-4;
+    // Sine of the angle below which edges from one place run along each other.
+    constexpr double along = 1e-3;
+
+    double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
+    {
+      return a[0] * b[1] - a[1] * b[0];
+    }
+
+    class OutlineCheck
+    {
+    public:
+      using Fault = ConformityFault<2>;
+      using Kind  = Fault::Kind;
+
+      OutlineCheck(const MeshPiece<2> &piece, const std::set<MeshPiece<2>::Face> &named);
+
+      std::optional<Fault> run();
+
+    private:
+      using Place = boost::geometry::model::point<double, 2, boost::geometry::cs::cartesian>;
+      using Box   = boost::geometry::model::box<Place>;
+      using Value = std::pair<Box, unsigned int>;
+
+      struct Edge // the cell is on its left
+      {
+        unsigned int from, to, cell;
+        bool         is_named;
+      };
+
+      const dealii::Point<2> &x(const unsigned int vertex) const
+      {
+        return piece.vertices[vertex];
+      }
+
+      dealii::Tensor<1, 2> direction(const Edge &edge) const
+      {
+        return x(edge.to) - x(edge.from);
+      }
+
+      double length(const Edge &edge) const
+      {
+        return direction(edge).norm();
+      }
+
+      static Box box(const dealii::Point<2> &a, const dealii::Point<2> &b, const double margin)
+      {
+        return {Place(std::min(a[0], b[0]) - margin, std::min(a[1], b[1]) - margin),
+                Place(std::max(a[0], b[0]) + margin, std::max(a[1], b[1]) + margin)};
+      }
+
+      std::vector<unsigned int> near(const Box &where) const;
+      std::optional<Fault>      fault_at(const unsigned int v);
+      std::optional<Fault>      crossing_of(const unsigned int e) const;
+      bool                      has_cell_on_the_right(const unsigned int e) const;
+
+      Fault fault(const Kind kind, const dealii::Point<2> &place, const unsigned int e, const unsigned int f) const
+      {
+        return {kind, place, edges[e].cell, edges[f].cell};
+      }
+
+      const MeshPiece<2>                                                    &piece;
+      std::vector<Edge>                                                      edges;
+      std::map<unsigned int, std::vector<unsigned int>>                      edges_at; // by vertex
+      std::vector<bool>                                                      is_flank; // of a slit that is meant
+      boost::geometry::index::rtree<Value, boost::geometry::index::rstar<8>> tree;
+    };
+
+    OutlineCheck::OutlineCheck(const MeshPiece<2> &the_piece, const std::set<MeshPiece<2>::Face> &named)
+      : piece(the_piece)
+    {
+      const auto faces = faces_with_cells(piece);
+      for (std::size_t k = 0; k < faces.size(); ++k)
+        {
+          const auto &[face, c] = faces[k];
+          if ((k > 0 && faces[k - 1].first == face) || (k + 1 < faces.size() && faces[k + 1].first == face))
+            continue;
+          const auto &cell = piece.cells[c];
+          for (unsigned int f = 0; f < n_corners<2>(cell); ++f)
+            if (face_of_cell<2>(cell, f) == face)
+              edges.push_back({corner<2>(cell, f), corner<2>(cell, f + 1), c, named.count(face) > 0});
+        }
+      std::vector<Value> boxes;
+      for (unsigned int e = 0; e < edges.size(); ++e)
+        {
+          edges_at[edges[e].from].push_back(e);
+          edges_at[edges[e].to].push_back(e);
+          boxes.emplace_back(box(x(edges[e].from), x(edges[e].to), on_edge * length(edges[e])), e);
+        }
+      is_flank.resize(edges.size(), false);
+      tree = decltype(tree)(boxes);
+    }
+
+    std::vector<unsigned int> OutlineCheck::near(const Box &where) const
+    {
+      std::vector<unsigned int> result;
+      for (auto found = tree.qbegin(boost::geometry::index::intersects(where)); found != tree.qend(); ++found)
+        result.push_back(found->second);
+      std::sort(result.begin(), result.end());
+      return result;
+    }
+
+    /// Edges that vertex @p v lies on, apart from its own.
+    std::optional<ConformityFault<2>> OutlineCheck::fault_at(const unsigned int v)
+    {
+      const auto &own   = edges_at.at(v);
+      double      least = std::numeric_limits<double>::max();
+      for (const unsigned int g : own)
+        least = std::min(least, length(edges[g]));
+      for (const unsigned int e : near(box(x(v), x(v), 0)))
+        {
+          const Edge &edge = edges[e];
+          if (edge.from == v || edge.to == v)
+            continue;
+          const auto   d = direction(edge);
+          const double l = d.norm(), margin = on_edge * std::min(l, least);
+          const double s = (x(v) - x(edge.from)) * d / l;
+          if (s < -margin || s > l + margin || std::abs(cross(d, x(v) - x(edge.from))) / l > margin)
+            continue;
+          const bool at_from = s <= margin, at_to = s >= l - margin;
+          const Kind kind = at_from || at_to ? Kind::twin_nodes : Kind::hanging_node;
+
+          bool runs_along = false, has_named = false;
+          for (const unsigned int g : own)
+            {
+              const bool leaves = edges[g].from == v;
+              const auto away   = (leaves ? 1 : -1) * direction(edges[g]); // from v to the other end
+              has_named         = has_named || edges[g].is_named;
+              if (std::abs(cross(away, d)) > along * away.norm() * l || (at_from && away * d < 0) ||
+                  (at_to && away * d > 0))
+                continue;
+              runs_along = true;
+              if (direction(edges[g]) * d > 0) // both have their cells on the same side
+                return fault(Kind::overlap, x(v), e, g);
+              if (!edge.is_named || !edges[g].is_named)
+                return fault(kind, x(v), e, g);
+              is_flank[e] = is_flank[g] = true;
+            }
+          if (!runs_along && !(edge.is_named && has_named))
+            {
+              // the mouth of a slit: another edge from there runs along
+              bool is_mouth = false;
+              if (kind == Kind::twin_nodes)
+                for (const unsigned int f : edges_at.at(at_from ? edge.from : edge.to))
+                  for (const unsigned int g : own)
+                    {
+                      const auto a = (edges[f].from == (at_from ? edge.from : edge.to) ? 1 : -1) * direction(edges[f]);
+                      const auto b = (edges[g].from == v ? 1 : -1) * direction(edges[g]);
+                      is_mouth     = is_mouth || (std::abs(cross(a, b)) <= along * a.norm() * b.norm() && a * b > 0);
+                    }
+              if (!is_mouth)
+                return fault(kind, x(v), e, own[0]);
+            }
+        }
+      return {};
+    }
+
+    std::optional<ConformityFault<2>> OutlineCheck::crossing_of(const unsigned int e) const
+    {
+      const Edge &edge = edges[e];
+      const auto  d    = direction(edge);
+      for (const unsigned int f : near(box(x(edge.from), x(edge.to), 0)))
+        {
+          const Edge &other = edges[f];
+          if (f <= e || other.from == edge.from || other.from == edge.to || other.to == edge.from ||
+              other.to == edge.to)
+            continue;
+          const auto   g      = direction(other);
+          const double margin = on_edge * std::min(d.norm(), g.norm());
+          const double a      = cross(d, x(other.from) - x(edge.from)) / d.norm(),
+                       b      = cross(d, x(other.to) - x(edge.from)) / d.norm();
+          const double p      = cross(g, x(edge.from) - x(other.from)) / g.norm(),
+                       q      = cross(g, x(edge.to) - x(other.from)) / g.norm();
+          if (std::min(a, b) < -margin && std::max(a, b) > margin && std::min(p, q) < -margin &&
+              std::max(p, q) > margin)
+            return fault(Kind::overlap, x(edge.from) + p / (p - q) * d, e, f);
+        }
+      return {};
+    }
+
+    /// By the winding number of the outline at the middle of the edge, along the axis that it is steepest to.
+    bool OutlineCheck::has_cell_on_the_right(const unsigned int e) const
+    {
+      const auto         d      = direction(edges[e]);
+      const auto         middle = x(edges[e].from) + .5 * d;
+      const unsigned int ray = std::abs(d[1]) >= std::abs(d[0]) ? 0 : 1, level = 1 - ray;
+      constexpr double   far = std::numeric_limits<double>::max();
+      const Box          where(Place(middle[0], middle[1]), ray == 0 ? Place(far, middle[1]) : Place(middle[0], far));
+      int                winding = 0;
+      for (const unsigned int f : near(where))
+        {
+          const auto &a = x(edges[f].from), &b = x(edges[f].to);
+          if (f == e || (a[level] <= middle[level]) == (b[level] <= middle[level]))
+            continue;
+          const double at = a[ray] + (middle[level] - a[level]) / (b[level] - a[level]) * (b[ray] - a[ray]);
+          if (at > middle[ray])
+            winding += (b[level] > a[level]) == (ray == 0) ? 1 : -1;
+        }
+      // the ray starts on the right of an edge that goes up (ray to the right) or to the left (ray up)
+      const bool starts_right = ray == 0 ? d[1] > 0 : d[0] < 0;
+      return winding != (starts_right ? 0 : 1);
+    }
+
+    std::optional<ConformityFault<2>> OutlineCheck::run()
+    {
+      for (const auto &[v, own] : edges_at)
+        if (const auto found = fault_at(v))
+          return found;
+      for (unsigned int e = 0; e < edges.size(); ++e)
+        if (const auto found = crossing_of(e))
+          return found;
+      for (unsigned int e = 0; e < edges.size(); ++e)
+        if (!is_flank[e] && has_cell_on_the_right(e))
+          return fault(Kind::overlap, x(edges[e].from) + .5 * direction(edges[e]), e, e);
+      return {};
+    }
+  } // namespace
+
+  template <int dim>
+  std::optional<ConformityFault<dim>> find_fault(const MeshPiece<dim>                          &piece,
+                                                 const std::set<typename MeshPiece<dim>::Face> &named)
+  {
+    static_assert(dim == 2, "outlines are curves");
+    return OutlineCheck(piece, named).run();
+  }
+
+  template std::optional<ConformityFault<2>> find_fault(const MeshPiece<2> &, const std::set<MeshPiece<2>::Face> &);
+} // namespace slipstick::mesh

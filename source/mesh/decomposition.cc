@@ -1,0 +1,350 @@
+#include <slipstick/base/collective.h>
+#include <slipstick/base/exceptions.h>
+#include <slipstick/base/text.h>
+#include <slipstick/mesh/decomposition.h>
+#include <slipstick/mesh/make_body.h>
+#include <slipstick/mesh/shapes.h>
+#include <slipstick/mesh/size_check.h>
+#include <slipstick/mesh/triangulate.h>
+#include <slipstick/scene/boundary_part.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/set.hpp>
+#include <boost/serialization/string.hpp>
+
+#include <cmath>
+#include <numeric>
+#include <queue>
+
+namespace slipstick::mesh
+{
+  namespace
+  {
+    // Cells (times the square of the degree) of a METIS subdomain when their number is left to us: benchmarks/README.md,
+    // "How many subdomains?".
+    constexpr double automatic_cells_per_subdomain = 10000;
+
+    // Bodies that may not share units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus): the larger size or modulus over
+    // the smaller one. Parts of one assembly differ less in size; steel and rubber differ by 1e5 in modulus. What is
+    // doubtful together: the smaller of two bodies is the stiffer one, as it is when metres and pascal meet mm and MPa.
+    constexpr double doubtful_size_ratio    = 300;
+    constexpr double doubtful_modulus_ratio = 3e5;
+    constexpr double doubtful_together_size = 30, doubtful_together_modulus = 3e4;
+
+    template <int dim>
+    std::uint64_t product(const std::array<unsigned int, dim> &n)
+    {
+      return std::accumulate(n.begin(), n.end(), std::uint64_t(1), std::multiplies<>());
+    }
+
+    /// Equal shares of the subdomains, in order: rank r has [first[r], first[r+1]).
+    std::vector<unsigned int> equal_shares(const unsigned int n, const unsigned int n_ranks)
+    {
+      std::vector<unsigned int> first(n_ranks + 1);
+      for (unsigned int r = 0; r <= n_ranks; ++r)
+        first[r] = static_cast<std::uint64_t>(n) * r / n_ranks;
+      return first;
+    }
+
+    /// Cost of a cell compared with a quadrilateral.
+    template <int dim>
+    double cost_of(const MeshPiece<dim> &piece)
+    {
+      return piece.cells.size() * (is_simplex<dim>(piece.cells[0]) ? .5 : 1.);
+    }
+
+    /// Whether every rank can make its own blocks.
+    template <int dim>
+    bool has_blocks(const scene::Scene<dim> &scene)
+    {
+      using scene::DecompositionMethod;
+      for (const auto &body : scene.bodies)
+        if (body.shape != scene::Shape::rectangle ||
+            (body.boundary_refinements > 0 && !body.refined_boundaries.empty()))
+          return false;
+      return !scene::has_boundary_parts(scene) && (scene.decomposition.method == DecompositionMethod::blocks ||
+                                                   scene.decomposition.method == DecompositionMethod::none);
+    }
+
+    /// A warning about the two bodies that are farthest over the limits, if any are.
+    /// @param size diagonals of the boxes around the bodies [mm].
+    template <int dim>
+    void remark_on_units(const scene::Scene<dim>   &scene,
+                         const std::vector<double> &size,
+                         std::vector<std::string>  &remarks)
+    {
+      const auto modulus = [&](const unsigned int body) { // meshes are also made before there are materials
+        const unsigned int material = scene.bodies[body].material;
+        return material < scene.materials.size() ? scene.materials[material].young_modulus
+                                                 : scene::Material().young_modulus;
+      };
+      double       worst = 1; // over its limit
+      unsigned int small = 0, large = 0;
+      for (unsigned int a = 0; a < size.size(); ++a)
+        for (unsigned int b = 0; b < size.size(); ++b)
+          {
+            const double sizes = size[b] / size[a], moduli = modulus(a) / modulus(b);
+            const double over =
+              std::max({sizes / doubtful_size_ratio,
+                        moduli / doubtful_modulus_ratio,
+                        std::min(sizes / doubtful_together_size, moduli / doubtful_together_modulus)});
+            if (over > worst)
+              {
+                worst = over;
+                small = a;
+                large = b;
+              }
+          }
+      if (worst == 1)
+        return;
+      const auto describe = [&](const unsigned int b) {
+        return "body " + scene.bodies[b].name + " is " + number_text(size[b]) + " mm across with a Young modulus of " +
+               number_text(modulus(b)) + " MPa";
+      };
+      remarks.push_back("warning: " + describe(large) + ", " + describe(small) +
+                        ": check that their meshes and materials use the same units (Scale, Young modulus)");
+    }
+
+    /// Every rank makes its own blocks.
+    template <int dim>
+    void make_blocks(const scene::Scene<dim> &scene, Mesh<dim> &mesh)
+    {
+      std::vector<GlobalVertex> first_vertex(1, 0);
+      for (const auto &body : scene.bodies)
+        {
+          const auto n          = rectangle_cells(scene, body);
+          auto       n_vertices = n;
+          for (unsigned int &k : n_vertices)
+            ++k;
+          mesh.n_cells += product<dim>(n);
+          first_vertex.push_back(first_vertex.back() + product<dim>(n_vertices));
+          mesh.boundary_ids.push_back(shape_boundary_ids(body.shape));
+        }
+      mesh.combined_ids.resize(scene.bodies.size());
+      mesh.points.resize(scene.bodies.size());
+      std::vector<double> sizes;
+      for (const auto &body : scene.bodies)
+        sizes.push_back(body.size.norm());
+      remark_on_units(scene, sizes, mesh.remarks);
+
+      const unsigned int N =
+        scene.decomposition.method == scene::DecompositionMethod::none ? 1 : scene.decomposition.blocks;
+      const unsigned int            rank = dealii::Utilities::MPI::this_mpi_process(mesh.comm);
+      std::array<unsigned int, dim> n_blocks;
+      n_blocks.fill(N);
+      const unsigned int per_body = product<dim>(n_blocks);
+      mesh.first_subdomain        = equal_shares(per_body * scene.bodies.size(), mesh.first_subdomain.size() - 1);
+      for (unsigned int s = mesh.first_subdomain[rank]; s < mesh.first_subdomain[rank + 1]; ++s)
+        {
+          const unsigned int body = s / per_body, b = s % per_body;
+          auto               piece = rectangle_piece<dim>(scene.bodies[body],
+                                            rectangle_cells(scene, scene.bodies[body]),
+                                            n_blocks,
+                                            {{b % N, b / N}});
+          place(piece, scene.bodies[body].placement);
+          piece.subdomain = s;
+          piece.body      = body;
+          for (GlobalVertex &v : piece.global_vertices)
+            v += first_vertex[body];
+          mesh.subdomains.push_back(triangulate(piece));
+        }
+    }
+
+    /// The meshes of all bodies, global vertices counted through; on rank 0.
+    template <int dim>
+    std::vector<BodyMesh<dim>> make_bodies(const scene::Scene<dim> &scene)
+    {
+      std::vector<BodyMesh<dim>>      bodies;
+      std::map<std::string, MeshFile> files;
+      GlobalVertex                    first = 0;
+      for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+        {
+          bodies.push_back(make_body(scene, b, files));
+          for (GlobalVertex &v : bodies.back().piece.global_vertices)
+            v += first;
+          first += bodies.back().piece.vertices.size();
+        }
+      for (auto &remark : unused_parts(scene, files))
+        bodies.back().remarks.push_back(std::move(remark));
+      return bodies;
+    }
+
+    template <int dim>
+    double size_of(const MeshPiece<dim> &piece)
+    {
+      dealii::Point<dim> low = piece.vertices[0], high = low;
+      for (const auto &x : piece.vertices)
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            low[d]  = std::min(low[d], x[d]);
+            high[d] = std::max(high[d], x[d]);
+          }
+      return low.distance(high);
+    }
+
+    /// Subdomains for pieces of the given costs and cells: the next one always goes to the piece with the most cost
+    /// per subdomain, after one for each.
+    std::vector<unsigned int> shares_of_pieces(const std::vector<double>      &cost,
+                                               const std::vector<std::size_t> &n_cells,
+                                               const unsigned int              wanted)
+    {
+      std::vector<unsigned int>                            shares(cost.size(), 1);
+      std::priority_queue<std::pair<double, unsigned int>> next; // first of equals: the last piece
+      for (unsigned int k = 0; k < cost.size(); ++k)
+        next.emplace(cost[k], k);
+      for (unsigned int n = cost.size(); n < wanted && !next.empty();)
+        {
+          const unsigned int k = next.top().second;
+          next.pop();
+          if (shares[k] >= n_cells[k])
+            continue;
+          ++n;
+          next.emplace(cost[k] / ++shares[k], k);
+        }
+      return shares;
+    }
+
+    /// Cuts the bodies, pieces in order of the bodies.
+    template <int dim>
+    std::vector<MeshPiece<dim>> cut_bodies(const scene::Scene<dim>    &scene,
+                                           std::vector<BodyMesh<dim>> &bodies,
+                                           std::vector<std::string>   &remarks)
+    {
+      // face-connected pieces with one type of cells: there cannot be fewer
+      std::vector<MeshPiece<dim>> wholes;
+      for (auto &body : bodies)
+        {
+          std::vector<unsigned int> kind;
+          for (const auto &cell : body.piece.cells)
+            kind.push_back(is_simplex<dim>(cell));
+          auto pieces = cut(body.piece, kind);
+          body.piece  = MeshPiece<dim>();
+          std::move(pieces.begin(), pieces.end(), std::back_inserter(wholes));
+        }
+      std::vector<double>      cost;
+      std::vector<std::size_t> n_cells;
+      for (const auto &whole : wholes)
+        {
+          cost.push_back(cost_of(whole));
+          n_cells.push_back(whole.cells.size());
+        }
+      const bool         one_each          = scene.decomposition.method == scene::DecompositionMethod::none;
+      const unsigned int asked             = one_each ? scene.bodies.size() : scene.decomposition.subdomains;
+      const double       total             = std::accumulate(cost.begin(), cost.end(), 0.);
+      const double       unknowns_per_node = scene.discretization.degree * scene.discretization.degree;
+      const unsigned int wanted =
+        asked > 0 ? asked : std::max(1., std::round(total * unknowns_per_node / automatic_cells_per_subdomain));
+      if (asked > 0 && asked < wholes.size())
+        remarks.push_back(std::to_string(wholes.size()) + " subdomains instead of " + std::to_string(asked) +
+                          ": at least one for each body and cell type");
+      const auto shares = shares_of_pieces(cost, n_cells, wanted);
+
+      std::vector<MeshPiece<dim>>                                   pieces;
+      std::map<unsigned int, std::pair<unsigned int, unsigned int>> made; // by body: wanted, made
+      for (unsigned int k = 0; k < wholes.size(); ++k)
+        {
+          auto parts = cut(wholes[k], metis_parts(wholes[k], shares[k], scene.decomposition.seed));
+          made[wholes[k].body].first += shares[k];
+          made[wholes[k].body].second += parts.size();
+          wholes[k] = MeshPiece<dim>();
+          std::move(parts.begin(), parts.end(), std::back_inserter(pieces));
+        }
+      for (const auto &[body, n] : made)
+        if (n.first != n.second)
+          remarks.push_back("body " + scene.bodies[body].name + ": METIS made " + std::to_string(n.second) +
+                            " face-connected subdomains of the " + std::to_string(n.first) + " asked for");
+      for (unsigned int s = 0; s < pieces.size(); ++s)
+        pieces[s].subdomain = s;
+      return pieces;
+    }
+
+    /// What all ranks must know of a body, besides their subdomains.
+    template <int dim>
+    struct Names
+    {
+      std::map<std::string, dealii::types::boundary_id>                          boundary_ids;
+      std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>> combined_ids;
+      std::map<std::string, NamedPoint<dim>>                                     points;
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &boundary_ids &combined_ids &points;
+      }
+    };
+
+    /// Rank 0 makes and cuts the bodies and sends every rank its subdomains.
+    template <int dim>
+    void make_on_one_rank(const scene::Scene<dim> &scene, Mesh<dim> &mesh)
+    {
+      const unsigned int          n_ranks = mesh.first_subdomain.size() - 1;
+      const bool                  is_root = dealii::Utilities::MPI::this_mpi_process(mesh.comm) == 0;
+      std::vector<MeshPiece<dim>> pieces;
+      std::vector<Names<dim>>     names;
+      collectively(mesh.comm, [&] {
+        if (!is_root)
+          return;
+        auto bodies = make_bodies(scene);
+        for (const auto &body : bodies)
+          {
+            mesh.n_cells += body.piece.cells.size();
+            mesh.remarks.insert(mesh.remarks.end(), body.remarks.begin(), body.remarks.end());
+            names.push_back({body.boundary_ids, body.combined_ids, {}});
+            for (const auto &[name, v] : body.points)
+              names.back().points[name] = {body.piece.vertices[v], body.piece.global_vertices[v]};
+          }
+        std::vector<double> sizes;
+        for (const auto &body : bodies)
+          sizes.push_back(size_of(body.piece));
+        remark_on_units(scene, sizes, mesh.remarks);
+        if (scene.decomposition.subdomains > mesh.n_cells &&
+            scene.decomposition.method != scene::DecompositionMethod::none)
+          throw InputError("Decomposition/Subdomains = " + std::to_string(scene.decomposition.subdomains) +
+                             " is more than the " + std::to_string(mesh.n_cells) + " cells of the mesh",
+                           "ask for at most one subdomain a cell, or set it to auto");
+        pieces = cut_bodies(scene, bodies, mesh.remarks);
+      });
+
+      std::map<unsigned int, std::vector<MeshPiece<dim>>> to_send;
+      const unsigned int                                  n_pieces =
+        dealii::Utilities::MPI::broadcast(mesh.comm, static_cast<unsigned int>(pieces.size()));
+      mesh.first_subdomain = equal_shares(n_pieces, n_ranks);
+      for (unsigned int r = 0; r < n_ranks && is_root; ++r)
+        for (unsigned int s = mesh.first_subdomain[r]; s < mesh.first_subdomain[r + 1]; ++s)
+          to_send[r].push_back(std::move(pieces[s]));
+      mesh.n_cells  = dealii::Utilities::MPI::broadcast(mesh.comm, mesh.n_cells);
+      names         = dealii::Utilities::MPI::broadcast(mesh.comm, names);
+      auto received = dealii::Utilities::MPI::some_to_some(mesh.comm, to_send);
+      to_send.clear();
+      for (auto &[rank, of_rank] : received)
+        for (auto &piece : of_rank)
+          {
+            mesh.subdomains.push_back(triangulate(piece));
+            piece = MeshPiece<dim>();
+          }
+      for (auto &of_body : names)
+        {
+          mesh.boundary_ids.push_back(std::move(of_body.boundary_ids));
+          mesh.combined_ids.push_back(std::move(of_body.combined_ids));
+          mesh.points.push_back(std::move(of_body.points));
+        }
+    }
+  } // namespace
+
+  template <int dim>
+  Mesh<dim> make_mesh(const scene::Scene<dim> &scene, const MPI_Comm comm)
+  {
+    Mesh<dim> mesh;
+    mesh.comm = comm;
+    mesh.first_subdomain.resize(dealii::Utilities::MPI::n_mpi_processes(comm) + 1);
+    if (has_blocks(scene))
+      make_blocks(scene, mesh);
+    else
+      make_on_one_rank(scene, mesh);
+    check_positions(scene, mesh);
+    return mesh;
+  }
+
+  template Mesh<2> make_mesh(const scene::Scene<2> &, const MPI_Comm);
+} // namespace slipstick::mesh

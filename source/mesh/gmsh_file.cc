@@ -1,0 +1,502 @@
+// Gmsh's MSH format, https://gmsh.info/doc/texinfo/gmsh.html, sections "MSH file format" and "... version 2".
+#include <slipstick/base/exceptions.h>
+#include <slipstick/base/text.h>
+#include <slipstick/mesh/mesh_file.h>
+
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <unordered_map>
+
+namespace slipstick::mesh
+{
+  namespace
+  {
+    /// Gmsh's kinds of elements: dimension, corners, nodes; 0 nodes: unknown.
+    struct ElementType
+    {
+      unsigned int dim, n_corners, n_nodes;
+    };
+
+    ElementType element_type(const int type)
+    {
+      switch (type)
+        {
+          case 15:
+            return {0, 1, 1};
+          case 1:
+            return {1, 2, 2};
+          case 8:
+            return {1, 2, 3};
+          case 26:
+            return {1, 2, 4};
+          case 27:
+            return {1, 2, 5};
+          case 28:
+            return {1, 2, 6};
+          case 2:
+            return {2, 3, 3};
+          case 9:
+            return {2, 3, 6};
+          case 20:
+            return {2, 3, 9};
+          case 21:
+            return {2, 3, 10};
+          case 22:
+            return {2, 3, 12};
+          case 23:
+            return {2, 3, 15};
+          case 24:
+            return {2, 3, 15};
+          case 25:
+            return {2, 3, 21};
+          case 3:
+            return {2, 4, 4};
+          case 16:
+            return {2, 4, 8};
+          case 10:
+            return {2, 4, 9};
+          case 36:
+            return {2, 4, 16};
+          case 37:
+            return {2, 4, 25};
+          case 4: // tetrahedra, hexahedra, prisms, pyramids and their kin of second order
+            return {3, 4, 4};
+          case 5:
+            return {3, 8, 8};
+          case 6:
+            return {3, 6, 6};
+          case 7:
+            return {3, 5, 5};
+          case 11:
+            return {3, 4, 10};
+          case 12:
+            return {3, 8, 27};
+          case 17:
+            return {3, 8, 20};
+        }
+      return {0, 0, 0};
+    }
+
+    /// Reads numbers from the text of the file, as words or as bytes.
+    class Cursor
+    {
+    public:
+      Cursor(const std::string &file, const std::string &text)
+        : file(file)
+        , text(text)
+      {}
+
+      bool        binary = false;
+      std::string section; // for messages
+
+      [[noreturn]] void fail(const std::string &problem, const std::string &remedy) const
+      {
+        throw InputError("mesh file " + file + ": " + problem + (section.empty() ? "" : " (section $" + section + ")"),
+                         remedy);
+      }
+
+      [[noreturn]] void fail_broken() const
+      {
+        fail(std::string("is truncated or corrupt: ") +
+               (binary ? "its size does not match its own counts" : "not the number expected here") + " at byte " +
+               std::to_string(at),
+             "write it again with Gmsh (copying in text mode damages a binary file), for example: gmsh -2 part.geo "
+             "-format msh41");
+      }
+
+      int integer()
+      {
+        return binary ? bytes<int>() : word<int>();
+      }
+
+      std::size_t count()
+      {
+        return binary ? bytes<std::size_t>() : word<std::size_t>();
+      }
+
+      double real()
+      {
+        return binary ? bytes<double>() : word<double>();
+      }
+
+      /// The number of a physical entity, given with the sign of its orientation.
+      int physical(const int number) const
+      {
+        if (number == std::numeric_limits<int>::min()) // has no absolute value
+          fail_broken();
+        return std::abs(number);
+      }
+
+      /// A count of things of at least @p least bytes each, which cannot be more than the rest of the file holds.
+      std::size_t checked(const std::size_t n, const std::size_t least) const
+      {
+        if (n > (text.size() - at) / least)
+          fail_broken();
+        return n;
+      }
+
+      /// The rest of the present line.
+      std::string line()
+      {
+        const auto end   = std::min(text.find('\n', at), text.size());
+        const auto start = at;
+        at               = std::min(end + 1, text.size());
+        return trim(text.substr(start, end - start));
+      }
+
+      /// The name of the next section, empty at the end of the file.
+      std::string next_section()
+      {
+        section.clear();
+        at = text.find('$', at);
+        if (at == std::string::npos)
+          return "";
+        section = line().substr(1);
+        section = section.substr(0, section.find('\0')); // which would cut messages
+        return section;
+      }
+
+      /// Goes behind the end of the present section, which must come at once unless the section is skipped.
+      void end_section(const bool skip)
+      {
+        const std::string end   = "$End" + section;
+        const auto        found = text.find(end, at);
+        if (found == std::string::npos || (!skip && text.find_first_not_of(" \t\r\n", at) != found))
+          fail_broken();
+        at = found + end.size();
+      }
+
+      std::string quoted()
+      {
+        const auto start = text.find('"', at), end = text.find('"', start + 1);
+        if (start == std::string::npos || end == std::string::npos)
+          fail_broken();
+        at = end + 1;
+        if (text.find('\0', start) < end) // would cut messages
+          fail_broken();
+        return text.substr(start + 1, end - start - 1);
+      }
+
+      template <typename Number>
+      Number word()
+      {
+        at = std::min(text.find_first_not_of(" \t\r\n", at), text.size());
+        Number     value{};
+        const auto result = std::from_chars(text.data() + at, text.data() + text.size(), value);
+        if (result.ec != std::errc())
+          fail_broken();
+        at = result.ptr - text.data();
+        return value;
+      }
+
+      template <typename Number>
+      Number bytes()
+      {
+        if (text.size() - at < sizeof(Number))
+          fail_broken();
+        Number value;
+        std::memcpy(&value, text.data() + at, sizeof(Number));
+        at += sizeof(Number);
+        return value;
+      }
+
+    private:
+      const std::string &file;
+      const std::string &text;
+      std::size_t        at = 0;
+    };
+
+    class GmshReader
+    {
+    public:
+      GmshReader(const std::string &file, const std::string &text)
+        : in(file, text)
+      {
+        mesh.file = file;
+      }
+
+      MeshFile read();
+
+    private:
+      void         read_format();
+      void         read_names();
+      void         read_entities();
+      void         read_nodes();
+      void         read_nodes_2();
+      void         read_elements();
+      void         read_elements_2();
+      void         add_node(const std::size_t tag, const double x, const double y, const double z);
+      unsigned int group(const std::vector<int> &physicals);
+      ElementType  type_of(const int type);
+
+      /// The element whose node numbers follow.
+      template <typename ReadTag>
+      void add_element(const ElementType &type,
+                       const unsigned int of_group,
+                       const std::size_t  number,
+                       const ReadTag     &read_tag);
+
+      Cursor                                          in;
+      MeshFile                                        mesh;
+      bool                                            is_version_2 = false;
+      std::unordered_map<std::size_t, unsigned int>   index_of_node;
+      std::map<std::vector<int>, unsigned int>        index_of_group;
+      std::map<std::pair<int, int>, std::vector<int>> physicals_of_entity; // version 4: by dimension and number
+      bool                                            has_nodes = false, has_elements = false;
+    };
+
+    void GmshReader::read_format()
+    {
+      if (in.next_section() != "MeshFormat")
+        {
+          if (in.section == "NOD" || in.section == "NOE")
+            in.fail("has the Gmsh format version 1", "save it as 4.1: gmsh OLD.msh -save -format msh41 -o NEW.msh");
+          in.section.clear();
+          in.fail("is not a Gmsh file: it does not start with $MeshFormat", "give a .msh file of version 2.2 or 4.1");
+        }
+      const double version = in.word<double>();
+      const int    kind    = in.word<int>();
+      const int    size    = in.word<int>();
+      is_version_2         = version >= 2 && version < 3;
+      if (!is_version_2 && !(version >= 4.1 && version < 4.2))
+        in.fail("has version " + number_text(version) + "; read are 2.0 to 2.2 and 4.1",
+                "save it as 4.1: gmsh OLD.msh -save -format msh41 -o NEW.msh");
+      if (size != 8 || kind < 0 || kind > 1)
+        in.fail_broken();
+      in.line();
+      if (kind == 1)
+        {
+          in.binary = true;
+          if (in.integer() != 1)
+            in.fail("is binary with another byte order, or corrupt",
+                    "save it in ASCII: gmsh OLD.msh -save -format msh41 -o NEW.msh");
+        }
+      in.end_section(false);
+    }
+
+    void GmshReader::read_names()
+    {
+      const auto n = in.word<std::size_t>();
+      for (std::size_t k = 0; k < n; ++k)
+        {
+          const int dim = in.word<int>(), number = in.word<int>();
+          mesh.names[{dim, number}] = in.quoted();
+        }
+      in.end_section(false);
+    }
+
+    void GmshReader::read_entities()
+    {
+      std::array<std::size_t, 4> n;
+      for (auto &k : n)
+        k = in.count();
+      for (int dim = 0; dim < 4; ++dim)
+        for (std::size_t k = 0; k < n[dim]; ++k)
+          {
+            const int tag = in.integer();
+            for (unsigned int d = 0; d < (dim == 0 ? 3 : 6); ++d)
+              in.real(); // its box
+            auto &physicals = physicals_of_entity[{dim, tag}];
+            physicals.resize(in.checked(in.count(), 1));
+            for (int &physical : physicals)
+              physical = in.physical(in.integer());
+            if (dim > 0)
+              for (std::size_t b = in.count(); b > 0; --b)
+                in.integer();
+          }
+      in.end_section(false);
+    }
+
+    void GmshReader::add_node(const std::size_t tag, const double x, const double y, const double z)
+    {
+      if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z) ||
+          !index_of_node.emplace(tag, mesh.nodes.size()).second)
+        in.fail_broken();
+      mesh.nodes.emplace_back(x, y, z);
+    }
+
+    void GmshReader::read_nodes()
+    {
+      const std::size_t n_blocks = in.count();
+      in.count();
+      in.count();
+      in.count();
+      for (std::size_t b = 0; b < n_blocks; ++b)
+        {
+          const int dim = in.integer();
+          in.integer();
+          const bool               parametric = in.integer() != 0;
+          std::vector<std::size_t> tags(in.checked(in.count(), 1));
+          for (auto &tag : tags)
+            tag = in.count();
+          for (const auto tag : tags)
+            {
+              const double x = in.real(), y = in.real(), z = in.real();
+              for (int d = 0; d < (parametric ? dim : 0); ++d)
+                in.real();
+              add_node(tag, x, y, z);
+            }
+        }
+    }
+
+    void GmshReader::read_nodes_2()
+    {
+      const auto n = in.word<std::size_t>();
+      in.line();
+      for (std::size_t k = 0; k < n; ++k)
+        {
+          const int    tag = in.integer();
+          const double x = in.real(), y = in.real(), z = in.real();
+          add_node(tag, x, y, z);
+        }
+    }
+
+    unsigned int GmshReader::group(const std::vector<int> &physicals)
+    {
+      const auto [found, is_new] = index_of_group.emplace(physicals, mesh.groups.size());
+      if (is_new)
+        mesh.groups.push_back(physicals);
+      return found->second;
+    }
+
+    ElementType GmshReader::type_of(const int type)
+    {
+      const ElementType result = element_type(type);
+      if (result.n_nodes == 0)
+        in.fail("has elements of type " + std::to_string(type) + ", which is not supported, or is corrupt",
+                "mesh with triangles or quadrilaterals of first or second order (Mesh.ElementOrder = 1)");
+      return result;
+    }
+
+    template <typename ReadTag>
+    void GmshReader::add_element(const ElementType &type,
+                                 const unsigned int of_group,
+                                 const std::size_t  number,
+                                 const ReadTag     &read_tag)
+    {
+      MeshFile::Element element;
+      element.dim    = type.dim;
+      element.n      = type.n_corners;
+      element.group  = of_group;
+      element.number = number;
+      for (unsigned int k = 0; k < type.n_nodes; ++k)
+        {
+          const std::size_t tag   = read_tag();
+          const auto        found = index_of_node.find(tag);
+          if (found == index_of_node.end())
+            in.fail("element " + std::to_string(number) + " has node " + std::to_string(tag) +
+                      ", which is not in the file",
+                    "write the file again with Gmsh");
+          if (k < element.corners.size() && k < type.n_corners)
+            element.corners[k] = found->second;
+          else if (type.dim == 2 &&
+                   (type.n_nodes == 6 || type.n_nodes == 8 || (type.n_nodes == 9 && type.n_corners == 4)))
+            mesh.keep_middle(element, k, found->second);
+        }
+      mesh.is_curved = mesh.is_curved || (type.dim == 2 && type.n_nodes > type.n_corners);
+      mesh.elements.push_back(element);
+    }
+
+    void GmshReader::read_elements()
+    {
+      const std::size_t n_blocks = in.count();
+      in.count();
+      in.count();
+      in.count();
+      for (std::size_t b = 0; b < n_blocks; ++b)
+        {
+          const int          dim      = in.integer();
+          const int          entity   = in.integer();
+          const ElementType  type     = type_of(in.integer());
+          const std::size_t  n        = in.checked(in.count(), 1);
+          const auto         found    = physicals_of_entity.find({dim, entity});
+          const unsigned int of_group = group(found == physicals_of_entity.end() ? std::vector<int>() : found->second);
+          for (std::size_t k = 0; k < n; ++k)
+            {
+              const std::size_t number = in.count();
+              add_element(type, of_group, number, [this] { return in.count(); });
+            }
+        }
+    }
+
+    void GmshReader::read_elements_2()
+    {
+      const auto n = in.word<std::size_t>();
+      in.line();
+      for (std::size_t k = 0; k < n;)
+        {
+          // in binary: type, number of elements that follow, number of tags; in ASCII each on its own
+          int number = 0, type = 0, in_block = 1, n_tags = 0;
+          if (!in.binary)
+            number = in.integer();
+          type = in.integer();
+          if (in.binary)
+            in_block = in.integer();
+          n_tags = in.integer();
+          if (in_block < 1 || n_tags < 0)
+            in.fail_broken();
+          const ElementType known = type_of(type);
+          for (int e = 0; e < in_block; ++e, ++k)
+            {
+              if (in.binary)
+                number = in.integer();
+              int physical = 0;
+              for (int t = 0; t < n_tags; ++t)
+                {
+                  const int tag = in.integer();
+                  if (t == 0)
+                    physical = in.physical(tag);
+                }
+              add_element(known,
+                          group(physical == 0 ? std::vector<int>() : std::vector<int>{physical}),
+                          number,
+                          [this] { return static_cast<std::size_t>(in.integer()); });
+            }
+        }
+    }
+
+    MeshFile GmshReader::read()
+    {
+      read_format();
+      while (true)
+        {
+          const std::string section = in.next_section();
+          if (section.empty())
+            break;
+          if (section == "PhysicalNames")
+            read_names();
+          else if (section == "Entities")
+            read_entities();
+          else if (section == "Nodes")
+            {
+              is_version_2 ? read_nodes_2() : read_nodes();
+              in.end_section(false);
+              has_nodes = true;
+            }
+          else if (section == "Elements")
+            {
+              if (!has_nodes)
+                in.fail("has its elements before its nodes", "write it again with Gmsh");
+              is_version_2 ? read_elements_2() : read_elements();
+              in.end_section(false);
+              has_elements = true;
+            }
+          else if (section == "PartitionedEntities")
+            in.fail("is partitioned", "save it without: slipstick cuts bodies itself");
+          else
+            in.end_section(true);
+        }
+      if (!has_nodes || !has_elements)
+        in.fail(std::string("has no $") + (has_nodes ? "Elements" : "Nodes") + ", it is incomplete",
+                "mesh the geometry and save: gmsh -2 part.geo -format msh41");
+      return std::move(mesh);
+    }
+  } // namespace
+
+  MeshFile parse_gmsh(const std::string &file, const std::string &text)
+  {
+    return GmshReader(file, text).read();
+  }
+} // namespace slipstick::mesh

@@ -1,0 +1,272 @@
+#include <slipstick/mesh/mesh_piece.h>
+
+#include <metis.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace slipstick::mesh
+{
+  namespace
+  {
+    constexpr unsigned int most_bisected = 8; // parts
+
+    /// Sub-piece of the given cells.
+    template <int dim>
+    MeshPiece<dim> extract(
+      const MeshPiece<dim>                                                                 &whole,
+      const std::vector<unsigned int>                                                      &cells,
+      const std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> &boundary)
+    {
+      MeshPiece<dim>                       piece;
+      std::map<unsigned int, unsigned int> local;
+      piece.body    = whole.body;
+      piece.ordered = whole.ordered;
+      for (const unsigned int c : cells)
+        {
+          auto cell = whole.cells[c];
+          for (unsigned int f = 0; f < n_corners<dim>(cell); ++f)
+            {
+              const auto found = boundary.find(face_of_cell<dim>(cell, f));
+              if (found != boundary.end())
+                piece.boundary_faces.push_back(found->second);
+            }
+          for (unsigned int k = 0; k < n_corners<dim>(cell); ++k)
+            {
+              unsigned int &v            = cell[k];
+              const auto [entry, is_new] = local.emplace(v, piece.vertices.size());
+              if (is_new)
+                {
+                  piece.vertices.push_back(whole.vertices[v]);
+                  piece.global_vertices.push_back(whole.global_vertices[v]);
+                }
+              v = entry->second;
+            }
+          piece.cells.push_back(cell);
+        }
+      for (auto &face : piece.boundary_faces)
+        for (unsigned int &v : face.vertices)
+          v = local.at(v);
+      return piece;
+    }
+  } // namespace
+
+  template <int dim>
+  std::vector<std::pair<typename MeshPiece<dim>::Face, unsigned int>> faces_with_cells(const MeshPiece<dim> &piece)
+  {
+    std::vector<std::pair<typename MeshPiece<dim>::Face, unsigned int>> faces;
+    faces.reserve(piece.cells.size() * dealii::GeometryInfo<dim>::faces_per_cell);
+    for (unsigned int c = 0; c < piece.cells.size(); ++c)
+      for (unsigned int f = 0; f < n_corners<dim>(piece.cells[c]); ++f)
+        faces.emplace_back(face_of_cell<dim>(piece.cells[c], f), c);
+    std::sort(faces.begin(), faces.end());
+    return faces;
+  }
+
+  template <int dim>
+  std::map<typename MeshPiece<dim>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<dim> &piece)
+  {
+    std::map<typename MeshPiece<dim>::Face, dealii::types::boundary_id> ids;
+    for (const auto &face : piece.boundary_faces)
+      {
+        auto key = face.vertices;
+        std::sort(key.begin(), key.end());
+        ids[key] = face.id;
+      }
+    return ids;
+  }
+
+  template <int dim>
+  std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> boundary_by_vertices(
+    const MeshPiece<dim> &piece)
+  {
+    std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> faces;
+    for (auto face : piece.boundary_faces)
+      {
+        if (face.vertices[0] > face.vertices[1])
+          {
+            std::swap(face.vertices[0], face.vertices[1]);
+            face.curve = face.curve.reversed();
+          }
+        faces[face.vertices] = face;
+      }
+    return faces;
+  }
+
+  template <int dim>
+  MeshPiece<dim> rectangle_piece(const scene::Body<dim>              &body,
+                                 const std::array<unsigned int, dim> &n_cells,
+                                 const std::array<unsigned int, dim> &n_blocks,
+                                 const std::array<unsigned int, dim> &block)
+  {
+    static_assert(dim == 2, "the lattice below is written for two dimensions");
+    std::array<unsigned int, dim> first, n; // lattice cells of this block
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        n[d]     = n_cells[d] / n_blocks[d];
+        first[d] = block[d] * n[d];
+      }
+    MeshPiece<dim> piece;
+    piece.ordered     = true;
+    const auto vertex = [&](const unsigned int i, const unsigned int j) { return j * (n[0] + 1) + i; };
+    for (unsigned int j = 0; j <= n[1]; ++j)
+      for (unsigned int i = 0; i <= n[0]; ++i)
+        {
+          // from the lattice of the whole body, so that copies of a vertex have the same coordinates to the last bit
+          const std::array<unsigned int, dim> lattice{{first[0] + i, first[1] + j}};
+          dealii::Point<dim>                  x;
+          for (unsigned int d = 0; d < dim; ++d)
+            x[d] = body.origin[d] + body.size[d] * lattice[d] / n_cells[d];
+          piece.vertices.push_back(x);
+          piece.global_vertices.push_back(GlobalVertex(lattice[1]) * (n_cells[0] + 1) + lattice[0]);
+        }
+    for (unsigned int j = 0; j < n[1]; ++j)
+      for (unsigned int i = 0; i < n[0]; ++i)
+        piece.cells.push_back({{vertex(i, j), vertex(i + 1, j), vertex(i, j + 1), vertex(i + 1, j + 1)}});
+    for (unsigned int j = 0; j < n[1]; ++j)
+      {
+        if (block[0] == 0)
+          piece.boundary_faces.push_back({{{vertex(0, j), vertex(0, j + 1)}}, 0});
+        if (block[0] + 1 == n_blocks[0])
+          piece.boundary_faces.push_back({{{vertex(n[0], j), vertex(n[0], j + 1)}}, 1});
+      }
+    for (unsigned int i = 0; i < n[0]; ++i)
+      {
+        if (block[1] == 0)
+          piece.boundary_faces.push_back({{{vertex(i, 0), vertex(i + 1, 0)}}, 2});
+        if (block[1] + 1 == n_blocks[1])
+          piece.boundary_faces.push_back({{{vertex(i, n[1]), vertex(i + 1, n[1])}}, 3});
+      }
+    return piece;
+  }
+
+  template <int dim>
+  void place(MeshPiece<dim> &piece, const scene::Placement<dim> &placement)
+  {
+    static_assert(dim == 2, "turned in the plane");
+    // whole quarters are exact
+    const double quarters = placement.rotation / 90;
+    const bool   whole    = quarters == std::round(quarters);
+    const int    quarter  = whole ? static_cast<int>(std::remainder(quarters, 4)) & 3 : 0;
+    const double angle    = placement.rotation * dealii::numbers::PI / 180;
+    const double cosine   = whole ? std::array<int, 4>{{1, 0, -1, 0}}[quarter] : std::cos(angle);
+    const double sine     = whole ? std::array<int, 4>{{0, 1, 0, -1}}[quarter] : std::sin(angle);
+    const auto   move     = [&](dealii::Point<dim> &x) {
+      if (placement.mirror_x)
+        x[0] = -x[0];
+      if (placement.mirror_y)
+        x[1] = -x[1];
+      x = dealii::Point<dim>(cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]) + placement.translation;
+    };
+    for (auto &x : piece.vertices)
+      move(x);
+    for (auto &face : piece.boundary_faces)
+      face.curve.move(move);
+    if (placement.mirror_x != placement.mirror_y)
+      for (auto &cell : piece.cells)
+        std::swap(cell[1], cell[2]); // of a quadrilateral in lexicographic order, and of a triangle
+  }
+
+  template <int dim>
+  std::vector<MeshPiece<dim>> cut(const MeshPiece<dim> &whole, const std::vector<unsigned int> &part)
+  {
+    const unsigned int n_cells = whole.cells.size();
+    AssertDimension(part.size(), n_cells);
+
+    // union-find over faces between cells of the same part
+    std::vector<unsigned int> root(n_cells);
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&](unsigned int c) {
+      while (root[c] != c)
+        c = root[c] = root[root[c]];
+      return c;
+    };
+    const auto faces = faces_with_cells(whole);
+    for (std::size_t k = 1; k < faces.size(); ++k)
+      if (faces[k].first == faces[k - 1].first && part[faces[k].second] == part[faces[k - 1].second])
+        {
+          const unsigned int a = find(faces[k].second), b = find(faces[k - 1].second);
+          root[std::max(a, b)] = std::min(a, b);
+        }
+
+    const auto                                                                 boundary = boundary_by_vertices(whole);
+    std::map<std::pair<unsigned int, unsigned int>, std::vector<unsigned int>> cells_of_piece; // by part and root
+    for (unsigned int c = 0; c < n_cells; ++c)
+      cells_of_piece[{part[c], find(c)}].push_back(c);
+    std::vector<MeshPiece<dim>> pieces;
+    for (const auto &[key, cells] : cells_of_piece)
+      pieces.push_back(extract<dim>(whole, cells, boundary));
+    return pieces;
+  }
+
+  template <int dim>
+  std::vector<unsigned int> metis_parts(const MeshPiece<dim> &piece,
+                                        const unsigned int    n_parts,
+                                        const unsigned int    seed)
+  {
+    const unsigned int        n_cells = piece.cells.size();
+    std::vector<unsigned int> part(n_cells, 0);
+    if (n_parts <= 1)
+      return part;
+    if (n_parts >= n_cells)
+      {
+        std::iota(part.begin(), part.end(), 0);
+        return part;
+      }
+
+    // cells that share a face, as METIS wants them: compressed rows
+    const auto         faces = faces_with_cells(piece);
+    std::vector<idx_t> first(n_cells + 1, 0);
+    const auto         for_neighbours = [&faces](const auto &f) {
+      for (std::size_t k = 1; k < faces.size(); ++k)
+        if (faces[k].first == faces[k - 1].first)
+          {
+            f(faces[k].second, faces[k - 1].second);
+            f(faces[k - 1].second, faces[k].second);
+          }
+    };
+    for_neighbours([&first](const unsigned int c, const unsigned int) { ++first[c + 1]; });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<idx_t> neighbours(first.back()), next(first.begin(), first.end() - 1);
+    for_neighbours([&](const unsigned int c, const unsigned int other) { neighbours[next[c]++] = other; });
+
+    idx_t options[METIS_NOPTIONS];
+    METIS_SetDefaultOptions(options);
+    options[METIS_OPTION_NUMBERING] = 0;
+    options[METIS_OPTION_SEED]      = seed;
+    if (n_parts > most_bisected)
+      options[METIS_OPTION_CONTIG] = 1; // no part in two pieces
+    idx_t              n = n_cells, n_weights = 1, parts = n_parts, n_cut = 0;
+    std::vector<idx_t> result(n_cells);
+    // bisection gives rounder parts when there are few (METIS manual, section 5.1); k-way keeps each in one piece
+    const auto partition = n_parts <= most_bisected ? METIS_PartGraphRecursive : METIS_PartGraphKway;
+    const int  status    = partition(&n,
+                                 &n_weights,
+                                 first.data(),
+                                 neighbours.data(),
+                                 nullptr,
+                                 nullptr,
+                                 nullptr,
+                                 &parts,
+                                 nullptr,
+                                 nullptr,
+                                 options,
+                                 &n_cut,
+                                 result.data());
+    AssertThrow(status == METIS_OK, dealii::ExcMessage("METIS failed with status " + std::to_string(status)));
+    part.assign(result.begin(), result.end());
+    return part;
+  }
+
+  template struct MeshPiece<2>;
+  template std::vector<std::pair<MeshPiece<2>::Face, unsigned int>> faces_with_cells(const MeshPiece<2> &);
+  template std::map<MeshPiece<2>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<2> &);
+  template std::map<MeshPiece<2>::Face, MeshPiece<2>::BoundaryFace> boundary_by_vertices(const MeshPiece<2> &);
+  template MeshPiece<2>                                             rectangle_piece<2>(const scene::Body<2> &,
+                                           const std::array<unsigned int, 2> &,
+                                           const std::array<unsigned int, 2> &,
+                                           const std::array<unsigned int, 2> &);
+  template void                                                     place(MeshPiece<2> &, const scene::Placement<2> &);
+  template std::vector<MeshPiece<2>> cut(const MeshPiece<2> &, const std::vector<unsigned int> &);
+  template std::vector<unsigned int> metis_parts(const MeshPiece<2> &, const unsigned int, const unsigned int);
+} // namespace slipstick::mesh

@@ -1,0 +1,189 @@
+#include <slipstick/base/collective.h>
+#include <slipstick/base/exceptions.h>
+#include <slipstick/base/memory.h>
+#include <slipstick/base/text.h>
+#include <slipstick/mesh/mesh_file.h>
+#include <slipstick/mesh/size_check.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+namespace slipstick::mesh
+{
+  namespace
+  {
+    // Bytes an unknown: mesh, stiffness and output, and the factor, whose entries grow with the logarithm of the subdomain's
+    // size. Measured: 1.33 million unknowns in 256 subdomains take 1 GB (README.md).
+    constexpr double bytes_per_unknown = 300, bytes_per_unknown_and_doubling = 32;
+    constexpr double cells_per_subdomain = 10000; // what auto aims at, see decomposition.cc
+    constexpr double most_cells          = 1e9;   // beyond this counters of 32 bits may overflow
+    constexpr double bytes_per_subdomain = 100e3; // its mesh and lists, however few its cells
+    constexpr double many_subdomains     = 1e4;   // beyond this the message names them
+    constexpr double bytes_of_a_cell     = 40;    // in a mesh file
+    constexpr double around_an_edge      = 13;    // cells that come with an edge refined by 3, all levels together
+    constexpr double usable              = 0.9;   // of the memory that is free
+    constexpr double finest = 1e-8; // edges of cells over their distance from the origin: 8 digits are left
+
+    struct Count
+    {
+      double cells = 0, outline = 0; // before refinements towards boundaries
+    };
+
+    Count count_of_file(const std::string &path)
+    {
+      const MeshFile                                                file = read_mesh_file(path);
+      std::map<std::pair<unsigned int, unsigned int>, unsigned int> n_cells;
+      Count                                                         count;
+      for (const auto &cell : file.elements)
+        if (cell.dim == 2)
+          {
+            ++count.cells;
+            for (unsigned int k = 0; k < cell.n; ++k)
+              ++n_cells[std::minmax(cell.corners[k], cell.corners[(k + 1) % cell.n])];
+          }
+      for (const auto &entry : n_cells)
+        count.outline += entry.second == 1;
+      return count;
+    }
+
+    template <int dim>
+    Count count_of(const scene::Scene<dim> &scene, const scene::Body<dim> &body)
+    {
+      const double refined = std::ldexp(1., scene.discretization.refinements + body.refinements);
+      Count        count;
+      switch (body.shape)
+        {
+          case scene::Shape::rectangle:
+            {
+              const double n = double(scene.decomposition.blocks) * scene.decomposition.cells_per_block;
+              const double a = body.cells ? (*body.cells)[0] : n, b = body.cells ? (*body.cells)[1] : n;
+              count = {a * b, 2 * (a + b)};
+              break;
+            }
+          case scene::Shape::disc: // a square of a quarter of the edges a side, and about as many around it
+          case scene::Shape::half_disc:
+            {
+              const double n = body.cells_along_arc;
+              count          = {n * n / 8, body.shape == scene::Shape::disc ? n : 1.5 * n};
+              break;
+            }
+          case scene::Shape::quarter_disc:
+            {
+              const double n = body.cells_along_arc;
+              count          = {n * n / 2, 3 * n};
+              break;
+            }
+          case scene::Shape::ring:
+          case scene::Shape::quarter_ring:
+            {
+              const double around = body.cells ? (*body.cells)[0] : 64, across = body.cells ? (*body.cells)[1] : 16;
+              count = {around * across, 2 * (around + across)};
+              break;
+            }
+          case scene::Shape::mesh:
+            {
+              std::error_code error;
+              if (refined > 1 || body.boundary_refinements > 0)
+                count = count_of_file(body.file);
+              else
+                count.cells = std::filesystem::file_size(body.file, error) / bytes_of_a_cell;
+              break;
+            }
+        }
+      return {count.cells * refined * refined, count.outline * refined};
+    }
+
+    std::string rounded(const double value)
+    {
+      char text[32];
+      std::snprintf(text, sizeof(text), value < 1e6 ? "%.0f" : "%.2g", value);
+      return text;
+    }
+  } // namespace
+
+  template <int dim>
+  SizeEstimate estimate_size(const scene::Scene<dim> &scene)
+  {
+    SizeEstimate size;
+    double       most = 0;
+    for (const auto &body : scene.bodies)
+      {
+        const Count  count   = count_of(scene, body);
+        const double towards = body.refined_boundaries.empty()
+                                 ? 0
+                                 : count.outline * around_an_edge * (std::pow(3., body.boundary_refinements) - 1);
+        size.cells += count.cells + towards;
+        if (count.cells + towards > most)
+          {
+            most         = count.cells + towards;
+            size.largest = "Body " + body.name + ": " + rounded(most) + " cells" +
+                           (towards > count.cells ? ", most of them by Refine levels" : "");
+          }
+      }
+    size.unknowns       = size.cells * dim * scene.discretization.degree * scene.discretization.degree;
+    double n_subdomains = std::max<double>(scene.bodies.size(), size.unknowns / (dim * cells_per_subdomain));
+    if (scene.decomposition.method == scene::DecompositionMethod::blocks)
+      n_subdomains = double(scene.bodies.size()) * scene.decomposition.blocks * scene.decomposition.blocks;
+    else if (scene.decomposition.method == scene::DecompositionMethod::none)
+      n_subdomains = scene.bodies.size();
+    else if (scene.decomposition.subdomains > 0)
+      n_subdomains = std::min<double>(scene.decomposition.subdomains, size.cells); // more are refused for themselves
+    const double of_one = std::max(2., size.unknowns / n_subdomains);
+    size.memory_mb      = (n_subdomains * bytes_per_subdomain +
+                      size.unknowns * (bytes_per_unknown + bytes_per_unknown_and_doubling * std::log2(of_one))) /
+                     1048576;
+    if (n_subdomains > many_subdomains)
+      size.largest += ", in " + rounded(n_subdomains) + " subdomains";
+    return size;
+  }
+
+  template <int dim>
+  void check_size(const scene::Scene<dim> &scene, const bool forced, const MPI_Comm comm)
+  {
+    MPI_Comm node;
+    MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+    const unsigned int on_node = dealii::Utilities::MPI::n_mpi_processes(node);
+    MPI_Comm_free(&node);
+    const double free = dealii::Utilities::MPI::sum(free_memory_mb(on_node) / on_node, comm); // every node by its ranks
+    collectively(comm, [&] {
+      if (dealii::Utilities::MPI::this_mpi_process(comm) != 0)
+        return;
+      const SizeEstimate size = estimate_size(scene);
+      const std::string  asks =
+        "the scene asks for about " + rounded(size.unknowns) + " unknowns (" + size.largest + ")";
+      const std::string less = "ask for fewer Cells, Blocks, Refinements or Refine levels";
+      if (size.cells > most_cells)
+        throw InputError(asks + ", more than can be counted (" + rounded(most_cells) + " cells)", less);
+      if (!forced && size.memory_mb > usable * free)
+        throw InputError(asks + ", which take about " + rounded(size.memory_mb) + " MB of memory, and " +
+                           rounded(free) + " MB are free",
+                         less + "; or run it anyway with --force");
+    });
+  }
+
+  template <int dim>
+  void check_positions(const scene::Scene<dim> &scene, const Mesh<dim> &mesh)
+  {
+    collectively(mesh.comm, [&] {
+      for (const auto &subdomain : mesh.subdomains)
+        for (const auto &cell : subdomain->triangulation.active_cell_iterators())
+          for (const auto &face : cell->face_iterators())
+            {
+              const double length = face->vertex(0).distance(face->vertex(1)), away = face->vertex(0).norm();
+              if (!(length > finest * away))
+                throw InputError("Body " + scene.bodies[subdomain->body].name + ": has an edge of " +
+                                   number_text(length) + " mm at " + number_text(away) +
+                                   " mm from the origin, where numbers do not tell its ends apart well enough",
+                                 "give Translation, Center, Origin or the mesh near the origin, or larger cells");
+            }
+    });
+  }
+
+  template SizeEstimate estimate_size(const scene::Scene<2> &);
+  template void         check_size(const scene::Scene<2> &, const bool, const MPI_Comm);
+  template void         check_positions(const scene::Scene<2> &, const Mesh<2> &);
+} // namespace slipstick::mesh

@@ -1,0 +1,53 @@
+#include <slipstick/mesh/edge_middles.h>
+#include <slipstick/mesh/triangulate.h>
+
+#include <deal.II/grid/grid_tools.h>
+
+namespace slipstick::mesh
+{
+  template <int dim>
+  std::unique_ptr<SubdomainMesh<dim>> triangulate(const MeshPiece<dim> &piece)
+  {
+    std::vector<dealii::CellData<dim>> cells(piece.cells.size());
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      {
+        Assert(n_corners<dim>(piece.cells[c]) == n_corners<dim>(piece.cells[0]),
+               dealii::ExcMessage("cells of one subdomain are of one kind"));
+        cells[c].vertices.assign(piece.cells[c].begin(), piece.cells[c].begin() + n_corners<dim>(piece.cells[c]));
+      }
+    if (!piece.ordered && !is_simplex<dim>(piece.cells[0]))
+      dealii::GridTools::consistently_order_cells(cells);
+
+    auto mesh             = std::make_unique<SubdomainMesh<dim>>();
+    mesh->subdomain       = piece.subdomain;
+    mesh->body            = piece.body;
+    mesh->global_vertices = piece.global_vertices;
+    mesh->triangulation.create_triangulation(piece.vertices, cells, dealii::SubCellData());
+
+    // every face starts as a cut, the boundaries are marked from their vertices
+    const auto boundary = boundary_by_vertices(piece);
+    const auto middles  = middles_of_edges(piece, boundary);
+    for (const auto &cell : mesh->triangulation.active_cell_iterators())
+      for (const auto &face : cell->face_iterators())
+        if (face->at_boundary())
+          {
+            typename MeshPiece<dim>::Face key;
+            for (unsigned int v = 0; v < key.size(); ++v)
+              key[v] = face->vertex_index(v);
+            std::sort(key.begin(), key.end());
+            const auto found = boundary.find(key);
+            face->set_boundary_id(found == boundary.end() ? cut_id : found->second.id);
+            if (found == boundary.end())
+              continue;
+            if (const auto &curve = found->second.curve; curve || curve.left_out > 0)
+              mesh->curves[key] = curve;
+            if (middles.count(key) > 0)
+              face->set_manifold_id(EdgeMiddles<dim>::id);
+          }
+    if (!middles.empty())
+      mesh->triangulation.set_manifold(EdgeMiddles<dim>::id, EdgeMiddles<dim>(middles));
+    return mesh;
+  }
+
+  template std::unique_ptr<SubdomainMesh<2>> triangulate(const MeshPiece<2> &);
+} // namespace slipstick::mesh
