@@ -135,20 +135,22 @@ namespace slipstick::mesh
       n_blocks.fill(N);
       const unsigned int per_body = product<dim>(n_blocks);
       mesh.first_subdomain        = equal_shares(per_body * scene.bodies.size(), mesh.first_subdomain.size() - 1);
-      for (unsigned int s = mesh.first_subdomain[rank]; s < mesh.first_subdomain[rank + 1]; ++s)
-        {
-          const unsigned int body = s / per_body, b = s % per_body;
-          auto               piece = rectangle_piece<dim>(scene.bodies[body],
-                                            rectangle_cells(scene, scene.bodies[body]),
-                                            n_blocks,
-                                            {{b % N, b / N}});
-          place(piece, scene.bodies[body].placement);
-          piece.subdomain = s;
-          piece.body      = body;
-          for (GlobalVertex &v : piece.global_vertices)
-            v += first_vertex[body];
-          mesh.subdomains.push_back(triangulate(piece));
-        }
+      collectively(mesh.comm, [&] {
+        for (unsigned int s = mesh.first_subdomain[rank]; s < mesh.first_subdomain[rank + 1]; ++s)
+          {
+            const unsigned int body = s / per_body, b = s % per_body;
+            auto               piece = rectangle_piece<dim>(scene.bodies[body],
+                                              rectangle_cells(scene, scene.bodies[body]),
+                                              n_blocks,
+                                              {{b % N, b / N}});
+            place_in_scene(scene, body, piece);
+            piece.subdomain = s;
+            piece.body      = body;
+            for (GlobalVertex &v : piece.global_vertices)
+              v += first_vertex[body];
+            mesh.subdomains.push_back(triangulate(piece));
+          }
+      });
     }
 
     /// The meshes of all bodies, global vertices counted through; on rank 0.

@@ -224,6 +224,13 @@ namespace slipstick::mesh
   }
 
   template <int dim>
+  void place_in_scene(const scene::Scene<dim> &scene, const unsigned int b, MeshPiece<dim> &piece)
+  {
+    place(piece, scene.bodies[b].placement);
+    move_to_axis(scene.bodies[b], Kinematics<dim>(scene.plane_state), piece);
+  }
+
+  template <int dim>
   BodyMesh<dim> make_body(const scene::Scene<dim> &scene, const unsigned int b, std::map<std::string, MeshFile> &files)
   {
     const scene::Body<dim> &body = scene.bodies[b];
@@ -250,12 +257,12 @@ namespace slipstick::mesh
       }
     refine_towards_boundaries(body, mesh);
     mesh.piece.body = b;
-    place(mesh.piece, body.placement);
-    move_to_axis(body, Kinematics<dim>(scene.plane_state), mesh.piece);
+    place_in_scene(scene, b, mesh.piece);
     add_boundary_parts(scene, b, mesh);
     return mesh;
   }
 
+  template void                     place_in_scene(const scene::Scene<2> &, const unsigned int, MeshPiece<2> &);
   template std::vector<std::string> unused_parts(const scene::Scene<2> &, const std::map<std::string, MeshFile> &);
   template BodyMesh<2> make_body(const scene::Scene<2> &, const unsigned int, std::map<std::string, MeshFile> &);
 } // namespace slipstick::mesh

@@ -12,4 +12,10 @@ namespace slipstick::mesh
   /// whole.
   template <int dim>
   BodyMesh<dim> make_body(const scene::Scene<dim> &scene, const unsigned int b, std::map<std::string, MeshFile> &files);
+
+  /// Puts a piece of body number @p b where the scene has it. Of bodies of revolution, nodes within rounding of the axis come to
+  /// lie on it.
+  /// @throws InputError when such a body reaches beyond the axis.
+  template <int dim>
+  void place_in_scene(const scene::Scene<dim> &scene, const unsigned int b, MeshPiece<dim> &piece);
 } // namespace slipstick::mesh
