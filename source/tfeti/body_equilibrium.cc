@@ -214,24 +214,22 @@ namespace slipstick::tfeti
                                              Eigen::SparseMatrix<double> *derivative) const
   {
     follow_pressures(a, rows);
-    const Eigen::VectorXd               slips = shares * a;
-    Eigen::VectorXd                     forces(rows.size());
-    std::vector<Eigen::Triplet<double>> entries; // of the forces by the slips
+    const Eigen::VectorXd slips = shares * a;
+    Eigen::VectorXd       moved(rows.size()), forces(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
       {
-        const Row   &row = rows[i];
-        const double t   = row.t - row.k * slips[i];
-        forces[i]        = qp::clip(t, row.lower, row.upper);
-        if (!derivative)
-          continue;
-        if (t > row.lower && t < row.upper)
-          entries.emplace_back(i, i, -row.k);
-        else if (row.follows >= 0 && forces[row.follows] > 0) // normal rows come before those that follow them
-          entries.emplace_back(i, row.follows, -(t > 0 ? 1. : -1.) * row.forces.slope(row.upper) * rows[row.follows].k);
+        moved[i]  = rows[i].t - rows[i].k * slips[i];
+        forces[i] = qp::clip(moved[i], rows[i].lower, rows[i].upper);
       }
     size = sum_of_magnitudes(forces);
     if (derivative)
       {
+        std::vector<Eigen::Triplet<double>> entries; // of the forces by the slips
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          if (moved[i] > rows[i].lower && moved[i] < rows[i].upper)
+            entries.emplace_back(i, i, -rows[i].k);
+          else if (const int n = rows[i].follows; n >= 0 && forces[n] > 0)
+            entries.emplace_back(i, n, -(moved[i] > 0 ? 1. : -1.) * rows[i].forces.slope(rows[i].upper) * rows[n].k);
         Eigen::SparseMatrix<double> by_slips(rows.size(), rows.size());
         by_slips.setFromTriplets(entries.begin(), entries.end());
         *derivative = -(by_columns.transpose() * by_slips * by_columns);

@@ -6,6 +6,8 @@
 #include <slipstick/qp/kernels.h>
 #include <slipstick/qp/pressure_bounds.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -50,11 +52,11 @@ namespace slipstick::qp
       return false;
     }
 
-    // Bodies that move until s g balances their loads rest on the fewer points the stiffer s is: no larger than this then.
-    constexpr double step_with_loose_bodies = 1;
-
     /// The natural map x -> proj(x - s g) of an admissible set, and the set of entries that it puts on bounds. s: `step`
-    /// over the norm of F, times the weight of the entry, so that s g is a force of the size that closes g.
+    /// over the norm of F, times the weight of the entry, so that s g is a force of the size that closes g. Bodies that
+    /// contact alone holds move until s g balances their loads. How far they move depends on s, which should then be the
+    /// stiffness of the points that touch: the norm of F on these entries grows with their number. On stiff points bodies rest on
+    /// few, so s falls where that leads astray, never below that of all entries.
     template <typename Vector, typename Problem>
     class ActiveSet
     {
@@ -63,7 +65,8 @@ namespace slipstick::qp
       ActiveSet(const Problem &problem_, const double norm_, AdmissibleSet<Vector> set_, const double step_)
         : problem(problem_)
         , norm(norm_)
-        , step(step_)
+        , balances(has_loose_bodies(problem_, 0))
+        , step(balances ? 1 : step_)
         , set(std::move(set_))
         , weights(residual_weights(problem_, 0))
         , active(local_size(set.box.lower))
@@ -93,14 +96,13 @@ namespace slipstick::qp
         return set.box;
       }
 
-      /// From here on bodies that contact alone holds move until s g balances their loads. @return whether that is new, and
-      /// there are such bodies.
-      bool start_balancing()
+      /// Halve s where bodies rest on s g. @return whether it is smaller.
+      bool soften()
       {
-        if (balances || !has_loose_bodies(problem, 0))
+        if (!balances || step <= 1)
           return false;
-        balances = true;
-        step     = std::min(step, step_with_loose_bodies);
+        softening /= 2;
+        adapt_step();
         return true;
       }
 
@@ -114,6 +116,8 @@ namespace slipstick::qp
         for (std::size_t i = 0; i < active.size(); ++i)
           if (active[i] * before[i] < 0 && set.box.lower.begin()[i] < set.box.upper.begin()[i])
             active[i] = 0; // from one bound to the other by way of the inside: s g is cut to the width
+        if (balances)
+          adapt_step();
         return problem.reduction().min(active == before ? 1. : 0.) < 1;
       }
 
@@ -231,6 +235,21 @@ namespace slipstick::qp
         return weights ? weights[i] : 1.;
       }
 
+      // s from how many of the one-sided entries, those of contact, are off their bounds.
+      void adapt_step()
+      {
+        std::array<double, 2> n{{0, 0}}; // all, off their bounds
+        for (std::size_t i = 0; i < active.size(); ++i)
+          if (set.box.lower.begin()[i] > -HUGE_VAL && set.box.upper.begin()[i] == HUGE_VAL)
+            {
+              n[0] += 1;
+              n[1] += active[i] == 0;
+            }
+        n = problem.reduction().sum(n);
+        if (n[1] > 0)
+          step = std::max(1., softening * n[0] / n[1]);
+      }
+
       // Bounds that follow the normal entries, to those of x; 0 where the set is open, and where it is closed without the
       // jump to 0 that the law has where the normal entry vanishes.
       void move_bounds(const Vector &x)
@@ -278,8 +297,9 @@ namespace slipstick::qp
 
       const Problem        &problem;
       const double          norm;
+      const bool            balances;
       double                step;
-      bool                  balances = false;
+      double                softening = 1; // of s, <= 1
       AdmissibleSet<Vector> set;
       const double         *weights;
       std::vector<bool>     bounded;

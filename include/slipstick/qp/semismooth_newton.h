@@ -71,9 +71,6 @@ namespace slipstick::qp
   {
     // Of a step along M r: eigenvalues of F M are 1 to some 5 (first steps of conjugate gradients there: 0.15 to 0.5).
     constexpr double descent_step = 0.3;
-    // Steps after which bodies that contact alone holds move until it balances their loads. Where many nodes hold a body, which
-    // then rests on others than the elastic one, sets are better told by the multipliers a of the faces, in 10 to 20 steps.
-    constexpr unsigned int unbalanced_steps = 20;
 
     template <typename Vector, typename Problem>
     class SemismoothNewton
@@ -163,20 +160,10 @@ namespace slipstick::qp
                 has_met_goal = true;
                 tolerance    = options.tightening * left;
               }
-            const bool falls = step();
-            if ((!falls || counts.outer_iterations >= unbalanced_steps) && set.start_balancing())
-              start_again();
-            else if (!falls)
+            if (!step())
               return ended(Status::stagnated);
           }
         return ended(Status::iteration_limit);
-      }
-
-      void start_again()
-      {
-        is_stuck = false;
-        merits   = {set.natural_residual(x, g)};
-        set.predict(x, g);
       }
 
       // Residuals below the goal that do not fall any more are at rounding.
@@ -327,12 +314,7 @@ namespace slipstick::qp
         const auto   solved = set.free();
         const double t      = line_search();
         if (t == 0) // once more with the set of x itself
-          {
-            const bool is_hopeless = is_stuck;
-            is_stuck               = true;
-            set.predict(x, g);
-            return !is_hopeless;
-          }
+          return !has_met_goal && restart();
         is_stuck = false;
         Vector known(g); // what is left on free entries after a whole step says nothing of the set
         if (t == 1)
@@ -340,6 +322,17 @@ namespace slipstick::qp
             known.begin()[i] = solved[i] ? 0. : known.begin()[i];
         set.predict(x, known);
         return true;
+      }
+
+      // From the set of x itself, which is told with softer points where that is possible. @return whether it was not tried yet.
+      bool restart()
+      {
+        const bool is_softer = set.soften(), is_first = !is_stuck;
+        is_stuck = true;
+        if (is_softer)
+          merits = {set.natural_residual(x, g)};
+        set.predict(x, g);
+        return is_softer || is_first;
       }
 
       // x moves towards y as far as the natural residual falls below the largest of the last steps. @return how
@@ -370,6 +363,8 @@ namespace slipstick::qp
           }
         if (!has_met_goal && merit < *std::min_element(merits.begin(), merits.end()))
           best = y;
+        if (!(merit < merits.back()))
+          set.soften();
         merits.push_back(merit);
         std::swap(x, y);
         std::swap(Fx, Fy);
