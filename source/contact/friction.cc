@@ -37,7 +37,7 @@ namespace slipstick::contact
     constexpr double largest_traction_error = 0.05;
     // Tractions of a pair below this part of the largest, of any pair in any step so far, count as this part.
     constexpr double negligible_pair = 1e-3;
-    // ... and so do those below this part of the largest force anywhere, on one contact node: of pairs that no load reaches.
+    // ... and so do those below this part of what balances the loads, on one contact node: of pairs that no load reaches.
     constexpr double negligible_force = 1e-6;
     // Loads below this part of those of earlier steps are what rounding leaves of none.
     constexpr double rounding_of_loads = 1e-12;
@@ -109,6 +109,7 @@ namespace slipstick::contact
       Vector feasible_start(const DualSolution *start)
       {
         const auto loads = dual.particular();
+        largest_balance  = loads.linfty_norm();
         if (start && loads.l2_norm() <= rounding_of_loads * start->reference) // unloaded to zero
           return dual.zero();
         auto point = qp::feasible_point(dual, loads, law.admissible(dual));
@@ -258,7 +259,7 @@ namespace slipstick::contact
         for (const auto &point : dual.constraints().contact_points)
           area = std::max(area, point.traction_area);
         area              = dealii::Utilities::MPI::max(area, dual.communicator());
-        const double none = area > 0 ? negligible_force * x.linfty_norm() / std::sqrt(area) : 0.;
+        const double none = area > 0 ? negligible_force * largest_balance / std::sqrt(area) : 0.;
         const double part = std::min(largest_traction_error, traction_error * options.tolerance);
         for (std::size_t k = 0; k < squares.size(); k += 2)
           if (squares[k + 1] >
@@ -507,6 +508,7 @@ namespace slipstick::contact
       double                least_change     = qp::infinity;
       unsigned int          updates_in_row   = 0; // without progress
       double                largest_traction = 0; // norm in L2 of a pair's, in the steps before [sqrt(N MPa)]
+      double                largest_balance  = 0; // of the least multipliers that balance the loads [N]
     };
   } // namespace
 

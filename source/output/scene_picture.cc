@@ -35,8 +35,8 @@ namespace slipstick::output
                                               {"foundation", "#0b7285", 4, "2 4"},
                                               {"traction", "#d1242f", 4, ""},
                                               {"point load", "#d1242f", 4, ""},
-                                              {"contact, slave", "#bc6c00", 4, ""},
-                                              {"contact, master", "#8250df", 4, "7 5"}}};
+                                              {"contact, slave", "#bc6c00", 2.5, ""},
+                                              {"contact, master", "#8250df", 6, ""}}};
 
     const Style &style_of(const std::string &kind)
     {
@@ -299,9 +299,9 @@ namespace slipstick::output
       Picture picture(out, view);
       for (const auto &pair : scene.contacts)
         {
-          picture.named("contact, slave", pair.name, on(pair.slave));
-          if (pair.master)
+          if (pair.master) // below: the two often coincide
             picture.named("contact, master", pair.name, on(*pair.master));
+          picture.named("contact, slave", pair.name, on(pair.slave));
         }
       unsigned int next = 0;
       for (const auto &support : scene.supports)
