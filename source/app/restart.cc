@@ -15,6 +15,7 @@
 #include <boost/serialization/vector.hpp>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -112,6 +113,10 @@ namespace slipstick
     {
       a &x.max_displacement &x.max_von_mises &x.max_von_mises_at &x.singular &x.probes &x.strain_energy &x.contact &x
         .forces;
+      bool                  is_revolved = x.hoop_stress.has_value();
+      std::array<double, 2> hoop_stress = x.hoop_stress.value_or(std::array<double, 2>());
+      a &is_revolved       &hoop_stress;
+      x.hoop_stress = is_revolved ? std::optional(hoop_stress) : std::nullopt;
     }
     template <class Archive>
     void serialize(Archive &a, DualSummary &x, const unsigned int)
@@ -121,7 +126,8 @@ namespace slipstick
     template <class Archive>
     void serialize(Archive &a, ProblemSummary &x, const unsigned int)
     {
-      a &x.dimension &x.bodies &x.subdomains &x.primal_dofs &x.kernel_dimension &x.cells &x.dual &x.contact_candidates;
+      a &x.dimension &x.plane_state &x.bodies &x.subdomains &x.primal_dofs &x.kernel_dimension &x.cells &x.dual &x
+        .contact_candidates;
     }
     // times and memory are those of the process
     template <class Archive>
