@@ -3,6 +3,7 @@
 
 #include <slipstick/base/exceptions.h>
 #include <slipstick/mesh/make_body.h>
+#include <slipstick/mesh/size_check.h>
 
 #include <filesystem>
 #include <fstream>
@@ -823,4 +824,12 @@ TEST(MeshFiles, sections_of_bodies_of_revolution_do_not_reach_beyond_the_axis)
       EXPECT_TRUE(x[0] == 0 || x[0] > 0.5);
   scene.bodies[0].origin[0] = -0.25;
   EXPECT_SAYS(refusal([&] { mesh::make_mesh(scene, MPI_COMM_SELF); }), "Body pin: it reaches to x = -0.25 mm");
+}
+
+TEST(MeshFiles, parts_of_one_file_are_not_each_estimated_as_large_as_the_file)
+{
+  Scene all;
+  all.bodies = {body_of(formats[0], "")};
+  EXPECT_GT(mesh::estimate_size(all).cells, 0);
+  EXPECT_NEAR(mesh::estimate_size(two_parts(formats[0])).cells, mesh::estimate_size(all).cells, 1e-9);
 }
