@@ -243,12 +243,13 @@ namespace slipstick::app
         summary.time_s    = times(clock, solver.factorization_seconds());
         summary.memory_mb = memory(comm);
         summary.warnings  = warnings;
-        output::write_summary(directory, summary);
         write_restart(directory,
                       scene,
                       {solver.state(), summary, contact_steps, total_slip, warnings, warned_about},
                       comm);
-        kept_steps   = step + 1;
+        kept_steps = step + 1;
+        output::write_summary(directory, summary);
+        announce(step + 1);
         kept_at      = clock.total();
         writing_time = kept_at - begin;
         clock.leave();
@@ -366,7 +367,7 @@ namespace slipstick::app
                     values.position[d]     = point.position[d];
                     values.displacement[d] = point.displacement[d];
                   }
-                values.stress    = point.stress;
+                values.stress = point.stress;
                 values.von_mises =
                   mechanics::von_mises(point.stress[0], point.stress[1], point.stress[2], point.stress[3]);
                 result.points.push_back(values);

@@ -39,6 +39,8 @@ namespace slipstick::app
     constexpr double least_tightening = 2;
     // ... and no more at a time, ...
     constexpr double largest_tightening = 1e4;
+    // ... even if the check does not fall, where errors are as large as this part of the answer: they cannot rise much ...
+    constexpr double of_no_answer = 0.5;
     // ... down to what double precision reaches nearly everywhere.
     constexpr double least_tolerance = 1e-13;
     // Below this tolerance rounding of the multipliers may show; gaps are then closed in the displacement first ...
@@ -508,8 +510,8 @@ namespace slipstick::app
         const double kept        = kept_part;
         the_solution.multipliers = answer->recovery.multipliers;
         auto next                = checked(solve_step(step, multiplications_before, true), scene.load_factors[step]);
-        if (kept_part != kept ||
-            (the_solution.status == qp::Status::converged && next->contact->checks.worst().second < worst.value))
+        if (kept_part != kept || (the_solution.status == qp::Status::converged &&
+                                  (worst.value > of_no_answer || next->contact->checks.worst().second < worst.value)))
           answer = std::move(next); // the first: it got rows for more contact nodes
         else
           { // to the tolerance that was asked for it did converge
