@@ -158,11 +158,12 @@ namespace slipstick::tfeti
   }
 
   // Sum over rows of what they see of the motions, times itself; whole on every rank, summed in the order of the ranks.
-  Eigen::SparseMatrix<double> BodyMotions::resistance_of(const std::vector<bool> &active) const
+  Eigen::SparseMatrix<double> BodyMotions::resistance_of(const std::vector<bool> &active,
+                                                         const bool               without_levers) const
   {
-    const auto at_one_point = [&active](const Share &share) {
+    const auto at_one_point = [without_levers](const Share &share) {
       Eigen::VectorXd values = share.values;
-      if (active.empty())
+      if (without_levers)
         values[values.size() - 1] -= share.lever;
       return values;
     };
@@ -201,10 +202,15 @@ namespace slipstick::tfeti
 
   std::vector<RigidMotion> BodyMotions::free(const std::vector<bool> &active, const double resistance) const
   {
-    const Eigen::SparseMatrix<double> all = resistance_of(active);
-    std::vector<RigidMotion>          motions;
-    for (auto &vector : null_vectors(all, resistance * std::max(largest_eigenvalue(all), 1.)))
-      motions.push_back({std::move(vector), 0., frames});
+    std::vector<RigidMotion> motions;
+    for (const bool without_levers :
+         {false, true}) // a lever taken off can resist a motion that the row itself does not
+      if (motions.empty() && (active.empty() || !without_levers))
+        {
+          const Eigen::SparseMatrix<double> all = resistance_of(active, without_levers);
+          for (auto &vector : null_vectors(all, resistance * std::max(largest_eigenvalue(all), 1.)))
+            motions.push_back({std::move(vector), 0., frames});
+        }
     if (motions.empty()) // as nearly always: the loads are not asked
       return motions;
     const Eigen::VectorXd load = loads();

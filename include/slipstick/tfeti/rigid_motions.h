@@ -71,7 +71,7 @@ namespace slipstick::tfeti
     };
 
     void                        find_levers();
-    Eigen::SparseMatrix<double> resistance_of(const std::vector<bool> &active) const;
+    Eigen::SparseMatrix<double> resistance_of(const std::vector<bool> &active, const bool without_levers) const;
 
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     MPI_Comm                                             comm;
