@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace slipstick::tfeti
 {
@@ -20,6 +21,10 @@ namespace slipstick::tfeti
     constexpr unsigned int max_rounds = 5;
     // Forces are out of balance by less than this part of all of them: rounding.
     constexpr double balanced = 1e-12;
+    // Forces out of balance by less than this part of all of them move no body: faces tell what is left, better than points on
+    // springs. Without it a body 1e6 times softer than its base cycles; with 0.1 the lap joint tightened by cooling takes 300
+    // multiplications in place of 70.
+    constexpr double tolerated = 0.01;
     // Motions that no row inside its bounds resists are resisted by this part of what all rows would.
     constexpr double regularization = 1e-10;
     // Jumps below this part of the largest are rounding of none.
@@ -77,9 +82,9 @@ namespace slipstick::tfeti
 
   void BodyEquilibrium::set_loads(const Eigen::VectorXd &of_bodies)
   {
-    loads.resize(motions.size());
+    all_loads.resize(motions.size());
     for (std::size_t m = 0; m < motions.size(); ++m)
-      loads[m] = motions[m].amplitudes.dot(of_bodies);
+      all_loads[m] = motions[m].amplitudes.dot(of_bodies);
   }
 
   std::vector<BodyEquilibrium::Row> BodyEquilibrium::gathered(const std::vector<double>                  &t,
@@ -166,7 +171,7 @@ namespace slipstick::tfeti
     return s0 - f0 * (s1 - s0) / (f1 - f0);
   }
 
-  bool BodyEquilibrium::minimise(const std::vector<Row> &rows, Eigen::VectorXd &a) const
+  bool BodyEquilibrium::minimise(const Eigen::VectorXd &loads, const std::vector<Row> &rows, Eigen::VectorXd &a) const
   {
     Eigen::VectorXd stiffness(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
@@ -184,7 +189,7 @@ namespace slipstick::tfeti
             inside[i]      = t > rows[i].lower && t < rows[i].upper ? rows[i].k : 0.;
           }
         const Eigen::VectorXd slope = loads - shares.transpose() * forces;
-        size                        = std::max(size, sum_of_magnitudes(forces));
+        size                        = std::max(size, sum_of_magnitudes(loads, forces));
         if (slope.norm() <= balanced * size)
           return true;
         Eigen::SparseMatrix<double> H = by_columns.transpose() * inside.asDiagonal() * by_columns;
@@ -202,13 +207,14 @@ namespace slipstick::tfeti
     return false;
   }
 
-  double BodyEquilibrium::sum_of_magnitudes(const Eigen::VectorXd &forces) const
+  double BodyEquilibrium::sum_of_magnitudes(const Eigen::VectorXd &loads, const Eigen::VectorXd &forces) const
   {
     return loads.norm() + (magnitudes.transpose() * forces.cwiseAbs()).norm();
   }
 
   // Out of balance, of all forces; and with the bounds that follow, its derivative.
-  Eigen::VectorXd BodyEquilibrium::imbalance(std::vector<Row>            &rows,
+  Eigen::VectorXd BodyEquilibrium::imbalance(const Eigen::VectorXd       &loads,
+                                             std::vector<Row>            &rows,
                                              const Eigen::VectorXd       &a,
                                              double                      &size,
                                              Eigen::SparseMatrix<double> *derivative) const
@@ -221,7 +227,7 @@ namespace slipstick::tfeti
         moved[i]  = rows[i].t - rows[i].k * slips[i];
         forces[i] = qp::clip(moved[i], rows[i].lower, rows[i].upper);
       }
-    size = sum_of_magnitudes(forces);
+    size = sum_of_magnitudes(loads, forces);
     if (derivative)
       {
         std::vector<Eigen::Triplet<double>> entries; // of the forces by the slips
@@ -238,11 +244,11 @@ namespace slipstick::tfeti
   }
 
   // Newton's method for the bounds that follow, on which the potential does not depend.
-  bool BodyEquilibrium::follow(std::vector<Row> &rows, Eigen::VectorXd &a) const
+  bool BodyEquilibrium::follow(const Eigen::VectorXd &loads, std::vector<Row> &rows, Eigen::VectorXd &a) const
   {
     double                      size, largest = 0;
     Eigen::SparseMatrix<double> derivative;
-    Eigen::VectorXd             r = imbalance(rows, a, size, &derivative);
+    Eigen::VectorXd             r = imbalance(loads, rows, a, size, &derivative);
     for (unsigned int step = 0; step < max_newton_steps && r.norm() > balanced * (largest = std::max(largest, size));
          ++step)
       {
@@ -256,16 +262,16 @@ namespace slipstick::tfeti
         if (!p.allFinite())
           return false;
         double          part = 1;
-        Eigen::VectorXd next = imbalance(rows, a + p, size, nullptr);
+        Eigen::VectorXd next = imbalance(loads, rows, a + p, size, nullptr);
         while (!(next.norm() < (1 - least_decrease * part) * r.norm()) && part > shortest_step)
           {
             part /= 2;
-            next = imbalance(rows, a + part * p, size, nullptr);
+            next = imbalance(loads, rows, a + part * p, size, nullptr);
           }
         if (!(next.norm() < r.norm()))
           return false;
         a += part * p;
-        r = imbalance(rows, a, size, &derivative);
+        r = imbalance(loads, rows, a, size, &derivative);
       }
     return r.norm() <= balanced * std::max(largest, size);
   }
@@ -274,13 +280,19 @@ namespace slipstick::tfeti
                                              const std::vector<double>                  &k,
                                              const qp::AdmissibleSet<DistributedVector> &bounds) const
   {
-    std::vector<Row> rows = gathered(t, k, bounds);
-    Eigen::VectorXd  a    = Eigen::VectorXd::Zero(loads.size());
+    std::vector<Row>      rows = gathered(t, k, bounds);
+    Eigen::VectorXd       a    = Eigen::VectorXd::Zero(all_loads.size());
+    double                size;
+    const Eigen::VectorXd r    = imbalance(all_loads, rows, a, size, nullptr);
+    const double          left = tolerated * size;
+    if (r.norm() <= left)
+      return std::vector<double>(t.size(), 0.);
+    const Eigen::VectorXd loads = all_loads - left / r.norm() * r;
     for (unsigned int round = 0; round < max_rounds; ++round)
       {
         follow_pressures(a, rows);
-        const bool is_bounded = minimise(rows, a);
-        if (follow(rows, a) || !is_bounded)
+        const bool is_bounded = minimise(loads, rows, a);
+        if (follow(loads, rows, a) || !is_bounded)
           break;
       }
     const Eigen::VectorXd slips = shares * a;

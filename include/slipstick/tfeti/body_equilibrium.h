@@ -43,13 +43,14 @@ namespace slipstick::tfeti
                               const std::vector<double>                  &k,
                               const qp::AdmissibleSet<DistributedVector> &bounds) const;
     void             follow_pressures(const Eigen::VectorXd &a, std::vector<Row> &rows) const;
-    Eigen::VectorXd  imbalance(std::vector<Row>            &rows,
+    Eigen::VectorXd  imbalance(const Eigen::VectorXd       &loads,
+                               std::vector<Row>            &rows,
                                const Eigen::VectorXd       &a,
                                double                      &size,
                                Eigen::SparseMatrix<double> *derivative) const;
-    bool             follow(std::vector<Row> &rows, Eigen::VectorXd &a) const;
-    double           sum_of_magnitudes(const Eigen::VectorXd &forces) const;
-    bool             minimise(const std::vector<Row> &rows, Eigen::VectorXd &a) const;
+    bool             follow(const Eigen::VectorXd &loads, std::vector<Row> &rows, Eigen::VectorXd &a) const;
+    double           sum_of_magnitudes(const Eigen::VectorXd &loads, const Eigen::VectorXd &forces) const;
+    bool             minimise(const Eigen::VectorXd &loads, const std::vector<Row> &rows, Eigen::VectorXd &a) const;
     double           line_minimum(const std::vector<Row> &rows,
                                   const Eigen::VectorXd  &slips,
                                   const Eigen::VectorXd  &along,
@@ -57,7 +58,7 @@ namespace slipstick::tfeti
 
     MPI_Comm                                     comm;
     std::vector<RigidMotion>                     motions;
-    Eigen::VectorXd                              loads;
+    Eigen::VectorXd                              all_loads;  // along the motions
     std::vector<unsigned int>                    own;        // owned rows that see the motions
     std::vector<int>                             place_of;   // of owned rows among all that do; -1
     Eigen::SparseMatrix<double, Eigen::RowMajor> shares;     // of all ranks' rows, ordered by their labels ...
