@@ -32,8 +32,15 @@ TEST(command_line, defaults)
 
 TEST(command_line, all_options)
 {
-  const auto line = parse({"--set", "Contact circle/Slip bound=150", "a.prm", "--output", "/tmp/run", "--check", "--quiet",
-                           "--set", "Body box/Size=[1, 2], 3"});
+  const auto line = parse({"--set",
+                           "Contact circle/Slip bound=150",
+                           "a.prm",
+                           "--output",
+                           "/tmp/run",
+                           "--check",
+                           "--quiet",
+                           "--set",
+                           "Body box/Size=[1, 2], 3"});
   EXPECT_EQ(line.case_file, "a.prm");
   EXPECT_EQ(line.overrides, (std::vector<std::string>{"Contact circle/Slip bound=150", "Body box/Size=[1, 2], 3"}));
   EXPECT_EQ(line.output_directory, "/tmp/run");

@@ -5,16 +5,25 @@ import unittest
 
 from program import converged, new_path
 
-FIT = """
-set Plane state = plane stress
+STEEL = """
 set Materials = steel
-set Bodies = shaft, hub
-set Supports = centre, no rotation
-set Contacts = fit
 subsection Material steel
   set Young modulus = 2.1e5
   set Poisson ratio = 0.3
 end
+subsection Solver
+  set Tolerance = 1e-8
+end
+subsection Output
+  set VTU = false
+end
+"""
+
+FIT = STEEL + """
+set Plane state = plane stress
+set Bodies = shaft, hub
+set Supports = centre, no rotation
+set Contacts = fit
 subsection Body shaft
   set Shape = disc
   set Radius = 20.02
@@ -42,26 +51,15 @@ subsection Contact fit
   set Law = Coulomb
   set Friction coefficient = 0.15
 end
-subsection Solver
-  set Tolerance = 1e-8
-end
-subsection Output
-  set VTU = false
-end
 """
 # disc of radius 20.02 in a ring from 20 to 40: interference times E (c^2 - b^2) / (2 b c^2)
 LAME = 2.1e5 * 0.02 * (40 ** 2 - 20 ** 2) / (2 * 20 * 40 ** 2)
 
-FLANKS = """
+FLANKS = STEEL + """
 set Plane state = plane strain
-set Materials = steel
 set Bodies = driver, driven
 set Supports = root, push
 set Contacts = mesh
-subsection Material steel
-  set Young modulus = 2.1e5
-  set Poisson ratio = 0.3
-end
 subsection Body driver
   set Shape = mesh
   set File = {driver}
@@ -87,12 +85,6 @@ subsection Contact mesh
   set Master = driven/flank
   set Law = Coulomb
   set Friction coefficient = 0.1
-end
-subsection Solver
-  set Tolerance = 1e-8
-end
-subsection Output
-  set VTU = false
 end
 """
 

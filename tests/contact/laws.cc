@@ -85,66 +85,68 @@ namespace
                                         {"0", "0.2", "3", 3}};
 
   const scene::Algorithm algorithms[] = {scene::Algorithm::semismooth_newton, scene::Algorithm::smalbe};
+
+  /// Calls test(number, algorithm) for all laws and both algorithms.
+  template <typename F>
+  void for_each_law(const F &test)
+  {
+    for (const auto &number : numbers)
+      for (const auto algorithm : algorithms)
+        {
+          SCOPED_TRACE(number.cohesion + ", " + number.coefficient + ", " + number.limit + ", algorithm " +
+                       std::to_string(int(algorithm)));
+          test(number, algorithm);
+        }
+  }
+
+  /// Converged, checks passed, and under `pressure` everywhere with this status and shear traction.
+  void expect_uniform(const Answer &answer, const contact::ContactStatus status, const double traction)
+  {
+    EXPECT_EQ(answer.solution.status, qp::Status::converged);
+    EXPECT_LT(answer.contact.checks.worst().second, 1e-6);
+    for (const auto &node : answer.contact.nodes)
+      {
+        EXPECT_EQ(node.status, status);
+        EXPECT_NEAR(node.pressure, pressure, 1e-5);
+        EXPECT_NEAR(node.tangential_traction, traction, 1e-5);
+      }
+  }
 } // namespace
 
 TEST(Cohesion, holds_a_block_up_to_its_shear_strength)
 {
-  for (const auto &number : numbers)
-    for (const auto algorithm : algorithms)
-      {
-        SCOPED_TRACE(number.cohesion + ", " + number.coefficient + ", " + number.limit + ", algorithm " +
-                     std::to_string(int(algorithm)));
-        const double below     = 0.99 * number.bound;
-        Scene        scene     = loaded_block(number.law(), below, blocks(2));
-        scene.solver.algorithm = algorithm;
-        const Answer answer(scene);
-        EXPECT_EQ(answer.solution.status, qp::Status::converged);
-        EXPECT_LT(answer.contact.checks.worst().second, 1e-6);
-        for (const auto &node : answer.contact.nodes)
-          {
-            EXPECT_EQ(node.status, contact::ContactStatus::stick);
-            EXPECT_NEAR(node.pressure, pressure, 1e-5);
-            EXPECT_NEAR(node.tangential_traction, -below, 1e-5);
-            EXPECT_NEAR(node.slip_bound, number.bound, 1e-5);
-          }
-      }
+  for_each_law([](const Numbers &number, const scene::Algorithm algorithm) {
+    const double below     = 0.99 * number.bound;
+    Scene        scene     = loaded_block(number.law(), below, blocks(2));
+    scene.solver.algorithm = algorithm;
+    const Answer answer(scene);
+    expect_uniform(answer, contact::ContactStatus::stick, -below);
+    for (const auto &node : answer.contact.nodes)
+      EXPECT_NEAR(node.slip_bound, number.bound, 1e-5);
+  });
 }
 
 TEST(Cohesion, does_not_hold_a_block_beyond_it)
 {
-  for (const auto &number : numbers)
-    for (const auto algorithm : algorithms)
-      {
-        SCOPED_TRACE(number.cohesion + ", " + number.coefficient + ", " + number.limit + ", algorithm " +
-                     std::to_string(int(algorithm)));
-        Scene scene            = loaded_block(number.law(), 1.01 * number.bound, blocks(2));
-        scene.solver.algorithm = algorithm;
-        EXPECT_THROW(Answer{scene}, NoEquilibrium);
-      }
+  for_each_law([](const Numbers &number, const scene::Algorithm algorithm) {
+    Scene scene            = loaded_block(number.law(), 1.01 * number.bound, blocks(2));
+    scene.solver.algorithm = algorithm;
+    EXPECT_THROW(Answer{scene}, NoEquilibrium);
+  });
 }
 
 TEST(Cohesion, resists_sliding_by_its_shear_strength)
 {
   const double E = 1e5, top = 0.01, closing = pressure * size / E;
-  for (const auto &number : numbers)
-    for (const auto algorithm : algorithms)
-      {
-        SCOPED_TRACE(number.cohesion + ", " + number.coefficient + ", " + number.limit + ", algorithm " +
-                     std::to_string(int(algorithm)));
-        Scene scene = block(number.law(), number.bound, metis(3));
-        support(scene, 0, "top", std::to_string(top), std::to_string(-closing));
-        scene.solver.algorithm = algorithm;
-        const Answer answer(scene);
-        EXPECT_EQ(answer.solution.status, qp::Status::converged);
-        EXPECT_LT(answer.contact.checks.worst().second, 1e-6);
-        for (const auto &node : answer.contact.nodes)
-          {
-            EXPECT_EQ(node.status, contact::ContactStatus::slip);
-            EXPECT_NEAR(node.pressure, pressure, 1e-5);
-            EXPECT_NEAR(node.tangential_traction, -number.bound, 1e-5);
-            EXPECT_NEAR(node.slip, top - number.bound * size / (E / 2), 1e-8);
-          }
-      }
+  for_each_law([&](const Numbers &number, const scene::Algorithm algorithm) {
+    Scene scene = block(number.law(), number.bound, metis(3));
+    support(scene, 0, "top", std::to_string(top), std::to_string(-closing));
+    scene.solver.algorithm = algorithm;
+    const Answer answer(scene);
+    expect_uniform(answer, contact::ContactStatus::slip, -number.bound);
+    for (const auto &node : answer.contact.nodes)
+      EXPECT_NEAR(node.slip, top - number.bound * size / (E / 2), 1e-8);
+  });
 }
 
 TEST(Cohesion, bears_no_tension_and_no_shear_where_it_is_open)

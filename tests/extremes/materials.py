@@ -2,7 +2,7 @@
 
 import unittest
 
-from sweep import QUIET, Extremes, Table, count, pair, solve, stack
+from sweep import Extremes, Table, count, pair, stack
 
 E = 2.1e5
 SCALES = ('hessian_multiplications', 'outer_iterations', 'cg_steps', 'active_constraints', 'fallbacks')
@@ -29,19 +29,13 @@ class Materials(Extremes):
         self.near(pressure[9], pressure[6], 1e-5)
 
     def test_stiffness_ratio_beyond_rounding(self):
-        """At 1e-9 rounding of the soft box shows in the stresses of the base (1e-3): said, or overcome, never passed over."""
+        """At 1e-9 rounding of the soft box would show in the stresses of the base (1e-3) if it were not overcome."""
         table = Table('the same at 1e-9')
         right = pair(self.converges(table, '1e-6', stack(box={'Young modulus': repr(E * 1e-6)}), most=500))['max_pressure']
         case = stack(box={'Young modulus': repr(E * 1e-9)})
-        for algorithm in ('auto', 'smalbe'):
-            result = solve(case, {**QUIET, 'Solver/Algorithm': algorithm})
-            table.add('1e-9 ' + algorithm, result)
-            self.assertIn(result.status, (0, 3), result)
-            if result.status == 0:
-                self.near(pair(result)['max_pressure'], right, 1e-4)
-            else:
-                self.assertIn('body base', result.stdout + result.stderr, result)
-                self.assertIn('remedy: ', result.stderr, result)
+        for algorithm, most in (('auto', 500), ('smalbe', 100000)):
+            result = self.converges(table, '1e-9 ' + algorithm, case, {'Solver/Algorithm': algorithm}, most=most)
+            self.near(pair(result)['max_pressure'], right, 1e-4)
 
     def test_stiffness_ratio_with_smalbe(self):
         table = Table('the same with SMALBE')

@@ -1,6 +1,7 @@
 #include "torn.h"
 
 #include <slipstick/base/exceptions.h>
+#include <slipstick/fem/echelon.h>
 
 using namespace slipstick;
 using namespace slipstick::test;
@@ -480,4 +481,15 @@ TEST(Constraints, supports_that_agree_at_a_corner_give_one_row)
       support(scene, 0, "top", "1e-2", "");
       EXPECT_EQ(constraints(cut(scene, how)).counts.prescribed, 18u + 8);
     }
+}
+
+TEST(Echelon, finds_rows_that_others_imply)
+{
+  fem::Echelon rows;
+  EXPECT_TRUE(rows.add({{0, 1.}, {2, -1.}}, 1e-8, 0, 2));
+  EXPECT_TRUE(rows.add({{2, 1.}, {4, -0.5}, {5, -0.5}}, 1e-8, 2, 4));
+  EXPECT_FALSE(rows.add({{0, 3.}, {4, -1.5}, {5, -1.5}}, 1e-8, 4, 6));
+  EXPECT_TRUE(rows.reduce({{0, 1.}, {2, 1.}, {4, -1.}, {5, -1.}}).empty());
+  EXPECT_TRUE(rows.add({{0, 3.}, {4, -1.5}, {5, -1.4}}, 1e-8, 4, 6));
+  EXPECT_FALSE(rows.reduce({{6, 1.}, {0, 1.}}).empty());
 }

@@ -2,7 +2,6 @@
 #include "torn.h"
 
 #include <slipstick/base/exceptions.h>
-#include <slipstick/fem/echelon.h>
 #include <slipstick/fem/make_body.h>
 
 #include <filesystem>
@@ -440,17 +439,6 @@ TEST(MeshFiles, units_that_do_not_fit_are_remarked)
     }
   scene.bodies[1].scale = 1e-2; // parts do differ in size
   EXPECT_TRUE(fem::make_mesh(cut(scene, metis(2)), MPI_COMM_SELF).remarks.empty());
-}
-
-TEST(Echelon, finds_rows_that_others_imply)
-{
-  fem::Echelon rows;
-  EXPECT_TRUE(rows.add({{0, 1.}, {2, -1.}}, 1e-8, 0, 2));
-  EXPECT_TRUE(rows.add({{2, 1.}, {4, -0.5}, {5, -0.5}}, 1e-8, 2, 4));
-  EXPECT_FALSE(rows.add({{0, 3.}, {4, -1.5}, {5, -1.5}}, 1e-8, 4, 6));
-  EXPECT_TRUE(rows.reduce({{0, 1.}, {2, 1.}, {4, -1.}, {5, -1.}}).empty());
-  EXPECT_TRUE(rows.add({{0, 3.}, {4, -1.5}, {5, -1.4}}, 1e-8, 4, 6));
-  EXPECT_FALSE(rows.reduce({{6, 1.}, {0, 1.}}).empty());
 }
 
 TEST(MeshFiles, subdomains_are_shared_by_cost)

@@ -1,13 +1,14 @@
 // Random scenes against an independent dense solver.
 //
-//   test_random [--scenes N] [--first SEED] [--verbose] [--keep DIRECTORY]
+//   test_random [--scenes N] [--first SEED] [--verbose] [--keep DIRECTORY] [--write DIRECTORY]
 //
 // Scenes SEED ... SEED + N - 1 (default: 0 ... 299) are made (scenes.h), each is solved by slipstick in this process with two
 // decompositions and both algorithms, files and all, and by DenseSolver on the matrices of the untorn bodies. Every run
 // must agree with it: displacement and contact forces to 1e-6 (where forces are not unique: their sums at every
 // node), or end with the diagnosis that the dense solver comes to by itself. Where the dense solver found another solution
 // (Coulomb) or none, slipstick's answer must keep all conditions of the law, checked by the dense solver's matrices.
-// --verbose: a line a run; --keep: writes the scenes (.prm, .msh) there, to run them with slipstick.
+// --verbose: a line a run; --keep: writes the scenes (.prm, .msh) there, to run them with slipstick; --write: does only that,
+// for second_oracle.py.
 // Ends with status 1 when a run disagrees that is not known to (list `known` below), or one agrees that is known not to.
 // Where 1e-10 is not reached 1e-8 is asked for, and counted.
 #include "assembled.h"
@@ -46,7 +47,7 @@ namespace
   struct Options
   {
     unsigned int scenes = 300, first = 0;
-    bool         verbose = false;
+    bool         verbose = false, only_writes = false;
     std::string  directory;
   };
 
@@ -213,19 +214,33 @@ namespace
     int run()
     {
       for (unsigned int seed = options.first; seed < options.first + options.scenes; ++seed)
-        one(seed);
-      return report();
+        if (options.only_writes)
+          written(seed);
+        else
+          one(seed);
+      return options.only_writes ? 0 : report();
     }
 
   private:
-    void one(const unsigned int seed)
+    std::string file_of(const unsigned int seed) const
     {
-      const auto        generated = generate(seed);
-      const std::string file      = directory + "/scene_" + std::to_string(seed) + ".prm";
-      std::ofstream(file) << generated.prm;
+      return directory + "/scene_" + std::to_string(seed) + ".prm";
+    }
+
+    GeneratedScene written(const unsigned int seed) const
+    {
+      const auto generated = generate(seed);
+      std::ofstream(file_of(seed)) << generated.prm;
       for (const auto &[name, content] : generated.meshes)
         std::ofstream(directory + "/" + name) << content;
-      std::vector<Tally *> tallies = {&by_family[generated.family], &by_law[generated.law], &all};
+      return generated;
+    }
+
+    void one(const unsigned int seed)
+    {
+      const auto           generated = written(seed);
+      const std::string    file      = file_of(seed);
+      std::vector<Tally *> tallies   = {&by_family[generated.family], &by_law[generated.law], &all};
       for (Tally *tally : tallies)
         ++tally->scenes;
       try
@@ -454,11 +469,14 @@ namespace
           options.first = std::stoul(value());
         else if (word == "--verbose")
           options.verbose = true;
-        else if (word == "--keep")
-          options.directory = value();
+        else if (word == "--keep" || word == "--write")
+          {
+            options.directory   = value();
+            options.only_writes = word == "--write";
+          }
         else
           throw std::runtime_error("unknown option " + word +
-                                   ": --scenes N, --first SEED, --verbose, --keep DIRECTORY");
+                                   ": --scenes N, --first SEED, --verbose, --keep DIRECTORY, --write DIRECTORY");
       }
     return options;
   }

@@ -179,22 +179,11 @@ TEST(DualProblem, recovery_keeps_still_what_nothing_resists_and_no_load_drives_a
 {
   for (const Cut &how : cuts)
     {
-      Scene scene = box(8);
-      touch(scene, 0, "bottom", {5, -20}, 20, "100");
-      load(scene, 0, "top", "0", "-1");
-      const Torn        torn(cut(scene, how));
-      const auto        dual = torn.dual();
-      std::vector<bool> free;
-      for (const auto kind : torn.constraints.kind)
-        free.push_back(kind != tfeti::RowKind::tangential);
-      auto x = dual->particular();
-      for (unsigned int r = 0; r < free.size(); ++r)
-        if (!free[r])
-          x.local_element(r) = 0;
-      EXPECT_THROW(dual->recover(x, free), UndeterminedPosition);
-      const auto recovered = dual->recover(x, free, true);
+      const Sliding sliding(how, "0", 0);
+      EXPECT_THROW(sliding.dual->recover(sliding.x, sliding.free), UndeterminedPosition);
+      const auto recovered = sliding.dual->recover(sliding.x, sliding.free, true);
       ASSERT_EQ(recovered.unresisted.size(), 1u);
-      const std::string text = describe(recovered.unresisted[0], dual->body_names());
+      const std::string text = describe(recovered.unresisted[0], sliding.dual->body_names());
       EXPECT_NE(text.find("body box: rotation about (5, -20)"), std::string::npos) << text;
     }
 }
@@ -203,19 +192,8 @@ TEST(DualProblem, recovery_names_the_body_that_loads_drive_and_the_held_rows_lea
 {
   for (const Cut &how : cuts)
     {
-      Scene scene = box(8);
-      touch(scene, 0, "bottom", {5, -20}, 20, "100");
-      load(scene, 0, "top", "0.1", "-1");
-      const Torn        torn(cut(scene, how));
-      const auto        dual = torn.dual();
-      std::vector<bool> free;
-      for (const auto kind : torn.constraints.kind)
-        free.push_back(kind != tfeti::RowKind::tangential);
-      auto x = dual->particular();
-      for (unsigned int r = 0; r < free.size(); ++r)
-        if (!free[r])
-          x.local_element(r) = 0;
-      const std::string text = message_on_all_ranks<NoEquilibrium>([&] { dual->recover(x, free); });
+      const Sliding sliding(how, "0.1", 0);
+      const std::string text = message_on_all_ranks<NoEquilibrium>([&] { sliding.dual->recover(sliding.x, sliding.free); });
       EXPECT_NE(text.find("body box: rotation about (5, -20), where the loads push"), std::string::npos) << text;
     }
 }
@@ -224,24 +202,13 @@ TEST(DualProblem, recovery_puts_a_body_that_slides_on_all_contacts_where_slips_f
 {
   for (const Cut &how : cuts)
     {
-      Scene scene = box(8);
-      touch(scene, 0, "bottom", {5, -20}, 20, "100");
-      load(scene, 0, "top", "0", "-1");
-      const Torn        torn(cut(scene, how));
-      const auto        dual = torn.dual();
-      std::vector<bool> free;
-      for (const auto kind : torn.constraints.kind)
-        free.push_back(kind != tfeti::RowKind::tangential);
-      auto x = dual->particular();
-      for (unsigned int r = 0; r < free.size(); ++r)
-        if (!free[r])
-          x.local_element(r) = 0.1;
-      const auto recovery = dual->recover(x, free);
-      const auto jumps    = dual->jumps(recovery.u);
+      const Sliding sliding(how, "0", 0.1);
+      const auto recovery = sliding.dual->recover(sliding.x, sliding.free);
+      const auto jumps    = sliding.dual->jumps(recovery.u);
       double     most     = 0; // slip, and how far one is on the wrong side
       double     wrong    = 0;
-      for (unsigned int r = 0; r < free.size(); ++r)
-        if (!free[r])
+      for (unsigned int r = 0; r < sliding.free.size(); ++r)
+        if (!sliding.free[r])
           {
             most  = std::max(most, jumps.local_element(r));
             wrong = std::max(wrong, -jumps.local_element(r));

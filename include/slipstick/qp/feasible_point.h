@@ -295,6 +295,19 @@ namespace slipstick::qp
   /// `problem.reduction` only.
   /// status: infeasible with a certificate, see FeasiblePoint (without, if some lower > upper); iteration_limit or
   /// stagnated if neither a point nor a certificate was found.
+  /// @code
+  /// using Vector = std::vector<double>;
+  /// struct Problem // F = diag(1, 3), G = (1, 1) / sqrt(2)
+  /// {
+  ///   void multiply(const Vector &x, Vector &y) const { y = {x[0], 3 * x[1]}; }
+  ///   void project_range(const Vector &x, Vector &y) const { y.assign(2, (x[0] + x[1]) / 2); }
+  ///   SerialReduction reduction() const { return {}; }
+  /// };
+  /// const Box<Vector> box{{0, 0}, {0.5, 2}};
+  /// const auto        nearest = feasible_point(Problem(), Vector{1, 1}, box); // x0 + x1 = 2
+  /// assert(nearest.status == Status::converged);
+  /// assert(std::abs(nearest.x[0] - 0.5) < 1e-9 && std::abs(nearest.x[1] - 1.5) < 1e-9);
+  /// @endcode
   template <typename Vector, typename Problem, typename Set>
   FeasiblePoint<Vector> feasible_point(const Problem              &problem,
                                        const Vector               &x_e,

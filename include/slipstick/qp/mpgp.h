@@ -189,6 +189,16 @@ namespace slipstick::qp
   /// box is projected on it. From x = 0, or from a start with gradient, nothing is multiplied before the first step.
   /// status: converged if and only if stop() was true; stagnated at rounding level; infeasible if some lower > upper
   /// (x is then of no use) or if the objective is unbounded from below.
+  /// @code
+  /// using Vector = std::vector<double>;
+  /// const Vector      b{2, -3, 0.5};
+  /// const Box<Vector> box{{-1, -1, -1}, {1, 1, 1}};
+  /// const auto        A    = [](const Vector &x, Vector &Ax) { Ax = x; };
+  /// const auto        stop = [](const Vector &, const double gradient) { return gradient <= 1e-12; };
+  /// const auto        best = mpgp(A, 1., b, box, {Vector(3, 0.)}, stop, MpgpOptions(), SerialReduction());
+  /// assert(best.status == Status::converged);
+  /// assert(best.x == (Vector{1, -1, 0.5})); // b, clipped
+  /// @endcode
   template <typename Vector, typename Operator, typename Stop, typename Reduction, typename Tracker = NoTracker>
   MpgpResult<Vector> mpgp(Operator         &&A,
                           const double       norm,

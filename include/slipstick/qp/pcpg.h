@@ -269,6 +269,18 @@ namespace slipstick::qp
   /// Full reorthogonalisation keeps two vectors a step.
   /// The observer is called after every step, on every process.
   /// status: infeasible if F is singular along a direction of descent (unbounded from below).
+  /// @code
+  /// using Vector = std::vector<double>;
+  /// struct Problem // F = diag(1, 3), G = (1, 1) / sqrt(2)
+  /// {
+  ///   void multiply(const Vector &x, Vector &y) const { y = {x[0], 3 * x[1]}; }
+  ///   void project_range(const Vector &x, Vector &y) const { y.assign(2, (x[0] + x[1]) / 2); }
+  ///   SerialReduction reduction() const { return {}; }
+  /// };
+  /// const auto best = pcpg(Problem(), Vector{2, 0}, PcpgStart<Vector>{Vector(2, 0.)}, 1e-12);
+  /// assert(best.status == Status::converged);
+  /// assert(std::abs(best.x[0] - 0.5) < 1e-12 && std::abs(best.x[1] + 0.5) < 1e-12);
+  /// @endcode
   template <typename Vector, typename Problem, typename Preconditioner = NoPreconditioner>
   PcpgResult<Vector> pcpg(const Problem        &problem,
                           const Vector         &b,

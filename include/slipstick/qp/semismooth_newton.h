@@ -426,6 +426,16 @@ namespace slipstick::qp
   /// agrees or nothing more can be done.
   /// status: infeasible if no entry at a bound leaves the equalities singular all the same; stagnated if the natural
   /// residual does not fall along a step.
+  /// @code
+  /// using namespace test; // FacedProblem: a dense problem with faces, tests/qp/faced_problem.h
+  /// Matrix G(1, 2);
+  /// G(0, 0) = G(0, 1) = std::sqrt(0.5);
+  /// const FacedProblem          problem(diagonal({1, 1}), G, {0});
+  /// const AdmissibleSet<Vector> set{{{-0.25, -infinity}, {0.25, infinity}}, {}};
+  /// const auto best = semismooth_newton(problem, 1., Vector{1, -1}, set, NewtonStart<Vector>{Vector(2, 0.)}, Goal(1e-10, 1.));
+  /// assert(best.status == Status::converged);
+  /// assert(std::abs(best.x[0] - 0.25) < 1e-9 && std::abs(best.x[1] + 0.25) < 1e-9); // 1, -1 without bounds
+  /// @endcode
   template <typename Vector, typename Problem>
   NewtonResult<Vector> semismooth_newton(const Problem            &problem,
                                          const double              norm,

@@ -241,6 +241,19 @@ namespace slipstick::qp
   /// before its goal (with the same answer on every process).
   /// status: infeasible if bounds contradict each other (x is then of no use), or them the equalities (provably; if in
   /// doubt the status is stagnated), or if the objective is unbounded from below.
+  /// @code
+  /// using Vector = std::vector<double>;
+  /// struct Problem // F = diag(1, 3), G = (1, 1) / sqrt(2)
+  /// {
+  ///   void multiply(const Vector &x, Vector &y) const { y = {x[0], 3 * x[1]}; }
+  ///   void project_range(const Vector &x, Vector &y) const { y.assign(2, (x[0] + x[1]) / 2); }
+  ///   SerialReduction reduction() const { return {}; }
+  /// };
+  /// const Box<Vector> box{{-1, -1}, {0.25, 1}};
+  /// const auto        best = smalbe(Problem(), 2., Vector{1, -1}, box, {Vector(2, 0.)}, 1e-10);
+  /// assert(best.status == Status::converged);
+  /// assert(std::abs(best.x[0] - 0.25) < 1e-9 && std::abs(best.x[1] + 0.25) < 1e-9); // 0.5, -0.5 without the box
+  /// @endcode
   template <typename Vector, typename Problem>
   SmalbeResult<Vector> smalbe(const Problem                                                      &problem,
                               const double                                                        norm,

@@ -1,0 +1,110 @@
+// The load steps of a scene: answers that pass their checks, pruning that is taken back, what is refused.
+#include "torn.h"
+
+#include <slipstick/app/report.h>
+#include <slipstick/app/step_solver.h>
+#include <slipstick/base/exceptions.h>
+
+using namespace slipstick;
+using namespace slipstick::test;
+
+namespace
+{
+  /// All steps of a scene, and the number of rows of contact at first and at the end.
+  struct Steps
+  {
+    explicit Steps(const Scene &scene, const MPI_Comm comm = MPI_COMM_WORLD)
+      : log(comm, Verbosity::quiet)
+      , solver(scene, log, clock, comm)
+    {
+      solver.build();
+      rows_at_first = solver.dual().constraints().counts.normal;
+      for (unsigned int step = 0; step < scene.load_factors.size(); ++step)
+        answers.push_back(solver.solve(step, 0));
+    }
+
+    const contact::Checks &checks() const
+    {
+      return answers.back()->contact->checks;
+    }
+    unsigned long long rows() const
+    {
+      return solver.dual().constraints().counts.normal;
+    }
+
+    Log                                                   log;
+    StageClock                                            clock;
+    app::StepSolver                                       solver;
+    unsigned long long                                    rows_at_first = 0;
+    std::vector<std::unique_ptr<app::StepSolver::Answer>> answers;
+  };
+
+  void expect_same(const Steps &a, const Steps &b, const double tolerance)
+  {
+    EXPECT_NEAR(a.checks().energy, b.checks().energy, tolerance * b.checks().energy);
+    EXPECT_NEAR(a.checks().max_displacement, b.checks().max_displacement, tolerance * b.checks().max_displacement);
+    EXPECT_NEAR(a.checks().largest_force, b.checks().largest_force, tolerance * b.checks().largest_force);
+  }
+
+  /// The box pressed on a circle by its top, whose displacement is given.
+  Scene pressed_box(const double radius, const std::string &y, const Cut &how)
+  {
+    Scene scene            = cut(box(16), how);
+    scene.solver.tolerance = 1e-10;
+    support(scene, 0, "top", "0", y);
+    touch(scene, 0, "bottom", {5, -radius}, radius, "");
+    return scene;
+  }
+} // namespace
+
+TEST(StepSolver, answers_pass_their_checks_in_every_step)
+{
+  Scene scene        = pressed_box(20, "-0.05*t", blocks(2));
+  scene.load_factors = {0.2, 0.6, 1};
+  const Steps run(scene);
+  double      energy = 0;
+  for (const auto &answer : run.answers)
+    {
+      EXPECT_LE(answer->contact->checks.worst().second, app::check_limit(scene.solver.tolerance));
+      EXPECT_GT(answer->contact->checks.energy, energy); // pressed more
+      energy = answer->contact->checks.energy;
+    }
+  EXPECT_EQ(run.solver.convergence().back().step, 2u);
+}
+
+TEST(StepSolver, steps_of_contact_without_friction_lead_where_one_step_does)
+{
+  Scene       scene = pressed_box(20, "-0.05*t", metis(3));
+  const Steps one(scene);
+  scene.load_factors = {0.3, 1};
+  expect_same(Steps(scene), one, 1e-8);
+}
+
+TEST(StepSolver, pruned_nodes_get_rows_where_they_would_penetrate)
+{
+  Scene       scene = pressed_box(6, "-60", blocks(2)); // so far that all of the bottom is pressed on the circle
+  const Steps pruned(scene);
+  scene.solver.prune_contact = false;
+  const Steps all(scene);
+  EXPECT_LT(pruned.rows_at_first, all.rows_at_first);
+  EXPECT_GT(pruned.rows(), pruned.rows_at_first);
+  expect_same(pruned, all, 1e-8);
+}
+
+TEST(StepSolver, pruned_nodes_stay_without_rows_where_they_remain_apart)
+{
+  Scene       scene = pressed_box(6, "-0.05", blocks(2));
+  const Steps pruned(scene);
+  scene.solver.prune_contact = false;
+  const Steps all(scene);
+  EXPECT_LT(pruned.rows(), all.rows());
+  expect_same(pruned, all, 1e-8);
+}
+
+TEST(StepSolver, no_equilibrium_is_thrown_on_all_ranks)
+{
+  Scene scene = cut(box(8), blocks(2));
+  touch(scene, 0, "bottom", {5, -20}, 20, "");
+  load(scene, 0, "top", "0", "1"); // away from the circle, held by nothing
+  EXPECT_THROW(Steps{scene}, NoEquilibrium);
+}
