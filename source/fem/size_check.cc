@@ -50,6 +50,15 @@ namespace slipstick::fem
       return count;
     }
 
+    /// Bodies that share the file, each a part of it.
+    template <int dim>
+    unsigned int bodies_in_file(const scene::Scene<dim> &scene, const scene::Body<dim> &body)
+    {
+      return body.part.empty() ? 1 : std::count_if(scene.bodies.begin(), scene.bodies.end(), [&](const auto &other) {
+        return other.shape == scene::Shape::mesh && other.file == body.file && !other.part.empty();
+      });
+    }
+
     template <int dim>
     Count count_of(const scene::Scene<dim> &scene, const scene::Body<dim> &body)
     {
@@ -85,6 +94,8 @@ namespace slipstick::fem
                 count = count_of_file(body.file);
               else
                 count.cells = std::filesystem::file_size(body.file, error) / bytes_of_a_cell;
+              const double n = bodies_in_file(scene, body);
+              count          = {count.cells / n, count.outline / n};
               break;
             }
         }

@@ -1,4 +1,5 @@
 #include <slipstick/base/log.h>
+#include <slipstick/tfeti/null_vectors.h>
 #include <slipstick/tfeti/rigid_motions.h>
 
 #include <deal.II/base/mpi.h>
@@ -6,6 +7,8 @@
 #include <boost/serialization/vector.hpp>
 
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace slipstick::tfeti
 {
@@ -124,9 +127,10 @@ namespace slipstick::tfeti
                         Eigen::Map<const Eigen::VectorXd>(part.values.data(), part.values.size())});
   }
 
-  std::vector<RigidMotion> BodyMotions::free(const std::vector<bool> &active, const double resistance) const
+  // Sum over rows of what they see of the motions, times itself; whole on every rank, summed in the order of the ranks.
+  Eigen::SparseMatrix<double> BodyMotions::resistance_of(const std::vector<bool> &active) const
   {
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n_motions, n_motions);
+    std::map<std::pair<unsigned int, unsigned int>, Eigen::MatrixXd> own;
     for (auto begin = shares.begin(); begin != shares.end();)
       {
         const auto end =
@@ -134,17 +138,37 @@ namespace slipstick::tfeti
         if (active.empty() || active[begin->row])
           for (auto a = begin; a != end; ++a)
             for (auto b = begin; b != end; ++b)
-              gram.block(a->body * motions_of_body, b->body * motions_of_body, motions_of_body, motions_of_body) +=
-                a->values * b->values.transpose();
+              {
+                const auto [place, is_new] =
+                  own.emplace(std::pair(a->body, b->body), a->values * b->values.transpose());
+                if (!is_new)
+                  place->second += a->values * b->values.transpose();
+              }
         begin = end;
       }
-    MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, comm);
+    std::vector<double> numbers; // of every block: bodies, entries
+    for (const auto &[bodies, block] : own)
+      {
+        numbers.insert(numbers.end(), {double(bodies.first), double(bodies.second)});
+        numbers.insert(numbers.end(), block.data(), block.data() + block.size());
+      }
+    const std::size_t                   n = motions_of_body;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
+      for (std::size_t at = 0; at < of_rank.size(); at += 2 + n * n)
+        for (std::size_t k = 0; k < n * n; ++k)
+          entries.emplace_back(of_rank[at] * n + k % n, of_rank[at + 1] * n + k / n, of_rank[at + 2 + k]);
+    Eigen::SparseMatrix<double> result(n_motions, n_motions);
+    result.setFromTriplets(entries.begin(), entries.end());
+    return result;
+  }
 
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
-    std::vector<RigidMotion>                             motions;
-    for (unsigned int i = 0; i < n_motions; ++i)
-      if (eigen.eigenvalues()[i] <= resistance * std::max(eigen.eigenvalues()[n_motions - 1], 1.))
-        motions.push_back({eigen.eigenvectors().col(i), 0., frames});
+  std::vector<RigidMotion> BodyMotions::free(const std::vector<bool> &active, const double resistance) const
+  {
+    const Eigen::SparseMatrix<double> all = resistance_of(active);
+    std::vector<RigidMotion>          motions;
+    for (auto &vector : null_vectors(all, resistance * std::max(largest_eigenvalue(all), 1.)))
+      motions.push_back({std::move(vector), 0., frames});
     if (motions.empty()) // as nearly always: the loads are not asked
       return motions;
     const Eigen::VectorXd load = loads();
@@ -170,14 +194,20 @@ namespace slipstick::tfeti
     return (sums.col(0).array().abs() <= rounding_of_loads * sums.col(1).array()).select(0., sums.col(0));
   }
 
-  Eigen::MatrixXd BodyMotions::jumps(const std::vector<RigidMotion> &motions) const
+  Eigen::SparseMatrix<double, Eigen::RowMajor> BodyMotions::jumps(const std::vector<RigidMotion> &motions) const
   {
-    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n_owned_rows, motions.size());
+    std::vector<Eigen::Triplet<double>> of_rows, of_motions;
     for (const Share &share : shares)
-      for (unsigned int m = 0; m < motions.size(); ++m)
-        result(share.row, m) +=
-          share.values.dot(motions[m].amplitudes.segment(share.body * motions_of_body, motions_of_body));
-    return result;
+      for (unsigned int k = 0; k < motions_of_body; ++k)
+        of_rows.emplace_back(share.row, share.body * motions_of_body + k, share.values[k]);
+    for (unsigned int m = 0; m < motions.size(); ++m)
+      for (unsigned int k = 0; k < n_motions; ++k)
+        if (motions[m].amplitudes[k] != 0)
+          of_motions.emplace_back(k, m, motions[m].amplitudes[k]);
+    Eigen::SparseMatrix<double, Eigen::RowMajor> rows(n_owned_rows, n_motions), amplitudes(n_motions, motions.size());
+    rows.setFromTriplets(of_rows.begin(), of_rows.end());
+    amplitudes.setFromTriplets(of_motions.begin(), of_motions.end());
+    return rows * amplitudes;
   }
 
   Eigen::VectorXd BodyMotions::displacements(const unsigned int p, const Eigen::VectorXd &amplitudes) const

@@ -34,12 +34,13 @@ TEST(CloseGaps, leads_from_a_rough_answer_to_the_accurate_one_on_its_set)
         const auto   recovery = accurate.dual->recover(accurate.solution.multipliers, accurate.solution.free);
 
         // multipliers off by some percent, balanced: displacements that leave gaps open
-        const auto &free  = accurate.solution.free;
-        auto        x     = accurate.solution.multipliers;
-        const auto  noise = distributed(random_vector(x.size(), 1), *accurate.dual);
+        const auto  &free  = accurate.solution.free;
+        auto         x     = accurate.solution.multipliers;
+        const auto   noise = distributed(random_vector(x.size(), 1), *accurate.dual);
+        const double size  = x.linfty_norm(); // collective
         for (unsigned int r = 0; r < free.size(); ++r)
           if (free[r])
-            x.local_element(r) += 0.03 * accurate.solution.multipliers.linfty_norm() * noise.local_element(r);
+            x.local_element(r) += 0.03 * size * noise.local_element(r);
         auto         rough = accurate.dual->recover(x, free);
         const double open  = misfit(*accurate.dual, rough, free);
         const double off   = largest_difference(rough.u, recovery.u);

@@ -3,6 +3,7 @@
 
 #include <slipstick/base/exceptions.h>
 #include <slipstick/fem/make_body.h>
+#include <slipstick/fem/size_check.h>
 
 #include <filesystem>
 #include <fstream>
@@ -805,4 +806,12 @@ TEST(MeshFiles, elements_that_contradict_the_plane_state_are_warned_of)
         EXPECT_SAYS(remark, "warning: mesh file " + name.string() + " has elements of plane strain (CPE3)");
     }
   std::filesystem::remove(name);
+}
+
+TEST(MeshFiles, parts_of_one_file_are_not_each_estimated_as_large_as_the_file)
+{
+  Scene all;
+  all.bodies = {body_of(formats[0], "")};
+  EXPECT_GT(fem::estimate_size(all).cells, 0);
+  EXPECT_NEAR(fem::estimate_size(two_parts(formats[0])).cells, fem::estimate_size(all).cells, 1e-9);
 }

@@ -1,6 +1,7 @@
 #include "torn.h"
 
 #include <slipstick/base/exceptions.h>
+#include <slipstick/tfeti/null_vectors.h>
 
 using namespace slipstick;
 using namespace slipstick::test;
@@ -223,4 +224,41 @@ TEST(RigidMotions, dual_problem_refuses_a_free_body_on_all_ranks)
       EXPECT_NE(text.find("nothing holds body float: translation along ("), std::string::npos) << text;
       EXPECT_NE(text.find("remedy: "), std::string::npos) << text;
     }
+}
+
+namespace
+{
+  /// Two chains of springs of unit stiffness, n points each; the first point of the first one is held by @p hold.
+  Eigen::SparseMatrix<double> two_chains(const unsigned int n, const double hold)
+  {
+    std::vector<Eigen::Triplet<double>> entries{{0, 0, hold}};
+    for (unsigned int i = 0; i + 1 < 2 * n; ++i)
+      if (i + 1 != n)
+        for (const auto &[row, column, value] :
+             {std::tuple(i, i, 1.), {i + 1, i + 1, 1.}, {i, i + 1, -1.}, {i + 1, i, -1.}})
+          entries.emplace_back(row, column, value);
+    Eigen::SparseMatrix<double> result(2 * n, 2 * n);
+    result.setFromTriplets(entries.begin(), entries.end());
+    return result;
+  }
+} // namespace
+
+TEST(NullVectors, lie_on_the_parts_that_are_loose)
+{
+  constexpr unsigned int n = 40;
+  EXPECT_NEAR(tfeti::largest_eigenvalue(two_chains(n, 0)), 4, 0.3); // 4 sin^2(pi (n-1) / 2n)
+  for (const double hold : {0., 1.})
+    {
+      const auto found = tfeti::null_vectors(two_chains(n, hold), 1e-10);
+      ASSERT_EQ(found.size(), hold > 0 ? 1u : 2u);
+      const Eigen::VectorXd &last = found.back();
+      EXPECT_LT(last.head(n).norm(), 1e-12);
+      EXPECT_LT((last.tail(n).array() - last[n]).abs().maxCoeff(), 1e-9);
+      EXPECT_NEAR(last.norm(), 1, 1e-12);
+    }
+  const double weakest = 4 * std::pow(std::sin(M_PI / (2 * (2 * n + 1))), 2); // of the chain that is held
+  auto         held    = two_chains(n, 1);
+  held.coeffRef(n, n) += 1;
+  EXPECT_TRUE(tfeti::null_vectors(held, 0.99 * weakest).empty());
+  EXPECT_EQ(tfeti::null_vectors(held, 1.01 * weakest).size(), 2u);
 }

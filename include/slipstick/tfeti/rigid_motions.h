@@ -3,6 +3,8 @@
 
 #include <slipstick/tfeti/dual_operator.h>
 
+#include <Eigen/SparseCore>
+
 namespace slipstick::tfeti
 {
   /// A rigid motion of one or more bodies: amplitudes of translation x, translation y, rotation of every body.
@@ -38,7 +40,7 @@ namespace slipstick::tfeti
     Eigen::VectorXd loads() const;
 
     /// Jumps B u of all rows that this rank owns (0 for gluing) under motions; rows x motions.
-    Eigen::MatrixXd jumps(const std::vector<RigidMotion> &motions) const;
+    Eigen::SparseMatrix<double, Eigen::RowMajor> jumps(const std::vector<RigidMotion> &motions) const;
 
     /// Displacements of subdomain p of this rank under a motion, all unknowns.
     Eigen::VectorXd displacements(const unsigned int p, const Eigen::VectorXd &amplitudes) const;
@@ -50,6 +52,8 @@ namespace slipstick::tfeti
       unsigned int    body;
       Eigen::VectorXd values; // of its motions
     };
+
+    Eigen::SparseMatrix<double> resistance_of(const std::vector<bool> &active) const;
 
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     MPI_Comm                                             comm;

@@ -1,4 +1,4 @@
-#include <slipstick/app/curve_doubts.h>
+#include <slipstick/app/curve_warnings.h>
 #include <slipstick/base/log.h>
 #include <slipstick/fem/body_contact.h>
 #include <slipstick/fem/smooth_outline.h>
@@ -65,11 +65,11 @@ namespace slipstick::app
     }
   } // namespace
 
-  std::map<std::string, std::string> doubts_of_curves(const scene::Scene<2>                   &scene,
-                                                      const fem::Mesh<2>                      &mesh,
-                                                      const fem::Spaces<2>                    &spaces,
-                                                      const std::vector<tfeti::ContactPoint>  &points,
-                                                      const std::vector<contact::ContactNode> &nodes)
+  std::map<std::string, std::string> curve_warnings(const scene::Scene<2>                   &scene,
+                                                    const fem::Mesh<2>                      &mesh,
+                                                    const fem::Spaces<2>                    &spaces,
+                                                    const std::vector<tfeti::ContactPoint>  &points,
+                                                    const std::vector<contact::ContactNode> &nodes)
   {
     std::map<std::string, std::string> texts;
     if (!fem::leaves_out_curves(mesh)) // nearly always

@@ -1,0 +1,99 @@
+#include <slipstick/tfeti/null_vectors.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    using Matrix = Eigen::SparseMatrix<double>;
+
+    // Steps of the power method. A start with all components: no symmetry of the bodies leaves one out.
+    constexpr unsigned int power_steps = 30;
+
+    /// Entries of the parts that no element of the matrix joins.
+    std::vector<std::vector<int>> connected_parts(const Matrix &matrix)
+    {
+      std::vector<int> root(matrix.cols());
+      std::iota(root.begin(), root.end(), 0);
+      const auto find = [&root](int i) {
+        while (root[i] != i)
+          i = root[i] = root[root[i]];
+        return i;
+      };
+      for (int j = 0; j < matrix.outerSize(); ++j)
+        for (Matrix::InnerIterator entry(matrix, j); entry; ++entry)
+          if (entry.value() != 0)
+            {
+              const int a = find(entry.row()), b = find(j);
+              root[std::max(a, b)] = std::min(a, b);
+            }
+      std::vector<std::vector<int>> parts(root.size());
+      for (unsigned int i = 0; i < root.size(); ++i)
+        parts[find(i)].push_back(i);
+      parts.erase(std::remove_if(parts.begin(), parts.end(), [](const auto &part) { return part.empty(); }),
+                  parts.end());
+      return parts;
+    }
+
+    /// Are all eigenvalues above the limit? Rounding in a pivot near zero costs no more than the dense solver.
+    bool is_above(const Matrix &matrix, const double limit)
+    {
+      Matrix shifted = matrix;
+      for (int i = 0; i < shifted.cols(); ++i)
+        shifted.coeffRef(i, i) -= limit;
+      const Eigen::SimplicialLDLT<Matrix> factor(shifted);
+      return factor.info() == Eigen::Success && (factor.vectorD().array() > 0).all();
+    }
+  } // namespace
+
+  double largest_eigenvalue(const Matrix &matrix)
+  {
+    if (matrix.nonZeros() == 0)
+      return 0;
+    Eigen::VectorXd v(matrix.cols());
+    for (Eigen::Index i = 0; i < v.size(); ++i)
+      v[i] = 1 + std::sin(i + 1.) / 2;
+    double value = 0;
+    for (unsigned int step = 0; step < power_steps; ++step)
+      {
+        const Eigen::VectorXd product = matrix * v.normalized();
+        value                         = product.norm();
+        if (!(value > 0))
+          return 0;
+        v = product;
+      }
+    return value;
+  }
+
+  std::vector<Eigen::VectorXd> null_vectors(const Matrix &matrix, const double limit)
+  {
+    std::vector<Eigen::VectorXd> result;
+    if (is_above(matrix, limit))
+      return result;
+    std::vector<int> place(matrix.cols());
+    for (const auto &part : connected_parts(matrix))
+      {
+        Eigen::MatrixXd block = Eigen::MatrixXd::Zero(part.size(), part.size());
+        for (std::size_t i = 0; i < part.size(); ++i)
+          place[part[i]] = i;
+        for (const int j : part)
+          for (Matrix::InnerIterator entry(matrix, j); entry; ++entry)
+            if (entry.value() != 0)
+              block(place[entry.row()], place[j]) = entry.value();
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(block);
+        for (Eigen::Index i = 0; i < eigen.eigenvalues().size() && eigen.eigenvalues()[i] <= limit; ++i)
+          {
+            result.push_back(Eigen::VectorXd::Zero(matrix.cols()));
+            for (std::size_t k = 0; k < part.size(); ++k)
+              result.back()[part[k]] = eigen.eigenvectors()(k, i);
+          }
+      }
+    return result;
+  }
+} // namespace slipstick::tfeti
