@@ -1,5 +1,5 @@
 #include <slipstick/app/answer_warnings.h>
-#include <slipstick/app/curve_doubts.h>
+#include <slipstick/app/curve_warnings.h>
 #include <slipstick/base/log.h>
 #include <slipstick/mechanics/deformation.h>
 
@@ -112,9 +112,9 @@ namespace slipstick::app
     }
 
     /// Pairs between which forces can be exchanged without effect, and the first place; empty if there are none. Collective.
-    std::string doubt_of_split(const scene::Scene<2>    &scene,
-                               const tfeti::DualProblem &dual,
-                               const std::vector<bool>  &free)
+    std::string split_warning(const scene::Scene<2>    &scene,
+                              const tfeti::DualProblem &dual,
+                              const std::vector<bool>  &free)
     {
       const auto                          ambiguous = dual.ambiguous(free);
       std::set<unsigned int>              pairs;
@@ -171,9 +171,9 @@ namespace slipstick::app
   {
     std::map<std::string, std::string> texts;
     const auto                         pairs = peaks_of_pairs(scene, dual.constraints(), nodes, mesh.comm);
-    if (const std::string text = doubt_of_split(scene, dual, free); !text.empty())
+    if (const std::string text = split_warning(scene, dual, free); !text.empty())
       texts["split"] = text;
-    texts.merge(doubts_of_curves(scene, mesh, spaces, dual.constraints().contact_points, nodes));
+    texts.merge(curve_warnings(scene, mesh, spaces, dual.constraints().contact_points, nodes));
     for (unsigned int k = 0; k < pairs.size(); ++k)
       {
         const auto        &pair = pairs[k];

@@ -36,10 +36,10 @@ namespace slipstick::app
     contact::add_held_nodes(dual, held, multipliers, gaps, touches, sticks, contact);
   }
 
-  std::map<std::string, std::string> doubts_of_held_nodes(const scene::Scene<2>         &scene,
-                                                          const tfeti::HeldContacts     &held,
-                                                          const contact::CheckedContact &contact,
-                                                          const MPI_Comm                 comm)
+  std::map<std::string, std::string> held_node_warnings(const scene::Scene<2>         &scene,
+                                                        const tfeti::HeldContacts     &held,
+                                                        const contact::CheckedContact &contact,
+                                                        const MPI_Comm                 comm)
   {
     std::vector<double> forces(scene.contacts.size()), all(scene.contacts.size());
     for (const auto &node : contact.nodes)

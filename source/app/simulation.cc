@@ -286,7 +286,7 @@ namespace slipstick::app
         if (!passes(solution, contact.checks, tolerance))
           print_failure(log, scene, solution, contact.checks, tolerance);
         warn(answer_warnings(scene, solver.mesh(), solver.spaces(), solver.dual(), solution.free, contact.nodes, u));
-        warn(doubts_of_held_nodes(scene, solver.held_contacts(), contact, comm));
+        warn(held_node_warnings(scene, solver.held_contacts(), contact, comm));
 
         if (!solver.unheld().empty())
           warn({{"unresisted", set_to_zero(solver.unheld())}});

@@ -1,4 +1,5 @@
 #include <slipstick/tfeti/body_equilibrium.h>
+#include <slipstick/tfeti/gathered_by_label.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -8,6 +9,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -44,7 +46,6 @@ namespace slipstick::tfeti
     motions = bodies.free(is_equality_row);
     if (motions.empty())
       return;
-    const std::size_t n = motions.size();
 
     using Jumps = std::vector<std::pair<unsigned int, double>>; // of a row: motion, by how much
     const Eigen::SparseMatrix<double, Eigen::RowMajor> jumps = bodies.jumps(motions);
@@ -64,12 +65,7 @@ namespace slipstick::tfeti
         labels.push_back(constraints.label[r]);
         values.push_back(std::move(of_row));
       }
-    std::map<std::uint64_t, Jumps> all; // in an order that no number of ranks changes
-    const auto                     labels_of = dealii::Utilities::MPI::all_gather(comm, labels);
-    const auto                     values_of = dealii::Utilities::MPI::all_gather(comm, values);
-    for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
-      for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
-        all.emplace(labels_of[rank][i], values_of[rank][i]);
+    const auto                          all = gathered_by_label(labels, values, comm);
     std::map<std::uint64_t, int>        place;
     std::vector<Eigen::Triplet<double>> entries;
     for (const auto &[label, row] : all)
@@ -79,7 +75,7 @@ namespace slipstick::tfeti
         for (const auto &[motion, jump] : row)
           entries.emplace_back(i, motion, jump);
       }
-    shares.resize(all.size(), n);
+    shares.resize(all.size(), motions.size());
     shares.setFromTriplets(entries.begin(), entries.end());
     by_columns = shares;
     magnitudes = shares.cwiseAbs();
@@ -105,17 +101,15 @@ namespace slipstick::tfeti
         const double l = bounds.box.lower.local_element(r), u = bounds.box.upper.local_element(r);
         numbers.insert(numbers.end(), {double(place_of[r]), t[r], k[r], l, u, -1., 0., 0., 0.});
       }
-    std::map<unsigned int, unsigned int> at;
-    for (unsigned int i = 0; i < own.size(); ++i)
-      at[own[i]] = i;
     for (const auto &bound : bounds.pressure_bounds)
-      if (const auto i = at.find(bound.tangential); i != at.end() && place_of[bound.normal] >= 0)
+      if (place_of[bound.tangential] >= 0 && place_of[bound.normal] >= 0)
         {
-          double *row = numbers.data() + width * i->second;
-          row[5]      = place_of[bound.normal];
-          row[6]      = bound.forces.fixed;
-          row[7]      = bound.forces.coefficient;
-          row[8]      = bound.forces.cap;
+          const auto i   = std::lower_bound(own.begin(), own.end(), bound.tangential) - own.begin();
+          double    *row = numbers.data() + width * i;
+          row[5]         = place_of[bound.normal];
+          row[6]         = bound.forces.fixed;
+          row[7]         = bound.forces.coefficient;
+          row[8]         = bound.forces.cap;
         }
     std::vector<Row> result(shares.rows());
     for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))

@@ -3,6 +3,7 @@
 #include <slipstick/base/log.h>
 #include <slipstick/qp/box.h>
 #include <slipstick/tfeti/dual_problem.h>
+#include <slipstick/tfeti/gathered_by_label.h>
 #include <slipstick/tfeti/operator_choice.h>
 #include <slipstick/tfeti/rigid_motions.h>
 
@@ -320,12 +321,7 @@ namespace slipstick::tfeti
           candidates.emplace_back(share.data(), share.data() + share.size());
           labels.push_back(rows.label[r]);
         }
-    std::map<std::uint64_t, std::vector<double>> all; // in an order that no number of ranks changes
-    const auto                                   labels_of = dealii::Utilities::MPI::all_gather(comm, labels);
-    const auto                                   shares_of = dealii::Utilities::MPI::all_gather(comm, candidates);
-    for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
-      for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
-        all.emplace(labels_of[rank][i], shares_of[rank][i]);
+    const auto all = gathered_by_label(labels, candidates, comm);
     if (all.empty()) // Eigen's decomposition of a matrix without columns reads out of bounds
       return false;
     Eigen::MatrixXd shares(loose.size(), all.size());

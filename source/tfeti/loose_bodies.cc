@@ -1,10 +1,10 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/tfeti/dual_problem.h>
+#include <slipstick/tfeti/gathered_by_label.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <cmath>
-#include <map>
 
 namespace slipstick::tfeti
 {
@@ -22,6 +22,10 @@ namespace slipstick::tfeti
     constexpr double least_smoothing = 1e-6;
     // ... each minimised by so many Newton steps at most.
     constexpr unsigned int max_newton_steps = 30;
+    // A step must lower the sum by this part of its slope, or is halved, down to the shortest; ...
+    constexpr double least_decrease = 1e-4, shortest_step = 1e-10;
+    // ... the search ends where the slope promises less than this part of the sum.
+    constexpr double least_gain = 1e-12;
 
     /// A row of a loose body.
     struct LooseRow
@@ -31,10 +35,10 @@ namespace slipstick::tfeti
     };
 
     /// The motion a at which sum r |g + S a| + e'a is least.
-    class Settling
+    class WeakestMotion
     {
     public:
-      Settling(std::vector<LooseRow> rows_, Eigen::VectorXd loads_)
+      WeakestMotion(std::vector<LooseRow> rows_, Eigen::VectorXd loads_)
         : rows(std::move(rows_))
         , loads(std::move(loads_))
       {
@@ -82,10 +86,10 @@ namespace slipstick::tfeti
               if (!(along < 0))
                 break;
               double t = 1;
-              while (t > 1e-10 && !(evaluate(a + t * step, eps) <= value + 1e-4 * t * along))
+              while (t > shortest_step && !(evaluate(a + t * step, eps) <= value + least_decrease * t * along))
                 t /= 2;
               a += t * step;
-              if (-along <= 1e-12 * std::abs(value) || t <= 1e-10)
+              if (-along <= least_gain * std::abs(value) || t <= shortest_step)
                 break;
             }
         return a;
@@ -123,27 +127,6 @@ namespace slipstick::tfeti
       Eigen::VectorXd       loads;
       double                largest = 0;
     };
-
-    /// The rows of loose bodies, of all ranks in an order that no number of ranks changes.
-    std::vector<LooseRow> gathered(const std::vector<std::uint64_t>       &labels,
-                                   const std::vector<std::vector<double>> &numbers, // g, capacity, share
-                                   const MPI_Comm                          comm)
-    {
-      std::map<std::uint64_t, LooseRow> all;
-      const auto                        labels_of  = dealii::Utilities::MPI::all_gather(comm, labels);
-      const auto                        numbers_of = dealii::Utilities::MPI::all_gather(comm, numbers);
-      for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
-        for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
-          {
-            const auto &row = numbers_of[rank][i];
-            all.emplace(labels_of[rank][i],
-                        LooseRow{row[0], row[1], Eigen::Map<const Eigen::VectorXd>(row.data() + 2, row.size() - 2)});
-          }
-      std::vector<LooseRow> result;
-      for (const auto &[label, row] : all)
-        result.push_back(row);
-      return result;
-    }
   } // namespace
 
   std::vector<bool> DualProblem::hold(const std::vector<bool>   &free,
@@ -201,14 +184,16 @@ namespace slipstick::tfeti
             numbers.back().push_back(own(r, m));
           labels.push_back(rows.label[r]);
         }
-    const auto all = gathered(labels, numbers, comm);
+    std::vector<LooseRow> all;
+    for (const auto &[label, row] : gathered_by_label(labels, numbers, comm)) // g, capacity, share
+      all.push_back({row[0], row[1], Eigen::Map<const Eigen::VectorXd>(row.data() + 2, row.size() - 2)});
     if (all.empty())
       return {};
-    const Settling        settling(all, loads);
-    const Eigen::VectorXd a = settling.motion();
+    const WeakestMotion   weakest(std::move(all), loads);
+    const Eigen::VectorXd a = weakest.motion();
     if (!a.allFinite() || a.isZero(0.))
       return {};
-    const double held = settling.held_part(a);
+    const double held = weakest.held_part(a);
     if (!(held < 1))
       return {};
     RigidMotion motion = loose.front();

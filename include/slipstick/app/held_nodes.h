@@ -16,8 +16,8 @@ namespace slipstick::app
 
   /// Nodes where an obstacle and a support push alike, so that nothing but the sum of both forces is determined: a
   /// warning for every pair with such nodes, by "held" and its name. Collective.
-  std::map<std::string, std::string> doubts_of_held_nodes(const scene::Scene<2>         &scene,
-                                                          const tfeti::HeldContacts     &held,
-                                                          const contact::CheckedContact &contact,
-                                                          const MPI_Comm                 comm);
+  std::map<std::string, std::string> held_node_warnings(const scene::Scene<2>         &scene,
+                                                        const tfeti::HeldContacts     &held,
+                                                        const contact::CheckedContact &contact,
+                                                        const MPI_Comm                 comm);
 } // namespace slipstick::app

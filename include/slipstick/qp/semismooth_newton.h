@@ -278,7 +278,7 @@ namespace slipstick::qp
       // F y by the product with the step from x, which is a direction as all others; steps of rounding are none.
       void step_to_start(const Face &face)
       {
-        constexpr double rounding = 1e-13;
+        constexpr double rounding = 1e-13, short_step = 1e-6; // over |y|
         Vector           step(y), product(y);
         add(-1., x, step);
         const auto s = problem.reduction().sum(std::array<double, 2>{{local_dot(step, step), local_dot(y, y)}});
@@ -291,7 +291,7 @@ namespace slipstick::qp
         problem.multiply(step, product);
         ++counts.hessian_multiplications;
         add(1., product, Fy);
-        if (s[0] > 1e-12 * s[1]) // else G step = 0 holds to few digits
+        if (s[0] > short_step * short_step * s[1]) // else G step = 0 holds to few digits
           store.push(std::move(step), std::move(product), problem.reduction());
       }
 

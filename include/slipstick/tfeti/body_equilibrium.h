@@ -9,8 +9,8 @@ namespace slipstick::tfeti
   /// The motions of bodies which no equality row resists, and the least of
   ///   sum_i psi_i(t_i - k_i S_i a) + L'a,   psi_i' = clip to the bounds of row i, over k_i,
   /// S_i the jumps of the motions in row i, L the loads along them: there S'z = L with z = clip(t - k S a), so that the
-  /// forces z, which a projected gradient step t = x - k g gives after the motion a, balance the loads. Bounds that follow
-  /// normal forces do so. The function is convex and piecewise quadratic; Newton's method with an exact line search.
+  /// forces z, which a projected gradient step t = x - k g gives after the motion a, balance the loads up to 1 % of all
+  /// forces (of L the rest only is balanced). Bounds that follow normal forces do so. The function is convex and piecewise quadratic; Newton's method with an exact line search.
   class BodyEquilibrium
   {
   public:

@@ -12,7 +12,7 @@ namespace slipstick::app
   /// Warnings with remedy, by what they are about, of pairs of bodies whose edges leave out a curve (EdgeCurve::left_out)
   /// that is not small against what the pressure presses in or, where nothing touches, against the gap. Collective.
   /// @param nodes contact nodes of this rank with the points that they belong to at the front of Constraints.
-  std::map<std::string, std::string> doubts_of_curves(const scene::Scene<2>                   &scene,
+  std::map<std::string, std::string> curve_warnings(const scene::Scene<2>                   &scene,
                                                       const mesh::Mesh<2>                     &mesh,
                                                       const mechanics::Spaces<2>              &spaces,
                                                       const std::vector<tfeti::ContactPoint>  &points,

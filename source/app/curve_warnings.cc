@@ -1,4 +1,4 @@
-#include <slipstick/app/curve_doubts.h>
+#include <slipstick/app/curve_warnings.h>
 #include <slipstick/base/log.h>
 #include <slipstick/interface/body_contact.h>
 #include <slipstick/mesh/smooth_outline.h>
@@ -65,7 +65,7 @@ namespace slipstick::app
     }
   } // namespace
 
-  std::map<std::string, std::string> doubts_of_curves(const scene::Scene<2>                   &scene,
+  std::map<std::string, std::string> curve_warnings(const scene::Scene<2>                   &scene,
                                                       const mesh::Mesh<2>                     &mesh,
                                                       const mechanics::Spaces<2>              &spaces,
                                                       const std::vector<tfeti::ContactPoint>  &points,

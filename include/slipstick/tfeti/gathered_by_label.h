@@ -1,0 +1,27 @@
+// What the ranks know of their rows, together.
+#pragma once
+
+#include <deal.II/base/mpi.h>
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+namespace slipstick::tfeti
+{
+  /// Values of rows of all ranks, on every rank, in the order of the labels of the rows (Constraints::label), which no
+  /// number of ranks changes. @p Value is packed by Boost. Collective.
+  template <typename Value>
+  std::map<std::uint64_t, Value> gathered_by_label(const std::vector<std::uint64_t> &labels,
+                                                   const std::vector<Value>         &values,
+                                                   const MPI_Comm                    comm)
+  {
+    std::map<std::uint64_t, Value> all;
+    const auto                     labels_of = dealii::Utilities::MPI::all_gather(comm, labels);
+    const auto                     values_of = dealii::Utilities::MPI::all_gather(comm, values);
+    for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
+      for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
+        all.emplace(labels_of[rank][i], values_of[rank][i]);
+    return all;
+  }
+} // namespace slipstick::tfeti
