@@ -199,7 +199,9 @@ namespace slipstick::random
         const auto summary     = nlohmann::json::parse(content(directory + "/summary.json"));
         result.multiplications = summary["solver"]["hessian_multiplications"].get<unsigned long long>();
         result.fallbacks       = summary["solver"]["fallbacks"].get<unsigned int>();
-        double worst           = 0;
+        for (const auto &warning : summary["warnings"])
+          result.holds_motions |= warning.get<std::string>().rfind("nothing resists", 0) == 0;
+        double worst = 0;
         for (const auto &[name, value] : summary["residuals"].items())
           if (value.is_number() && value.get<double>() >= worst)
             {
