@@ -20,6 +20,8 @@ namespace slipstick::random
     constexpr double longest_lever = 1e-2;
     // A solution is one when all conditions hold to this.
     constexpr double solved_tolerance = 1e-11;
+    // Rounding of displacements as files have them, relative to the largest: twice half a unit in the last place.
+    constexpr double single_precision = 1.2e-7;
     // Strictly inside, strictly pressed: above this.
     constexpr double strict = 1e-7;
     // Loads that no admissible forces balance, relative: above this there are none.
@@ -778,9 +780,11 @@ namespace slipstick::random
         at.a += cod.solve(b);
       }
     Violation violation;
-    violation.equilibrium  = e.size() > 0 ? (T.transpose() * at.x - e).cwiseAbs().maxCoeff() / size : 0.;
-    violation.law          = residual(at);
-    const double largest   = std::max(u.cwiseAbs().maxCoeff(), 1e-13 * problem.size);
+    violation.equilibrium = e.size() > 0 ? (T.transpose() * at.x - e).cwiseAbs().maxCoeff() / size : 0.;
+    const double largest  = std::max(u.cwiseAbs().maxCoeff(), 1e-13 * problem.size);
+    const double rounding =
+      at.x.size() > 0 ? single_precision * largest * row_scale.maxCoeff() / size : 0.; // of u in jumps
+    violation.law          = std::max(0., residual(at) - rounding);
     violation.displacement = (u - displacements(at)).cwiseAbs().maxCoeff() / largest;
     return violation;
   }

@@ -163,7 +163,8 @@ namespace
       }
     result.violation = dense.check(found.x, found.u);
     // the dense solver spreads the force on held motions, slipstick holds one node: friction passes on the difference
-    const double agreement = std::max(required_agreement, 10 * found.on_held_motions);
+    const double agreement =
+      found.holds_motions ? 10 * std::max(required_agreement, found.on_held_motions) : required_agreement;
     // relative to displacements that are all rounding nothing can be said of them
     const bool moves = largest(found.u) > no_displacement * problem.size;
     const bool is_one =
