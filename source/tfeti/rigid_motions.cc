@@ -210,7 +210,7 @@ namespace slipstick::tfeti
       return null_vectors(all, resistance * std::max(largest_eigenvalue(all), 1.));
     };
     std::vector<Eigen::VectorXd> result = null_vectors_of(false);
-    if (!active.empty())
+    if (dealii::Utilities::MPI::min(active.empty() ? 1 : 0, comm) == 0) // a rank may have no rows
       return result;
     for (auto &vector :
          null_vectors_of(true)) // these need not contain the first: a row without its lever may resist more
