@@ -193,8 +193,8 @@ namespace slipstick::app
       for (std::size_t p = 0; fits && p < state.u.size(); ++p)
         fits = state.u[p].size() == the_dual->subdomains()[p]->n_unknowns();
       if (!fits)
-        throw InputError("--resume: meshes or contact are not those of the run that is to go on",
-                         "leave --resume out to start from the first load step");
+        throw InputError("--resume: meshes or contact differ from those of the run to be continued",
+                         "omit --resume to start from the first load step");
     });
     for (const auto &part : state.u)
       u.push_back(Eigen::Map<const Eigen::VectorXd>(part.data(), part.size()));

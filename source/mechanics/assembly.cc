@@ -219,7 +219,7 @@ namespace slipstick::mechanics
       if (scene.discretization.element == scene::ElementKind::nearly_incompressible && element.cell.is_simplex() &&
           element.degree == 1)
         throw InputError("Discretization/Element = nearly incompressible: body '" + scene.bodies[body].name +
-                           "' has triangles of degree 1, which lock with any treatment of the dilatation",
+                           "' has triangles of degree 1, which lock however the dilatation is treated",
                          "set Discretization/Degree = 2, or mesh the body with quadrilaterals");
     }
 

@@ -83,7 +83,7 @@ namespace slipstick::mesh
       if (n_cut > 0)
         mesh.remarks.push_back(
           format("warning: %s: '%s' changes within %u edge%s of %s, such as that around (%.6g, %.6g); an "
-                 "edge counts as a whole, as its middle does: put a node of the mesh there",
+                 "edge belongs to the part as a whole if its middle does: put a node of the mesh there",
                  user.c_str(),
                  part.condition.c_str(),
                  n_cut,

@@ -304,7 +304,7 @@ namespace slipstick::mesh
             scene.decomposition.method != scene::DecompositionMethod::none)
           throw InputError("Decomposition/Subdomains = " + std::to_string(scene.decomposition.subdomains) +
                              " is more than the " + std::to_string(mesh.n_cells) + " cells of the mesh",
-                           "ask for at most one subdomain a cell, or set it to auto");
+                           "ask for at most one subdomain per cell, or set it to auto");
         pieces = cut_bodies(scene, bodies, mesh.remarks);
       });
 

@@ -261,7 +261,7 @@ namespace slipstick::mesh
       const int    size    = in.word<int>();
       is_version_2         = version >= 2 && version < 3;
       if (!is_version_2 && !(version >= 4.1 && version < 4.2))
-        in.fail("has version " + number_text(version) + "; read are 2.0 to 2.2 and 4.1",
+        in.fail("has version " + number_text(version) + "; versions 2.0 to 2.2 and 4.1 are supported",
                 "save it as 4.1: gmsh OLD.msh -save -format msh41 -o NEW.msh");
       if (size != 8 || kind < 0 || kind > 1)
         in.fail_broken();
@@ -484,7 +484,7 @@ namespace slipstick::mesh
               has_elements = true;
             }
           else if (section == "PartitionedEntities")
-            in.fail("is partitioned", "save it without: slipstick cuts bodies itself");
+            in.fail("is partitioned", "save it without partitions: slipstick decomposes bodies itself");
           else
             in.end_section(true);
         }

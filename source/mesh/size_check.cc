@@ -164,9 +164,8 @@ namespace slipstick::mesh
       if (dealii::Utilities::MPI::this_mpi_process(comm) != 0)
         return;
       const SizeEstimate size = estimate_size(scene);
-      const std::string  asks =
-        "the scene asks for about " + rounded(size.unknowns) + " unknowns (" + size.largest + ")";
-      const std::string less = "ask for fewer Cells, Blocks, Refinements or Refine levels";
+      const std::string  asks = "the scene has about " + rounded(size.unknowns) + " unknowns (" + size.largest + ")";
+      const std::string  less = "use fewer Cells, Blocks, Refinements or Refine levels";
       if (size.cells > most_cells)
         throw InputError(asks + ", more than can be counted (" + rounded(most_cells) + " cells)", less);
       if (!forced && size.memory_mb > usable * free)
@@ -186,10 +185,11 @@ namespace slipstick::mesh
             {
               const double length = face->vertex(0).distance(face->vertex(1)), away = face->vertex(0).norm();
               if (!(length > finest * away))
-                throw InputError("Body " + scene.bodies[subdomain->body].name + ": has an edge of " +
-                                   number_text(length) + " mm at " + number_text(away) +
-                                   " mm from the origin, where numbers do not tell its ends apart well enough",
-                                 "give Translation, Center, Origin or the mesh near the origin, or larger cells");
+                throw InputError(
+                  "Body " + scene.bodies[subdomain->body].name + ": has an edge of " + number_text(length) + " mm at " +
+                    number_text(away) + " mm from the origin, where numbers do not resolve such an edge well enough",
+                  "move the body closer to the origin (Translation, Center, Origin or the mesh itself), or use "
+                  "larger cells");
             }
     });
   }

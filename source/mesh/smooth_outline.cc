@@ -345,12 +345,12 @@ namespace slipstick::mesh
           face.bends_cell = has_room_for<2>(curve, mesh.piece, mesh.piece.cells[edge->cell], edge->face);
         }
       if (n_bent > 0)
-        mesh.remarks.push_back(
-          "body " + body.name + ": " + std::to_string(n_bent) + " of " + std::to_string(edges.size()) +
-          " edges of its outline " +
-          (by_middles ? "are curved by their mid nodes"
-                      : "count as curves, which meet at less than " + number_text(body.corner_angle) + " degrees") +
-          " (Outline = polygon: straight)");
+        mesh.remarks.push_back("body " + body.name + ": " + std::to_string(n_bent) + " of " +
+                               std::to_string(edges.size()) + " edges of its outline " +
+                               (by_middles ? "are curved by their mid nodes"
+                                           : "are treated as curves, as they meet at less than " +
+                                               number_text(body.corner_angle) + " degrees") +
+                               " (Outline = polygon: straight)");
     }
   } // namespace
 
