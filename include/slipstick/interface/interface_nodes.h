@@ -6,8 +6,8 @@
 
 namespace slipstick::interface
 {
-  /// The interface nodes that this rank owns, complete, sorted by key: nodes of @p contacts where it says, others where
-  /// their first copy is. Nodes with one copy that nothing acts on are left out.
+  /// The interface nodes that this rank owns, complete, sorted by key: nodes of @p contacts on the rank given there,
+  /// others on that of their first copy. Nodes with a single copy on which nothing acts are left out.
   ///
   /// Supports along the normal hold a node along the average of the outward normals of the edges there, or along each of
   /// them where they form a corner; a component or normal that the others imply is left out. Bonds to an obstacle hold

@@ -1,4 +1,4 @@
-// Contact pairs that cannot mean what they say: sides that face away from each other or are out of reach.
+// Contact pairs that cannot be meant as declared: sides that face away from each other or are out of reach.
 #pragma once
 
 #include <slipstick/interface/mortar.h>
@@ -34,9 +34,9 @@ namespace slipstick::interface
                                 const PairSides<dim>          &sides,
                                 const double                   reach);
 
-  /// Checks the rows of a pair of bodies. With an automatic reach the gap of the nearest row, offset included, must not be
-  /// larger in all load steps than the larger of the two sides plus the largest prescribed displacement of the scene;
-  /// with a Reach or a Gap of its own a pair may begin as far apart as it says. The same on all ranks.
+  /// Checks the rows of a pair of bodies. With an automatic reach the gap of the nearest row, offset included, must not
+  /// be larger in all load steps than the larger of the two sides plus the largest prescribed displacement of the
+  /// scene; a pair with a Reach or a Gap of its own may start at any distance within these. The same on all ranks.
   /// @throws InputError for sides that face away from each other (lies_behind) or are out of reach.
   template <int dim>
   void check_sides(const scene::Scene<dim>                        &scene,

@@ -1,4 +1,4 @@
-// What is inside what after loading, by the geometry alone: places that no row of contact watches.
+// Penetrations after loading, from the geometry alone, at places that no contact row sees.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>

@@ -37,10 +37,11 @@ namespace slipstick::interface
   /// Makes the rows of interface nodes: contact, bonds, supports, foundations, gluing.
   ///
   /// Rows of contact that the supports of their nodes and the bonds (of all connected nodes) already imply are left
-  /// out; the tangential row goes before the normal one. So are rows of bonds, as where three bonded bodies meet in a
-  /// point: the pair that comes last in the scene gives way. A node that may touch several obstacles has a normal row for each (for parallel
-  /// normals the nearer obstacle only) and one tangential row, that of the nearest obstacle. So has a node at a corner of
-  /// the slave boundary with one and the same master node on both its sides.
+  /// out; the tangential row goes before the normal one. So are redundant rows of bonds, as where three bonded bodies
+  /// meet in a point: those of the pair that comes last in the scene are dropped. A node that may touch several
+  /// obstacles has a normal row for each (for parallel normals the nearer obstacle only) and one tangential row, that
+  /// of the nearest obstacle. The same holds for a node at a corner of the slave boundary with the same master node on
+  /// both its sides.
   template <int dim>
   class RowBuilder
   {
@@ -88,7 +89,7 @@ namespace slipstick::interface
     bool touch_obstacle(const unsigned int node, const unsigned int pair, const Tributary &area, Touch &touch) const;
     /// Gap, normal and area, of bonds too; false beyond the Reach, and on the axis of revolution for nodes without area.
     bool place_on_obstacle(const unsigned int node, const unsigned int pair, const Tributary &area, Touch &touch) const;
-    /// What any touch of a node says of the node itself.
+    /// Properties of the node itself, the same for each of its contacts.
     void complete(const unsigned int node, Touch &touch) const;
     bool touch_body(const unsigned int node, const unsigned int pair, const MortarRow<dim> &row, Touch &touch) const;
     void add_contact(const unsigned int node);
@@ -113,7 +114,7 @@ namespace slipstick::interface
     /// Jump of the displacement along @p direction, slave less master.
     Vector jump(const Touch &touch, const Tensor &direction) const;
 
-    /// What supports leave of a row.
+    /// The part of a row that supports leave free.
     Vector free_part(const Vector &row) const;
 
     unsigned int new_row(const tfeti::RowKind      kind,

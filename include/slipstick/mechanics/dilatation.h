@@ -1,4 +1,4 @@
-// The dilatation that the elements work with: that of the displacement, or a projection of it.
+// The dilatation that the elements use: that of the displacement, or a projection of it.
 #pragma once
 
 #include <slipstick/mechanics/cell_values.h>

@@ -10,7 +10,7 @@
 
 namespace slipstick::mechanics
 {
-  /// What one load of the scene comes to.
+  /// Resultant of one load of the scene.
   struct LoadResultant
   {
     Resultant                            sum;
@@ -26,11 +26,11 @@ namespace slipstick::mechanics
                                              const Spaces<dim>       &spaces,
                                              const double             t);
 
-  /// f_p [N] at load factor @p t, by subdomain of this rank. Forces per area and per volume act on the body's thickness, or
-  /// on the whole circumference;
-  /// pressure acts against the outward normal of the undeformed boundary; a point load acts on one copy of the node
-  /// nearest to it, whole (no thickness, no circumference). Formulas of tractions are integrated by AdaptiveQuadrature, jumps included. Thermal strain enters as the force of the stress that would hold it back.
-  /// Collective.
+  /// f_p [N] at load factor @p t, by subdomain of this rank. Forces per area and per volume act on the body's
+  /// thickness, or on the whole circumference; pressure acts against the outward normal of the undeformed boundary; a
+  /// point load acts on one copy of the node nearest to it, whole (no thickness, no circumference). Formulas of
+  /// tractions are integrated by AdaptiveQuadrature, jumps included. Thermal strain enters as the force of the stress
+  /// that would suppress it. Collective.
   /// @throws InputError on all ranks for a formula that gives no number and for a point load outside its body.
   template <int dim>
   std::vector<Eigen::VectorXd> assemble_loads(const scene::Scene<dim> &scene,

@@ -43,8 +43,8 @@ namespace slipstick::mechanics
     /// Gauss rule of n points per direction (triangles: of the same order).
     dealii::Quadrature<dim> cell_quadrature(const unsigned int n) const;
 
-    /// Integrates the stiffness and what belongs to it. Of triangles of degree 1 the hoop strain of a body of revolution
-    /// is not constant.
+    /// Integrates the stiffness and related terms. The hoop strain of a body of revolution is not constant on triangles
+    /// of degree 1.
     dealii::Quadrature<dim> stiffness_rule(const mesh::Kinematics<dim> &kinematics) const;
 
     /// Rule for the edges: Gauss, n points.

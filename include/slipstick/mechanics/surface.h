@@ -15,7 +15,7 @@ namespace slipstick::mechanics
   }
 
   /// An edge on the outline of a body, straight with two nodes or curved with three; local coordinate s in [0, 1]. The
-  /// body lies to the left of the way from node 0 (s = 0) to node 1 (s = 1); node 2 is in the middle.
+  /// body lies to the left when going from node 0 (s = 0) to node 1 (s = 1); node 2 is in the middle.
   template <int dim>
   struct SurfaceEdge
   {

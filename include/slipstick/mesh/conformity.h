@@ -1,4 +1,4 @@
-// Whether cells make a mesh: no cell on top of others, no node inside an edge, no two nodes at one place.
+// Whether cells form a conforming mesh: no overlapping cells, no node inside an edge, no coincident nodes.
 #pragma once
 
 #include <slipstick/mesh/mesh_piece.h>

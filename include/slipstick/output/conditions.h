@@ -1,4 +1,4 @@
-// conditions.csv: where supports, loads and contact pairs are, for those who draw the scene.
+// conditions.csv: where supports, loads and contact pairs act, for programs that draw the scene.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
