@@ -11,10 +11,10 @@ namespace slipstick::tfeti
   /// Q = G'(G G')^-1 G projects dual vectors on the range of G'. With T from G G' = T^-1 T^-T the rows of T G are
   /// orthonormal; they are never formed, since |T G x| = |Q x|.
   ///
-  /// With a metric M (a positive number a row, the inverse of what the row yields to a force) least is meant in that
-  /// metric: G'(G M G')^-1 G M takes its part from a residual [mm], M G'(G M G')^-1 G from multipliers [N], one the
-  /// transpose of the other. Stiff and soft bodies then share what they exchange as their stiffnesses tell (Bhardwaj et
-  /// al. 2000; Klawonn, Widlund 2001).
+  /// With a metric M (a positive number per row, the inverse of the row's compliance), "least" refers to that metric:
+  /// G'(G M G')^-1 G M projects residuals [mm], M G'(G M G')^-1 G multipliers [N], one the transpose of the other.
+  /// Stiff and soft bodies then share corrections according to their stiffnesses (Bhardwaj et al. 2000; Klawonn,
+  /// Widlund 2001).
   class Projector
   {
   public:

@@ -16,7 +16,7 @@ namespace slipstick::tfeti
     double                length = 1;        // [mm]
   };
 
-  /// Eigen 3.4 copies a sparse matrix where a move is meant: K_p would be there three times.
+  /// Eigen 3.4 copies a sparse matrix where a move is meant; K_p would be held three times.
   class MovableSparseMatrix : public Eigen::SparseMatrix<double>
   {
   public:
