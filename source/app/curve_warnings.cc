@@ -14,8 +14,9 @@ namespace slipstick::app
 {
   namespace
   {
-    // What is left out over what it is compared with. Waves of height w and the length of an edge h are pressed flat by a
-    // pressure of pi E' w / (2 h) (Johnson 1985, section 13.2), so that the pressure is wrong by about this part.
+    // Limit on the sagitta left out, relative to what it is compared with. Waves of height w whose length is that of an
+    // edge, h, are pressed flat by a pressure of pi E' w / (2 h) (Johnson 1985, section 13.2), so that the pressure is
+    // wrong by about this fraction.
     constexpr double largest_share = 0.1;
 
     /// 1/E' = 1/E of one side + 1/E of the other.

@@ -15,11 +15,11 @@ namespace slipstick::app
     // Obstacles between nodes, and bodies in contact with each other, may do so by this part of the largest displacement or
     // of an edge, whichever is less: curved sides and slip leave about that on coarse meshes.
     constexpr double allowed_between_nodes = 0.1;
-    // Bodies that no contact joins, part of the largest displacement.
+    // The same for bodies that no contact joins, relative to the largest displacement.
     constexpr double allowed_without_contact = 1e-3;
-    // All of them may be this part of an edge: rounding of coordinates.
+    // For all of them, relative to an edge: rounding of coordinates.
     constexpr double rounding = 1e-9;
-    // A Reach is proposed with so many digits of reserve.
+    // Reserve of the Reach that is proposed.
     constexpr double reserve = 1.1;
 
     std::string place(const interface::Penetration &deepest)
@@ -27,7 +27,7 @@ namespace slipstick::app
       return format("(%.6g, %.6g)", deepest.at[0], deepest.at[1]);
     }
 
-    /// Two digits, never below.
+    /// Rounded up to two digits.
     double rounded_up(const double value)
     {
       const double unit = std::pow(10., std::floor(std::log10(value)) - 1);

@@ -11,7 +11,7 @@ namespace slipstick::app
 {
   namespace
   {
-    // Of the forces of a pair: less at held nodes, such as one at the corner, is not worth a warning.
+    // Relative to the forces of a pair: less at held nodes, such as a single one at a corner, is not worth a warning.
     constexpr double part_that_counts = 0.05;
   } // namespace
 

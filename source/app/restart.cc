@@ -160,10 +160,10 @@ namespace slipstick::app
   namespace
   {
     const std::string head_name = "restart.bin";
-    // Of the files: another layout has another number.
+    // Format of the files: another layout gets another number.
     constexpr unsigned int format_number = 1;
 
-    /// What restart.bin says: to which run the files belong.
+    /// Content of restart.bin: to which run the files belong.
     struct Head
     {
       unsigned int             format = format_number;
@@ -247,7 +247,7 @@ namespace slipstick::app
       return content;
     }
 
-    /// The first line in which two texts differ, of the second one.
+    /// The first line of the second text that differs from the first text.
     std::string first_difference(const std::string &before, const std::string &now)
     {
       std::istringstream a(before), b(now);
@@ -282,7 +282,7 @@ namespace slipstick::app
                    before.load_factors[step]));
     }
 
-    /// The files of a restart, those of @p but left out.
+    /// Removes the files of a restart, except those of step @p but.
     void remove_files(const output::OutputDirectory &directory, const std::optional<unsigned int> but)
     {
       static const std::regex            files("restart_(\\d+)_\\d+\\.bin");

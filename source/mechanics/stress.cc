@@ -16,7 +16,7 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    /// What one subdomain needs again and again.
+    /// Data that one subdomain needs repeatedly.
     template <int dim>
     struct Subdomain
     {
@@ -246,7 +246,7 @@ namespace slipstick::mechanics
         }
     }
 
-    /// Means are superconvergent but on triangles of degree 2.
+    /// Averages are superconvergent except on triangles of degree 2.
     template <int dim>
     bool needs_patches(const Element<dim> &element)
     {

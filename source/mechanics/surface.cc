@@ -18,7 +18,7 @@ namespace slipstick::mechanics
     // when the edge is straight and next to none when it is curved; other nodes have a ninth or more.
     constexpr double smallest_share = 0.01;
 
-    /// Unit normal on the right of a way.
+    /// Unit normal on the right of a direction.
     template <int dim>
     dealii::Tensor<1, dim> right_of(const dealii::Tensor<1, dim> &way)
     {

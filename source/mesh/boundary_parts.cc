@@ -9,7 +9,8 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // So near to its ends, over its length, a condition is tried on an edge: nodes on a limit belong to both sides.
+    // Distance from its ends, relative to its length, at which a condition is tried on an edge: nodes on a limit belong
+    // to both sides.
     constexpr double end_of_edge = 1e-6;
 
     /// Is a face with this id on the boundary of that name?

@@ -21,8 +21,8 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Cells (times the square of the degree) of a METIS subdomain when their number is left to us: benchmarks/README.md,
-    // "How many subdomains?".
+    // Cells (times the square of the degree) per METIS subdomain if their number is `auto`: benchmarks/README.md, "How
+    // many subdomains?".
     constexpr double automatic_cells_per_subdomain = 10000;
 
     // Bodies that may not share units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus): the larger size or modulus over

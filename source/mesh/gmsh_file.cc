@@ -61,7 +61,7 @@ namespace slipstick::mesh
             return {2, 4, 16};
           case 37:
             return {2, 4, 25};
-          case 4: // tetrahedra, hexahedra, prisms, pyramids and their kin of second order
+          case 4: // tetrahedra, hexahedra, prisms, pyramids and their second-order variants
             return {3, 4, 4};
           case 5:
             return {3, 8, 8};
@@ -137,7 +137,7 @@ namespace slipstick::mesh
         return n;
       }
 
-      /// The rest of the present line.
+      /// The rest of the current line.
       std::string line()
       {
         const auto end   = std::min(text.find('\n', at), text.size());
@@ -158,7 +158,7 @@ namespace slipstick::mesh
         return section;
       }
 
-      /// Goes behind the end of the present section, which must come at once unless the section is skipped.
+      /// Moves past the end of the current section, which must come at once unless the section is skipped.
       void end_section(const bool skip)
       {
         const std::string end   = "$End" + section;

@@ -88,7 +88,7 @@ namespace slipstick::mesh
         mesh.piece = refined_towards(mesh.piece, ids);
     }
 
-    /// Types of elements that contradict the plane state of the scene, which is the one that counts.
+    /// Types of elements that contradict the plane state of the scene, which takes precedence.
     template <int dim>
     void remark_on_plane_state(const scene::Scene<dim> &scene, MeshFile &file)
     {
@@ -116,7 +116,7 @@ namespace slipstick::mesh
         warn(file.plane_strain_types, "strain");
     }
 
-    /// Nodes within rounding of the axis of revolution come to lie on it; beyond it there must be none.
+    /// Moves nodes within rounding of the axis of revolution onto it; there must be none beyond it.
     template <int dim>
     void move_to_axis(const scene::Body<dim> &body, const Kinematics<dim> &kinematics, MeshPiece<dim> &piece)
     {

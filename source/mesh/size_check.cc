@@ -19,7 +19,7 @@ namespace slipstick::mesh
     // Bytes an unknown: mesh, stiffness and output, and the factor, whose entries grow with the logarithm of the subdomain's
     // size. Measured: 1.33 million unknowns in 256 subdomains take 1 GB (README.md).
     constexpr double bytes_per_unknown = 300, bytes_per_unknown_and_doubling = 32;
-    constexpr double cells_per_subdomain = 10000; // what auto aims at, see decomposition.cc
+    constexpr double cells_per_subdomain = 10000; // target of auto, see decomposition.cc
     constexpr double most_cells          = 1e9;   // beyond this counters of 32 bits may overflow
     constexpr double bytes_per_subdomain = 100e3; // its mesh and lists, however few its cells
     constexpr double many_subdomains     = 1e4;   // beyond this the message names them

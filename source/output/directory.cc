@@ -43,7 +43,7 @@ namespace slipstick::output
       return text.str();
     }
 
-    /// A file that was not there before; nothing is written through a link that somebody left in its place.
+    /// A new file; nothing is written through a link that somebody left in its place.
     class NewFile
     {
     public:
@@ -102,7 +102,7 @@ namespace slipstick::output
       bool                           is_renamed = false;
     };
 
-    // Permission bits do not tell (root ignores them, read-only and full disks do not show in them): try a file.
+    // Permission bits are not enough (root ignores them, and read-only or full disks do not show in them): try a file.
     void try_a_file(const std::filesystem::path &directory)
     {
       NewFile           probe(temporary_name((directory / ".slipstick-probe").string()));
@@ -111,7 +111,7 @@ namespace slipstick::output
         reject(directory.string(), "no file can be written there: " + reason);
     }
 
-    /// Removes files that killed runs left half written.
+    /// Removes partial files that killed runs left.
     void remove_stale(const std::filesystem::path &directory)
     {
       static const std::regex stale("(" + result_names + "|\\.slipstick-probe)(\\.(\\d{1,9})-[0-9a-f]+)?\\.tmp");
