@@ -9,11 +9,11 @@ namespace slipstick::app
 {
   namespace
   {
-    // Nodes out of reach must not penetrate by more than this part of the largest displacement: far above what the solver
-    // leaves.
+    // Nodes out of reach must not penetrate by more than this part of the largest displacement: far above what the
+    // solver leaves.
     constexpr double allowed_beyond_reach = 1e-3;
-    // Obstacles between nodes, and bodies in contact with each other, may do so by this part of the largest displacement or
-    // of an edge, whichever is less: curved sides and slip leave about that on coarse meshes.
+    // Obstacles between nodes, and bodies in contact with each other, may do so by this part of the largest
+    // displacement or of an edge, whichever is less: curved sides and slip leave about that on coarse meshes.
     constexpr double allowed_between_nodes = 0.1;
     // The same for bodies that no contact joins, relative to the largest displacement.
     constexpr double allowed_without_contact = 1e-3;

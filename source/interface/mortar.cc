@@ -203,8 +203,8 @@ namespace slipstick::interface
         row.gap = row.normal * (row.master_position - x);
       }
 
-      /// How far the curve is above the edges at a node, along the normal of a row: nothing but for midside nodes of straight
-      /// edges and nodes of edges that could not be bent.
+      /// How far the curve is above the edges at a node, along the normal of a row: nothing but for midside nodes of
+      /// straight edges and nodes of edges that could not be bent.
       double rise(const MortarRow<2> &row, const mechanics::NodeKey &key) const
       {
         const auto &[edge, s] = places.at(key);

@@ -246,8 +246,8 @@ namespace slipstick::interface
       Point               low, high;
     };
 
-    /// How far the outline lies inside of the chord of an edge, @p before and @p now: hollow sides, whose chords reach into what
-    /// they touch.
+    /// How far the outline lies inside of the chord of an edge, @p before and @p now: hollow sides, whose chords reach
+    /// into what they touch.
     double hollow(const Edge &before, const Edge &now, const double s)
     {
       const Point  on_chord = now.node(0) + s * (now.node(1) - now.node(0));

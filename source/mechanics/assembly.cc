@@ -100,8 +100,8 @@ namespace slipstick::mechanics
           }
     }
 
-    /// Adds what bodies of revolution have besides to the section's stiffness, and weighs it: sum over points of lambda div div +
-    /// 2 mu eps : eps with hoop strain in div and eps, times circumference.
+    /// Adds what bodies of revolution have besides to the section's stiffness, and weighs it: sum over points of lambda
+    /// div div + 2 mu eps : eps with hoop strain in div and eps, times circumference.
     template <int dim>
     void cell_stiffness(const CellValues<dim>       &at,
                         const mesh::Kinematics<dim> &kinematics,

@@ -76,7 +76,8 @@ namespace slipstick::mesh
       template <typename F>
       void for_data(const F &f);
 
-      /// Members of a set: numbers, and lines of GENERATE that are checked against what there is before they are written out.
+      /// Members of a set: numbers, and lines of GENERATE that are checked against what there is before they are
+      /// written out.
       struct Set
       {
         using Range = std::array<unsigned long long, 4>; // first, last, step, line in the file

@@ -25,9 +25,10 @@ namespace slipstick::mesh
     // many subdomains?".
     constexpr double automatic_cells_per_subdomain = 10000;
 
-    // Bodies that may not share units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus): the larger size or modulus over
-    // the smaller one. Parts of one assembly differ less in size; steel and rubber differ by 1e5 in modulus. What is
-    // doubtful together: the smaller of two bodies is the stiffer one, as it is when metres and pascal meet mm and MPa.
+    // Bodies that may not share units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus): the larger size or modulus
+    // over the smaller one. Parts of one assembly differ less in size; steel and rubber differ by 1e5 in modulus. What
+    // is doubtful together: the smaller of two bodies is the stiffer one, as it is when metres and pascal meet mm and
+    // MPa.
     constexpr double doubtful_size_ratio    = 300;
     constexpr double doubtful_modulus_ratio = 3e5;
     constexpr double doubtful_together_size = 30, doubtful_together_modulus = 3e4;

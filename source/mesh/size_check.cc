@@ -16,8 +16,8 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Bytes an unknown: mesh, stiffness and output, and the factor, whose entries grow with the logarithm of the subdomain's
-    // size. Measured: 1.33 million unknowns in 256 subdomains take 1 GB (README.md).
+    // Bytes an unknown: mesh, stiffness and output, and the factor, whose entries grow with the logarithm of the
+    // subdomain's size. Measured: 1.33 million unknowns in 256 subdomains take 1 GB (README.md).
     constexpr double bytes_per_unknown = 300, bytes_per_unknown_and_doubling = 32;
     constexpr double cells_per_subdomain = 10000; // target of auto, see decomposition.cc
     constexpr double most_cells          = 1e9;   // beyond this counters of 32 bits may overflow

@@ -34,7 +34,8 @@ namespace slipstick::output
       "conditions\\.csv|convergence\\.csv|history\\.csv|probes\\.csv|summary\\.json|parameters\\.prm|"
       "restart\\.bin|restart_\\d+_\\d+\\.bin";
 
-    /// Beside @p name, with the number of the process, by which others know whether it is still written, and a random part.
+    /// Beside @p name, with the number of the process, by which others know whether it is still written, and a random
+    /// part.
     std::string temporary_name(const std::string &name)
     {
       std::random_device random;

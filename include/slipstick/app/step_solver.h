@@ -42,7 +42,8 @@ namespace slipstick::app
     /// @param multiplications_before by F in the steps before.
     std::unique_ptr<Answer> solve(const unsigned int step, const std::uint64_t multiplications_before);
 
-    /// In place of build(): as after load step @p step of an earlier run. @throws InputError where the state does not fit.
+    /// In place of build(): as after load step @p step of an earlier run. @throws InputError where the state does not
+    /// fit.
     void resume(const unsigned int step, const StepState &state);
 
     /// After a load step, for resume(). Not of the last step of a scene.

@@ -17,10 +17,10 @@ namespace slipstick::contact
     unsigned int          pair     = 0;        // index into Scene::contacts
   };
 
-  /// All relative: lengths to the largest displacement, contact forces to the largest nodal contact force, works and the
-  /// energy norm to twice the strain energy, forces and moments of a body to the sum of the force magnitudes on it (to
-  /// what rounding leaves of gaps and displacements, where these are smaller). Gaps and slips come from u; contact forces
-  /// are the multipliers, which K u - f + B'x = 0 at every node confirms.
+  /// All relative: lengths to the largest displacement, contact forces to the largest nodal contact force, works and
+  /// the energy norm to twice the strain energy, forces and moments of a body to the sum of the force magnitudes on it
+  /// (to what rounding leaves of gaps and displacements, where these are smaller). Gaps and slips come from u; contact
+  /// forces are the multipliers, which K u - f + B'x = 0 at every node confirms.
   struct Checks
   {
     double interface_jump    = 0; // largest |u_a - u_b| of glued copies and |u - prescribed|

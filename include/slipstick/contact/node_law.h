@@ -20,7 +20,8 @@ namespace slipstick::contact
 
   /// The part of a jump that is not allowed at a bound [mm]: penetration; slip in the direction in which friction
   /// pushes.
-  /// @param jump B u - c, @param x multiplier, @param bound of it, if tangential, @param noise forces that are rounding.
+  /// @param jump B u - c, @param x multiplier, @param bound of it, if tangential, @param noise forces that are
+  /// rounding.
   inline double inadmissible_jump(const tfeti::RowKind kind,
                                   const double         jump,
                                   const double         x,

@@ -23,8 +23,8 @@ namespace slipstick::interface
     /// Edges whose boxes meet @p box, ascending.
     std::vector<unsigned int> near(const Box &box) const;
 
-    /// Calls f(edge) in order of the distance of their boxes from @p x (equal ones ascending) until it returns false or the
-    /// boxes are farther away than @p radius().
+    /// Calls f(edge) in order of the distance of their boxes from @p x (equal ones ascending) until it returns false or
+    /// the boxes are farther away than @p radius().
     template <class Radius, class F>
     void for_each_by_distance(const dealii::Point<2> &x, const Radius &radius, const F &f) const
     {

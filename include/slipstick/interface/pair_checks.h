@@ -21,8 +21,8 @@ namespace slipstick::interface
   template <int dim>
   std::string describe(const scene::Scene<dim> &scene, const scene::BoundaryName &where);
 
-  /// Does every row find its master on the far side of the slave's body: deeper than a tenth of a mean slave edge though
-  /// no point of one side is inside the other body (which would be an overlap)? False when there are no rows.
+  /// Does every row find its master on the far side of the slave's body: deeper than a tenth of a mean slave edge
+  /// though no point of one side is inside the other body (which would be an overlap)? False when there are no rows.
   template <int dim>
   bool lies_behind(const PairSides<dim> &sides, const std::vector<MortarRow<dim>> &rows);
 
@@ -46,9 +46,10 @@ namespace slipstick::interface
                    const std::vector<mechanics::SurfaceEdge<dim>> &all,
                    const std::vector<MortarRow<dim>>              &rows);
 
-  /// Checks the pairs with obstacles: some node must have an outward normal against the obstacle (facing_cosine) and a gap
-  /// within the Reach; with an automatic one the rule is that of check_sides with the size of the slave boundary (and the
-  /// diameter of a circle if that is larger). Bonds to obstacles are supports: they are not checked. Collective.
+  /// Checks the pairs with obstacles: some node must have an outward normal against the obstacle (facing_cosine) and a
+  /// gap within the Reach; with an automatic one the rule is that of check_sides with the size of the slave boundary
+  /// (and the diameter of a circle if that is larger). Bonds to obstacles are supports: they are not checked.
+  /// Collective.
   /// @throws InputError on all ranks.
   template <int dim>
   void check_obstacle_pairs(const scene::Scene<dim>      &scene,

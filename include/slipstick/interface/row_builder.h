@@ -56,7 +56,8 @@ namespace slipstick::interface
     /// Of every pair, as far as this rank owns its slave nodes.
     std::vector<PairExtent> extents() const;
 
-    /// Nodes of pair k with a gap above limits[k] get no rows (where ContactLaw::acts_where_closed_alone()); they go to `pruned`.
+    /// Nodes of pair k with a gap above limits[k] get no rows (where ContactLaw::acts_where_closed_alone()); they go to
+    /// `pruned`.
     void limit_gaps(std::vector<double> limits);
 
     /// Fills kind, c, compliance, label, contact points, reactions, interface_held and counts of the constraints.
@@ -87,7 +88,8 @@ namespace slipstick::interface
 
     std::vector<Touch> touches_of(const unsigned int node) const;
     bool touch_obstacle(const unsigned int node, const unsigned int pair, const Tributary &area, Touch &touch) const;
-    /// Gap, normal and area, of bonds too; false beyond the Reach, and on the axis of revolution for nodes without area.
+    /// Gap, normal and area, of bonds too; false beyond the Reach, and on the axis of revolution for nodes without
+    /// area.
     bool place_on_obstacle(const unsigned int node, const unsigned int pair, const Tributary &area, Touch &touch) const;
     /// Properties of the node itself, the same for each of its contacts.
     void complete(const unsigned int node, Touch &touch) const;

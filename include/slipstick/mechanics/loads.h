@@ -18,8 +18,8 @@ namespace slipstick::mechanics
                                                      // of body forces when two quadratures differ by one percent
   };
 
-  /// Of the tractions, then the body forces, then the point loads of the scene, at load factor @p t. The same on all ranks.
-  /// Collective.
+  /// Of the tractions, then the body forces, then the point loads of the scene, at load factor @p t. The same on all
+  /// ranks. Collective.
   template <int dim>
   std::vector<LoadResultant> load_resultants(const scene::Scene<dim> &scene,
                                              const mesh::Mesh<dim>   &mesh,

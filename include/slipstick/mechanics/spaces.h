@@ -16,9 +16,9 @@ namespace slipstick::mechanics
   /// Identity of a node across subdomains and ranks: its vertex twice, or the two vertices of its edge.
   using NodeKey = std::array<mesh::GlobalVertex, 2>;
 
-  /// Lagrange element of one cell type, with its mapping and quadratures. Nodes lie on vertices (degree 1) and also in the middle
-  /// of edges (degree 2; quadrilaterals have one more inside). Mappings are isoparametric: with degree 2 the edges follow
-  /// the manifolds of the triangulation, of quadrilaterals and triangles alike.
+  /// Lagrange element of one cell type, with its mapping and quadratures. Nodes lie on vertices (degree 1) and also in
+  /// the middle of edges (degree 2; quadrilaterals have one more inside). Mappings are isoparametric: with degree 2 the
+  /// edges follow the manifolds of the triangulation, of quadrilaterals and triangles alike.
   template <int dim>
   struct Element
   {

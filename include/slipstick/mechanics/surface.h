@@ -73,8 +73,8 @@ namespace slipstick::mechanics
       return tributary_measures(mesh::Kinematics<dim>());
     }
 
-    /// The same with the measure of the kinematics [mm], [mm^2]. The end node of a quadratic edge that is on the axis of
-    /// revolution has none.
+    /// The same with the measure of the kinematics [mm], [mm^2]. The end node of a quadratic edge that is on the axis
+    /// of revolution has none.
     std::array<double, 3> tributary_measures(const mesh::Kinematics<dim> &kinematics) const;
 
     /// Order of the edges of all bodies that does not depend on the decomposition.

@@ -23,8 +23,8 @@ namespace slipstick::mesh
     std::map<std::string, std::string> incomplete_boundaries, ambiguous_points;
   };
 
-  /// The cells of @p file that make the body, scaled, not yet placed, refined or smoothed: those of Body::part, or all. Lines
-  /// with physical names that bound the body are its boundaries; those with lines that do not are listed.
+  /// The cells of @p file that make the body, scaled, not yet placed, refined or smoothed: those of Body::part, or all.
+  /// Lines with physical names that bound the body are its boundaries; those with lines that do not are listed.
   /// @throws InputError for a missing part; for a file without plane cells; for cells that are inverted (unless all
   /// are), degenerate, self-intersecting or overlapping; for edges of three cells; for nodes inside edges and
   /// coincident nodes (see conformity.h); for a body in pieces.

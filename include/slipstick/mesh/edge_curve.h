@@ -52,8 +52,8 @@ namespace slipstick::mesh
     EdgeCurve part(const double from, const double to) const;
     EdgeCurve reversed() const;
 
-    /// Distance t with x + t @p direction on the curve (continued a little beyond its ends): @p x is near the curve, about
-    /// opposite its point at @p s, @p direction a unit vector across it. 0 where there is no such point.
+    /// Distance t with x + t @p direction on the curve (continued a little beyond its ends): @p x is near the curve,
+    /// about opposite its point at @p s, @p direction a unit vector across it. 0 where there is no such point.
     double distance_along(const Point &x, const Tensor &direction, const double s) const;
 
     template <class F>

@@ -15,8 +15,8 @@ namespace slipstick::mesh
   /// as where two straight sides meet. Edges in line with a neighbour stay straight and give their direction to a curve
   /// that continues them; edges neither end of which lies within a curve stay straight, too.
   ///
-  /// Where Body::has_smooth_outline is off, and on circles too coarse to be told from a polygon, edges get no curve, but the
-  /// sagitta that they leave out (EdgeCurve::left_out).
+  /// Where Body::has_smooth_outline is off, and on circles too coarse to be told from a polygon, edges get no curve,
+  /// but the sagitta that they leave out (EdgeCurve::left_out).
   template <int dim>
   void smooth_outline(const scene::Body<dim> &body, BodyMesh<dim> &mesh);
 

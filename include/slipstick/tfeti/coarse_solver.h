@@ -43,8 +43,8 @@ namespace slipstick::tfeti
                                                         const std::vector<bool> &changes,
                                                         const MPI_Comm           comm);
 
-    /// Of A + C. @param changing entries of C, of changing rows and columns; zeros where other C_i have entries keep the
-    /// pattern the same. Collective.
+    /// Of A + C. @param changing entries of C, of changing rows and columns; zeros where other C_i have entries keep
+    /// the pattern the same. Collective.
     /// @throws NumericalError when the matrix is not positive definite.
     CoarseSolver(std::shared_ptr<const Elimination> staying, const Entries &changing);
     ~CoarseSolver();

@@ -46,8 +46,8 @@ namespace slipstick::tfeti
     };
 
     /// Factorises the subdomains and the coarse problem and estimates |P F P|. Collective.
-    /// @throws NoEquilibrium naming body and motion when the rows of B leave a rigid motion of a body free; if loads drive
-    /// none of them, UnheldMotions.
+    /// @throws NoEquilibrium naming body and motion when the rows of B leave a rigid motion of a body free; if loads
+    /// drive none of them, UnheldMotions.
     /// @throws NumericalError when a subdomain cannot be factorised.
     DualProblem(std::vector<SubdomainMatrices>  matrices,
                 Constraints                     constraints,
@@ -118,8 +118,8 @@ namespace slipstick::tfeti
       double      held = 0; // the part of the load along it that friction bears, below 1
     };
 
-    /// @param free rows that hold: gluing, supports, closed contact. @param capacity the bound of a row between two bounds
-    ///        [N]; negative: the row bears nothing; infinity: a row with one bound. Collective.
+    /// @param free rows that hold: gluing, supports, closed contact. @param capacity the bound of a row between two
+    ///        bounds [N]; negative: the row bears nothing; infinity: a row with one bound. Collective.
     std::optional<Overload> overload(const std::vector<bool> &free, const std::vector<double> &capacity) const;
 
     /// The free rows and as many of the others as are needed to hold the bodies that the free rows leave loose,
@@ -177,7 +177,8 @@ namespace slipstick::tfeti
     /// B u of displacements of this rank's subdomains, owned rows [mm]. Collective.
     DistributedVector jumps(const std::vector<Eigen::VectorXd> &u) const;
 
-    /// The column of B, owned rows, of a touched unknown (its number among them) of a subdomain of one rank. Collective.
+    /// The column of B, owned rows, of a touched unknown (its number among them) of a subdomain of one rank.
+    /// Collective.
     /// @param subdomain on the other ranks: subdomains().size()
     DistributedVector column(const unsigned int subdomain, const unsigned int touched) const;
 

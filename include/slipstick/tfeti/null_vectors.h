@@ -9,7 +9,8 @@
 
 namespace slipstick::tfeti
 {
-  /// The largest eigenvalue of a symmetric positive semidefinite matrix, to some percent, by the power method. 0 for none.
+  /// The largest eigenvalue of a symmetric positive semidefinite matrix, to some percent, by the power method. 0 for
+  /// none.
   double largest_eigenvalue(const Eigen::SparseMatrix<double> &matrix);
 
   /// Orthonormal eigenvectors of all eigenvalues of a symmetric positive semidefinite matrix that are at most @p limit.

@@ -12,8 +12,8 @@ namespace slipstick::tfeti
   class RowPreconditioner
   {
   public:
-    /// @param blocks S of this rank's subdomains at their touched unknowns, which must live as long as this; null: lumped, by
-    /// products with K.
+    /// @param blocks S of this rank's subdomains at their touched unknowns, which must live as long as this; null:
+    /// lumped, by products with K.
     RowPreconditioner(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                       const std::vector<LocalGluing>                      &gluing,
                       const DualOperator                                  &F,

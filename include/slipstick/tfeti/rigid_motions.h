@@ -8,8 +8,8 @@
 
 namespace slipstick::tfeti
 {
-  /// A rigid motion of one or more bodies: amplitudes of translation x, translation y, rotation of every body; of bodies
-  /// of revolution the translation along the axis alone.
+  /// A rigid motion of one or more bodies: amplitudes of translation x, translation y, rotation of every body; of
+  /// bodies of revolution the translation along the axis alone.
   struct RigidMotion
   {
     Eigen::VectorXd        amplitudes; // as many a body as it has motions, of unit length
@@ -87,7 +87,8 @@ namespace slipstick::tfeti
                           const unsigned int                                   n_bodies,
                           const MPI_Comm                                       comm);
 
-  /// "body box: translation along (1, 0)", "body a: rotation about (0, 5)", "body pin: translation along the axis"; names the bodies that move most.
+  /// "body box: translation along (1, 0)", "body a: rotation about (0, 5)", "body pin: translation along the axis";
+  /// names the bodies that move most.
   std::string describe(const RigidMotion &motion, const std::vector<std::string> &body_names);
 
   /// The same motions, each of which moves a component that no other does (reduced echelon form).

@@ -9,8 +9,8 @@
 
 namespace slipstick::tfeti
 {
-  /// W = B D^-1 B', D = diag K: couples rows that share nodes, so it consists of blocks, each on one rank: small ones of
-  /// single nodes, large sparse ones where mortar rows are connected. Rows may depend on each other.
+  /// W = B D^-1 B', D = diag K: couples rows that share nodes, so it consists of blocks, each on one rank: small ones
+  /// of single nodes, large sparse ones where mortar rows are connected. Rows may depend on each other.
   class RowWeights
   {
     /// Inverses of blocks of W.

@@ -37,8 +37,8 @@ namespace slipstick::tfeti
     }
   };
 
-  /// How many of the k rigid motions of a body are translations, which come first; the others are rotations. Solids have six,
-  /// sections of the plane three, bodies of revolution one: along their axis.
+  /// How many of the k rigid motions of a body are translations, which come first; the others are rotations. Solids
+  /// have six, sections of the plane three, bodies of revolution one: along their axis.
   constexpr unsigned int n_translations(const unsigned int k)
   {
     return k == 6 ? 3 : k == 3 ? 2 : k;

@@ -127,7 +127,8 @@ namespace slipstick::tfeti
   };
 
   /// As many of the @p candidates as R has columns, chosen by pivoting so that the rows of R there are as independent
-  /// as can be. @return their list, and the smallest pivot (about 1 when they hold all motions well, 0 when they do not).
+  /// as can be. @return their list, and the smallest pivot (about 1 when they hold all motions well, 0 when they do
+  /// not).
   std::pair<std::vector<unsigned int>, double> fixing_unknowns(const Eigen::MatrixXd           &kernel,
                                                                const std::vector<unsigned int> &candidates);
 } // namespace slipstick::tfeti
