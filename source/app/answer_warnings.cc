@@ -22,7 +22,8 @@ namespace slipstick::app
     constexpr double largest_motion = 0.5;
     // Young modulus above that of any material (diamond: 1.2e6 MPa) ...
     constexpr double largest_modulus = 1e7;
-    // ... which may be meant as rigid; but not of all bodies if all displacements are below this part of the bodies' diagonals.
+    // ... which may be meant as rigid; but not of all bodies if all displacements are below this part of the bodies'
+    // diagonals.
     constexpr double least_motion = 1e-8;
     // Contact pressure over the smaller Young modulus of the two sides.
     constexpr double largest_pressure = 1;
@@ -111,7 +112,8 @@ namespace slipstick::app
       return pair.master ? std::min(of(pair.slave.body), of(pair.master->body)) : of(pair.slave.body);
     }
 
-    /// Pairs between which forces can be exchanged without effect, and the first place; empty if there are none. Collective.
+    /// Pairs between which forces can be exchanged without effect, and the first place; empty if there are none.
+    /// Collective.
     std::string split_warning(const scene::Scene<2>    &scene,
                               const tfeti::DualProblem &dual,
                               const std::vector<bool>  &free)

@@ -65,7 +65,7 @@ namespace slipstick::app
     std::string list_format;
 
     CLI::App app("slipstick: frictional contact of elastic bodies by Total FETI.\n"
-                 "Runs by itself or under mpirun -n N or srun; results agree for every N.");
+                 "Runs on its own or under mpirun -n N or srun; results agree for every N.");
     app.name("slipstick");
     app.allow_extras();
     app.set_version_flag("--version", "slipstick " SLIPSTICK_VERSION, "print the version and exit");
@@ -76,14 +76,16 @@ namespace slipstick::app
     const CLI::Option *output =
       app.add_option("--output", line.output_directory, "output directory, default output/<name of the case>")
         ->type_name("DIR");
-    app.add_flag("--force", line.force, "run a scene that asks for more memory than is free");
-    app.add_flag("--resume", line.resume, "go on after the last finished load step of a run in the output directory");
+    app.add_flag("--force", line.force, "run a scene even if it needs more memory than is free");
+    app.add_flag("--resume",
+                 line.resume,
+                 "continue after the last finished load step of a run in the output directory");
     app
       .add_option("--draw",
                   line.picture,
                   "as --check, and draw the scene with supports, loads and contact into an SVG file")
       ->type_name("FILE.svg");
-    app.add_flag("--check", line.check, "build and check the scene, solve nothing");
+    app.add_flag("--check", line.check, "build and check the scene without solving it");
     const CLI::Option *list =
       app.add_option("--list-parameters", list_format, "list all parameters as text (default), prm, json or latex")
         ->expected(0, 1)

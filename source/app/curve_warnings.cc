@@ -14,8 +14,9 @@ namespace slipstick::app
 {
   namespace
   {
-    // What is left out over what it is compared with. Waves of height w and the length of an edge h are pressed flat by a
-    // pressure of pi E' w / (2 h) (Johnson 1985, section 13.2), so that the pressure is wrong by about this part.
+    // Limit on the sagitta left out, relative to what it is compared with. Waves of height w whose length is that of an
+    // edge, h, are pressed flat by a pressure of pi E' w / (2 h) (Johnson 1985, section 13.2), so that the pressure is
+    // wrong by about this fraction.
     constexpr double largest_share = 0.1;
 
     /// 1/E' = 1/E of one side + 1/E of the other.
@@ -53,9 +54,9 @@ namespace slipstick::app
     std::string text_of(const scene::ContactPair<2> &pair, const std::vector<double> &worst, const bool is_closed)
     {
       return format(
-        "Contact %s: at (%.6g, %.6g) straight edges leave out an arc %.4g mm high, which is not small against %s "
-        "of %.4g mm: pressures are those of polygons; set Outline = smooth or a larger Corner angle for the "
-        "bodies, or give a finer mesh or one of second order (for corners that are meant: Outline = polygon)",
+        "Contact %s: at (%.6g, %.6g) straight edges leave out an arc %.4g mm high, which is not small compared with %s "
+        "of %.4g mm, so that pressures are those of a polygon; set Outline = smooth or a larger Corner angle for the "
+        "bodies, or use a finer mesh or one of second order (if the corners are intended: Outline = polygon)",
         pair.name.c_str(),
         worst[1],
         worst[2],

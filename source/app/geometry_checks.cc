@@ -9,17 +9,17 @@ namespace slipstick::app
 {
   namespace
   {
-    // Nodes out of reach must not penetrate by more than this part of the largest displacement: far above what the solver
-    // leaves.
+    // Nodes out of reach must not penetrate by more than this part of the largest displacement: far above what the
+    // solver leaves.
     constexpr double allowed_beyond_reach = 1e-3;
-    // Obstacles between nodes, and bodies in contact with each other, may do so by this part of the largest displacement or
-    // of an edge, whichever is less: curved sides and slip leave about that on coarse meshes.
+    // Obstacles between nodes, and bodies in contact with each other, may do so by this part of the largest
+    // displacement or of an edge, whichever is less: curved sides and slip leave about that on coarse meshes.
     constexpr double allowed_between_nodes = 0.1;
-    // Bodies that no contact joins, part of the largest displacement.
+    // The same for bodies that no contact joins, relative to the largest displacement.
     constexpr double allowed_without_contact = 1e-3;
-    // All of them may be this part of an edge: rounding of coordinates.
+    // For all of them, relative to an edge: rounding of coordinates.
     constexpr double rounding = 1e-9;
-    // A Reach is proposed with so many digits of reserve.
+    // Reserve of the Reach that is proposed.
     constexpr double reserve = 1.1;
 
     std::string place(const interface::Penetration &deepest)
@@ -27,7 +27,7 @@ namespace slipstick::app
       return format("(%.6g, %.6g)", deepest.at[0], deepest.at[1]);
     }
 
-    /// Two digits, never below.
+    /// Rounded up to two digits.
     double rounded_up(const double value)
     {
       const double unit = std::pow(10., std::floor(std::log10(value)) - 1);
@@ -47,23 +47,23 @@ namespace slipstick::app
         if (const auto &deepest = found.beyond_reach[k];
             deepest && deepest->depth > std::max(allowed_beyond_reach * largest, rounding * deepest->edge) &&
             !findings.failure)
-          findings.failure = format(
-            "Contact %s: at %s a node of the slave, which is left out since it is farther away than the Reach of "
-            "%g mm, penetrates by %.3g mm; the results are no solution\n"
-            "  remedy: set Contact %s/Reach to %g mm or more, or to auto",
-            pair.name.c_str(),
-            place(*deepest).c_str(),
-            *pair.reach,
-            deepest->depth,
-            pair.name.c_str(),
-            rounded_up(reserve * deepest->gap));
+          findings.failure =
+            format("Contact %s: at %s a slave node that was left out because it is farther away than the Reach of "
+                   "%g mm penetrates by %.3g mm; the results are not a solution\n"
+                   "  remedy: set Contact %s/Reach to %g mm or more, or to auto",
+                   pair.name.c_str(),
+                   place(*deepest).c_str(),
+                   *pair.reach,
+                   deepest->depth,
+                   pair.name.c_str(),
+                   rounded_up(reserve * deepest->gap));
         if (const auto &deepest = found.in_obstacle[k];
             deepest && deepest->depth >
                          std::max(allowed_between_nodes * std::min(largest, deepest->edge), rounding * deepest->edge))
           findings.warnings["edge " + pair.name] = format(
-            "Contact %s: obstacle %s is %.3g mm inside body %s at %s, on an edge of %.3g mm: contact is found at nodes, "
-            "between which the obstacle goes in; refine %s there (Refine towards, Refinements) until edges are smaller "
-            "than what touches them",
+            "Contact %s: obstacle %s is %.3g mm inside body %s at %s, on an edge of %.3g mm: contact acts at nodes, "
+            "and the obstacle enters between them; refine %s there (Refine towards, Refinements) until edges are "
+            "smaller than what touches them",
             pair.name.c_str(),
             scene.obstacles[pair.obstacle].name.c_str(),
             deepest->depth,
@@ -85,8 +85,8 @@ namespace slipstick::app
                    deepest.depth,
                    b.c_str(),
                    place(deepest).c_str(),
-                   has_contact ? "the contact pairs of the two do not see it there; let their boundaries reach as far, "
-                                 "or refine them"
+                   has_contact ? "their contact pairs do not cover this place; extend the boundaries of the pairs to "
+                                 "it, or refine them"
                                : "no contact pair joins the two; declare one (Contacts), or move them apart");
       }
     return findings;

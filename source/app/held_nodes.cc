@@ -11,7 +11,7 @@ namespace slipstick::app
 {
   namespace
   {
-    // Of the forces of a pair: less at held nodes, such as one at the corner, is not worth a warning.
+    // Relative to the forces of a pair: less at held nodes, such as a single one at a corner, is not worth a warning.
     constexpr double part_that_counts = 0.05;
   } // namespace
 
@@ -53,8 +53,8 @@ namespace slipstick::app
           force > part_that_counts * dealii::Utilities::MPI::sum(all[k], comm))
         texts["held " + scene.contacts[k].name] = format(
           "Contact %s: supports hold some of its nodes just where they touch, so that only the sum of both forces there is "
-          "determined; %.4g N of it, an equal share, are taken for contact (without friction under Coulomb's law); leave "
-          "the supported boundary out of the contact, or free the support along the normal",
+          "determined; %.4g N of it, an equal share, are counted as contact (without friction under Coulomb's law); "
+          "leave the supported boundary out of the contact, or free the support along the normal",
           scene.contacts[k].name.c_str(),
           force);
     return texts;

@@ -15,14 +15,14 @@ namespace slipstick::app
     // bytes; longer texts are cut
     constexpr std::size_t longest_text = 1000;
 
-    // A handler may come in between two characters: the text that it reads is never the one that is being written.
+    // A handler may interrupt between two characters: the text that it reads is never the one being written.
     std::array<std::array<char, longest_text>, 2> texts;
     std::array<std::atomic<std::size_t>, 2>       lengths;
     std::atomic<int>                              present{-1};
 
     void tell(const int signal)
     {
-      // only what a handler may call: POSIX.1-2017, 2.4.3
+      // only functions that a handler may call: POSIX.1-2017, 2.4.3
       const int k = present.load();
       if (k >= 0 && write(STDERR_FILENO, texts[k].data(), lengths[k].load()) < 0)
         {} // there is nobody to tell

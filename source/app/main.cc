@@ -46,7 +46,7 @@ namespace
     void *const space = mmap(nullptr, least_free_space, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (space == MAP_FAILED)
       throw InputError("the address space is limited to " + std::to_string(limit.rlim_cur >> 20) +
-                         " MB a process, of which less than " + std::to_string(least_free_space >> 20) +
+                         " MB per process, of which less than " + std::to_string(least_free_space >> 20) +
                          " MB are left at the start",
                        "raise or lift the limit: ulimit -v unlimited");
     munmap(space, least_free_space);
@@ -77,7 +77,7 @@ namespace
               scene::list_parameters(std::cout, *command_line.list_parameters);
             if (prints && !std::cout.flush())
               throw InputError("the text could not be written to standard output",
-                               "see where it leads to, and whether there is space");
+                               "check where it is redirected to and whether there is space");
             return static_cast<int>(ExitStatus::converged);
           }
         if (command_line.new_scene)

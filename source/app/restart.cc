@@ -160,10 +160,10 @@ namespace slipstick::app
   namespace
   {
     const std::string head_name = "restart.bin";
-    // Of the files: another layout has another number.
+    // Format of the files: another layout gets another number.
     constexpr unsigned int format_number = 1;
 
-    /// What restart.bin says: to which run the files belong.
+    /// Content of restart.bin: to which run the files belong.
     struct Head
     {
       unsigned int             format = format_number;
@@ -226,7 +226,7 @@ namespace slipstick::app
 
     [[noreturn]] void refuse(const std::string &problem)
     {
-      throw InputError("--resume: " + problem, "leave --resume out to start from the first load step");
+      throw InputError("--resume: " + problem, "omit --resume to start from the first load step");
     }
 
     template <class T>
@@ -234,7 +234,7 @@ namespace slipstick::app
     {
       std::ifstream in(directory.path(name), std::ios::binary);
       if (!in)
-        refuse("'" + directory.path(name) + "' is not there or cannot be read");
+        refuse("'" + directory.path(name) + "' does not exist or cannot be read");
       T content;
       try
         {
@@ -242,12 +242,12 @@ namespace slipstick::app
         }
       catch (const std::exception &) // whatever a damaged file leads to
         {
-          refuse("'" + directory.path(name) + "' is damaged or of another version");
+          refuse("'" + directory.path(name) + "' is damaged or from another version");
         }
       return content;
     }
 
-    /// The first line in which two texts differ, of the second one.
+    /// The first line of the second text that differs from the first text.
     std::string first_difference(const std::string &before, const std::string &now)
     {
       std::istringstream a(before), b(now);
@@ -263,7 +263,7 @@ namespace slipstick::app
     void check_same(const Head &before, const Head &now, const std::string &path)
     {
       if (before.format != now.format || before.version != now.version)
-        refuse("the files in '" + path + "' are of version " + before.version + " of slipstick, this is " +
+        refuse("the files in '" + path + "' are from version " + before.version + " of slipstick, this is " +
                now.version);
       if (before.ranks != now.ranks)
         refuse(format("the run in '%s' had %u ranks, this one has %u", path.c_str(), before.ranks, now.ranks));
@@ -275,14 +275,14 @@ namespace slipstick::app
           refuse("the mesh file '" + now.mesh_files[i] + "' has changed since the run in '" + path + "'");
       for (unsigned int step = 0; step < before.steps; ++step)
         if (step >= now.load_factors.size() || before.load_factors[step] != now.load_factors[step])
-          refuse(format(
-            "load step %u of the run in '%s' has ended with t = %g, which is not among the Factors of this scene",
-            step + 1,
-            path.c_str(),
-            before.load_factors[step]));
+          refuse(
+            format("load step %u of the run in '%s' ended with t = %g, which is not among the Factors of this scene",
+                   step + 1,
+                   path.c_str(),
+                   before.load_factors[step]));
     }
 
-    /// The files of a restart, those of @p but left out.
+    /// Removes the files of a restart, except those of step @p but.
     void remove_files(const output::OutputDirectory &directory, const std::optional<unsigned int> but)
     {
       static const std::regex            files("restart_(\\d+)_\\d+\\.bin");
@@ -325,7 +325,7 @@ namespace slipstick::app
         return;
       if (!std::filesystem::exists(directory.path(head_name)))
         refuse("there is no run in '" + directory.path() +
-               "' to go on with: none was started, none of its load steps was finished, or all of them were");
+               "' to continue: none was started, none of its load steps was finished, or all of them were");
       const auto head = read_binary<Head>(directory, head_name);
       check_same(head, head_of(scene, 0, dealii::Utilities::MPI::n_mpi_processes(comm)), directory.path());
       steps = head.steps;

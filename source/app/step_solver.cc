@@ -23,8 +23,8 @@ namespace slipstick::app
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
-    // Contact nodes get multipliers at first when their gap exceeds the smallest of the pair by less than this part of the
-    // slave boundary's length ...
+    // At first contact nodes get multipliers if their gap exceeds the smallest gap of the pair by less than this
+    // fraction of the slave boundary's length ...
     constexpr double first_kept_part = 0.1;
     // ... more of them, by this factor, when others would penetrate ...
     constexpr double growth_of_kept_part = 4;
@@ -33,23 +33,24 @@ namespace slipstick::app
 
     // A solution whose checks fail is continued at most this many times ...
     constexpr unsigned int max_tightenings = 4;
-    // ... by the factor that the worst check is above its limit, and this one more, ...
+    // ... with a tolerance reduced by the factor by which the worst check exceeds its limit, times this one, ...
     constexpr double margin_of_tightening = 2;
     // ... by no less ...
     constexpr double least_tightening = 2;
-    // ... and no more at a time, ...
+    // ... but by no more than this at a time, ...
     constexpr double largest_tightening = 1e4;
-    // ... even if the check does not fall, where errors are as large as this part of the answer: they cannot rise much ...
+    // ... even if the check does not decrease, where errors are as large as this fraction of the answer: they cannot
+    // rise much ...
     constexpr double of_no_answer = 0.5;
-    // ... down to what double precision reaches nearly everywhere.
+    // ... down to what double precision achieves nearly everywhere.
     constexpr double least_tolerance = 1e-13;
     // Below this tolerance rounding of the multipliers may show; gaps are then closed in the displacement first ...
     constexpr double tolerance_of_rounding = 1e-10;
     // ... at most this many times, as long as the worst check falls by this factor.
     constexpr unsigned int max_closings     = 4;
     constexpr double       closing_progress = 0.5;
-    // Tolerance = auto: the algebraic error may be this part of the discretisation error. The two are orthogonal, nearly, so
-    // that it adds 4.4 % to the total one at most, less as it is estimated from above.
+    // Tolerance = auto: the algebraic error may be this fraction of the discretisation error. The two are nearly
+    // orthogonal, so that it adds at most 4.4 % to the total error, and less because it is estimated from above.
     constexpr double allowed_part = 0.3;
 
     std::vector<std::string> names_of(const std::vector<scene::Body<StepSolver::dim>> &bodies)
@@ -133,7 +134,7 @@ namespace slipstick::app
     , kept_part(first_kept_part)
     , discretization_error(infinity)
   {
-    // what applies K+ more often than the one recovery
+    // these apply K+ more often than a single recovery does
     options.dual.keeps_factors = scene.load_factors.size() > 1 || options.stops_at_discretization_error ||
                                  options.dual.operator_precision == tfeti::Precision::single_precision;
     print_header(log, scene, comm);
@@ -193,8 +194,8 @@ namespace slipstick::app
       for (std::size_t p = 0; fits && p < state.u.size(); ++p)
         fits = state.u[p].size() == the_dual->subdomains()[p]->n_unknowns();
       if (!fits)
-        throw InputError("--resume: meshes or contact are not those of the run that is to go on",
-                         "leave --resume out to start from the first load step");
+        throw InputError("--resume: meshes or contact differ from those of the run to be continued",
+                         "omit --resume to start from the first load step");
     });
     for (const auto &part : state.u)
       u.push_back(Eigen::Map<const Eigen::VectorXd>(part.data(), part.size()));
@@ -242,7 +243,7 @@ namespace slipstick::app
     make_dual(t);
   }
 
-  // A history that unloads to zero leaves the rounding of its formulas.
+  // A load history that returns to zero leaves rounding errors of its formulas.
   void StepSolver::drop_rounding(std::vector<Eigen::VectorXd> &loads)
   {
     constexpr double rounding = 1e-12; // of the largest load so far
@@ -256,7 +257,7 @@ namespace slipstick::app
     largest_load = std::max(largest_load, size);
   }
 
-  // Anew for every step where something is not held: its loads may push.
+  // Again for every step if something is not held: the loads of the step may drive it.
   void StepSolver::make_dual(const double t)
   {
     scene.supports.erase(scene.supports.begin() + n_given, scene.supports.end());
@@ -266,7 +267,7 @@ namespace slipstick::app
       }
     catch (const tfeti::UnheldMotions &unheld) // on all ranks alike
       {
-        if (pruned.rows->size() > 0) // by contact nodes that were left out, perhaps
+        if (pruned.rows->size() > 0) // perhaps held by contact nodes that were left out
           throw;
         unheld_motions = in_words(unheld.motions, names_of(scene.bodies));
         std::vector<Eigen::VectorXd> motions;
@@ -455,12 +456,13 @@ namespace slipstick::app
       }
   }
 
-  // If the solution did not converge, work of the loads along a free motion proves nothing; all rows are then taken to hold.
+  // If the solution did not converge, work of the loads along a free motion proves nothing; all rows then count as
+  // holding.
   tfeti::DualProblem::Recovery StepSolver::recovered() const
   {
     try
       {
-        // what nothing resists and no load drives stays where it is
+        // motions that nothing resists and no load drives are kept at zero
         return the_dual->recover(the_solution.multipliers, the_solution.free, true);
       }
     catch (const UndeterminedPosition &)
@@ -514,7 +516,7 @@ namespace slipstick::app
                                   (worst.value > of_no_answer || next->contact->checks.worst().second < worst.value)))
           answer = std::move(next); // the first: it got rows for more contact nodes
         else
-          { // to the tolerance that was asked for it did converge
+          { // it did converge to the tolerance requested
             const auto counts   = the_solution.counts;
             the_solution        = before;
             the_solution.counts = counts;

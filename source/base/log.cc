@@ -81,7 +81,7 @@ namespace slipstick
 
   double process_age()
   {
-    // /proc/self/stat: field 22 is the start in clock ticks since the machine was; field 2 may hold spaces
+    // /proc/self/stat: field 22 is the start in clock ticks since boot; field 2 may hold spaces
     std::ifstream file("/proc/self/stat");
     std::string   text;
     std::getline(file, text);
@@ -99,7 +99,7 @@ namespace slipstick
 
   double peak_memory_mb()
   {
-    // deal.II's reader of this file never ends where there is no /proc
+    // deal.II's reader of this file never returns if there is no /proc
     std::ifstream status("/proc/self/status");
     std::string   word;
     double        kilobytes;

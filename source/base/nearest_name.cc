@@ -7,7 +7,7 @@ namespace slipstick
 {
   namespace
   {
-    constexpr std::size_t longest_name = 200; // characters: nobody misspells longer ones, and comparing takes their product
+    constexpr std::size_t longest_name = 200; // characters compared: the cost is the product of the lengths
 
     std::string to_lower(std::string text)
     {

@@ -15,15 +15,15 @@ namespace slipstick::contact
   {
     using tfeti::DistributedVector;
 
-    // Lengths below this part of the largest gap or displacement count as none: rounding leaves some 1e-14 of these, a tolerance of
-    // 1e-10 allows 1e-7 of what is left here.
+    // Lengths below this fraction of the largest gap or displacement count as zero: rounding leaves some 1e-14 of
+    // these, a tolerance of 1e-10 allows 1e-7 of what remains here.
     constexpr double negligible_part = 1e-6;
-    // Deformations below this part of these count as none: what rounding leaves shows in the stiffest of them.
+    // Deformations below this fraction of these count as zero: rounding shows in the stiffest of them.
     constexpr double negligible_deformation = 1e-5;
-    // Steps of a history are solved to a tolerance of its largest loads: below this part of its largest displacement what
-    // is left in a step counts as none.
+    // The steps of a history are solved to a tolerance relative to its largest loads: displacements of a step below
+    // this fraction of the largest one of the history count as zero.
     constexpr double part_of_history = 1e-2;
-    // A body on which less than this part of the largest forces on a body acts counts as one with this part.
+    // Lower limit on the forces that count for a body, relative to the largest forces on any body.
     constexpr double negligible_load = 1e-3;
     // Rounding of K u, over the diagonal entry of its row times the largest displacement.
     constexpr double rounding_of_forces = 16 * std::numeric_limits<double>::epsilon();
@@ -100,8 +100,8 @@ namespace slipstick::contact
       return rank == dealii::Utilities::MPI::min(says_so ? rank : dealii::Utilities::MPI::n_mpi_processes(comm), comm);
     }
 
-    /// Violation of an owned row to that of all ranks, and a node that this row touches, where its subdomain is.
-    /// Collective.
+    /// Maximum over all ranks of the violations of owned rows, with a node that the row touches, on the rank of its
+    /// subdomain. Collective.
     void find_place_of_row(const tfeti::DualProblem &dual, const unsigned int owned_row, Largest &violation)
     {
       const MPI_Comm    comm    = dual.communicator();
@@ -145,7 +145,7 @@ namespace slipstick::contact
     }
 
     /// Displacements without the rigid motions of their subdomains, which no force resists: in products with K these
-    /// would leave rounding alone.
+    /// would contribute nothing but rounding.
     std::vector<Eigen::VectorXd> deformations(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
     {
       std::vector<Eigen::VectorXd> result = u;
@@ -159,7 +159,7 @@ namespace slipstick::contact
       return result;
     }
 
-    /// Nodal forces K u - f of every subdomain: what supports, contact and neighbours exert.
+    /// Nodal forces K u - f of every subdomain, exerted by supports, contact and neighbours.
     std::vector<Eigen::VectorXd> nodal_forces(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
     {
       std::vector<Eigen::VectorXd> forces;
@@ -221,7 +221,7 @@ namespace slipstick::contact
 
     /// Moment of the forces on both sides: force on the slave body at its node, the opposite one at the mean of the
     /// master nodes; two dimensions.
-    /// @param N pressing force, @param T minus the tangential force on the slave body.
+    /// @param N compressive force, @param T minus the tangential force on the slave body.
     double moment_mismatch(const tfeti::ContactPoint &point, const double N, const double T)
     {
       if (!point.has_master)
@@ -422,7 +422,7 @@ namespace slipstick::contact
           {
             const double bound = node.slip_bound * node.area;
             largest[friction_bound].take(std::abs(T) - bound, place);
-            // a bound far above all forces would turn the rounding of what sticks into work
+            // a bound far above all forces would turn rounding at sticking nodes into work
             const double capped = std::max(std::abs(T), std::min(bound, bounds_that_count * largest_contact));
             all_bounds += capped;
             work += missing_friction_work(capped, T, node.slip);
@@ -461,7 +461,7 @@ namespace slipstick::contact
           largest[moment_balance].take(relative(on_bodies.left.col(b).tail(k - n_forces).norm(), scale), {true, b});
       }
     checks.algebraic_error = std::sqrt(relative(checks.error_energy, energy));
-    // of stiff bodies among soft ones, too, which hold little of the energy
+    // also of stiff bodies among soft ones, which have little of the energy
     const double least_load = negligible_load * on_bodies.scale.maxCoeff();
     unsigned int worst_body = 0;
     for (unsigned int b = 0; b < n_bodies; ++b)

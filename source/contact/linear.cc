@@ -9,7 +9,8 @@ namespace slipstick::contact
   {
     using Vector = tfeti::DistributedVector;
 
-    // Linear problems are solved in parts, each to this part of the residual before, when their accuracy is asked for ...
+    // If an accuracy test is given, linear problems are solved in stages, each to this fraction of the previous
+    // residual ...
     constexpr double part_of_residual = 0.3;
     // ... from this residual on.
     constexpr double first_asked = 0.1;
@@ -64,7 +65,7 @@ namespace slipstick::contact
     qp::PcpgOptions       pcpg             = options.pcpg;
     bool                  reorthogonalizes = dual.is_preconditioned();
     qp::PcpgStart<Vector> from{dual.zero()};
-    if (is_accurate) // parts go on with the directions of those before
+    if (is_accurate) // stages continue with the directions of the previous ones
       from.history = std::make_shared<qp::DirectionHistory<Vector>>(dual.is_preconditioned());
     double tolerance = is_accurate ? std::max(first_asked, options.tolerance) : options.tolerance;
     for (;; tolerance = std::max(options.tolerance, part_of_residual * tolerance))

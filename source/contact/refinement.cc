@@ -7,9 +7,9 @@ namespace slipstick::contact
   {
     // Corrections before giving up; two reach rounding.
     constexpr unsigned int max_corrections = 5;
-    // Multiplications that measuring the error of F~ takes.
+    // Multiplications needed to measure the error of F~.
     constexpr unsigned int multiplications_per_check = 2;
-    // Residual of closing gaps over the gaps; rounding of F leaves no more in slender subdomains.
+    // Residual of closing gaps relative to the gaps; rounding of F allows no less in slender subdomains.
     constexpr double closing_tolerance = 1e-4;
   } // namespace
 

@@ -12,11 +12,11 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Outlines that touch may be apart by rounding, part of an edge.
+    // Outlines that touch may be apart by rounding: fraction of an edge.
     constexpr double touching = 1e-6;
-    // Depth that is an overlap, part of an edge.
+    // Depth from which on bodies overlap: fraction of an edge.
     constexpr double overlap = 0.1;
-    // Edges are equally fine when they differ by less than this part.
+    // Edges are equally fine if they differ by less than this fraction.
     constexpr double same_size = 1e-6;
 
     using Edges = std::vector<mechanics::SurfaceEdge<2>>;

@@ -18,7 +18,7 @@ namespace slipstick::interface
     // Crossings at distances that differ by no more than this part of an edge are one: at a node of the master.
     constexpr double same_place = 1e-9;
 
-    /// Zero of a continuous f with f(low) f(high) <= 0: false position made safe (Illinois) between bisections.
+    /// Zero of a continuous f with f(low) f(high) <= 0: false position (Illinois), safeguarded by bisection.
     template <class F>
     double zero_between(const F &f, double low, double high, double f_low, double f_high)
     {
@@ -80,7 +80,7 @@ namespace slipstick::interface
       return node_of;
     }
 
-    /// The normals of the nodes of an edge between them, not of unit length.
+    /// The nodal normals of an edge, interpolated; not of unit length.
     Tensor interpolated(const Edge                        &edge,
                         const std::array<unsigned int, 3> &node_of,
                         const std::vector<Node>           &nodes,
@@ -107,7 +107,8 @@ namespace slipstick::interface
     average_normals();
   }
 
-  /// The slave's normals become the means of both sides' where the slave's own one meets a master that faces it.
+  /// Replaces the slave's normals by the means of both sides wherever the slave's own normal meets a master that faces
+  /// it.
   void CurvePairing::average_normals()
   {
     std::vector<Node>   of_master;
@@ -211,7 +212,7 @@ namespace slipstick::interface
       for (const double way : {-reach.behind, reach.ahead})
         around.push_back(slave[e].point(s) + way * field(e, s) / field(e, s).norm());
     auto box = EdgeTree::box_around(around);
-    // a little larger: the field turns, and exact touching is on the border
+    // a little larger: the field of normals turns, and exact touching is on the border
     const double more = 0.05 * slave[e].chord();
     box.min_corner()  = {box.min_corner().get<0>() - more, box.min_corner().get<1>() - more};
     box.max_corner()  = {box.max_corner().get<0>() + more, box.max_corner().get<1>() + more};

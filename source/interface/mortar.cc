@@ -12,13 +12,13 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Edges and nodes of which no more than this part is covered are left out.
+    // Edges and nodes are left out if no more than this fraction of them is covered.
     constexpr double smallest_cover = 1e-10;
-    // An edge is covered as a whole when no more than this part is missing.
+    // An edge counts as fully covered if no more than this fraction is missing.
     constexpr double whole_edge = 1e-9;
     // Nodes lie on their curve when they are off by no more than this part of the edge.
     constexpr double on_curve = 1e-12;
-    // Weights that are no more than rounding.
+    // Weights below this are rounding.
     constexpr double smallest_weight = 1e-11;
     // Master nodes lie across slave nodes when they are off by no more than this part of the tributary length ...
     constexpr double       across_automatic = 1e-6; // ... to be taken for matching meshes
@@ -75,7 +75,7 @@ namespace slipstick::interface
         std::map<mechanics::NodeKey, double> slave, master; // D_ik, M_ij
       };
 
-      /// Adds what slave edge e gives to the integrals of its nodes.
+      /// Adds the contributions of slave edge e to the integrals of its nodes.
       void integrate(const unsigned int e, const std::vector<CurvePairing::Segment> &parts)
       {
         const Edge &edge    = slave[e];
@@ -203,8 +203,8 @@ namespace slipstick::interface
         row.gap = row.normal * (row.master_position - x);
       }
 
-      /// How far the curve is above the edges at a node, along the normal of a row: nothing but for midside nodes of straight
-      /// edges and nodes of edges that could not be bent.
+      /// How far the curve is above the edges at a node, along the normal of a row: nothing but for midside nodes of
+      /// straight edges and nodes of edges that could not be bent.
       double rise(const MortarRow<2> &row, const mechanics::NodeKey &key) const
       {
         const auto &[edge, s] = places.at(key);

@@ -75,8 +75,8 @@ namespace slipstick::interface
         }
     }
 
-    /// Normals of the edges are averaged where there is no corner, as for supports: else a curved boundary on springs along
-    /// its normal would hold its nodes along the tangent too, by springs so soft that they spoil the scale of F.
+    /// Normals of the edges are averaged where there is no corner, as for supports: else a curved boundary on springs
+    /// along its normal would hold its nodes along the tangent too, by springs so soft that they spoil the scale of F.
     template <int dim>
     void add_springs(InterfaceNode<dim> &node, const scene::Scene<dim> &scene)
     {

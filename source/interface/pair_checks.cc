@@ -226,7 +226,7 @@ namespace slipstick::interface
                    const PairSides<2>          &sides,
                    const double                 reach)
   {
-    const std::string normals_remedy = "choose boundaries whose outward normals are opposed, or move the bodies";
+    const std::string normals_remedy = "choose boundaries whose outward normals oppose each other, or move the bodies";
     if (sides.slave.empty() || sides.master.empty())
       throw InputError(between(scene, pair) + " do not face each other anywhere", normals_remedy);
     const auto distance = facing_distance(sides.slave, sides.master);

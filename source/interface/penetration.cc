@@ -22,8 +22,8 @@ namespace slipstick::interface
     using Tensor = dealii::Tensor<1, 2>;
     using Moves  = std::map<mechanics::NodeKey, Tensor>; // displacements of nodes
 
-    // Places on an edge where obstacles are looked for, ends included: what is narrower than this part may hide between them
-    // (corners of polylines are found at any size).
+    // Places on an edge where obstacles are looked for, ends included; narrower features may hide between them (corners
+    // of polylines are found at any size).
     constexpr unsigned int n_places = 33;
 
     struct Move
@@ -144,7 +144,8 @@ namespace slipstick::interface
           }
     }
 
-    /// Of a function the height decides what is inside: the foot that is found on a narrow bump may be that of its far side.
+    /// For a height function, the height decides what is inside: the foot found on a narrow bump may be on its far
+    /// side.
     std::optional<double> gap_at(const scene::Obstacle<2> &obstacle, const Point &x, const double t)
     {
       try
@@ -245,8 +246,8 @@ namespace slipstick::interface
       Point               low, high;
     };
 
-    /// How far the outline lies inside of the chord of an edge, @p before and @p now: hollow sides, whose chords reach into what
-    /// they touch.
+    /// How far the outline lies inside of the chord of an edge, @p before and @p now: hollow sides, whose chords reach
+    /// into what they touch.
     double hollow(const Edge &before, const Edge &now, const double s)
     {
       const Point  on_chord = now.node(0) + s * (now.node(1) - now.node(0));

@@ -13,8 +13,8 @@ namespace slipstick::interface
   {
     // Normals are parallel when their product is above this.
     constexpr double parallel_cosine = 1 - 1e-8;
-    // Tractions are forces over no less than this part of the tributary length: a node at the end of a boundary has half
-    // of that of the others.
+    // Tractions are forces over no less than this part of the tributary length: a node at the end of a boundary has
+    // half of that of the others.
     constexpr double smallest_covered_part = 0.5;
 
     double norm(const std::map<unsigned int, double> &v)

@@ -100,8 +100,8 @@ namespace slipstick::mechanics
           }
     }
 
-    /// Adds what bodies of revolution have besides to the section's stiffness, and weighs it: sum over points of lambda div div +
-    /// 2 mu eps : eps with hoop strain in div and eps, times circumference.
+    /// Adds what bodies of revolution have besides to the section's stiffness, and weighs it: sum over points of lambda
+    /// div div + 2 mu eps : eps with hoop strain in div and eps, times circumference.
     template <int dim>
     void cell_stiffness(const CellValues<dim>       &at,
                         const mesh::Kinematics<dim> &kinematics,
@@ -219,7 +219,7 @@ namespace slipstick::mechanics
       if (scene.discretization.element == scene::ElementKind::nearly_incompressible && element.cell.is_simplex() &&
           element.degree == 1)
         throw InputError("Discretization/Element = nearly incompressible: body '" + scene.bodies[body].name +
-                           "' has triangles of degree 1, which lock with any treatment of the dilatation",
+                           "' has triangles of degree 1, which lock however the dilatation is treated",
                          "set Discretization/Degree = 2, or mesh the body with quadrilaterals");
     }
 

@@ -56,7 +56,7 @@ namespace slipstick::mechanics
         return std::move(load);
       }
 
-      /// How far a finer quadrature of the body forces that are formulas is off, by body force.
+      /// Difference to a finer quadrature of the body forces given by formulas, by body force.
       struct Misfit
       {
         double                size = 0, difference = 0; // sums of magnitudes over the cells [N]

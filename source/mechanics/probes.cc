@@ -12,9 +12,10 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // How far a point may lie beside its cell, part of the diameter: edges leave out some of the curves that they stand for.
+    // How far a point may lie outside its cell, as a fraction of the diameter: edges cut off some of the curves that
+    // they represent.
     constexpr double reach_of_probe = 0.1;
-    // Cells are looked at whose box, grown by this part of their diameter, has the point.
+    // Cells are examined if their box, enlarged by this fraction of their diameter, contains the point.
     constexpr double margin_of_boxes = 0.2;
 
     /// The point of the reference cell nearest to x, nearly.

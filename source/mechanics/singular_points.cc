@@ -16,10 +16,11 @@ namespace slipstick::mechanics
   namespace
   {
     constexpr double degree = M_PI / 180;
-    // An outline goes in where its direction turns by this angle or more, as much as makes a corner by default.
+    // An outline is re-entrant where its direction turns by this angle or more, the angle that makes a corner by
+    // default.
     constexpr double least_turn = 35 * degree;
-    // Between a held and a free side stress is infinite from an angle of 63 (nu = 0) to 51 degrees (nu = 0.5) on, plane strain
-    // (Williams 1952); where one displacement is held, beyond a right angle.
+    // Between a held and a free side stress is infinite from an angle of 63 (nu = 0) to 51 degrees (nu = 0.5) on, plane
+    // strain (Williams 1952); where one displacement is held, beyond a right angle.
     constexpr double least_angle_of_clamp = 63 * degree, least_angle_of_roller = 95 * degree;
     // Values that differ by less than this part are equal: symmetric places.
     constexpr double same_value = 1e-6;

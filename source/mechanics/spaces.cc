@@ -13,8 +13,8 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    /// Mapping of triangles of degree 1 or 2 whose edges follow their own manifolds. deal.II 9.4's MappingFE asks the
-    /// manifold of the cell alone, which leaves curved boundaries straight, and asserts that the edges have no other.
+    /// Mapping of triangles of degree 1 or 2 whose edges follow their own manifolds. deal.II 9.4's MappingFE uses only
+    /// the manifold of the cell, which leaves curved boundaries straight, and asserts that the edges have no other.
     template <int dim>
     class SimplexMapping : public dealii::MappingFE<dim>
     {

@@ -16,7 +16,7 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    /// What one subdomain needs again and again.
+    /// Data that one subdomain needs repeatedly.
     template <int dim>
     struct Subdomain
     {
@@ -65,7 +65,8 @@ namespace slipstick::mechanics
           all_values.emplace(*on.element.mapping, *on.element.scalar, rule, flags());
       }
 
-      /// @p u: displacement at the nodes of the cell, dim x nodes. @return points x (xx, yy, xy, of bodies of revolution hoop).
+      /// @p u: displacement at the nodes of the cell, dim x nodes. @return points x (xx, yy, xy, of bodies of
+      /// revolution hoop).
       const Eigen::MatrixXd &reinit(const typename CellValues<dim>::Cell &cell, const Eigen::MatrixXd &u)
       {
         values.reinit(cell);
@@ -183,7 +184,8 @@ namespace slipstick::mechanics
       return at_nodes * at_points.inverse();
     }
 
-    /// Sums over cells around every node: area times stress, area (last column). @p patches, if any, gets the stresses too.
+    /// Sums over cells around every node: area times stress, area (last column). @p patches, if any, gets the stresses
+    /// too.
     template <int dim>
     Eigen::MatrixXd weighted_stress(const Subdomain<dim> &on, const Eigen::VectorXd &u, PatchRecovery<dim> *patches)
     {
@@ -219,8 +221,8 @@ namespace slipstick::mechanics
       return sums;
     }
 
-    /// Adds the sums of all copies of shared nodes, two columns in one exchange (an interface node has dim unknowns). Subdomains
-    /// without sums have none.
+    /// Adds the sums of all copies of shared nodes, two columns in one exchange (an interface node has dim unknowns).
+    /// Subdomains without sums have none.
     template <int dim>
     void add_copies(const tfeti::Constraints             &constraints,
                     const std::vector<Eigen::MatrixXd *> &sums,
@@ -246,7 +248,7 @@ namespace slipstick::mechanics
         }
     }
 
-    /// Means are superconvergent but on triangles of degree 2.
+    /// Averages are superconvergent except on triangles of degree 2.
     template <int dim>
     bool needs_patches(const Element<dim> &element)
     {

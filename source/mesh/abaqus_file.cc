@@ -1,4 +1,4 @@
-// Abaqus' input files as far as they describe a mesh in the plane: *NODE, *ELEMENT, *ELSET, *NSET, *SURFACE.
+// The parts of Abaqus' input files that describe a plane mesh: *NODE, *ELEMENT, *ELSET, *NSET, *SURFACE.
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/mesh_file.h>
@@ -20,7 +20,7 @@ namespace slipstick::mesh
     const std::set<std::string> changing =
       {"INCLUDE", "IMPORT", "SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "MANIFEST"};
 
-    // Elements that are no part of a mesh of the plane, by the beginnings of their types.
+    // Elements that do not belong to a plane mesh, by the beginnings of their types.
     const std::vector<std::string> other_elements =
       {"MASS", "ROTARYI", "HEATCAP", "SPRING", "DASHPOT", "CONN", "GAP", "DCOUP", "JOINTC", "ITS"};
 
@@ -76,7 +76,8 @@ namespace slipstick::mesh
       template <typename F>
       void for_data(const F &f);
 
-      /// Members of a set: numbers, and lines of GENERATE that are checked against what there is before they are written out.
+      /// Members of a set: numbers, and lines of GENERATE that are checked against what there is before they are
+      /// written out.
       struct Set
       {
         using Range = std::array<unsigned long long, 4>; // first, last, step, line in the file

@@ -58,7 +58,7 @@ namespace slipstick::mesh
         check_conformity();
         if (file.is_curved && mesh.middles.empty())
           mesh.remarks.push_back("body " + body.name + ": only the corners of the curved cells in " + file.file +
-                                 " are used (mid nodes are kept of cells of second order in Gmsh and Abaqus files)");
+                                 " are used (mid nodes are kept only for second-order cells in Gmsh and Abaqus files)");
         return std::move(mesh);
       }
 

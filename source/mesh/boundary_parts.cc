@@ -9,7 +9,8 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // So near to its ends, over its length, a condition is tried on an edge: nodes on a limit belong to both sides.
+    // Distance from its ends, relative to its length, at which a condition is tried on an edge: nodes on a limit belong
+    // to both sides.
     constexpr double end_of_edge = 1e-6;
 
     /// Is a face with this id on the boundary of that name?
@@ -83,7 +84,7 @@ namespace slipstick::mesh
       if (n_cut > 0)
         mesh.remarks.push_back(
           format("warning: %s: '%s' changes within %u edge%s of %s, such as that around (%.6g, %.6g); an "
-                 "edge counts as a whole, as its middle does: put a node of the mesh there",
+                 "edge belongs to the part as a whole if its middle does: put a node of the mesh there",
                  user.c_str(),
                  part.condition.c_str(),
                  n_cut,

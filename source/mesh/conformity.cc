@@ -12,8 +12,8 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Closer than this part of the shorter edge a node lies on an edge: files have six digits of large coordinates at times,
-    // and nothing is meshed finer than it is wide.
+    // A node closer to an edge than this fraction of the shorter edge lies on it: some files have only six digits of
+    // large coordinates, and nothing is meshed finer than it is wide.
     constexpr double on_edge = 1e-4;
     // Sine of the angle below which edges from one place run along each other.
     constexpr double along = 1e-3;
@@ -78,7 +78,7 @@ namespace slipstick::mesh
       const MeshPiece<2>                                                    &piece;
       std::vector<Edge>                                                      edges;
       std::map<unsigned int, std::vector<unsigned int>>                      edges_at; // by vertex
-      std::vector<bool>                                                      is_flank; // of a slit that is meant
+      std::vector<bool>                                                      is_flank; // of an intended slit
       boost::geometry::index::rtree<Value, boost::geometry::index::rstar<8>> tree;
     };
 

@@ -21,13 +21,14 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Cells (times the square of the degree) of a METIS subdomain when their number is left to us: benchmarks/README.md,
-    // "How many subdomains?".
+    // Cells (times the square of the degree) per METIS subdomain if their number is `auto`: benchmarks/README.md, "How
+    // many subdomains?".
     constexpr double automatic_cells_per_subdomain = 10000;
 
-    // Bodies that may not share units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus): the larger size or modulus over
-    // the smaller one. Parts of one assembly differ less in size; steel and rubber differ by 1e5 in modulus. What is
-    // doubtful together: the smaller of two bodies is the stiffer one, as it is when metres and pascal meet mm and MPa.
+    // Bodies that may not share units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus): the larger size or modulus
+    // over the smaller one. Parts of one assembly differ less in size; steel and rubber differ by 1e5 in modulus. What
+    // is doubtful together: the smaller of two bodies is the stiffer one, as it is when metres and pascal meet mm and
+    // MPa.
     constexpr double doubtful_size_ratio    = 300;
     constexpr double doubtful_modulus_ratio = 3e5;
     constexpr double doubtful_together_size = 30, doubtful_together_modulus = 3e4;
@@ -304,7 +305,7 @@ namespace slipstick::mesh
             scene.decomposition.method != scene::DecompositionMethod::none)
           throw InputError("Decomposition/Subdomains = " + std::to_string(scene.decomposition.subdomains) +
                              " is more than the " + std::to_string(mesh.n_cells) + " cells of the mesh",
-                           "ask for at most one subdomain a cell, or set it to auto");
+                           "ask for at most one subdomain per cell, or set it to auto");
         pieces = cut_bodies(scene, bodies, mesh.remarks);
       });
 

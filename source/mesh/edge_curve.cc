@@ -7,8 +7,8 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Newton's method for the point of a cubic on a line: quadratic from a start that is a sagitta off; what is looked for
-    // lies no farther beyond an end than this part of the edge.
+    // Newton's method for the point of a cubic on a line: quadratic convergence from a start that is a sagitta off; the
+    // point sought lies no farther beyond an end than this fraction of the edge.
     constexpr unsigned int most_steps   = 20;
     constexpr double       small_step   = 1e-15;
     constexpr double       continuation = 0.5;

@@ -6,7 +6,8 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Sagitta over the height of the cell above that edge: with more the map of the cell is no longer nearly linear.
+    // Limit on the sagitta over the height of the cell above that edge: beyond it the map of the cell is no
+    // longer nearly linear.
     constexpr double largest_sagitta = 0.3;
     // The Jacobian of a cell with curved edges at its corners, over that with straight ones, is no less than this.
     constexpr double smallest_jacobian = 0.2;

@@ -61,7 +61,7 @@ namespace slipstick::mesh
             return {2, 4, 16};
           case 37:
             return {2, 4, 25};
-          case 4: // tetrahedra, hexahedra, prisms, pyramids and their kin of second order
+          case 4: // tetrahedra, hexahedra, prisms, pyramids and their second-order variants
             return {3, 4, 4};
           case 5:
             return {3, 8, 8};
@@ -137,7 +137,7 @@ namespace slipstick::mesh
         return n;
       }
 
-      /// The rest of the present line.
+      /// The rest of the current line.
       std::string line()
       {
         const auto end   = std::min(text.find('\n', at), text.size());
@@ -158,7 +158,7 @@ namespace slipstick::mesh
         return section;
       }
 
-      /// Goes behind the end of the present section, which must come at once unless the section is skipped.
+      /// Moves past the end of the current section, which must come at once unless the section is skipped.
       void end_section(const bool skip)
       {
         const std::string end   = "$End" + section;
@@ -261,7 +261,7 @@ namespace slipstick::mesh
       const int    size    = in.word<int>();
       is_version_2         = version >= 2 && version < 3;
       if (!is_version_2 && !(version >= 4.1 && version < 4.2))
-        in.fail("has version " + number_text(version) + "; read are 2.0 to 2.2 and 4.1",
+        in.fail("has version " + number_text(version) + "; versions 2.0 to 2.2 and 4.1 are supported",
                 "save it as 4.1: gmsh OLD.msh -save -format msh41 -o NEW.msh");
       if (size != 8 || kind < 0 || kind > 1)
         in.fail_broken();
@@ -484,7 +484,7 @@ namespace slipstick::mesh
               has_elements = true;
             }
           else if (section == "PartitionedEntities")
-            in.fail("is partitioned", "save it without: slipstick cuts bodies itself");
+            in.fail("is partitioned", "save it without partitions: slipstick decomposes bodies itself");
           else
             in.end_section(true);
         }

@@ -88,7 +88,7 @@ namespace slipstick::mesh
         mesh.piece = refined_towards(mesh.piece, ids);
     }
 
-    /// Types of elements that contradict the plane state of the scene, which is the one that counts.
+    /// Types of elements that contradict the plane state of the scene, which takes precedence.
     template <int dim>
     void remark_on_plane_state(const scene::Scene<dim> &scene, MeshFile &file)
     {
@@ -116,7 +116,7 @@ namespace slipstick::mesh
         warn(file.plane_strain_types, "strain");
     }
 
-    /// Nodes within rounding of the axis of revolution come to lie on it; beyond it there must be none.
+    /// Moves nodes within rounding of the axis of revolution onto it; there must be none beyond it.
     template <int dim>
     void move_to_axis(const scene::Body<dim> &body, const Kinematics<dim> &kinematics, MeshPiece<dim> &piece)
     {
@@ -133,7 +133,7 @@ namespace slipstick::mesh
           x[0] = 0;
         else if (x[0] < 0)
           throw InputError(
-            format("Body %s: it reaches to x = %g mm, but where Plane state = axisymmetric x is the radius "
+            format("Body %s: it reaches to x = %g mm, but with Plane state = axisymmetric x is the radius "
                    "and the axis is x = 0",
                    body.name.c_str(),
                    low),
@@ -160,7 +160,7 @@ namespace slipstick::mesh
             where.body == b && lost != mesh.incomplete_boundaries.end())
           throw InputError(user + ": boundary '" + where.boundary + "' of body '" + body.name + "'" + from +
                              " is not all on its outline: " + lost->second,
-                           "let the name stand for edges of the outline only, or write the mesh again");
+                           "use the name only for edges of the outline, and write the mesh again");
         if (where.body == b && where.boundary != "*" && mesh.boundary_ids.count(where.boundary) == 0)
           throw InputError(user + ": body '" + body.name + "' has no boundary '" + where.boundary + "'" + from,
                            suggest_name(where.boundary, boundaries) +
@@ -180,7 +180,7 @@ namespace slipstick::mesh
       for (const std::string &name : body.refined_boundaries)
         {
           if (!scene::part_of_boundary(name).condition.empty())
-            throw InputError("Body " + body.name + "/Refine towards = '" + name + "': a condition is not possible here",
+            throw InputError("Body " + body.name + "/Refine towards = '" + name + "': a condition is not allowed here",
                              "name the whole boundary");
           boundary("Body " + body.name + "/Refine towards", {b, name});
         }

@@ -7,7 +7,7 @@ namespace slipstick::mesh
 {
   namespace
   {
-    /// The finer piece as it grows from the coarse one.
+    /// The finer piece while it is built from the coarse one.
     template <int dim>
     class Refiner
     {
@@ -249,7 +249,7 @@ namespace slipstick::mesh
     template <int dim>
     MeshPiece<dim> triangles_towards(const MeshPiece<dim> &piece, std::vector<bool> red)
     {
-      // a triangle with two edges in halves is divided in four itself, until nothing changes
+      // a triangle with two bisected edges is itself divided into four, until nothing changes
       std::set<typename MeshPiece<dim>::Face> halved;
       for (bool changed = true; changed;)
         {

@@ -16,10 +16,10 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Bytes an unknown: mesh, stiffness and output, and the factor, whose entries grow with the logarithm of the subdomain's
-    // size. Measured: 1.33 million unknowns in 256 subdomains take 1 GB (README.md).
+    // Bytes an unknown: mesh, stiffness and output, and the factor, whose entries grow with the logarithm of the
+    // subdomain's size. Measured: 1.33 million unknowns in 256 subdomains take 1 GB (README.md).
     constexpr double bytes_per_unknown = 300, bytes_per_unknown_and_doubling = 32;
-    constexpr double cells_per_subdomain = 10000; // what auto aims at, see decomposition.cc
+    constexpr double cells_per_subdomain = 10000; // target of auto, see decomposition.cc
     constexpr double most_cells          = 1e9;   // beyond this counters of 32 bits may overflow
     constexpr double bytes_per_subdomain = 100e3; // its mesh and lists, however few its cells
     constexpr double many_subdomains     = 1e4;   // beyond this the message names them
@@ -164,9 +164,8 @@ namespace slipstick::mesh
       if (dealii::Utilities::MPI::this_mpi_process(comm) != 0)
         return;
       const SizeEstimate size = estimate_size(scene);
-      const std::string  asks =
-        "the scene asks for about " + rounded(size.unknowns) + " unknowns (" + size.largest + ")";
-      const std::string less = "ask for fewer Cells, Blocks, Refinements or Refine levels";
+      const std::string  asks = "the scene has about " + rounded(size.unknowns) + " unknowns (" + size.largest + ")";
+      const std::string  less = "use fewer Cells, Blocks, Refinements or Refine levels";
       if (size.cells > most_cells)
         throw InputError(asks + ", more than can be counted (" + rounded(most_cells) + " cells)", less);
       if (!forced && size.memory_mb > usable * free)
@@ -186,10 +185,11 @@ namespace slipstick::mesh
             {
               const double length = face->vertex(0).distance(face->vertex(1)), away = face->vertex(0).norm();
               if (!(length > finest * away))
-                throw InputError("Body " + scene.bodies[subdomain->body].name + ": has an edge of " +
-                                   number_text(length) + " mm at " + number_text(away) +
-                                   " mm from the origin, where numbers do not tell its ends apart well enough",
-                                 "give Translation, Center, Origin or the mesh near the origin, or larger cells");
+                throw InputError(
+                  "Body " + scene.bodies[subdomain->body].name + ": has an edge of " + number_text(length) + " mm at " +
+                    number_text(away) + " mm from the origin, where numbers do not resolve such an edge well enough",
+                  "move the body closer to the origin (Translation, Center, Origin or the mesh itself), or use "
+                  "larger cells");
             }
     });
   }

@@ -10,18 +10,18 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Edges are in line when they meet at less than this [rad]: what a circle of such edges leaves out is a ten millionth of
-    // their length.
+    // Edges are in line when they meet at less than this [rad]: what a circle of such edges leaves out is a ten
+    // millionth of their length.
     constexpr double in_line = 1e-6;
     // A node is a corner when the edges meet there at more than so many times the angle at the nodes beside it.
     constexpr double outstanding = 3;
     // Coarse circles: neighbouring angles below the limit [rad] and lengths differ by no more than this part.
     constexpr double coarse_limit = 65 * M_PI / 180, regular = 0.1;
-    // Parabolas through mid nodes that meet at this angle [rad] or a larger one make a corner: those of a circle of eight edges
-    // meet at 2 degrees.
+    // Parabolas through mid nodes that meet at this angle [rad] or a larger one make a corner: those of a circle of
+    // eight edges meet at 2 degrees.
     constexpr double corner_of_parabolas = 10 * M_PI / 180;
-    // A cubic in place of a parabola: its mid node is off the middle of the chord by no more than this part, its speed at the
-    // ends differs by no more than this part from that of an arc.
+    // A cubic in place of a parabola: its mid node is off the middle of the chord by no more than this part, its speed
+    // at the ends differs by no more than this part from that of an arc.
     constexpr double off_middle = 0.05, other_speed = 0.25;
     // Mid nodes are on the chord when they are no farther from it than this part of its length.
     constexpr double on_chord = 1e-9;
@@ -239,8 +239,8 @@ namespace slipstick::mesh
       return false;
     }
 
-    /// As find_corners(), find_flats() and find_tangents(), for edges with mid nodes: tangents are those of the circles through
-    /// nodes and the mid nodes beside them.
+    /// As find_corners(), find_flats() and find_tangents(), for edges with mid nodes: tangents are those of the circles
+    /// through nodes and the mid nodes beside them.
     void Reconstruction::follow_middles()
     {
       std::vector<Curve> parabolas;
@@ -345,12 +345,12 @@ namespace slipstick::mesh
           face.bends_cell = has_room_for<2>(curve, mesh.piece, mesh.piece.cells[edge->cell], edge->face);
         }
       if (n_bent > 0)
-        mesh.remarks.push_back(
-          "body " + body.name + ": " + std::to_string(n_bent) + " of " + std::to_string(edges.size()) +
-          " edges of its outline " +
-          (by_middles ? "are curved by their mid nodes"
-                      : "count as curves, which meet at less than " + number_text(body.corner_angle) + " degrees") +
-          " (Outline = polygon: straight)");
+        mesh.remarks.push_back("body " + body.name + ": " + std::to_string(n_bent) + " of " +
+                               std::to_string(edges.size()) + " edges of its outline " +
+                               (by_middles ? "are curved by their mid nodes"
+                                           : "are treated as curves, as they meet at less than " +
+                                               number_text(body.corner_angle) + " degrees") +
+                               " (Outline = polygon: straight)");
     }
   } // namespace
 

@@ -79,7 +79,7 @@ namespace slipstick::mesh
         mesh.elements.push_back(element);
       }
     if (!in.word().empty())
-      mesh.remarks.push_back("mesh file " + file + ": what follows the cells (data) is not used");
+      mesh.remarks.push_back("mesh file " + file + ": the data after the cells are not used");
     mesh.add_outline();
     return mesh;
   }

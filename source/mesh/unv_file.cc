@@ -10,8 +10,8 @@ namespace slipstick::mesh
 {
   namespace
   {
-    /// Elements by their "FE descriptor": dimension, corners, nodes; those of second order have a node inside of every edge,
-    /// behind its first end.
+    /// Elements by their "FE descriptor": dimension, corners, nodes; those of second order have a node inside of every
+    /// edge, behind its first end.
     struct FeType
     {
       unsigned int dim, n_corners, n_nodes;

@@ -34,7 +34,8 @@ namespace slipstick::output
       "conditions\\.csv|convergence\\.csv|history\\.csv|probes\\.csv|summary\\.json|parameters\\.prm|"
       "restart\\.bin|restart_\\d+_\\d+\\.bin";
 
-    /// Beside @p name, with the number of the process, by which others know whether it is still written, and a random part.
+    /// Beside @p name, with the number of the process, by which others know whether it is still written, and a random
+    /// part.
     std::string temporary_name(const std::string &name)
     {
       std::random_device random;
@@ -43,7 +44,7 @@ namespace slipstick::output
       return text.str();
     }
 
-    /// A file that was not there before; nothing is written through a link that somebody left in its place.
+    /// A new file; nothing is written through a link that somebody left in its place.
     class NewFile
     {
     public:
@@ -102,7 +103,7 @@ namespace slipstick::output
       bool                           is_renamed = false;
     };
 
-    // Permission bits do not tell (root ignores them, read-only and full disks do not show in them): try a file.
+    // Permission bits are not enough (root ignores them, and read-only or full disks do not show in them): try a file.
     void try_a_file(const std::filesystem::path &directory)
     {
       NewFile           probe(temporary_name((directory / ".slipstick-probe").string()));
@@ -111,7 +112,7 @@ namespace slipstick::output
         reject(directory.string(), "no file can be written there: " + reason);
     }
 
-    /// Removes files that killed runs left half written.
+    /// Removes partial files that killed runs left.
     void remove_stale(const std::filesystem::path &directory)
     {
       static const std::regex stale("(" + result_names + "|\\.slipstick-probe)(\\.(\\d{1,9})-[0-9a-f]+)?\\.tmp");

@@ -50,7 +50,8 @@ namespace slipstick::output
 
     constexpr std::uint8_t vtk_triangle = 5, vtk_quadrilateral = 9;
 
-    /// Nodes of the linear cells that a cell is drawn as, counterclockwise; degree 2: four, with the nodes on its edges.
+    /// Nodes of the linear cells that a cell is drawn as, counterclockwise; degree 2: four, with the nodes on its
+    /// edges.
     std::vector<std::vector<unsigned int>> parts_of_cell(const bool is_simplex, const unsigned int degree)
     {
       if (is_simplex)
@@ -110,7 +111,8 @@ namespace slipstick::output
     }
 
     /// Computes the fields for users from displacement and stress components.
-    /// @param stress nodes x 4: xx, yy, xy, zz [MPa]; of bodies of revolution zz is the hoop stress, and part of the tensor.
+    /// @param stress nodes x 4: xx, yy, xy, zz [MPa]; of bodies of revolution zz is the hoop stress, and part of the
+    /// tensor.
     std::vector<Field> nodal_fields(const Eigen::VectorXd &u, const Eigen::MatrixXd &stress, const bool has_hoop_stress)
     {
       std::vector<Field> fields = {{"displacement", 3, {}},
@@ -143,8 +145,8 @@ namespace slipstick::output
       return fields;
     }
 
-    /// By zlib at its best speed. Its window, which it allocates and clears for every array, is no larger than the array: the
-    /// same output in a third of the time for arrays of some kB.
+    /// By zlib at its best speed. Its window, which it allocates and clears for every array, is no larger than the
+    /// array: the same output in a third of the time for arrays of some kB.
     std::vector<unsigned char> compressed(const void *data, const std::size_t n_bytes)
     {
       constexpr int         smallest_window = 9, largest_window = 15; // powers of 2 [bytes], the limits of zlib

@@ -17,7 +17,7 @@ namespace slipstick::output
 
     // Of the drawing [pixels]: longer side, border, width of the legend and distance of its lines.
     constexpr double drawing_size = 900, border = 40, legend_width = 320, line_distance = 20;
-    // Meshes of more cells would be black.
+    // Meshes with more cells would be drawn black.
     constexpr unsigned int max_drawn_cells = 20000;
     // Arrows a load, about, and the length of the longest one [pixels].
     constexpr unsigned int arrows_of_load = 12;

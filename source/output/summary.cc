@@ -106,7 +106,7 @@ namespace slipstick::output
       return pairs;
     }
 
-    /// Points alone: what lines found is in probes.csv.
+    /// Single points only; results along lines are in probes.csv.
     Json json(const std::vector<ProbeResult> &probes)
     {
       Json list = Json::array();

@@ -8,9 +8,9 @@
 
 namespace slipstick::app
 {
-  /// Texts of warnings with remedy, by what they are about (a kind, with the pair of contact), of one load step:
-  /// sides that overlap, or slide past each other, by more than an element; pressure above the modulus; strain, rotation
-  /// and motion beyond small displacements; moduli in other units; forces whose split between pairs is not determined.
+  /// Texts of the warnings of one load step, with remedies, keyed by subject (a kind, with the contact pair): sides
+  /// that overlap, or slide past each other, by more than an element; pressure above the modulus; strain, rotation and
+  /// motion beyond small displacements; moduli in other units; forces whose split between pairs is not determined.
   /// Collective.
   /// @param free owned rows whose multiplier is strictly inside its bounds.
   /// @param nodes contact nodes of this rank with the points that they belong to at the front of Constraints.

@@ -9,7 +9,7 @@
 
 namespace slipstick::app
 {
-  /// What the user asks for. When `message`, `list_parameters` or `new_scene` is set there may be no case file.
+  /// What the user asks for. If `message`, `list_parameters` or `new_scene` is set, the case file may be missing.
   struct CommandLine
   {
     std::string                      case_file;

@@ -1,4 +1,4 @@
-// Arcs that a mesh shows as polygons, and what that means for contact.
+// Arcs that a mesh replaces by polygons, and the effect on contact.
 #pragma once
 
 #include <slipstick/contact/result.h>
@@ -9,8 +9,8 @@
 
 namespace slipstick::app
 {
-  /// Warnings with remedy, by what they are about, of pairs of bodies whose edges leave out a curve (EdgeCurve::left_out)
-  /// that is not small against what the pressure presses in or, where nothing touches, against the gap. Collective.
+  /// Warnings with remedy, keyed by subject, for pairs of bodies whose edges leave out a curve (EdgeCurve::left_out)
+  /// that is not small compared with the indentation or, where nothing touches, with the gap. Collective.
   /// @param nodes contact nodes of this rank with the points that they belong to at the front of Constraints.
   std::map<std::string, std::string> curve_warnings(const scene::Scene<2>                   &scene,
                                                       const mesh::Mesh<2>                     &mesh,

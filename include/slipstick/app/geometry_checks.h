@@ -1,4 +1,4 @@
-// Places inside each other after loading that the rows of contact do not watch.
+// Penetrations after loading that the contact rows do not see.
 #pragma once
 
 #include <slipstick/interface/penetration.h>
@@ -9,10 +9,10 @@ namespace slipstick::app
 {
   struct GeometryFindings
   {
-    /// A declared contact is not kept, so that the answer is none: what is where, with the remedy.
+    /// A declared contact is violated, so that the answer is not a solution: what penetrates where, with the remedy.
     std::optional<std::string> failure;
 
-    /// Texts of warnings with remedy, by what they are about: obstacles between nodes, bodies that no pair joins.
+    /// Texts of warnings with remedy, keyed by subject: obstacles between nodes, bodies that no pair joins.
     std::map<std::string, std::string> warnings;
   };
 

@@ -14,8 +14,8 @@ namespace slipstick::app
                       const std::vector<Eigen::VectorXd> &u,
                       contact::CheckedContact            &contact);
 
-  /// Nodes where an obstacle and a support push alike, so that nothing but the sum of both forces is determined: a
-  /// warning for every pair with such nodes, by "held" and its name. Collective.
+  /// A warning for every pair with nodes on which an obstacle and a support push in the same direction, so that only
+  /// the sum of both forces is determined; keys are "held" and the name of the pair. Collective.
   std::map<std::string, std::string> held_node_warnings(const scene::Scene<2>         &scene,
                                                         const tfeti::HeldContacts     &held,
                                                         const contact::CheckedContact &contact,

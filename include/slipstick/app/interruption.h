@@ -6,9 +6,9 @@
 namespace slipstick::app
 {
   /// From the first call on, SIGINT and SIGTERM write "interrupted" and @p text on standard error before they end the
-  /// process as they always do. For one rank alone, which is to print. Signals that are ignored stay ignored.
+  /// process as they always do. For use on one rank only, the one that prints. Signals that are ignored stay ignored.
   void tell_when_interrupted(const std::string &text);
 
-  /// They end the process without a word again.
+  /// From now on they end the process silently again.
   void do_not_tell_when_interrupted();
 } // namespace slipstick::app

@@ -36,7 +36,7 @@ namespace slipstick::app
   /// Did the solver converge, and are all checks within the limit?
   bool passes(const contact::DualSolution &solution, const contact::Checks &checks, const double tolerance);
 
-  /// Of an answer that does not pass: which test failed, by how much and where, and what to do.
+  /// For an answer that does not pass: which test failed, by how much and where, and what to do.
   void print_failure(const Log                   &log,
                      const scene::Scene<2>       &scene,
                      const contact::DualSolution &solution,
@@ -52,7 +52,7 @@ namespace slipstick::app
   /// Case, version, ranks.
   output::Summary empty_summary(const scene::Scene<2> &scene, const MPI_Comm comm);
 
-  /// Appends the step that @p summary describes to those before it: counts add up, the worst residuals stay.
+  /// Appends the step that @p summary describes to the previous ones: counts are summed, the worst residuals kept.
   void add_step(const output::Summary &so_far, const double load_factor, output::Summary &summary);
 
   /// Forces around a circumference have no moment: of bodies of revolution all moments become 0.

@@ -1,4 +1,4 @@
-// Files from which a run goes on after its last finished load step.
+// Files from which a run continues after its last finished load step.
 #pragma once
 
 #include <slipstick/app/step_state.h>
@@ -26,15 +26,15 @@ namespace slipstick::app
     std::set<std::string>            warned_about;
   };
 
-  /// Writes restart_NNN_RRRR.bin of every rank (NNN: finished steps) and then restart.bin, which names them; what stood there
-  /// before goes last. Collective.
-  /// @throws InputError when the disk does not take it.
+  /// Writes restart_NNN_RRRR.bin of every rank (NNN: finished steps) and then restart.bin, which names them; the
+  /// previous files are removed last. Collective.
+  /// @throws InputError if they cannot be written.
   void write_restart(const output::OutputDirectory &directory,
                      const scene::Scene<2>         &scene,
                      const RunState                &state,
                      const MPI_Comm                 comm);
 
-  /// @throws InputError when there is nothing to resume, or when scene, mesh files, version or number of ranks are others than
+  /// @throws InputError if there is nothing to resume, or if scene, mesh files, version or number of ranks differ from
   /// those of the run. Load factors may differ after the finished steps. Collective.
   RunState read_restart(const output::OutputDirectory &directory, const scene::Scene<2> &scene, const MPI_Comm comm);
 

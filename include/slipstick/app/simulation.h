@@ -12,8 +12,8 @@ namespace slipstick::app
   void check_scene(const scene::Scene<2> &scene, const std::string &picture, const Log &log, const MPI_Comm comm);
 
   /// Solves @p scene and writes the results to @p output_directory. Collective.
-  /// @param resumes goes on after the last finished load step of an earlier run there, to the answer that this one would
-  /// have had.
+  /// @param resumes continues after the last finished load step of an earlier run there and gives the same answer as an
+  /// uninterrupted run.
   /// @return converged or not_converged; outputs are written in both cases.
   /// @throws InputError, NoEquilibrium, NumericalError on all ranks alike.
   ExitStatus run(const scene::Scene<2> &scene,

@@ -1,4 +1,4 @@
-// A scene made discrete, and the checked solutions of its load steps.
+// The discretised scene, and the checked solutions of its load steps.
 #pragma once
 
 #include <slipstick/app/step_state.h>
@@ -38,11 +38,12 @@ namespace slipstick::app
     /// The dual problem of the first load step. @throws InputError, NoEquilibrium.
     void build();
 
-    /// Solves a load step, the one after that solved before, until the checks of its answer pass or that is hopeless.
+    /// Solves the next load step, until the checks of its answer pass or cannot be improved any more.
     /// @param multiplications_before by F in the steps before.
     std::unique_ptr<Answer> solve(const unsigned int step, const std::uint64_t multiplications_before);
 
-    /// In place of build(): as after load step @p step of an earlier run. @throws InputError where the state does not fit.
+    /// In place of build(): as after load step @p step of an earlier run. @throws InputError where the state does not
+    /// fit.
     void resume(const unsigned int step, const StepState &state);
 
     /// After a load step, for resume(). Not of the last step of a scene.
@@ -70,12 +71,12 @@ namespace slipstick::app
     {
       return held;
     }
-    /// Supports of the scene as it was given: what comes after them holds motions that nothing else does.
+    /// Number of supports in the scene as given; supports after these hold motions that nothing else holds.
     unsigned int n_given_supports() const
     {
       return n_given;
     }
-    /// Motions that nothing holds and no load drives, in words; empty: none. They are set to zero.
+    /// Motions that nothing holds and no load drives, in words (empty: none); they are set to zero.
     const std::string &unheld() const
     {
       return unheld_motions;
@@ -102,14 +103,14 @@ namespace slipstick::app
     void make_dual(const double t);
     void make_dual_as_it_is(const double t);
 
-    /// Loads of this rank's subdomains that are what rounding leaves of those of earlier steps become zero.
+    /// Sets loads of this rank's subdomains to zero if they are only rounding compared with those of earlier steps.
     void drop_rounding(std::vector<Eigen::VectorXd> &loads);
 
-    /// The rows of contact at load factor t, as far as they are not pruned.
+    /// The contact rows at load factor t, except pruned ones.
     interface::ContactRows contact_rows(const double t);
 
-    /// Loads and right-hand sides of a later step; slip starts from where the step before ended.
-    /// @return whether the multipliers of the step before fit the rows.
+    /// Loads and right-hand sides of a later step; slip starts where the previous step ended.
+    /// @return whether the multipliers of the previous step fit the rows.
     bool advance(const double t);
 
     /// Slip is measured from the displacement at the end of the previous step.
@@ -121,12 +122,12 @@ namespace slipstick::app
     /// Computes checks and stresses of an answer that was recovered from @p from.
     void evaluate(Answer &answer, const contact::DualSolution &from, const double t) const;
 
-    /// Is the algebraic error of an iterate a small part of its discretisation error, and does it pass the checks? A step
-    /// looks at its last estimate first, which errors of the iterates so far can only have made too large, and recovers
-    /// a displacement only when that does not decide.
+    /// Is the algebraic error of an iterate a small part of its discretisation error, and does it pass the checks? The
+    /// last estimate of the step, which errors of earlier iterates can only have made too large, is examined first; a
+    /// displacement is recovered only if that does not decide.
     bool is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t);
 
-    /// Solves the present step; with rows for more contact nodes as long as pruned ones penetrate.
+    /// Solves the current step, adding rows for more contact nodes as long as pruned ones penetrate.
     /// @param goes_on from the solution of this step.
     std::unique_ptr<Answer> solve_step(const unsigned int  step,
                                        const std::uint64_t multiplications_before,
@@ -134,14 +135,14 @@ namespace slipstick::app
 
     std::unique_ptr<Answer> checked(std::unique_ptr<Answer> answer, const double t) const;
 
-    /// Continues from a solution whose checks fail, to smaller residuals: the tolerance is relative to |Pd|,
-    /// which may be far above the corresponding part of the displacement (slender parts). Ends when that does not help.
+    /// Continues from a solution whose checks fail, to smaller residuals: the tolerance is relative to |Pd|, which may
+    /// be far above the corresponding part of the displacement (slender parts). Ends when this no longer helps.
     std::unique_ptr<Answer> tighten(const unsigned int      step,
                                     const std::uint64_t     multiplications_before,
                                     std::unique_ptr<Answer> answer);
 
-    /// Corrects the displacement of an answer, on its set, until its checks are within the limit or do not fall any more.
-    /// @return whether they are.
+    /// Corrects the displacement of an answer, on its set, until its checks are within the limit or stop decreasing.
+    /// @return whether they are within the limit.
     bool close_gaps(Answer &answer, const unsigned int step, const double limit);
 
     scene::Scene<dim>    scene;

@@ -10,7 +10,7 @@
 
 namespace slipstick::app
 {
-  /// After a step, of one rank: with the scene it makes the next step what it would have been.
+  /// State of one rank after a step; together with the scene it determines the next step completely.
   struct StepState
   {
     double                              kept_part    = 0;       // of the contact nodes, see StepSolver

@@ -40,7 +40,7 @@ namespace slipstick
     using Error::Error;
   };
 
-  /// The loads cannot be balanced: names body, motion and what to add. Thrown on all ranks alike.
+  /// The loads cannot be balanced; the message names the body, the motion and what to add. Thrown on all ranks alike.
   class NoEquilibrium : public Error
   {
   public:

@@ -1,4 +1,4 @@
-// What a user sees while the program runs: rank 0 alone prints.
+// What the user sees while the program runs; only rank 0 prints.
 #pragma once
 
 #include <mpi.h>
@@ -47,7 +47,7 @@ namespace slipstick
     StageClock();
 
     void enter(const std::string &stage);
-    /// Ends the present stage; time goes to "other" until the next.
+    /// Ends the current stage; time counts as "other" until the next.
     void   leave();
     double seconds(const std::string &stage) const;
     double total() const;
@@ -59,7 +59,7 @@ namespace slipstick
     std::map<std::string, double> stages;
   };
 
-  /// Age of this process [s], to the resolution of the kernel's clock (10 ms); 0 where the system does not tell.
+  /// Age of this process [s], to the resolution of the kernel's clock (10 ms); 0 if the system does not provide it.
   double process_age();
 
   /// Largest resident memory of this process so far [MB].

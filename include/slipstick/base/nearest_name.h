@@ -11,8 +11,8 @@ namespace slipstick
   /// @p b (optimal string alignment), upper and lower case taken as equal.
   unsigned int edit_distance(const std::string &a, const std::string &b);
 
-  /// The candidate with the least edit distance to @p name, the first of equals; none when there is no candidate
-  /// or when so much would have to change (over half of the longer word) that naming it would mislead.
+  /// The candidate with the smallest edit distance to @p name, the first among equals; none if there is no candidate or
+  /// if so much would have to change (over half of the longer word) that a suggestion would mislead.
   std::optional<std::string> nearest_name(const std::string &name, const std::vector<std::string> &candidates);
 
   /// "did you mean X?" followed by all valid names, or "there are none" when @p candidates is empty: the usual

@@ -1,4 +1,4 @@
-// What forces come to.
+// Resultants of forces.
 #pragma once
 
 #include <array>

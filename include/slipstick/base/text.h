@@ -10,7 +10,7 @@ namespace slipstick
   /// @p text without blanks at both ends.
   std::string trim(const std::string &text);
 
-  /// @p text trimmed, every run of blanks within it made one space: names may be aligned in a file.
+  /// @p text trimmed, with every run of blanks within it reduced to one space, since names may be aligned in a file.
   std::string collapse_blanks(const std::string &text);
 
   /// The parts of a comma-separated list, trimmed; none for an empty @p text.

@@ -1,4 +1,4 @@
-// The answer, checked from the recovered displacement alone, and the contact nodes as found from it.
+// Checks of the answer from the recovered displacement alone, and the contact nodes computed from it.
 #pragma once
 
 #include <slipstick/contact/result.h>
@@ -17,10 +17,10 @@ namespace slipstick::contact
     unsigned int          pair     = 0;        // index into Scene::contacts
   };
 
-  /// All relative: lengths to the largest displacement, contact forces to the largest nodal contact force, works and the
-  /// energy norm to twice the strain energy, forces and moments of a body to the sum of the force magnitudes on it (to
-  /// what rounding leaves of gaps and displacements, where these are smaller). Gaps and slips come from u; contact forces
-  /// are the multipliers, which K u - f + B'x = 0 at every node confirms.
+  /// All relative: lengths to the largest displacement, contact forces to the largest nodal contact force, works and
+  /// the energy norm to twice the strain energy, forces and moments of a body to the sum of the force magnitudes on it
+  /// (to what rounding leaves of gaps and displacements, where these are smaller). Gaps and slips come from u; contact
+  /// forces are the multipliers, which K u - f + B'x = 0 at every node confirms.
   struct Checks
   {
     double interface_jump    = 0; // largest |u_a - u_b| of glued copies and |u - prescribed|
@@ -62,14 +62,14 @@ namespace slipstick::contact
     std::pair<std::string, double> worst() const;
   };
 
-  /// The largest values of the load steps before: what rounding leaves of them counts as none.
+  /// The largest values of the previous load steps; values at the level of their rounding count as zero.
   struct History
   {
     double              displacement = 0;  // magnitude [mm]
     double              force        = 0;  // of a contact node [N]
     std::vector<double> energies     = {}; // u'K u of every body [N mm]; none before the first step
 
-    /// Becomes what it is after one more step.
+    /// Updates the values after one more step.
     void add(const Checks &step);
   };
 
@@ -81,7 +81,7 @@ namespace slipstick::contact
     std::vector<std::array<double, 3>>        held_forces; // on the HeldContacts::points of this rank [N]
   };
 
-  /// What the rows do not say of a contact node: its place.
+  /// What the rows do not contain about a contact node: its place.
   ContactNode node_at(const tfeti::ContactPoint &point);
 
   /// @param u displacements of this rank's subdomains [mm].

@@ -30,14 +30,14 @@ namespace slipstick::contact
     unsigned int             friction_iterations = 0; // updates of the slip bounds
     double                   bound_change        = 0; // their last relative change
 
-    /// What is known of F from this solve and those that it started from: of use for any other with the same rows.
+    /// Products with F from this solve and those it started from; of use for any other solve with the same rows.
     std::shared_ptr<qp::DirectionStore<tfeti::DistributedVector>> directions;
   };
 
-  /// Asked about iterates, of which multipliers (within their bounds), slip bounds and free rows are filled: is the answer
-  /// accurate enough? @p residual_energy: energy norm of what closes the jumps before the multipliers were moved to their
-  /// bounds [sqrt(N mm)], a first idea of the algebraic error; contact::check tells it from the displacement. The same on
-  /// every process.
+  /// Called with iterates whose multipliers (within their bounds), slip bounds and free rows are set: is the answer
+  /// accurate enough? @p residual_energy: energy norm of closing the jumps before the multipliers were moved to their
+  /// bounds [sqrt(N mm)], a first estimate of the algebraic error, which contact::check computes from the displacement.
+  /// The same on every process.
   using AccuracyTest = std::function<bool(const DualSolution &iterate, const double residual_energy)>;
 
   /// A solver step, with the update of the slip bounds that it belongs to.

@@ -12,17 +12,17 @@ namespace slipstick::contact
   std::vector<double> slip_bounds(const scene::Scene<dim> &scene, const tfeti::DualProblem &dual, const double t);
 
   /// The options with `auto` resolved: pcg for linear scenes, semismooth Newton with the Dirichlet preconditioner for
-  /// contact; no preconditioner where there is no use for one.
+  /// contact; no preconditioner where it would not be used.
   template <int dim>
   scene::SolverOptions resolved_options(const scene::Scene<dim> &scene);
 
-  /// Solves min 1/2 x'F x - x'd, G x = e, within the bounds of the law; linear problems by projected conjugate gradients.
-  /// Bounds that depend on the pressure are followed until their relative change is at most that of @p friction, damped
-  /// when they cycle. Non-convergence is in the status. Collective.
-  /// @param start of the load step before (multipliers and reference), if any.
-  /// @param is_accurate ends the solve before the tolerance is reached; not asked while bounds that depend on the pressure
-  /// are followed in an outer loop.
-  /// @throws NoEquilibrium naming body and motion when no multipliers that the law admits balance the loads.
+  /// Solves min 1/2 x'F x - x'd, G x = e, within the bounds of the law; linear problems by projected conjugate
+  /// gradients. Bounds that depend on the pressure are updated until their relative change is at most that of @p
+  /// friction, with damping if they cycle. The status tells non-convergence. Collective.
+  /// @param start solution of the previous load step (multipliers and reference), if any.
+  /// @param is_accurate ends the solve before the tolerance is reached; not called while an outer loop updates bounds
+  /// that depend on the pressure.
+  /// @throws NoEquilibrium naming body and motion if no multipliers admitted by the law balance the loads.
   DualSolution solve(const tfeti::DualProblem     &dual,
                      const SlipLaw                &law,
                      const scene::SolverOptions   &options,

@@ -13,7 +13,7 @@ namespace slipstick::contact
   double residual_energy(const tfeti::DualProblem &dual, const tfeti::DistributedVector &r);
 
   /// Projected conjugate gradients on a problem without inequality rows.
-  /// @param goes_on from there, moved to where G x = e, or null.
+  /// @param goes_on point from which to continue, after a correction to G x = e, or null.
   /// @param is_accurate ends the solve before the tolerance is reached; may be empty. Collective.
   DualSolution solve_linear(const tfeti::DualProblem   &dual,
                             const scene::SolverOptions &options,

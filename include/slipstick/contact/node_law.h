@@ -1,4 +1,4 @@
-// What a law says of one contact node whose forces, motion and slip bound are known: for checks and results.
+// A contact law evaluated at one node whose forces, motion and slip bound are known, for checks and results.
 #pragma once
 
 #include <slipstick/contact/result.h>
@@ -9,8 +9,8 @@
 
 namespace slipstick::contact
 {
-  /// Without friction (a bound of 0) what touches is free to slide. A bound that acts on open nodes, too, makes them slip as
-  /// well. @param is_within strictly inside the bound.
+  /// Without friction (a bound of 0) a node that touches is free to slide. A bound that acts on open nodes, too, makes
+  /// them slip as well. @param is_within strictly inside the bound.
   inline ContactStatus status_of(const bool is_closed, const double slip_bound, const bool is_within)
   {
     if (!is_within && (slip_bound > 0 || is_closed))
@@ -18,8 +18,10 @@ namespace slipstick::contact
     return is_closed ? ContactStatus::stick : ContactStatus::open;
   }
 
-  /// The part of a jump that is not allowed at a bound [mm]: penetration; slip that the friction drives.
-  /// @param jump B u - c, @param x multiplier, @param bound of it, if tangential, @param noise forces that are rounding.
+  /// The part of a jump that is not allowed at a bound [mm]: penetration; slip in the direction in which friction
+  /// pushes.
+  /// @param jump B u - c, @param x multiplier, @param bound of it, if tangential, @param noise forces that are
+  /// rounding.
   inline double inadmissible_jump(const tfeti::RowKind kind,
                                   const double         jump,
                                   const double         x,
@@ -31,7 +33,7 @@ namespace slipstick::contact
     return kind == tfeti::RowKind::tangential && x > 0 ? std::min(jump, 0.) : std::max(jump, 0.);
   }
 
-  /// By how much friction does less work than the most that the law admits (the support function of its disc) [N mm].
+  /// Friction work missing from the maximum that the law admits (the support function of its disc) [N mm].
   /// @param T tangential force on the slave body.
   inline double missing_friction_work(const double bound, const double T, const double slip)
   {

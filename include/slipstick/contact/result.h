@@ -1,6 +1,6 @@
 // What contact returns, node by node and pair by pair.
 //
-// Sign conventions: normal = outward normal of the slave body; tangent = normal turned by +90 degrees (2D). Positive
+// Sign conventions: normal = outward normal of the slave body; tangent = normal rotated by +90 degrees (2D). Positive
 // pressure is compression. Gap >= 0 open, < 0 penetrating, in the deformed configuration (linearised). Slip is the
 // tangential displacement of the slave relative to the other side. Traction acts on the slave body.
 #pragma once
@@ -23,8 +23,8 @@ namespace slipstick::contact
   /// "open", "stick", "slip"
   std::string to_string(const ContactStatus status);
 
-  /// One slave node of a contact pair, as found from the recovered displacement. A Tresca bound that acts on the whole
-  /// declared boundary makes a node that is not closed slip too where the bound is reached; its status is then slip.
+  /// One slave node of a contact pair, as found from the recovered displacement. With a Tresca bound that acts on the
+  /// whole declared boundary even a node that is not closed slips if it reaches the bound; its status is then slip.
   /// Nodes of bonded pairs are closed and stick; their pressure may be negative, their slip bound is infinite.
   struct ContactNode
   {

@@ -20,7 +20,7 @@ namespace slipstick::contact
     explicit SlipLaw(std::vector<double> fixed_bounds);
 
     /// The laws of the scene at load factor t. Collective.
-    /// @throws InputError on all ranks when a slip bound or friction coefficient is negative or no number.
+    /// @throws InputError on all ranks when a slip bound or friction coefficient is negative or not a number.
     template <int dim>
     SlipLaw(const scene::Scene<dim> &scene, const tfeti::DualProblem &dual, const double t);
 
@@ -33,7 +33,7 @@ namespace slipstick::contact
     /// Slip bounds for the multipliers x [N], one an owned row.
     std::vector<double> bounds(const tfeti::DistributedVector &x) const;
 
-    /// The bounds that depend on the normal forces, for a solver that follows them itself; entries: owned rows.
+    /// The bounds that depend on the normal forces, for a solver that updates them itself; entries: owned rows.
     const std::vector<qp::PressureBound> &pressure_bounds() const
     {
       return rows;

@@ -16,8 +16,9 @@ namespace slipstick::interface
     tfeti::HeldContacts held;
   };
 
-  /// As contact_constraints(), but without rows for contact nodes whose gap exceeds the smallest one of their pair by
-  /// more than @p part of the length of its slave boundary and two mesh sizes; laws that act on open nodes keep all.
+  /// As contact_constraints(), but without rows for contact nodes whose gap exceeds the smallest gap of their pair by
+  /// more than both @p part of the length of its slave boundary and two mesh sizes; pairs whose law acts on open nodes
+  /// keep all rows.
   /// @param contacts as pair_bodies() found them, which depends on neither t nor part.
   template <int dim>
   ContactRows contact_rows(const scene::Scene<dim>      &scene,
@@ -34,10 +35,10 @@ namespace slipstick::interface
                              const MPI_Comm                      comm);
 
   /// Gluing, bonds, prescribed displacements (at load factor @p t), foundations and contact of the scene, distributed
-  /// over the ranks. Copies of a node meet on a rank found from its key; of global data there are the outlines of bodies
-  /// in contact with each other alone, on every rank. Gluing rows are non-redundant chains over the copies; rows that
-  /// share a node are owned by one rank. Which rows a node has: RowBuilder; what they say: mortar_rows(), contact_with().
-  /// Collective.
+  /// over the ranks. Copies of a node are matched on a rank that follows from its key; the only global data, known to
+  /// every rank, are the outlines of bodies in contact with each other. Gluing rows are non-redundant chains over the
+  /// copies; rows that share a node are owned by one rank. RowBuilder decides which rows a node has; mortar_rows() and
+  /// contact_with() give their content. Collective.
   /// @throws InputError on all ranks when supports contradict each other, or the sides of a contact pair do not meet.
   template <int dim>
   tfeti::Constraints contact_constraints(const scene::Scene<dim>      &scene,

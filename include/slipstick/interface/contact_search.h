@@ -1,14 +1,15 @@
-// Which bodies touch, without being told.
+// Automatic search for bodies that touch.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
 
 namespace slipstick::interface
 {
-  /// The pairs that `Contact search` finds: bodies whose outlines face each other closer than its Reach (a millionth of a
-  /// cell when that is 0) and that no pair of the scene joins. Slave is the body with the finer edges there, of equals the
-  /// first one in the scene; the name is "a-b"; law and so on are those of the section, the reach too, so that only edges
-  /// within it take part. Nothing when the search is not automatic. The same on all ranks. Collective.
+  /// The pairs that `Contact search` finds: bodies whose outlines face each other closer than its Reach (a millionth of
+  /// a cell when that is 0) and that no pair of the scene joins. The slave is the body with the finer edges there, or
+  /// the first one in the scene if they are equal; the name is "a-b"; law, reach and so on are those of the section, so
+  /// that only edges within that reach take part. Nothing when the search is not automatic. The same on all ranks.
+  /// Collective.
   template <int dim>
   std::vector<scene::ContactPair<dim>> find_contacts(const scene::Scene<dim>      &scene,
                                                      const mesh::Mesh<dim>        &mesh,

@@ -16,16 +16,17 @@ namespace slipstick::interface
   // Curves face each other where the product of their normals is below this.
   constexpr double facing_cosine = -0.25; // 104 degrees
 
-  /// Slave and master edges joined by rays from the slave along a continuous field of normals: at the nodes the mean of both
-  /// sides' normals, linear in the shape functions between them. Two equal bodies then touch along their plane of symmetry,
-  /// whichever is the slave; along the slave's own normals a gap of curved bodies that closes would look like slip.
+  /// Slave and master edges joined by rays from the slave along a continuous field of normals: at the nodes the mean of
+  /// both sides' normals, linear in the shape functions between them. Two equal bodies then touch along their plane of
+  /// symmetry, whichever is the slave; with the slave's own normals, the closing of a gap between curved bodies would
+  /// look like slip.
   class CurvePairing
   {
   public:
     using Edge   = mechanics::SurfaceEdge<2>;
     using Tensor = dealii::Tensor<1, 2>;
 
-    /// A slave node; one at a corner of the slave boundary is there once for each side.
+    /// A slave node; a node at a corner of the slave boundary appears once for each side.
     struct Node
     {
       mechanics::NodeKey key{};

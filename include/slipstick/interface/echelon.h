@@ -6,18 +6,18 @@
 
 namespace slipstick::interface
 {
-  /// Sparse rows by Gaussian elimination, one after another. Fill stays small when every row has a pivot of its own that
-  /// few other rows know: callers say where to look for it.
+  /// Sparse rows by Gaussian elimination, one after another. Fill stays small if every row has a pivot of its own that
+  /// few other rows contain; callers say where to look for it.
   class Echelon
   {
   public:
     using Vector = std::map<unsigned int, double>; // by column
 
-    /// What the rows so far leave of @p row: zero (up to rounding) when they imply it.
+    /// The remainder of @p row after elimination of the rows so far: zero (up to rounding) if they imply it.
     Vector reduce(Vector row) const;
 
-    /// Adds a row unless the others imply it (largest entry left is no more than @p tolerance). The pivot is looked for in
-    /// columns [first, last) and taken elsewhere only when it would be less than a tenth of the largest entry.
+    /// Adds a row unless the others imply it (largest entry left is no more than @p tolerance). The pivot is sought in
+    /// columns [first, last) and taken elsewhere only if it would be less than a tenth of the largest entry.
     /// @return whether it was added.
     bool add(const Vector &row, const double tolerance, const unsigned int first, const unsigned int last);
 

@@ -1,4 +1,4 @@
-// Boundary edges found by place.
+// Spatial search for boundary edges.
 #pragma once
 
 #include <slipstick/mechanics/surface.h>
@@ -23,12 +23,12 @@ namespace slipstick::interface
     /// Edges whose boxes meet @p box, ascending.
     std::vector<unsigned int> near(const Box &box) const;
 
-    /// Calls f(edge) in order of the distance of their boxes from @p x (equal ones ascending) until it returns false or the
-    /// boxes are farther away than @p radius().
+    /// Calls f(edge) in order of the distance of their boxes from @p x (equal ones ascending) until it returns false or
+    /// the boxes are farther away than @p radius().
     template <class Radius, class F>
     void for_each_by_distance(const dealii::Point<2> &x, const Radius &radius, const F &f) const
     {
-      // the nearest few, then more of them: much quicker than a query that goes on
+      // the nearest few, then more of them: much faster than an incremental query
       std::pair<double, unsigned int> last(-1., 0);
       for (std::size_t n = first_batch; !tree.empty(); n *= growth_of_batch)
         {

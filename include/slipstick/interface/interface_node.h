@@ -45,7 +45,7 @@ namespace slipstick::interface
       double                  value = 0;   // [mm]
       unsigned int            which = 0;   // component, or dim + k for the k-th along a normal
       std::vector<unsigned int>
-        by; // who says so: as Side::condition, behind them contact pairs (bonds to obstacles), then the axis
+        by; // who prescribes it: as Side::condition, followed by contact pairs (bonds to obstacles), then the axis
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)
@@ -54,7 +54,7 @@ namespace slipstick::interface
       }
     };
 
-    /// What one edge at the node says of a support along the normal or of a foundation.
+    /// Contribution of one edge at the node to a support along the normal or to a foundation.
     struct Side
     {
       unsigned int            condition = 0; // index into Scene::supports, behind them Scene::foundations
@@ -104,7 +104,7 @@ namespace slipstick::interface
       return x;
     }
 
-    /// Is there an outside force: a support, a foundation, contact?
+    /// Does an external force act on it: from a support, a foundation or contact?
     bool is_acted_on() const
     {
       return !held.empty() || !areas.empty() || is_paired || !sides.empty();

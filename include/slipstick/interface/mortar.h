@@ -1,9 +1,10 @@
 // The mortar integrals between two curves.
 //
-// Notation: N_k shape functions of a slave edge, phi_i its test functions, y(x) the point of the master that the ray from
-// x along the normal field of the pairing meets, <.> the integral over that part of the slave that has such a point, with the
-// measure of the kinematics (of bodies of revolution the slave's circumference). A row says
-// n_i . (sum_k d_ik u_k - sum_j m_ij u_j) <= gap with d_ik = <phi_i N_k> / D_i, m_ij = <phi_i N_j(y)> / D_i, D_i = <phi_i>.
+// Notation: N_k shape functions of a slave edge, phi_i its test functions, y(x) the point of the master that the ray
+// from x along the normal field of the pairing meets, <.> the integral over that part of the slave that has such a
+// point, with the measure of the kinematics (of bodies of revolution the slave's circumference). A row says
+// n_i . (sum_k d_ik u_k - sum_j m_ij u_j) <= gap
+// with d_ik = <phi_i N_k> / D_i, m_ij = <phi_i N_j(y)> / D_i, D_i = <phi_i>.
 #pragma once
 
 #include <slipstick/interface/curve_pairing.h>
@@ -34,16 +35,16 @@ namespace slipstick::interface
   /// of their nodes. Sides must face each other: the first crossing of the ray decides.
   ///
   /// Mortar: phi_i are the functions biorthogonal to N_k on the covered part of the edge (D_i is then the integral of
-  /// N_i), so that whole edges give d_ik = 1 for i = k and 0 else (Wohlmuth 2000; at overhangs Cichosz, Bischoff 2011). On
-  /// curved or quadratic edges that are covered in part phi_i are those of the linear shape functions: their midside nodes
-  /// have no row. Equal pressures at all nodes are then equal pressure on both sides, sums of weights are 1 and forces
-  /// balance; moments balance where the gap is closed, else up to the square of the mesh size.
-  /// The gap is n_i . (sum_j m_ij y_j - sum_k d_ik x_k), that of the edges, plus what the curves that they stand for
-  /// (SurfaceEdge::curve) are above them: n_i . <phi_i (rise of the master - rise of the slave) n> / D_i. So it is that of
-  /// the curves, while the weights, and with them the forces, are those of the edges.
-  /// The end node of a quadratic edge on the axis of revolution has D_i = 0, and no row: equal pressure puts no force on it.
-  /// Node to node: m is 1 at the master node across, d is 1 at the slave node. `automatic` takes it where every slave
-  /// node has a master node exactly across.
+  /// N_i), so that fully covered edges give d_ik = 1 for i = k and 0 otherwise (Wohlmuth 2000; at overhangs Cichosz,
+  /// Bischoff 2011). On curved or quadratic edges that are covered in part phi_i are those of the linear shape
+  /// functions: their midside nodes have no row. Equal pressures at all nodes then mean a uniform pressure on both
+  /// sides, the weights add up to 1 and forces balance; moments balance where the gap is closed, otherwise up to the
+  /// square of the mesh size. The gap is n_i . (sum_j m_ij y_j - sum_k d_ik x_k), that of the edges, plus what the
+  /// curves that they stand for (SurfaceEdge::curve) are above them: n_i . <phi_i (rise of the master - rise of the
+  /// slave) n> / D_i. The gap is thus that of the curves, while the weights, and with them the forces, are those of the
+  /// edges. The end node of a quadratic edge on the axis of revolution has D_i = 0, and no row: equal pressure puts no
+  /// force on it. Node to node: m is 1 at the master node across, d is 1 at the slave node. `automatic` takes it where
+  /// every slave node has a master node exactly across.
   /// @throws InputError, with @p name of the pair, when node to node is asked for and the meshes do not match.
   template <int dim>
   std::vector<MortarRow<dim>> mortar_rows(const std::vector<mechanics::SurfaceEdge<dim>> &slave,

@@ -1,4 +1,4 @@
-// Contact pairs that cannot mean what they say: sides that face away from each other or are out of reach.
+// Contact pairs that cannot be meant as declared: sides that face away from each other or are out of reach.
 #pragma once
 
 #include <slipstick/interface/mortar.h>
@@ -21,8 +21,8 @@ namespace slipstick::interface
   template <int dim>
   std::string describe(const scene::Scene<dim> &scene, const scene::BoundaryName &where);
 
-  /// Does every row find its master on the far side of the slave's body: deeper than a tenth of a mean slave edge though
-  /// no point of one side is inside the other body (which would be an overlap)? False when there are no rows.
+  /// Does every row find its master on the far side of the slave's body: deeper than a tenth of a mean slave edge
+  /// though no point of one side is inside the other body (which would be an overlap)? False when there are no rows.
   template <int dim>
   bool lies_behind(const PairSides<dim> &sides, const std::vector<MortarRow<dim>> &rows);
 
@@ -34,9 +34,9 @@ namespace slipstick::interface
                                 const PairSides<dim>          &sides,
                                 const double                   reach);
 
-  /// Checks the rows of a pair of bodies. With an automatic reach the gap of the nearest row, offset included, must not be
-  /// larger in all load steps than the larger of the two sides plus the largest prescribed displacement of the scene;
-  /// with a Reach or a Gap of its own a pair may begin as far apart as it says. The same on all ranks.
+  /// Checks the rows of a pair of bodies. With an automatic reach the gap of the nearest row, offset included, must not
+  /// be larger in all load steps than the larger of the two sides plus the largest prescribed displacement of the
+  /// scene; a pair with a Reach or a Gap of its own may start at any distance within these. The same on all ranks.
   /// @throws InputError for sides that face away from each other (lies_behind) or are out of reach.
   template <int dim>
   void check_sides(const scene::Scene<dim>                        &scene,
@@ -46,9 +46,10 @@ namespace slipstick::interface
                    const std::vector<mechanics::SurfaceEdge<dim>> &all,
                    const std::vector<MortarRow<dim>>              &rows);
 
-  /// Checks the pairs with obstacles: some node must have an outward normal against the obstacle (facing_cosine) and a gap
-  /// within the Reach; with an automatic one the rule is that of check_sides with the size of the slave boundary (and the
-  /// diameter of a circle if that is larger). Bonds to obstacles are supports: they are not checked. Collective.
+  /// Checks the pairs with obstacles: some node must have an outward normal against the obstacle (facing_cosine) and a
+  /// gap within the Reach; with an automatic one the rule is that of check_sides with the size of the slave boundary
+  /// (and the diameter of a circle if that is larger). Bonds to obstacles are supports: they are not checked.
+  /// Collective.
   /// @throws InputError on all ranks.
   template <int dim>
   void check_obstacle_pairs(const scene::Scene<dim>      &scene,

@@ -1,4 +1,4 @@
-// What is inside what after loading, by the geometry alone: places that no row of contact watches.
+// Penetrations after loading, from the geometry alone, at places that no contact row sees.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
@@ -19,16 +19,16 @@ namespace slipstick::interface
 
   struct Penetrations
   {
-    /// By contact pair: the deepest slave node that is not paired since it is farther away than the pair's Reach, along the
-    /// normal (linearised like the rows).
+    /// By contact pair: the deepest slave node that is not paired since it is farther away than the pair's Reach, along
+    /// the normal (linearised like the rows).
     std::vector<std::optional<Penetration>> beyond_reach;
 
-    /// By contact pair with an obstacle: the deepest place between the nodes of the slave boundary, nodes included. Bonds and
-    /// pairs with a Gap of their own are left out.
+    /// By contact pair with an obstacle: the deepest place between the nodes of the slave boundary, nodes included.
+    /// Bonds and pairs with a Gap of their own are left out.
     std::vector<std::optional<Penetration>> in_obstacle;
 
-    /// By the bodies (the first one is inside the second one): the deepest node or middle of an edge, less its depth before
-    /// loading. Bodies that a bond joins or a pair with an Offset or a Gap of its own are left out.
+    /// By the bodies (the first one is inside the second one): the deepest node or middle of an edge, less its depth
+    /// before loading. Bodies that a bond joins or a pair with an Offset or a Gap of its own are left out.
     std::map<std::pair<unsigned int, unsigned int>, Penetration> of_bodies;
   };
 

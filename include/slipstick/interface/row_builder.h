@@ -37,10 +37,11 @@ namespace slipstick::interface
   /// Makes the rows of interface nodes: contact, bonds, supports, foundations, gluing.
   ///
   /// Rows of contact that the supports of their nodes and the bonds (of all connected nodes) already imply are left
-  /// out; the tangential row goes before the normal one. So are rows of bonds, as where three bonded bodies meet in a
-  /// point: the pair that comes last in the scene gives way. A node that may touch several obstacles has a normal row for each (for parallel
-  /// normals the nearer obstacle only) and one tangential row, that of the nearest obstacle. So has a node at a corner of
-  /// the slave boundary with one and the same master node on both its sides.
+  /// out; the tangential row goes before the normal one. So are redundant rows of bonds, as where three bonded bodies
+  /// meet in a point: those of the pair that comes last in the scene are dropped. A node that may touch several
+  /// obstacles has a normal row for each (for parallel normals the nearer obstacle only) and one tangential row, that
+  /// of the nearest obstacle. The same holds for a node at a corner of the slave boundary with the same master node on
+  /// both its sides.
   template <int dim>
   class RowBuilder
   {
@@ -55,7 +56,8 @@ namespace slipstick::interface
     /// Of every pair, as far as this rank owns its slave nodes.
     std::vector<PairExtent> extents() const;
 
-    /// Nodes of pair k with a gap above limits[k] get no rows (where ContactLaw::acts_where_closed_alone()); they go to `pruned`.
+    /// Nodes of pair k with a gap above limits[k] get no rows (where ContactLaw::acts_where_closed_alone()); they go to
+    /// `pruned`.
     void limit_gaps(std::vector<double> limits);
 
     /// Fills kind, c, compliance, label, contact points, reactions, interface_held and counts of the constraints.
@@ -86,9 +88,10 @@ namespace slipstick::interface
 
     std::vector<Touch> touches_of(const unsigned int node) const;
     bool touch_obstacle(const unsigned int node, const unsigned int pair, const Tributary &area, Touch &touch) const;
-    /// Gap, normal and area, of bonds too; false beyond the Reach, and on the axis of revolution for nodes without area.
+    /// Gap, normal and area, of bonds too; false beyond the Reach, and on the axis of revolution for nodes without
+    /// area.
     bool place_on_obstacle(const unsigned int node, const unsigned int pair, const Tributary &area, Touch &touch) const;
-    /// What any touch of a node says of the node itself.
+    /// Properties of the node itself, the same for each of its contacts.
     void complete(const unsigned int node, Touch &touch) const;
     bool touch_body(const unsigned int node, const unsigned int pair, const MortarRow<dim> &row, Touch &touch) const;
     void add_contact(const unsigned int node);
@@ -113,7 +116,7 @@ namespace slipstick::interface
     /// Jump of the displacement along @p direction, slave less master.
     Vector jump(const Touch &touch, const Tensor &direction) const;
 
-    /// What supports leave of a row.
+    /// The part of a row that supports leave free.
     Vector free_part(const Vector &row) const;
 
     unsigned int new_row(const tfeti::RowKind      kind,

@@ -5,8 +5,8 @@
 
 namespace slipstick::interface
 {
-  /// Two pairs may not join the same edges, under any names: both would carry load there, and slip bounds would add up.
-  /// Of two bodies the shared edges must also face each other, whichever side is the slave. Collective.
+  /// Two pairs must not join the same edges, whatever their names: both would carry load there, and slip bounds would
+  /// add up. Of two bodies the shared edges must also face each other, whichever side is the slave. Collective.
   /// @throws InputError on all ranks, with both pairs and an edge that they share.
   template <int dim>
   void check_shared_sides(const scene::Scene<dim>      &scene,

@@ -1,4 +1,4 @@
-// Integrals of formulas over an edge, halved until two of them agree.
+// Integrals of formulas over an edge, bisected until two successive integrals agree.
 #pragma once
 
 #include <algorithm>
@@ -7,13 +7,13 @@
 
 namespace slipstick::mechanics
 {
-  // An edge is cut into so many pieces at first: what is narrower than about a fiftieth of it may not be found.
+  // Number of pieces that an edge is first cut into: features narrower than about a fiftieth of it may be missed.
   constexpr unsigned int n_first_pieces = 16;
-  // A piece and its two halves agree when they differ by no more than this part of the integral of the magnitudes.
+  // A piece and its two halves agree if they differ by no more than this fraction of the integral of the magnitudes.
   constexpr double same_integral = 1e-12;
   // A piece is halved at most this many times: a jump is then located to rounding.
   constexpr unsigned int max_halvings = 44;
-  // Pieces of one edge, all together: more are asked for by formulas that have no integral, or swing without end.
+  // Limit on the pieces of one edge; only formulas that have no integral or oscillate without end need more.
   constexpr unsigned int max_pieces = 20000;
 
   /// n functions of s in [0, 1] at once.

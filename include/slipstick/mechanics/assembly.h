@@ -11,7 +11,7 @@ namespace slipstick::mechanics
   /// of the whole circumference. With
   /// the nearly incompressible element K = sum of 2 mu eps : eps + lambda (P div)(P div), P: see DilatationProjection.
   /// Collective (rigid motions refer to the centre of the whole body).
-  /// @throws InputError on all ranks for triangles of degree 1 that shall be nearly incompressible, and as
+  /// @throws InputError on all ranks for triangles of degree 1 with the nearly incompressible element, and as
   /// assemble_loads() does.
   template <int dim>
   std::vector<tfeti::SubdomainMatrices> assemble(const scene::Scene<dim> &scene,

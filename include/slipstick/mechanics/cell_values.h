@@ -8,8 +8,8 @@
 namespace slipstick::mechanics
 {
   /// Gradients, JxW and what else is asked for of the scalar element on one cell after the other. Straight-sided cells
-  /// whose vertices agree up to a translation share them (deal.II's own detection works with an absolute length, which
-  /// small units defeat).
+  /// whose vertices agree up to a translation share them (deal.II's own detection uses an absolute length, which fails
+  /// with small units).
   template <int dim>
   class CellValues
   {

@@ -1,4 +1,4 @@
-// How far a displacement is from small: strains, rotations, motions of whole bodies.
+// Whether a displacement is small: strains, rotations, motions of whole bodies.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>

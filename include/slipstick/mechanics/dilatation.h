@@ -1,4 +1,4 @@
-// The dilatation that the elements work with: that of the displacement, or a projection of it.
+// The dilatation that the elements use: that of the displacement, or a projection of it.
 #pragma once
 
 #include <slipstick/mechanics/cell_values.h>
@@ -9,9 +9,10 @@
 
 namespace slipstick::mechanics
 {
-  /// Least-squares projection, cell by cell, on polynomials of x and y of one degree less than the displacement: the mean
-  /// dilatation (Hughes 1980; degree 1) on quadrilaterals; linear functions, discontinuous, on quadrilaterals of degree 2
-  /// (the pair Q2-P1 satisfies the inf-sup condition, Boffi, Gastaldi 2002); the mean on triangles of degree 2 (P2-P0).
+  /// Least-squares projection, cell by cell, on polynomials of x and y of one degree less than the displacement: the
+  /// mean dilatation (Hughes 1980; degree 1) on quadrilaterals; linear functions, discontinuous, on quadrilaterals of
+  /// degree 2 (the pair Q2-P1 satisfies the inf-sup condition, Boffi, Gastaldi 2002); the mean on triangles of degree 2
+  /// (P2-P0).
   template <int dim>
   class DilatationProjection
   {

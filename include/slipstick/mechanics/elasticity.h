@@ -9,8 +9,8 @@
 
 namespace slipstick::mechanics
 {
-  /// Lame coefficients that make sigma = lambda tr(eps) I + 2 mu eps hold in the plane, and with hoop strain in bodies of
-  /// revolution [MPa]. In plane stress lambda is the condensed one, 2 lambda mu / (lambda + 2 mu).
+  /// Lame coefficients that make sigma = lambda tr(eps) I + 2 mu eps hold in the plane, and with hoop strain in bodies
+  /// of revolution [MPa]. In plane stress lambda is the condensed one, 2 lambda mu / (lambda + 2 mu).
   struct LameCoefficients
   {
     double lambda, mu;
@@ -18,9 +18,9 @@ namespace slipstick::mechanics
   LameCoefficients lame_coefficients(const scene::Material &material, const scene::PlaneState state);
 
   /// sigma = lambda (div - e_V T) I + 2 mu (eps - e T I) of the displacement gradient and the change of temperature T;
-  /// e = alpha, e_V = 3 alpha in plane strain (the strain along z is held too) and in bodies of revolution (whose hoop strain is
-  /// part of div), 2 alpha in plane stress. The two parts are kept apart because the nearly incompressible element projects the
-  /// first.
+  /// e = alpha, e_V = 3 alpha in plane strain (the strain along z is held too) and in bodies of revolution (whose hoop
+  /// strain is part of div), 2 alpha in plane stress. The two parts are kept apart because the nearly incompressible
+  /// element projects the first.
   struct ElasticLaw
   {
     ElasticLaw(const scene::Material &material, const scene::PlaneState state);
@@ -31,8 +31,8 @@ namespace slipstick::mechanics
     double           out_of_plane;        // sigma_zz over xx + yy: nu in plane strain, 0 in plane stress
     double           out_of_plane_change; // and -E alpha T in plane strain [MPa/K]
 
-    /// xx, yy, xy and (of bodies of revolution) hoop stress [MPa] of a displacement gradient, a hoop strain, a dilatation
-    /// (trace and hoop strain, or a projection of it, less e_V T) and T [K].
+    /// xx, yy, xy and (of bodies of revolution) hoop stress [MPa] of a displacement gradient, a hoop strain, a
+    /// dilatation (trace and hoop strain, or a projection of it, less e_V T) and T [K].
     template <int dim>
     Eigen::Array4d stress(const dealii::Tensor<2, dim> &gradient,
                           const double                  hoop,

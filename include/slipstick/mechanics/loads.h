@@ -10,7 +10,7 @@
 
 namespace slipstick::mechanics
 {
-  /// What one load of the scene comes to.
+  /// Resultant of one load of the scene.
   struct LoadResultant
   {
     Resultant                            sum;
@@ -18,19 +18,19 @@ namespace slipstick::mechanics
                                                      // of body forces when two quadratures differ by one percent
   };
 
-  /// Of the tractions, then the body forces, then the point loads of the scene, at load factor @p t. The same on all ranks.
-  /// Collective.
+  /// Of the tractions, then the body forces, then the point loads of the scene, at load factor @p t. The same on all
+  /// ranks. Collective.
   template <int dim>
   std::vector<LoadResultant> load_resultants(const scene::Scene<dim> &scene,
                                              const mesh::Mesh<dim>   &mesh,
                                              const Spaces<dim>       &spaces,
                                              const double             t);
 
-  /// f_p [N] at load factor @p t, by subdomain of this rank. Forces per area and per volume act on the body's thickness, or
-  /// on the whole circumference;
-  /// pressure acts against the outward normal of the undeformed boundary; a point load acts on one copy of the node
-  /// nearest to it, whole (no thickness, no circumference). Formulas of tractions are integrated by AdaptiveQuadrature, jumps included. Thermal strain enters as the force of the stress that would hold it back.
-  /// Collective.
+  /// f_p [N] at load factor @p t, by subdomain of this rank. Forces per area and per volume act on the body's
+  /// thickness, or on the whole circumference; pressure acts against the outward normal of the undeformed boundary; a
+  /// point load acts on one copy of the node nearest to it, whole (no thickness, no circumference). Formulas of
+  /// tractions are integrated by AdaptiveQuadrature, jumps included. Thermal strain enters as the force of the stress
+  /// that would suppress it. Collective.
   /// @throws InputError on all ranks for a formula that gives no number and for a point load outside its body.
   template <int dim>
   std::vector<Eigen::VectorXd> assemble_loads(const scene::Scene<dim> &scene,

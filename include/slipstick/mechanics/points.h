@@ -15,10 +15,10 @@ namespace slipstick::mechanics
   };
 
   /// The node nearest to each of @p points, the same on all ranks and one copy of it alone (of the lowest subdomain);
-  /// of nodes at the same distance the one with the smallest x, then y. @p owners: what to call each point in a message,
-  /// such as "Point load pull". Named points must be in mesh.points. Collective.
-  /// @throws InputError when no node of the body lies within half a cell (0.6 diameters: a point inside the mesh is never
-  /// refused).
+  /// of nodes at the same distance the one with the smallest x, then y. @p owners: what to call each point in a
+  /// message, such as "Point load pull". Named points must be in mesh.points. Collective.
+  /// @throws InputError when no node of the body lies within half a cell (0.6 diameters: a point inside the mesh is
+  /// never refused).
   template <int dim>
   std::vector<PointNode<dim>> nodes_at(const scene::Scene<dim>                  &scene,
                                        const mesh::Mesh<dim>                    &mesh,

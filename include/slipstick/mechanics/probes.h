@@ -22,11 +22,11 @@ namespace slipstick::mechanics
   {
   public:
     /// Finds the cell of every point. Collective. @p scene, @p mesh, @p spaces have to live as long as this.
-    /// @throws InputError on all ranks when a point is not on the body, a tenth of a cell aside.
+    /// @throws InputError on all ranks if a point is off the body by more than a tenth of a cell.
     Probes(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh, const Spaces<dim> &spaces);
 
-    /// By probe and point, on all ranks: displacements @p u (by subdomain of this rank) and recovered stress, both by the
-    /// shape functions of the cell. Collective.
+    /// By probe and point, on all ranks: displacements @p u (by subdomain of this rank) and recovered stress, both by
+    /// the shape functions of the cell. Collective.
     std::vector<std::vector<ProbePoint<dim>>> values(const std::vector<Eigen::VectorXd> &u,
                                                      const StressResult                 &stress) const;
 

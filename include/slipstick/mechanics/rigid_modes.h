@@ -21,9 +21,9 @@ namespace slipstick::mechanics
   template <int dim>
   std::vector<Frame<dim>> body_frames(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh);
 
-  /// Fills kernel: columns (1,0), (0,1), (-(y - y_c), x - x_c) / L at every node, with centre and length of the subdomain, of
-  /// bodies of revolution (0,1) alone; body_modes, which turns them into the same motions about the body's frame; frame; and
-  /// positions.
+  /// Fills kernel: columns (1,0), (0,1), (-(y - y_c), x - x_c) / L at every node, with centre and length of the
+  /// subdomain, of bodies of revolution (0,1) alone; body_modes, which turns them into the same motions about the
+  /// body's frame; frame; and positions.
   template <int dim>
   void rigid_modes(const Element<dim>            &element,
                    const dealii::DoFHandler<dim> &dof_handler,

@@ -17,8 +17,9 @@ namespace slipstick::mechanics
     std::string        what; // "the point support tip", "a re-entrant corner", "an end of the support wall"
   };
 
-  /// Point supports and point loads; corners of outlines that go in by 35 degrees or more; ends of boundaries along which
-  /// supports hold both displacements. Outlines are those of the curves that edges stand for. Known to every rank. Collective.
+  /// Point supports and point loads; corners of outlines that go in by 35 degrees or more; ends of boundaries along
+  /// which supports hold both displacements. Outlines are those of the curves that edges stand for. Known to every
+  /// rank. Collective.
   /// @param n_supports of scene.supports count, from the first.
   template <int dim>
   std::vector<SingularPoint<dim>> singular_points(const scene::Scene<dim> &scene,

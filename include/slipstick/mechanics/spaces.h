@@ -16,9 +16,9 @@ namespace slipstick::mechanics
   /// Identity of a node across subdomains and ranks: its vertex twice, or the two vertices of its edge.
   using NodeKey = std::array<mesh::GlobalVertex, 2>;
 
-  /// Lagrange element of one cell type, with its mapping and quadratures. Nodes lie on vertices (degree 1) and also in the middle
-  /// of edges (degree 2; quadrilaterals have one more inside). Mappings are isoparametric: with degree 2 the edges follow
-  /// the manifolds of the triangulation, of quadrilaterals and triangles alike.
+  /// Lagrange element of one cell type, with its mapping and quadratures. Nodes lie on vertices (degree 1) and also in
+  /// the middle of edges (degree 2; quadrilaterals have one more inside). Mappings are isoparametric: with degree 2 the
+  /// edges follow the manifolds of the triangulation, of quadrilaterals and triangles alike.
   template <int dim>
   struct Element
   {
@@ -43,8 +43,8 @@ namespace slipstick::mechanics
     /// Gauss rule of n points per direction (triangles: of the same order).
     dealii::Quadrature<dim> cell_quadrature(const unsigned int n) const;
 
-    /// Integrates the stiffness and what belongs to it. Of triangles of degree 1 the hoop strain of a body of revolution
-    /// is not constant.
+    /// Integrates the stiffness and related terms. The hoop strain of a body of revolution is not constant on triangles
+    /// of degree 1.
     dealii::Quadrature<dim> stiffness_rule(const mesh::Kinematics<dim> &kinematics) const;
 
     /// Rule for the edges: Gauss, n points.

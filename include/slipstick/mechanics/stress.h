@@ -25,11 +25,12 @@ namespace slipstick::mechanics
     double error_squared  = 0; // sum of the squares of the cells' errors [N mm]
   };
 
-  /// Stress of the displacements @p u (by subdomain of this rank) at load factor @p t at the nodes: cell stresses, represented one degree
-  /// lower than the displacement (superconvergent points), averaged over the cells around a node with their area, across
-  /// subdomains of a body too. Thermal strain is taken off; where the element projects the dilatation, its stress has the
-  /// projected one. On triangles of degree 2, where means are not superconvergent, least squares around every vertex take
-  /// their place (PatchRecovery). The error indicator is that of Zienkiewicz, Zhu 1987. Collective.
+  /// Stress of the displacements @p u (by subdomain of this rank) at load factor @p t at the nodes: cell stresses,
+  /// represented one degree lower than the displacement (superconvergent points), averaged over the cells around a node
+  /// with their area, across subdomains of a body too. Thermal strain is taken off; where the element projects the
+  /// dilatation, its stress has the projected one. On triangles of degree 2, where means are not superconvergent, least
+  /// squares around every vertex take their place (PatchRecovery). The error indicator is that of Zienkiewicz, Zhu
+  /// 1987. Collective.
   template <int dim>
   StressResult recover_stress(const scene::Scene<dim>            &scene,
                               const mesh::Mesh<dim>              &mesh,

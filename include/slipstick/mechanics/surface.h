@@ -15,7 +15,7 @@ namespace slipstick::mechanics
   }
 
   /// An edge on the outline of a body, straight with two nodes or curved with three; local coordinate s in [0, 1]. The
-  /// body lies to the left of the way from node 0 (s = 0) to node 1 (s = 1); node 2 is in the middle.
+  /// body lies to the left when going from node 0 (s = 0) to node 1 (s = 1); node 2 is in the middle.
   template <int dim>
   struct SurfaceEdge
   {
@@ -73,8 +73,8 @@ namespace slipstick::mechanics
       return tributary_measures(mesh::Kinematics<dim>());
     }
 
-    /// The same with the measure of the kinematics [mm], [mm^2]. The end node of a quadratic edge that is on the axis of
-    /// revolution has none.
+    /// The same with the measure of the kinematics [mm], [mm^2]. The end node of a quadratic edge that is on the axis
+    /// of revolution has none.
     std::array<double, 3> tributary_measures(const mesh::Kinematics<dim> &kinematics) const;
 
     /// Order of the edges of all bodies that does not depend on the decomposition.

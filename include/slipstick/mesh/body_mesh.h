@@ -23,15 +23,15 @@ namespace slipstick::mesh
     std::map<std::string, std::string> incomplete_boundaries, ambiguous_points;
   };
 
-  /// The cells of @p file that make the body, scaled, not yet placed, refined or smoothed: those of Body::part, or all. Lines
-  /// with physical names that bound the body are its boundaries; those with lines that do not are listed.
-  /// @throws InputError for a part that is not there; for a file that is not of plane cells; for cells that are
-  /// turned over (unless all are), degenerate, cross themselves or lie on top of each other; for edges of three cells;
-  /// for nodes inside of edges and two at one place (see conformity.h); for a body in pieces.
+  /// The cells of @p file that make the body, scaled, not yet placed, refined or smoothed: those of Body::part, or all.
+  /// Lines with physical names that bound the body are its boundaries; those with lines that do not are listed.
+  /// @throws InputError for a missing part; for a file without plane cells; for cells that are inverted (unless all
+  /// are), degenerate, self-intersecting or overlapping; for edges of three cells; for nodes inside edges and
+  /// coincident nodes (see conformity.h); for a body in pieces.
   template <int dim>
   BodyMesh<dim> body_from_file(const scene::Body<dim> &body, const MeshFile &file);
 
-  /// A remark for every file with cells that no body of the scene takes.
+  /// A remark for every file with cells that no body of the scene uses.
   template <int dim>
   std::vector<std::string> unused_parts(const scene::Scene<dim> &scene, const std::map<std::string, MeshFile> &files);
 

@@ -5,8 +5,8 @@
 
 namespace slipstick::mesh
 {
-  /// Gives the boundaries of body @p b that the scene names with a condition their edges: those whose middle, as placed and
-  /// before loading, fulfils it. Where an edge does so in part, a remark tells of it.
+  /// Assigns edges to the boundaries of body @p b that the scene names with a condition: those whose midpoint, as
+  /// placed and before loading, meets it. A remark reports edges on which the condition changes.
   /// @throws InputError for a condition that no edge fulfils.
   template <int dim>
   void add_boundary_parts(const scene::Scene<dim> &scene, const unsigned int b, BodyMesh<dim> &mesh);

@@ -1,4 +1,4 @@
-// Whether cells make a mesh: no cell on top of others, no node inside an edge, no two nodes at one place.
+// Whether cells form a conforming mesh: no overlapping cells, no node inside an edge, no coincident nodes.
 #pragma once
 
 #include <slipstick/mesh/mesh_piece.h>
@@ -24,10 +24,10 @@ namespace slipstick::mesh
     unsigned int       first_cell, second_cell;
   };
 
-  /// The first fault of a piece whose cells are all counterclockwise, with no more than two at an edge. As the number of cells
-  /// above a point is the winding number of the outline around it, only the edges of the outline are examined: none may lie on,
-  /// cross or touch another, and none may have a cell on both sides. The two flanks of a slit may lie on each other where all
-  /// their edges are among @p named.
+  /// The first fault of a piece whose cells are all counterclockwise, with no more than two at an edge. As the number
+  /// of cells above a point is the winding number of the outline around it, only the edges of the outline are examined:
+  /// none may lie on, cross or touch another, and none may have a cell on both sides. The two flanks of a slit may lie
+  /// on each other where all their edges are among @p named.
   template <int dim>
   std::optional<ConformityFault<dim>> find_fault(const MeshPiece<dim>                          &piece,
                                                  const std::set<typename MeshPiece<dim>::Face> &named);

@@ -9,7 +9,8 @@
 
 namespace slipstick::mesh
 {
-  /// Curve over an edge, parameter s in [0, 1]: an arc of a circle or a cubic. An edge that is meant straight has none.
+  /// Curve over an edge, parameter s in [0, 1]: an arc of a circle or a cubic. An edge intended to be straight has
+  /// none.
   template <int dim>
   struct EdgeCurve
   {
@@ -28,7 +29,7 @@ namespace slipstick::mesh
     /// Of an arc: start, end, centre; of a cubic: its Bezier points [mm].
     std::array<Point, 4> points;
 
-    /// Sagitta of a curve that the edge may have been meant for but does not follow [mm].
+    /// Sagitta of a curve that the edge may be intended to represent but does not follow [mm].
     double left_out = 0;
 
     static EdgeCurve arc(const Point &start, const Point &end, const Point &center);
@@ -51,8 +52,8 @@ namespace slipstick::mesh
     EdgeCurve part(const double from, const double to) const;
     EdgeCurve reversed() const;
 
-    /// Distance t with x + t @p direction on the curve (continued a little beyond its ends): @p x is near the curve, about
-    /// opposite its point at @p s, @p direction a unit vector across it. 0 where there is no such point.
+    /// Distance t with x + t @p direction on the curve (continued a little beyond its ends): @p x is near the curve,
+    /// about opposite its point at @p s, @p direction a unit vector across it. 0 where there is no such point.
     double distance_along(const Point &x, const Tensor &direction, const double s) const;
 
     template <class F>

@@ -29,9 +29,9 @@ namespace slipstick::mesh
     const Middles<dim> middles;
   };
 
-  /// Middles of the curves of boundary faces (@p boundary, boundary_by_vertices() of the piece). Left out are faces that do
-  /// not bend their cell, and all faces of a cell that a mapping of degree 2 would turn over or flatten somewhere, as where
-  /// two edges on one circle meet at nearly 180 degrees.
+  /// Middles of the curves of boundary faces (@p boundary, boundary_by_vertices() of the piece). Left out are faces
+  /// that do not bend their cell, and all faces of a cell that a mapping of degree 2 would turn over or flatten
+  /// somewhere, as where two edges on one circle meet at nearly 180 degrees.
   template <int dim>
   Middles<dim> middles_of_edges(
     const MeshPiece<dim>                                                                 &piece,

@@ -1,4 +1,4 @@
-// What a section in the plane stands for: what a displacement strains, what an area weighs, which motions are rigid.
+// What a plane section stands for: the strains of a displacement, the measure of an area, the rigid motions.
 #pragma once
 
 #include <slipstick/scene/scene.h>
@@ -10,11 +10,11 @@
 
 namespace slipstick::mesh
 {
-  /// The one place that knows how bodies of revolution differ from those of the plane. Of a section of the plane (of its
-  /// thickness) every point stands for itself; of half a section of a body of revolution, x the radius and y the axis, for the
-  /// circle 2 pi x. The hoop strain u_x / x takes the place of the strain along z. Integrals over the section or its
-  /// outline are weighted with measure(), and with the thickness of the body, which is 1 for bodies of revolution; forces are
-  /// those of the whole circumference.
+  /// The one place that knows how bodies of revolution differ from plane ones. In a plane section (of some thickness)
+  /// every point stands for itself; in half a section of a body of revolution, x the radius and y the axis, it stands
+  /// for the circle 2 pi x. The hoop strain u_x / x takes the place of the strain along z. Integrals over the section
+  /// or its outline are weighted with measure(), and with the thickness of the body, which is 1 for bodies of
+  /// revolution; forces are those of the whole circumference.
   template <int dim>
   class Kinematics
   {

@@ -5,16 +5,16 @@
 
 namespace slipstick::mesh
 {
-  /// The complete mesh of body number @p b: read or made, refined, placed. @p files keeps what was read, by path.
-  /// A body of triangles and quadrilaterals is turned into quadrilaterals when it is refined towards a boundary or
-  /// when its parts of one kind are many and small.
-  /// @throws InputError as body_from_file() does, and when a boundary or point that the scene uses is not there, or not
-  /// whole.
+  /// The complete mesh of body number @p b: read or made, refined, placed. @p files keeps what was read, by path. A
+  /// body of triangles and quadrilaterals is converted to quadrilaterals if it is refined towards a boundary or if its
+  /// parts of one kind are many and small.
+  /// @throws InputError as body_from_file() does, and if a boundary or point that the scene uses is missing or
+  /// incomplete.
   template <int dim>
   BodyMesh<dim> make_body(const scene::Scene<dim> &scene, const unsigned int b, std::map<std::string, MeshFile> &files);
 
-  /// Puts a piece of body number @p b where the scene has it. Of bodies of revolution, nodes within rounding of the axis come to
-  /// lie on it.
+  /// Places a piece of body number @p b as the scene says. In bodies of revolution, nodes within rounding of the axis
+  /// are moved onto it.
   /// @throws InputError when such a body reaches beyond the axis.
   template <int dim>
   void place_in_scene(const scene::Scene<dim> &scene, const unsigned int b, MeshPiece<dim> &piece);

@@ -33,7 +33,7 @@ namespace slipstick::mesh
     bool                                             is_curved = false; // had nodes besides the corners
     std::map<std::string, std::vector<unsigned int>> node_sets;         // by name: nodes whose edges are a boundary
     std::vector<std::string>                         remarks;           // what of the file is not used, for the log
-    std::set<std::string> plane_stress_types, plane_strain_types, axisymmetric_types; // types of elements that say so
+    std::set<std::string> plane_stress_types, plane_strain_types, axisymmetric_types; // element types, by use
 
     /// Mid nodes of the edges of cells of second order, by the two corners in ascending order.
     std::map<std::pair<unsigned int, unsigned int>, unsigned int> middles;
@@ -61,8 +61,8 @@ namespace slipstick::mesh
     void add_outline();
   };
 
-  /// Reads .msh (Gmsh 2.0 to 2.2 and 4.1, ASCII and binary), .inp (Abaqus), .ucd (and UCD's .inp), .vtk, whose boundaries and
-  /// parts have numbers in place of names, and .unv.
+  /// Reads .msh (Gmsh 2.0 to 2.2 and 4.1, ASCII and binary), .inp (Abaqus), .ucd (and UCD's .inp), .vtk, whose
+  /// boundaries and parts have numbers in place of names, and .unv.
   /// @throws InputError that names the file, what is wrong with it and a remedy.
   MeshFile read_mesh_file(const std::string &file);
 
@@ -73,8 +73,8 @@ namespace slipstick::mesh
   /// boundary of all edges between two of its nodes, one node alone is a point.
   MeshFile parse_abaqus(const std::string &file, const std::string &text);
 
-  /// VTK's legacy format in ASCII, unstructured grids of versions 2 to 5. Groups are the integers of the first data of cells
-  /// named in it (MaterialID, CellEntityIds, ...).
+  /// VTK's legacy format in ASCII, unstructured grids of versions 2 to 5. Groups are the integers of the first data of
+  /// cells named in it (MaterialID, CellEntityIds, ...).
   MeshFile parse_vtk(const std::string &file, const std::string &text);
 
   /// I-deas' universal format: data sets 2411 (nodes), 2412 (elements), 2467 and 2477 (groups).

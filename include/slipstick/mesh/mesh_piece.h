@@ -1,4 +1,4 @@
-// A piece of mesh as plain lists: what is cut, sent between ranks and made into a triangulation.
+// A piece of mesh as plain lists, which can be cut, sent between ranks and made into a triangulation.
 #pragma once
 
 #include <slipstick/mesh/mesh.h>
@@ -132,8 +132,8 @@ namespace slipstick::mesh
   template <int dim>
   void place(MeshPiece<dim> &piece, const scene::Placement<dim> &placement);
 
-  /// Cuts @p whole along @p part (a part number for every cell). Parts without cells are left out; parts that hang
-  /// together through no face fall apart into several pieces. Pieces come in order of part and first cell.
+  /// Cuts @p whole along @p part (a part number for every cell). Parts without cells are left out; parts that are not
+  /// connected through faces become several pieces. Pieces come in order of part and first cell.
   template <int dim>
   std::vector<MeshPiece<dim>> cut(const MeshPiece<dim> &whole, const std::vector<unsigned int> &part);
 

@@ -1,4 +1,4 @@
-// What a scene asks for, before anything of that size is made.
+// Estimated size of a scene, before anything of that size is made.
 #pragma once
 
 #include <slipstick/mesh/mesh.h>
@@ -18,12 +18,12 @@ namespace slipstick::mesh
   template <int dim>
   SizeEstimate estimate_size(const scene::Scene<dim> &scene);
 
-  /// @throws InputError on all ranks alike where the estimated memory is more than what is there, unless @p forced, and in any
-  /// case where cells could not be counted. Collective.
+  /// @throws InputError on all ranks alike if the estimated memory exceeds what is available, unless @p forced, and in
+  /// any case if there are more cells than can be counted. Collective.
   template <int dim>
   void check_size(const scene::Scene<dim> &scene, const bool forced, const MPI_Comm comm);
 
-  /// Bodies that lie so far from the origin that their cells would be made of rounding. Collective.
+  /// Refuses bodies so far from the origin that rounding would spoil their cells. Collective.
   /// @throws InputError on all ranks alike.
   template <int dim>
   void check_positions(const scene::Scene<dim> &scene, const Mesh<dim> &mesh);

@@ -7,16 +7,16 @@ namespace slipstick::mesh
 {
   /// Gives the boundary edges of an unrefined body from a mesh file the curves that they stand for, and adds a remark.
   ///
-  /// With mid nodes off the chords (BodyMesh::middles) these are cubics through them with common tangents at the nodes, parabolas
-  /// where that would be another curve, as between corners. Else they are reconstructed:
-  /// cubics over the edges with common tangents at the nodes, those of the circle through a node and its two neighbours,
-  /// which reproduces circles to 1e-6 of the sagitta with edges of 20 degrees. Corners, where curves end, are nodes where
-  /// edges meet at Body::corner_angle or more, or at a much larger angle than at the nodes beside it, as where two straight
-  /// sides meet. Edges in line with a neighbour stay straight and give their direction to a curve that goes on from them; so
-  /// do edges of which no end lies within a curve.
+  /// With mid nodes off the chords (BodyMesh::middles) these are cubics through them with common tangents at the nodes,
+  /// or parabolas where the cubic would be a different curve, as between corners. Otherwise they are reconstructed:
+  /// cubics over the edges with common tangents at the nodes, those of the circle through a node and its two
+  /// neighbours, which reproduces circles to 1e-6 of the sagitta with edges of 20 degrees. Corners, where curves end,
+  /// are nodes where edges meet at Body::corner_angle or more, or at a much larger angle than at the nodes beside it,
+  /// as where two straight sides meet. Edges in line with a neighbour stay straight and give their direction to a curve
+  /// that continues them; edges neither end of which lies within a curve stay straight, too.
   ///
-  /// Where Body::has_smooth_outline is off, and on circles too coarse to be told from a polygon, edges get no curve, but the
-  /// sagitta that they leave out (EdgeCurve::left_out).
+  /// Where Body::has_smooth_outline is off, and on circles too coarse to be told from a polygon, edges get no curve,
+  /// but the sagitta that they leave out (EdgeCurve::left_out).
   template <int dim>
   void smooth_outline(const scene::Body<dim> &body, BodyMesh<dim> &mesh);
 

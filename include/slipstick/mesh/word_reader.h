@@ -15,23 +15,23 @@ namespace slipstick::mesh
     /// @throws InputError that names file and line.
     [[noreturn]] void fail(const std::string &problem) const;
 
-    /// fail() as the present section does not hold what belongs there.
+    /// fail() because the current section does not contain what it should.
     [[noreturn]] void fail_corrupt() const;
 
     /// The next word, empty at the end of the file.
     std::string word();
 
-    /// The rest of the present line, without its end; then goes to the next.
+    /// The rest of the current line, without its end; then moves to the next.
     std::string line();
 
     /// Whether the next line is there; blank ones count.
     bool at_end() const;
 
-    /// The next word as a number. @throws InputError when it is none.
+    /// The next word as a number. @throws InputError if it is not a number.
     long long integer();
     double    real(); // Fortran's exponents (1.0D+00), too; finite
 
-    /// A count of things of at least @p least characters each, no more than the rest of the file holds.
+    /// A count of items of at least @p least characters each, no more than the rest of the file can hold.
     std::size_t count(const std::size_t least);
 
     /// Whether the next word is @p expected, which is then skipped.

@@ -1,4 +1,4 @@
-// conditions.csv: where supports, loads and contact pairs are, for those who draw the scene.
+// conditions.csv: where supports, loads and contact pairs act, for programs that draw the scene.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
@@ -6,9 +6,9 @@
 
 namespace slipstick::output
 {
-  /// Writes conditions.csv from rank 0: one row for every edge, before loading, of a boundary that a support, foundation,
-  /// traction or contact pair names, and for every point that a support or point load names (both ends are then the
-  /// node). Collective.
+  /// Writes conditions.csv from rank 0: one row for every edge, before loading, of a boundary that a support,
+  /// foundation, traction or contact pair names, and for every point that a support or point load names (both ends are
+  /// then the node). Collective.
   template <int dim>
   void write_conditions(const OutputDirectory        &directory,
                         const scene::Scene<dim>      &scene,

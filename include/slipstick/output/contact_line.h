@@ -10,7 +10,7 @@
 
 namespace slipstick::output
 {
-  /// Names for people, index ContactNode::pair.
+  /// Names for the reader, indexed by ContactNode::pair.
   struct ContactNames
   {
     std::vector<std::string> pairs;

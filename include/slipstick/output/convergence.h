@@ -1,4 +1,4 @@
-// convergence.csv: how the solver went, one row an outer step.
+// convergence.csv: progress of the solver, one row per outer step.
 #pragma once
 
 #include <slipstick/output/directory.h>

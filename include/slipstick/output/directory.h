@@ -14,9 +14,8 @@ namespace slipstick::output
   class OutputDirectory
   {
   public:
-    /// Creates @p path and its parents where missing, removes what runs that were killed left half written there, and tries
-    /// a file in it. Collective over @p comm: rank 0
-    /// does the work.
+    /// Creates @p path and its parents if missing, removes partial files that killed runs left there, and tries to
+    /// write a file. Collective over @p comm: rank 0 does the work.
     /// @throws InputError on all ranks alike: empty path, a file in its place, no permission, a full or read-only disk.
     OutputDirectory(const std::string &path, const MPI_Comm comm);
 
@@ -26,18 +25,18 @@ namespace slipstick::output
     /// Path of the file @p name in the directory; empty @p name: of the directory itself.
     std::string path(const std::string &name = "") const;
 
-    /// Writes the file @p name on this rank alone: @p content writes a temporary file, which is then renamed.
-    /// A file of that name from before is replaced; when anything fails it stays, and nothing else is left behind.
-    /// The file beside it is new, under a random name: nothing is written through a link that stands in its place.
-    /// @throws InputError on this rank alone when the disk does not take it; what @p content throws passes through.
+    /// Writes the file @p name on this rank alone: @p content writes a temporary file, which is then renamed. An
+    /// existing file of that name is replaced; if anything fails it stays, and nothing else is left behind. The
+    /// temporary file is new and has a random name, so that nothing is written through a link in its place.
+    /// @throws InputError on this rank alone if the file cannot be written; exceptions of @p content pass through.
     void write(const std::string &name, const std::function<void(std::ostream &)> &content) const;
 
     /// As write(), on rank 0 alone, and all ranks throw alike. @p content runs on rank 0 and must not communicate.
     /// Collective.
     void write_from_root(const std::string &name, const std::function<void(std::ostream &)> &content) const;
 
-    /// Removes what the constructor created, as far as it is empty: a scene that is refused leaves nothing behind.
-    /// Rank 0 does the work; no communication.
+    /// Removes the directories that the constructor created, if they are empty, so that a refused scene leaves nothing
+    /// behind. Rank 0 does the work; no communication.
     void remove_if_new() const;
 
   private:

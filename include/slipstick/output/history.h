@@ -5,7 +5,7 @@
 
 namespace slipstick::output
 {
-  /// Writes history.csv from rank 0, whose @p steps count: step, t, then Fx, Fy, moment of every load, support, foundation
-  /// and contact pair (on its slave body); columns "KIND NAME Fx". Collective.
+  /// Writes history.csv from rank 0, whose @p steps count: step, t, then Fx, Fy, moment of every load, support,
+  /// foundation and contact pair (on its slave body); columns "KIND NAME Fx". Collective.
   void write_history(const OutputDirectory &directory, const std::vector<StepSummary> &steps);
 } // namespace slipstick::output

@@ -1,4 +1,4 @@
-// probes.csv: what was found at points and along lines.
+// probes.csv: results at points and along lines.
 #pragma once
 
 #include <slipstick/output/summary.h>

@@ -17,7 +17,7 @@ namespace slipstick::output
     converged,
     not_converged,
     no_equilibrium,
-    unfinished // load steps are still to come; what is left of a run that was interrupted
+    unfinished // load steps are still to come; the state left by an interrupted run
   };
 
   /// "converged", "not converged", "no equilibrium", "unfinished"
@@ -93,7 +93,7 @@ namespace slipstick::output
     double largest_part = 0; // of its square [-]
   };
 
-  /// What was found at one point of a probe.
+  /// Result at one point of a probe.
   struct ProbeValues
   {
     double                distance = 0;         // from the beginning of the probe [mm]
@@ -137,7 +137,7 @@ namespace slipstick::output
     ForceSummary                         forces;
   };
 
-  /// Wall clock of rank 0, which waits for the others where they meet [s]. The stages add up to the total.
+  /// Wall clock of rank 0, including its waiting for other ranks [s]. The stages add up to the total.
   struct TimeSummary
   {
     double total         = 0; // since the process was started

@@ -1,4 +1,4 @@
-// Where bodies that contact alone holds have to be for given gaps, so that clipped contact forces balance the loads.
+// Positions of bodies held by contact alone, for given gaps, in which the clipped contact forces balance the loads.
 #pragma once
 
 #include <slipstick/qp/active_set.h>
@@ -7,14 +7,15 @@
 namespace slipstick::tfeti
 {
   /// The motions of bodies which no equality row resists, and the least of
-  ///   sum_i psi_i(t_i - k_i S_i a) + L'a,   psi_i' = clip to the bounds of row i, over k_i,
-  /// S_i the jumps of the motions in row i, L the loads along them: there S'z = L with z = clip(t - k S a), so that the
-  /// forces z, which a projected gradient step t = x - k g gives after the motion a, balance the loads up to 1 % of all
-  /// forces (of L the rest only is balanced). Bounds that follow normal forces do so. The function is convex and piecewise quadratic; Newton's method with an exact line search.
+  /// sum_i psi_i(t_i - k_i S_i a) + L'a,   psi_i' = clip to the bounds of row i, over k_i, S_i the jumps of the motions
+  /// in row i, L the loads along them: there S'z = L with z = clip(t - k S a), so that the forces z, which a projected
+  /// gradient step t = x - k g gives after the motion a, balance the loads up to 1 % of all forces (only the rest of L
+  /// is balanced). Bounds that depend on normal forces follow these. The function is convex and piecewise quadratic;
+  /// Newton's method with an exact line search.
   class BodyEquilibrium
   {
   public:
-    /// @param bodies is referred to. Collective.
+    /// @param bodies is kept by reference. Collective.
     BodyEquilibrium(const BodyMotions &bodies_, const Constraints &constraints, const MPI_Comm comm_);
 
     /// Are there no such motions?

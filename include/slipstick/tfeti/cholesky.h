@@ -18,8 +18,8 @@ namespace slipstick::tfeti
     nested_dissection // METIS: least fill of large ones in the plane, n log n
   };
 
-  /// CHOLMOD's workspace, shared by the factorisations of a rank, and the analyses of their patterns: matrices of one
-  /// pattern are analysed once.
+  /// CHOLMOD's workspace, shared by the factorisations of a rank, and the analyses of their patterns: matrices with the
+  /// same pattern are analysed once.
   class CholmodSession
   {
   public:
@@ -60,7 +60,7 @@ namespace slipstick::tfeti
   class Cholesky
   {
   public:
-    /// What a matrix is that turns out not to be positive definite, behind its name, and what to do then.
+    /// For a matrix that turns out not to be positive definite: its description, to follow its name, and the remedy.
     struct Failure
     {
       std::string text, remedy;

@@ -10,13 +10,13 @@
 
 namespace slipstick::tfeti
 {
-  /// Sparse symmetric positive definite matrix, factorised once: L L' of n log n numbers in the plane, unknowns ordered by
-  /// nested dissection (George 1973). Right-hand sides and solutions are distributed over the ranks; the matrix, whose size is
-  /// that of the kernel, is held and factorised by every rank, so that a solve costs one gather (benchmarks/coarse_problem.md
-  /// says up to which size that pays).
+  /// Sparse symmetric positive definite matrix, factorised once: L L' of n log n numbers in the plane, unknowns ordered
+  /// by nested dissection (George 1973). Right-hand sides and solutions are distributed over the ranks; the matrix,
+  /// whose size is that of the kernel, is held and factorised by every rank, so that a solve costs one gather
+  /// (benchmarks/coarse_problem.md says up to which size this pays off).
   ///
   /// Matrices A + C_1, A + C_2, .. with C_i in the rows and columns of a few changing unknowns share the elimination of
-  /// all others; each factorises its Schur complement in the changing ones alone. Where many change, they share the
+  /// all others; each factorises only its Schur complement in the changing ones. If many change, they share the
   /// ordering and the pattern of L.
   /// @code
   /// const CoarseSolver    solver(2, {{0, 0, 2.}, {1, 0, -1.}, {1, 1, 2.}}, MPI_COMM_SELF); // entries above the diagonal follow
@@ -41,15 +41,15 @@ namespace slipstick::tfeti
     /// @throws NumericalError when the matrix is not positive definite.
     CoarseSolver(const unsigned int n_owned, const Entries &entries, const MPI_Comm comm);
 
-    /// Eliminates all but the changing unknowns from A, which need be semidefinite only.
+    /// Eliminates all but the changing unknowns from A, which need only be semidefinite.
     /// @param changes of the rows of this rank, in their order. Collective.
     /// @throws NumericalError when A without the changing rows and columns is not positive definite.
     static std::shared_ptr<const Elimination> eliminate(const Entries           &entries,
                                                         const std::vector<bool> &changes,
                                                         const MPI_Comm           comm);
 
-    /// Of A + C. @param changing entries of C, of changing rows and columns; zeros where other C_i have entries keep the
-    /// pattern the same. Collective.
+    /// Of A + C. @param changing entries of C, of changing rows and columns; zeros where other C_i have entries keep
+    /// the pattern the same. Collective.
     /// @throws NumericalError when the matrix is not positive definite.
     CoarseSolver(std::shared_ptr<const Elimination> staying, const Entries &changing);
     ~CoarseSolver();

@@ -56,7 +56,7 @@ namespace slipstick::tfeti
     unsigned int                 interface_dof  = 0; // owned number of the node's first interface unknown
   };
 
-  /// What holds a node in one direction, from outside: supports, foundations, bonds to obstacles.
+  /// What holds a node externally in one direction: supports, foundations, bonds to obstacles.
   struct Reaction
   {
     unsigned int          row = invalid_row; // owned; the force on the node is -multiplier times direction
@@ -105,7 +105,8 @@ namespace slipstick::tfeti
     Counts            counts;         // over all ranks
   };
 
-  /// Contact nodes whose gap supports (and bonds) prescribe, so that they have no normal row: nodes bonded to obstacles too.
+  /// Contact nodes whose gap is prescribed by supports (and bonds), so that they have no normal row; nodes bonded to
+  /// obstacles, too.
   struct HeldContacts
   {
     struct Point

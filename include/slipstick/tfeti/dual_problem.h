@@ -1,4 +1,4 @@
-// The dual problem of the torn bodies: F, d, G, e, P, and the way back to displacements.
+// The dual problem of the torn bodies: F, d, G, e, P, and the recovery of displacements.
 #pragma once
 
 #include <slipstick/tfeti/body_equilibrium.h>
@@ -13,7 +13,7 @@
 
 namespace slipstick::tfeti
 {
-  /// Forces up to this part of the largest one are rounding of zero and hold nothing.
+  /// Forces below this fraction of the largest one count as rounding of zero and hold nothing.
   constexpr double force_rounding = 1e-13;
 
   /// min 1/2 x'F x - x'd  s.t.  G x = e and bounds on x (which the contact layer knows). x: multipliers [N], one a row
@@ -61,7 +61,7 @@ namespace slipstick::tfeti
     /// Energies of displacements that close jumps.
     struct JumpEnergies
     {
-      /// Where this rank's subdomains of a body have most.
+      /// Where the energy of this rank's subdomains of a body is largest.
       struct Spot
       {
         double       energy    = -1; // none of its subdomains here
@@ -73,8 +73,8 @@ namespace slipstick::tfeti
     };
 
     /// Factorises the subdomains and the coarse problem and estimates |P F P|. Collective.
-    /// @throws NoEquilibrium naming body and motion when the rows of B leave a rigid motion of a body free; if loads drive
-    /// none of them, UnheldMotions.
+    /// @throws NoEquilibrium naming body and motion when the rows of B leave a rigid motion of a body free; if loads
+    /// drive none of them, UnheldMotions.
     /// @throws NumericalError when a subdomain cannot be factorised.
     DualProblem(std::vector<SubdomainMatrices>  matrices,
                 Constraints                     constraints,
@@ -82,8 +82,8 @@ namespace slipstick::tfeti
                 const std::vector<std::string> &body_names,
                 const MPI_Comm                  comm);
 
-    /// The same; of @p subdomains whose rows were others before only those are factorised that are touched elsewhere. No other
-    /// problem may have them at the same time.
+    /// The same with @p subdomains from a problem with other rows: only those touched at other unknowns are factorised.
+    /// No other problem may use them at the same time.
     DualProblem(std::shared_ptr<Subdomains>     subdomains,
                 Constraints                     constraints,
                 const DualOptions              &options,
@@ -91,16 +91,16 @@ namespace slipstick::tfeti
                 const MPI_Comm                  comm);
 
     /// Another load step: loads f_p of this rank's subdomains [N] and right-hand sides c of the owned rows [mm]. K, B
-    /// and all that depends on them alone stay. Collective.
+    /// and everything that depends only on them stay. Collective.
     void set_step(std::vector<Eigen::VectorXd> loads, std::vector<double> c);
 
-    /// Other right-hand sides c of the owned rows [mm] alone. Collective.
+    /// Changes only the right-hand sides c of the owned rows [mm]. Collective.
     void set_right_hand_side(std::vector<double> c);
 
     /// With an operator stored in single precision (F~): d := B K+ f - c - (F - F~) x, F in double by sparse solves, so
     /// that a point that solves the problem with F~ and this d near x solves the one with F. Another load step starts
     /// from d again. Collective; two multiplications.
-    /// @return by how much that moved P d, in the units of multiply() (d over |P F P|) [N]; 0 in double precision.
+    /// @return by how much this changed P d, in the units of multiply() (d over |P F P|) [N]; 0 in double precision.
     double refine(const DistributedVector &x);
 
     /// Is F stored in single precision?
@@ -114,8 +114,8 @@ namespace slipstick::tfeti
     void                project_range(const DistributedVector &x, DistributedVector &y) const; // y = Q x
     const MpiReduction &reduction() const;
 
-    /// Weights of the owned rows' residuals for solvers with a preconditioner: stiffnesses over the least one, so that
-    /// residuals count as forces and all bodies are solved alike. Empty without a preconditioner.
+    /// Weights of the owned rows' residuals for solvers with a preconditioner: stiffnesses relative to the smallest, so
+    /// that residuals count as forces and all bodies are solved equally well. Empty without a preconditioner.
     const std::vector<double> &residual_weights() const
     {
       return metric;
@@ -124,42 +124,43 @@ namespace slipstick::tfeti
     /// Norm of the part of a residual (such as d - F x over norm()) that multipliers can change, with its weights.
     double residual_norm(const DistributedVector &r) const;
 
-    /// Squared energy norm of the least displacements, nearly, that close jumps r (owned rows) [mm], those of rows without
-    /// a jump held where @p held says so: r'M r [N mm], M the preconditioner, without one the lumped preconditioner (which
-    /// gives more). With r = B u - c of displacements u = K+(f - B'x) + R a it bounds the squared energy norm of their
-    /// error from above, up to what the scaling of M is worth: in the sum, and the part of a body that of its own. Collective.
+    /// Nearly the squared energy norm of the smallest displacements that close jumps r (owned rows) [mm], where rows
+    /// without a jump are held if @p held says so: r'M r [N mm], M the preconditioner or, without one, the lumped
+    /// preconditioner (which gives more). With r = B u - c of displacements u = K+(f - B'x) + R a it is an upper bound
+    /// of the squared energy norm of their error, up to the quality of the scaling of M, both in total and for each
+    /// body with its own part. Collective.
     JumpEnergies jump_energies(const DistributedVector &r, const std::vector<bool> &held) const;
 
-    /// Of every owned row, whether its multiplier is not determined since the free rows depend on each other: bodies that
-    /// hold each other in more ways than one. u does not depend on it. Collective.
+    /// For every owned row, whether its multiplier is undetermined because the free rows are linearly dependent (bodies
+    /// that hold each other in more ways than one). This does not affect u. Collective.
     std::vector<bool> ambiguous(const std::vector<bool> &free) const;
 
     /// The problem on the free rows (owned ones), the others held, or tied to free ones. Collective.
     Face face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties = {}) const;
 
-    /// A motion of bodies for which friction at present bounds is too weak.
+    /// A motion of bodies for which friction at the current bounds is too weak.
     struct Overload
     {
       RigidMotion motion;
       double      held = 0; // the part of the load along it that friction bears, below 1
     };
 
-    /// @param free rows that hold: gluing, supports, closed contact. @param capacity the bound of a row between two bounds
-    ///        [N]; negative: the row bears nothing; infinity: a row with one bound. Collective.
+    /// @param free rows that hold: gluing, supports, closed contact. @param capacity the bound of a row between two
+    ///        bounds [N]; negative: the row bears nothing; infinity: a row with one bound. Collective.
     std::optional<Overload> overload(const std::vector<bool> &free, const std::vector<double> &capacity) const;
 
-    /// The free rows and, of the others, as many as hold the bodies that these leave loose, those with the smallest gaps [of
-    /// any unit] rather than others. Just the free ones when nothing is loose, or nothing can hold. @param well bodies that
-    /// free rows hardly hold are held, too. Collective.
+    /// The free rows and as many of the others as are needed to hold the bodies that the free rows leave loose,
+    /// preferring the smallest gaps [of any unit]. Only the free rows if nothing is loose, or nothing can hold it.
+    /// @param well bodies that free rows hardly hold are held, too. Collective.
     std::vector<bool> hold(const std::vector<bool> &free, const std::vector<double> &gaps, const bool well) const;
 
-    /// moved -= stiffness times the jumps of the motion of bodies which nothing but contact holds, after which the forces
-    /// `moved`, cut to their bounds, balance the loads of these bodies. Owned rows. Collective.
+    /// moved -= stiffness times the jumps of the motion of bodies held by contact alone, after which the forces
+    /// `moved`, clipped to their bounds, balance the loads of these bodies. Owned rows. Collective.
     void balance_bodies(const std::vector<double>                  &stiffness,
                         const qp::AdmissibleSet<DistributedVector> &bounds,
                         std::vector<double>                        &moved) const;
 
-    /// Are there bodies that nothing but contact holds?
+    /// Are there bodies held by contact alone?
     bool has_loose_bodies() const
     {
       return !held_by_contact->empty();
@@ -183,17 +184,18 @@ namespace slipstick::tfeti
     /// A zero vector of multipliers, owned entries only.
     DistributedVector zero() const;
 
-    /// Displacements u = K+(f - B'x) + R a. First x is moved, on the rows with `free` alone, to where G x = e holds to
-    /// rounding, so that u is in equilibrium with it; then the amplitudes a of the rigid motions make those rows (which
-    /// hold with equality) fit in the sense of least squares. Bodies that slide on all their contacts are put where every
-    /// slip follows its force and no gap is negative, as near as can be to where they just stop sticking. Collective.
+    /// Displacements u = K+(f - B'x) + R a. First x is corrected, only on the rows with `free`, until G x = e holds to
+    /// rounding, so that u is in equilibrium with it; then the amplitudes a of the rigid motions fit those rows (which
+    /// hold with equality) in the sense of least squares. Bodies that slide on all their contacts are placed such that
+    /// every slip follows its force and no gap is negative, as close as possible to where they just stop sticking.
+    /// Collective.
     /// @throws NoEquilibrium naming the body when neither free rows nor rows with friction forces fix a.
-    /// @param keeps_still motions that nothing resists and no load drives stay at zero; else they are an error.
+    /// @param keeps_still motions that nothing resists and no load drives stay at zero; otherwise they are an error.
     Recovery recover(const DistributedVector &x, const std::vector<bool> &free, const bool keeps_still = false) const;
 
-    /// u += -K+ B'step + R a, x += step, with the a that makes the free rows fit in the sense of least squares. G step = 0
-    /// is taken for granted. What stood in u stays: rounding of x, which a slender subdomain bends by far more than u, does
-    /// not come in again, as it does with recover(). Collective.
+    /// u += -K+ B'step + R a, x += step, with the a that fits the free rows in the sense of least squares. G step = 0
+    /// is assumed. The present u is kept, so that rounding of x, under which a slender subdomain bends far more than u,
+    /// does not enter again, as it would with recover(). Collective.
     void correct(Recovery &at, const DistributedVector &step, const std::vector<bool> &free) const;
 
     /// c + compliance x - B u on the free rows, 0 on the others [mm]. Collective.
@@ -202,11 +204,12 @@ namespace slipstick::tfeti
     /// B u of displacements of this rank's subdomains, owned rows [mm]. Collective.
     DistributedVector jumps(const std::vector<Eigen::VectorXd> &u) const;
 
-    /// The column of B, owned rows, of a touched unknown (its number among them) of a subdomain of one rank. Collective.
+    /// The column of B, owned rows, of a touched unknown (its number among them) of a subdomain of one rank.
+    /// Collective.
     /// @param subdomain on the other ranks: subdomains().size()
     DistributedVector column(const unsigned int subdomain, const unsigned int touched) const;
 
-    /// B_p'x of this rank's subdomains, all unknowns [N]: what the multipliers (owned entries) exert. Collective.
+    /// B_p'x of this rank's subdomains, all unknowns [N]: the forces of the multipliers (owned entries). Collective.
     std::vector<Eigen::VectorXd> forces(const DistributedVector &x) const;
 
     /// The rigid motion of the bodies behind a dual vector r = G'a. Collective.
@@ -251,16 +254,16 @@ namespace slipstick::tfeti
     }
 
   private:
-    /// Takes the loose motions out of u.
+    /// Removes the loose motions from u.
     void remove_motions(const std::vector<RigidMotion> &loose, std::vector<Eigen::VectorXd> &u) const;
 
-    /// Of the candidates, as many as hold the loose motions are added to the free rows: those whose shares, times their
-    /// scale, are largest. @return whether they do.
+    /// Adds as many candidates to the free rows as are needed to hold the loose motions: those whose shares, times
+    /// their scale, are largest. @return whether they hold them.
     bool hold_by(const std::vector<RigidMotion> &loose,
                  const std::vector<bool>        &is_candidate,
                  const std::vector<double>      &scale,
                  std::vector<bool>              &free) const;
-    /// The free rows and some of those with friction forces that hold the loose motions, or, where nothing drives these,
+    /// The free rows and those rows with friction forces that hold the loose motions or, if nothing drives these, some
     /// of all rows. @return whether they are rows with forces.
     bool rows_that_fix(const std::vector<RigidMotion> &loose,
                        const DistributedVector        &x,
@@ -271,7 +274,7 @@ namespace slipstick::tfeti
                      const DistributedVector        &x,
                      Recovery                       &at) const;
 
-    /// u += R a: a least squares fit of the free rows, which the projector is restricted to.
+    /// u += R a: a least squares fit of the free rows, to which the projector is restricted.
     void fit_motions(const Projector &on_free, const std::vector<bool> &free, Recovery &at) const;
 
     double lanczos(const DualOptions &options) const;
@@ -315,13 +318,14 @@ namespace slipstick::tfeti
     /// y = Q_f x on the free rows, y = x on the others.
     void project_range(const DistributedVector &x, DistributedVector &y) const;
 
-    /// Moves the free rows of x, and those tied to them, by the least that makes G x = e.
+    /// Changes the free rows of x, and those tied to them, by the smallest amount that makes G x = e.
     void balance(DistributedVector &x) const;
 
-    /// Moves the free rows of p by the least that makes G p = 0, once the tied rows are factor times theirs.
+    /// Changes the free rows of p by the smallest amount that makes G p = 0, once the tied rows are factor times
+    /// theirs.
     void project_kernel(DistributedVector &p) const;
 
-    /// y = G'a on all rows, with the a that makes v - G'a least on the free ones.
+    /// y = G'a on all rows, with the a that minimises v - G'a on the free ones.
     void multiplier_shift(const DistributedVector &v, DistributedVector &y) const;
 
     /// z = M r on the free rows, 0 on the others; a copy without a preconditioner.

@@ -1,4 +1,4 @@
-// What the ranks know of their rows, together.
+// Values of the rows of all ranks, gathered.
 #pragma once
 
 #include <deal.II/base/mpi.h>
@@ -9,8 +9,8 @@
 
 namespace slipstick::tfeti
 {
-  /// Values of rows of all ranks, on every rank, in the order of the labels of the rows (Constraints::label), which no
-  /// number of ranks changes. @p Value is packed by Boost. Collective.
+  /// Values of rows of all ranks, on every rank, in the order of the labels of the rows (Constraints::label), which is
+  /// the same for every number of ranks. @p Value is packed by Boost. Collective.
   template <typename Value>
   std::map<std::uint64_t, Value> gathered_by_label(const std::vector<std::uint64_t> &labels,
                                                    const std::vector<Value>         &values,

@@ -1,4 +1,4 @@
-// When dense blocks of K_p+ pay.
+// When dense blocks of K_p+ pay off.
 #pragma once
 
 #include <slipstick/tfeti/constraints.h>
@@ -8,7 +8,7 @@
 
 namespace slipstick::tfeti
 {
-  /// What the dense block of one subdomain costs and saves, by rates measured (doc/decisions/0023).
+  /// Cost and savings of the dense block of one subdomain, from measured rates (doc/decisions/0023).
   struct BlockEstimate
   {
     std::size_t bytes  = 0; // of F_p, and S_p with the Dirichlet preconditioner
@@ -21,8 +21,8 @@ namespace slipstick::tfeti
   /// Memory that this process may still take: its share of what the machine has free [bytes]. Collective.
   std::size_t memory_share(const MPI_Comm comm);
 
-  /// Is F to be stored in dense blocks? As the options say; if it is left to us, when the blocks of every rank take no
-  /// more than a part of its memory share and the multiplications to be expected pay for them. Collective.
+  /// Should F be stored in dense blocks? As the options say; if they leave the choice to us, when the blocks of every
+  /// rank take no more than a part of its memory share and the expected multiplications pay for them. Collective.
   /// @param n_unknowns of every subdomain.
   bool is_explicit(const DualOptions               &options,
                    const std::vector<unsigned int> &n_unknowns,

@@ -15,9 +15,9 @@ namespace slipstick::tfeti
   Eigen::MatrixXd product_of_factor(const Eigen::MatrixXd &L);
   Eigen::MatrixXd inverse_of_product(Eigen::MatrixXd L);
 
-  /// A symmetric matrix with n rows, stored in double or single precision, half of it: panels of 4 columns from the diagonal
-  /// down, 8 rows of a panel after another, so that a product passes once through it and through the vectors a quarter as
-  /// often as by columns. Zeros fill the panels up: by about 8 / n.
+  /// A symmetric matrix with n rows, stored in double or single precision, half of it: panels of 4 columns from the
+  /// diagonal down, 8 rows of a panel after another, so that a product passes once through the matrix, and through the
+  /// vectors a quarter as often as column by column. The panels are padded with zeros, by about 8 / n.
   class PackedSymmetric
   {
   public:

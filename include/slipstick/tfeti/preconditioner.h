@@ -6,13 +6,14 @@
 
 namespace slipstick::tfeti
 {
-  /// M = W^-1 B D^-1 S D^-1 B' W^-1 on rows to be chosen. S: Schur complement of K on the touched unknowns (Dirichlet;
-  /// Farhat, Mandel, Roux 1994), or K itself there (lumped). D weighs stiff against soft neighbours (Rixen, Farhat 1999).
+  /// M = W^-1 B D^-1 S D^-1 B' W^-1 on a choice of rows. S: Schur complement of K on the touched unknowns (Dirichlet;
+  /// Farhat, Mandel, Roux 1994), or K itself there (lumped). D weighs stiff against soft neighbours (Rixen, Farhat
+  /// 1999).
   class RowPreconditioner
   {
   public:
-    /// @param blocks S of this rank's subdomains at their touched unknowns, which must live as long as this; null: lumped, by
-    /// products with K.
+    /// @param blocks S of this rank's subdomains at their touched unknowns, which must live as long as this; null:
+    /// lumped, by products with K.
     RowPreconditioner(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                       const std::vector<LocalGluing>                      &gluing,
                       const DualOperator                                  &F,
@@ -32,7 +33,7 @@ namespace slipstick::tfeti
     std::vector<Eigen::VectorXd> energies(const RowWeights::Inverse &inverse, const DistributedVector &r) const;
 
   private:
-    /// D^-1 B' W^-1 r: how far the touched unknowns of a subdomain go. `source` must hold W^-1 r.
+    /// D^-1 B' W^-1 r: the displacements of the touched unknowns of a subdomain. `source` must hold W^-1 r.
     Eigen::VectorXd move(const unsigned int p) const;
     /// S or K times that.
     void multiply(const unsigned int p, const Eigen::VectorXd &move, Eigen::VectorXd &force) const;

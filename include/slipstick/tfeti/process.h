@@ -1,13 +1,13 @@
-// What a process sets up before its work: BLAS, MPI, Trilinos.
+// Set-up of a process before its work: BLAS, MPI, Trilinos.
 #pragma once
 
 #include <memory>
 
 namespace slipstick::tfeti
 {
-  /// One in main(), before anything else: BLAS on one thread (more would fight with the ranks for the cores), MPI
-  /// and Kokkos, without searching for networks that the run does not need. They do not see the command line. Ends MPI when
-  /// destroyed.
+  /// One in main(), before anything else: BLAS on one thread (more would fight with the ranks for the cores), MPI and
+  /// Kokkos, without searching for networks that the run does not need. None of them sees the command line. Finalises
+  /// MPI when destroyed.
   class Process
   {
   public:

@@ -11,10 +11,10 @@ namespace slipstick::tfeti
   /// Q = G'(G G')^-1 G projects dual vectors on the range of G'. With T from G G' = T^-1 T^-T the rows of T G are
   /// orthonormal; they are never formed, since |T G x| = |Q x|.
   ///
-  /// With a metric M (a positive number a row, the inverse of what the row yields to a force) least is meant in that
-  /// metric: G'(G M G')^-1 G M takes its part from a residual [mm], M G'(G M G')^-1 G from multipliers [N], one the
-  /// transpose of the other. Stiff and soft bodies then share what they exchange as their stiffnesses tell (Bhardwaj et
-  /// al. 2000; Klawonn, Widlund 2001).
+  /// With a metric M (a positive number per row, the inverse of the row's compliance), "least" refers to that metric:
+  /// G'(G M G')^-1 G M projects residuals [mm], M G'(G M G')^-1 G multipliers [N], one the transpose of the other.
+  /// Stiff and soft bodies then share corrections according to their stiffnesses (Bhardwaj et al. 2000; Klawonn,
+  /// Widlund 2001).
   class Projector
   {
   public:
@@ -31,8 +31,8 @@ namespace slipstick::tfeti
     /// A restriction; G is not kept but shared.
     /// @param all without restriction.
     /// @param active true for the owned rows that take part; the others count as zero columns of G.
-    /// @param ties owned rows, active too, whose entries are factor times those of another active one: with x = T y of the
-    ///        untied entries y, Q is T (G T)'(G T (G T)')^-1 G then (a projector on vectors that obey the ties).
+    /// @param ties owned rows, active too, whose entries are factor times those of another active one: with x = T y of
+    ///        the untied entries y, Q is T (G T)'(G T (G T)')^-1 G then (a projector on vectors that obey the ties).
     /// @param metric of the owned rows; empty: 1. Collective.
     Projector(const Projector            &all,
               const std::vector<bool>    &active,
@@ -53,7 +53,8 @@ namespace slipstick::tfeti
     /// G x, the rigid motions of this rank's subdomains in turn; inactive rows count as zero. Collective.
     Eigen::VectorXd multiply(const DistributedVector &x) const;
 
-    /// The least y with G y = e, G'(G G')^-1 e without metric and ties. e: the rigid motions of this rank's subdomains in turn. Collective.
+    /// The least y with G y = e, G'(G G')^-1 e without metric and ties. e: the rigid motions of this rank's subdomains
+    /// in turn. Collective.
     void particular(const Eigen::VectorXd &e, DistributedVector &y) const;
 
     /// (G G')^-1 G x: amplitudes of the rigid motions of this rank's subdomains in turn. Collective.

@@ -1,4 +1,4 @@
-// Sums and minima over the ranks, as the solvers of qp ask for them.
+// Sums and minima over the ranks, as the solvers in qp need them.
 #pragma once
 
 #include <mpi.h>

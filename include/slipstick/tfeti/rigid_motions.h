@@ -8,8 +8,8 @@
 
 namespace slipstick::tfeti
 {
-  /// A rigid motion of one or more bodies: amplitudes of translation x, translation y, rotation of every body; of bodies
-  /// of revolution the translation along the axis alone.
+  /// A rigid motion of one or more bodies: amplitudes of translation x, translation y, rotation of every body; of
+  /// bodies of revolution the translation along the axis alone.
   struct RigidMotion
   {
     Eigen::VectorXd        amplitudes; // as many a body as it has motions, of unit length
@@ -41,9 +41,8 @@ namespace slipstick::tfeti
                 const unsigned int                                   n_bodies,
                 const MPI_Comm                                       comm);
 
-    /// Motions that no active row of B resists. Of all rows, those between bodies do not resist a motion that these have in
-    /// common: they join points that a gap or an overlap sets apart, which is not told from a lever, but holds nothing.
-    /// Collective.
+    /// Motions that no active row of B resists. Rows between bodies never count as resisting a motion that the bodies
+    /// have in common: a gap or an overlap between the joined points looks like a lever but holds nothing. Collective.
     /// @param active rows (owned by this rank) that take part; empty: all.
     /// @param resistance below which a motion counts as free: squared jumps of the rows under a unit motion, over the
     ///        largest of all motions. Rounding by default.
@@ -89,13 +88,14 @@ namespace slipstick::tfeti
                           const unsigned int                                   n_bodies,
                           const MPI_Comm                                       comm);
 
-  /// "body box: translation along (1, 0)", "body a: rotation about (0, 5)", "body pin: translation along the axis"; names the bodies that move most.
+  /// "body box: translation along (1, 0)", "body a: rotation about (0, 5)", "body pin: translation along the axis";
+  /// names the bodies that move most.
   std::string describe(const RigidMotion &motion, const std::vector<std::string> &body_names);
 
   /// The same motions, each of which moves a component that no other does (reduced echelon form).
   std::vector<RigidMotion> disentangled(const std::vector<RigidMotion> &motions);
 
-  /// Of the motions that combine some free ones that along which the loads push or, where they push along none, the one
+  /// Among the combinations of free motions, the one along which the loads push or, if they push along none, the one
   /// that moves the fewest components (translations before rotations). @param motions orthonormal, at least one.
   RigidMotion plainest(const std::vector<RigidMotion> &motions);
 } // namespace slipstick::tfeti

@@ -9,8 +9,8 @@
 
 namespace slipstick::tfeti
 {
-  /// W = B D^-1 B', D = diag K: couples rows that share nodes, so it consists of blocks, each on one rank: small ones of
-  /// single nodes, large sparse ones where mortar rows are connected. Rows may depend on each other.
+  /// W = B D^-1 B', D = diag K: couples rows that share nodes, so it consists of blocks, each on one rank: small ones
+  /// of single nodes, large sparse ones where mortar rows are connected. Rows may depend on each other.
   class RowWeights
   {
     /// Inverses of blocks of W.
@@ -47,18 +47,18 @@ namespace slipstick::tfeti
                const Partitioner                                   &rows,
                const MPI_Comm                                       comm);
 
-    /// 1 / W_rr of the owned rows [N/mm]: the force that opens a row, its other rows held, over what it opens by.
+    /// 1 / W_rr of the owned rows [N/mm]: the force that opens a row, with the other rows held, divided by the opening.
     std::vector<double> stiffnesses() const;
 
-    /// Of every owned row, whether its multiplier is not determined: the active rows depend on each other (B'x is 0 for some
-    /// x that is not, on the active rows), and this one has a part in that. Which do does not depend on the partition.
+    /// For every owned row, whether its multiplier is undetermined: the active rows are linearly dependent (B'x = 0 for
+    /// some nonzero x on the active rows), and this row takes part. The result does not depend on the partition.
     std::vector<bool> ambiguous(const std::vector<bool> &active) const;
 
     /// Inverse of W restricted to the active rows; of rows that depend on others, a generalised inverse.
     class Inverse
     {
     public:
-      /// @param weights are referred to.
+      /// @param weights are kept by reference.
       Inverse(const RowWeights &weights, const std::vector<bool> &active);
 
       /// y = W^-1 x on the active rows, 0 on the others; owned entries.

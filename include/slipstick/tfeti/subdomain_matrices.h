@@ -16,7 +16,7 @@ namespace slipstick::tfeti
     double                length = 1;        // [mm]
   };
 
-  /// Eigen 3.4 copies a sparse matrix where a move is meant: K_p would be there three times.
+  /// Eigen 3.4 copies a sparse matrix where a move is meant; K_p would be held three times.
   class MovableSparseMatrix : public Eigen::SparseMatrix<double>
   {
   public:
@@ -37,8 +37,8 @@ namespace slipstick::tfeti
     }
   };
 
-  /// How many of the k rigid motions of a body are translations, which come first; the others are rotations. Solids have six,
-  /// sections of the plane three, bodies of revolution one: along their axis.
+  /// How many of the k rigid motions of a body are translations, which come first; the others are rotations. Solids
+  /// have six, sections of the plane three, bodies of revolution one: along their axis.
   constexpr unsigned int n_translations(const unsigned int k)
   {
     return k == 6 ? 3 : k == 3 ? 2 : k;

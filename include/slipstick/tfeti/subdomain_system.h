@@ -11,10 +11,10 @@ namespace slipstick::tfeti
 {
   /// K, K+ and R of a subdomain with n unknowns.
   ///
-  /// K+ = (K + rho N N')^-1, where N picks as many unknowns as there are rigid motions k and N'R is nonsingular. Then
-  /// K K+ K = K exactly: K+ K = I - (projection on R along the kernel of N'). The picked unknowns (fixing nodes,
-  /// Brzobohaty et al., IJNME 88, 2011) are found from R by pivoting, which spreads them as far as can be; N N' is
-  /// diagonal, so the factor fills in no more than that of K.
+  /// K+ = (K + rho N N')^-1, where N picks as many unknowns as there are rigid motions k and N'R is nonsingular. Then K
+  /// K+ K = K exactly: K+ K = I - (projection on R along the kernel of N'). The picked unknowns (fixing nodes,
+  /// Brzobohaty et al., IJNME 88, 2011) are found from R by pivoting, which spreads them as far as possible; N N' is
+  /// diagonal, so the factor has no more fill than that of K.
   class SubdomainSystem
   {
   public:
@@ -35,14 +35,14 @@ namespace slipstick::tfeti
       return cholesky.has_value();
     }
 
-    /// Gives K, f and R away for a factor in another order; of no use afterwards.
+    /// Hands over K, f and R for a factor in another order; unusable afterwards.
     SubdomainMatrices take_matrices()
     {
       return std::move(matrices);
     }
 
-    /// Frees the factor. K+ is then applied by factorising anew, every time, in an order with less fill; the dense blocks
-    /// may not be asked for any more.
+    /// Frees the factor. K+ is then applied by factorising again, every time, in an order with less fill; the dense
+    /// blocks are no longer available.
     void release()
     {
       cholesky.reset();
@@ -67,8 +67,8 @@ namespace slipstick::tfeti
     PackedSymmetric pseudo_inverse_block(const Precision precision) const;
 
     /// Schur complement of K on the touched unknowns (the fixing ones among them or held together with them), in their
-    /// order. Needs the trailing block. In double precision all the same where single precision would lose it: in
-    /// subdomains that are far softer in one way than in another (strips).
+    /// order. Needs the trailing block. Stored in double precision nevertheless where single precision would lose it:
+    /// in subdomains that are far softer in one deformation than in another (strips).
     PackedSymmetric schur_complement(const Precision precision) const;
 
     /// Diagonal of K at the touched unknowns.
@@ -133,7 +133,8 @@ namespace slipstick::tfeti
   };
 
   /// As many of the @p candidates as R has columns, chosen by pivoting so that the rows of R there are as independent
-  /// as can be. @return their list, and the smallest pivot (about 1 when they hold all motions well, 0 when they do not).
+  /// as can be. @return their list, and the smallest pivot (about 1 when they hold all motions well, 0 when they do
+  /// not).
   std::pair<std::vector<unsigned int>, double> fixing_unknowns(const Eigen::MatrixXd           &kernel,
                                                                const std::vector<unsigned int> &candidates);
 } // namespace slipstick::tfeti

@@ -1,4 +1,5 @@
-// The subdomains of this rank with what is made of K_p: factors and dense blocks stay when the rows of B change.
+// The subdomains of this rank with everything derived from K_p: factors and dense blocks stay when the rows of B
+// change.
 #pragma once
 
 #include <slipstick/tfeti/dual_operator.h>
@@ -14,8 +15,8 @@ namespace slipstick::tfeti
     /// Loads f_p of another load step [N].
     void set_loads(std::vector<Eigen::VectorXd> loads);
 
-    /// Factorises the subdomains whose touched unknowns are others than at the last call, all of them the first time, and
-    /// makes the dense blocks and K+ f. The options must be those of the last call.
+    /// Factorises the subdomains whose touched unknowns differ from those of the last call, all of them the first time,
+    /// and computes the dense blocks and K+ f. The options must be those of the last call.
     /// @param touched unknowns that rows of B touch, sorted. @param explicit_blocks with blocks of K+.
     /// @throws NumericalError as SubdomainSystem does, on this rank alone.
     void prepare(const std::vector<std::vector<unsigned int>> &touched,
