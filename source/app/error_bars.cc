@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace slipstick::app
@@ -16,8 +17,13 @@ namespace slipstick::app
     // A nodal pressure is a mean with the shape function of the node, and the largest one may lie between two: together at
     // most this part of the second difference of the pressures.
     constexpr double of_second_difference = 1. / 8;
-    // The largest pressure stands out from those beside it by more than this part of it: a peak that no mesh resolves.
-    constexpr double peak = 0.25;
+    // The largest pressure stands out from those beside it by more than this part of it, or at the end of a boundary by more
+    // than that one: a peak that no mesh resolves.
+    constexpr double peak = 0.25, peak_at_end = 0.05;
+    // A figure is reproduced, to this part of the largest of its unit.
+    constexpr double same = 1e-5;
+    // Figures and bars below this part of the largest of their unit are rounding, and not printed.
+    constexpr double nothing = 1e-9;
 
     /// The nodes of a pair, along its arc.
     std::vector<ContactNode> of_pair(const std::vector<ContactNode> &nodes, const unsigned int pair)
@@ -36,12 +42,13 @@ namespace slipstick::app
     template <class IsIn>
     output::ErrorBar length(const std::string &name, const std::vector<ContactNode> &line, const IsIn &is_in)
     {
+      constexpr double half = .5;
       output::ErrorBar bar{name, "mm", 0, 0., ""};
       for (std::size_t i = 0; i < line.size(); ++i)
         {
           bar.value += is_in(line[i]) ? line[i].length : 0.;
           if (i > 0 && is_in(line[i - 1]) != is_in(line[i]))
-            *bar.error += line[i].arc_length - line[i - 1].arc_length;
+            *bar.error += half * (line[i].arc_length - line[i - 1].arc_length);
         }
       return bar;
     }
@@ -54,22 +61,51 @@ namespace slipstick::app
       });
       if (at == line.end())
         return 0.;
-      double second_difference = 0;
+      const bool is_end            = at == line.begin() || at + 1 == line.end();
+      double     second_difference = 0;
       for (const int side : {-1, 1})
         {
-          const bool is_end = side < 0 ? at == line.begin() : at + 1 == line.end();
-          if (is_end)
+          if (side < 0 ? at == line.begin() : at + 1 == line.end())
             continue;
           const double drop = at->pressure - (at + side)->pressure;
-          if (drop > peak * at->pressure)
+          if (drop > (is_end ? peak_at_end : peak) * at->pressure)
             return {};
           second_difference += drop;
         }
       return of_second_difference * second_difference;
     }
+
+    /// What is printed, by the names of goals.
+    std::map<std::string, double> figures(const output::ResultSummary &results)
+    {
+      std::map<std::string, double> values = {{"max_displacement", results.max_displacement},
+                                              {"strain_energy", results.strain_energy}};
+      for (const auto &pair : results.contact)
+        {
+          values[pair.pair + ".normal_force"]     = pair.normal_force;
+          values[pair.pair + ".tangential_force"] = pair.tangential_force;
+          values[pair.pair + ".max_pressure"]     = pair.max_pressure;
+        }
+      for (const auto &support : results.forces.supports)
+        {
+          values[support.name + ".force_x"] = support.sum.force[0];
+          values[support.name + ".force_y"] = support.sum.force[1];
+        }
+      return values;
+    }
+
+    /// Magnitudes of values and bars, by unit.
+    std::map<std::string, double> largest_of_units(const std::vector<output::ErrorBar> &bars)
+    {
+      std::map<std::string, double> largest;
+      for (const auto &bar : bars)
+        largest[bar.unit] = std::max(largest[bar.unit], std::abs(bar.value));
+      return largest;
+    }
   } // namespace
 
   std::vector<output::ErrorBar> error_bars(const std::vector<GoalError>             &goals,
+                                           const output::ResultSummary              &results,
                                            const std::vector<contact::ContactNode>  &nodes,
                                            const std::vector<scene::ContactPair<2>> &pairs)
   {
@@ -80,6 +116,17 @@ namespace slipstick::app
         if (goal.is_known)
           bars.back().error = std::max(std::abs(goal.signed_), least_part * goal.absolute);
       }
+    const auto printed = figures(results), largest = largest_of_units(bars);
+    for (auto &bar : bars)
+      if (const auto found = printed.find(bar.quantity); found != printed.end())
+        {
+          if (std::abs(std::abs(bar.value) - std::abs(found->second)) > same * largest.at(bar.unit))
+            {
+              bar.error.reset();
+              bar.reason = "supports hold some of its nodes, whose forces are not estimated";
+            }
+          bar.value = found->second;
+        }
     for (unsigned int k = 0; k < pairs.size(); ++k)
       {
         const auto line     = of_pair(nodes, k);
@@ -113,8 +160,11 @@ namespace slipstick::app
       return;
     log.line("");
     log.line("figures with estimated errors of the mesh");
+    const auto largest = largest_of_units(bars);
     for (const auto &bar : bars)
-      if (bar.error)
+      if (bar.error && std::max(std::abs(bar.value), *bar.error) <= nothing * largest.at(bar.unit))
+        continue;
+      else if (bar.error)
         log.line(format("             %-36s %14.6g +- %-10.2g %s",
                         bar.quantity.c_str(),
                         bar.value,

@@ -13,8 +13,8 @@ namespace slipstick::app
   {
     constexpr int dim = StepSolver::dim;
 
-    // A load history that gives no figure to compare with: energies below this part of that of the answer are rounding.
-    constexpr double no_energy = 1e-20;
+    // Components of directions below this are rounding.
+    constexpr double along_axis = 1e-9;
 
     using Fields = std::vector<Eigen::VectorXd>;
 
@@ -54,7 +54,11 @@ namespace slipstick::app
           }
         for (unsigned int s = 0; s < solver.n_given_supports(); ++s)
           for (unsigned int d = 0; d < dim; ++d)
-            list.push_back(reaction(scene.supports[s].name + (d == 0 ? ".force_x" : ".force_y"), s, d));
+            {
+              auto goal = reaction(scene.supports[s].name + (d == 0 ? ".force_x" : ".force_y"), s, d);
+              if (holds(goal))
+                list.push_back(std::move(goal));
+            }
         return list;
       }
 
@@ -135,6 +139,15 @@ namespace slipstick::app
         return goal;
       }
 
+      /// Does the support hold anything along this axis?
+      bool holds(const Functional &reaction) const
+      {
+        double largest = 0;
+        for (const double g : reaction.jumps)
+          largest = std::max(largest, std::abs(g));
+        return dealii::Utilities::MPI::max(largest, comm) > along_axis;
+      }
+
       /// Along the largest displacement, at its node.
       Functional displacement() const
       {
@@ -207,6 +220,26 @@ namespace slipstick::app
         return dealii::Utilities::MPI::max(size, solver.mesh().comm);
       }
 
+      /// Was it not solved for, on some rank?
+      bool is_missing(const Fields &z) const
+      {
+        return dealii::Utilities::MPI::max(z.size() < answer.recovery.u.size() ? 1 : 0, solver.mesh().comm) > 0;
+      }
+
+      /// The sums over the cells.
+      void add_up(GoalError &goal) const
+      {
+        double own = 0, magnitudes = 0;
+        for (const auto &part : goal.cells)
+          {
+            own += part.sum();
+            magnitudes += part.cwiseAbs().sum();
+          }
+        goal.signed_  = dealii::Utilities::MPI::sum(own, solver.mesh().comm);
+        goal.absolute = dealii::Utilities::MPI::sum(magnitudes, solver.mesh().comm);
+        goal.is_known = std::isfinite(goal.absolute);
+      }
+
     private:
       mechanics::StressResult stress(const Fields &u) const
       {
@@ -223,17 +256,20 @@ namespace slipstick::app
       const double              t;
     };
 
-    void add_up(const MPI_Comm comm, GoalError &goal)
+    /// From the displacement @p z that belongs to the figure.
+    void complete(const StepSolver::Answer &answer, const ErrorProducts &products, const Fields &z, GoalError &goal)
     {
-      double own = 0, magnitudes = 0;
-      for (const auto &part : goal.cells)
+      if (products.is_missing(z))
         {
-          own += part.sum();
-          magnitudes += part.cwiseAbs().sum();
+          goal.reason = "its linear problem was not solved";
+          return;
         }
-      goal.signed_  = dealii::Utilities::MPI::sum(own, comm);
-      goal.absolute = dealii::Utilities::MPI::sum(magnitudes, comm);
-      goal.is_known = std::isfinite(goal.absolute);
+      if (products.largest(z) > 0)
+        goal.cells = products.with(z);
+      else // what nothing but given forces determines
+        for (const auto &part : answer.stress->subdomains)
+          goal.cells.push_back(Eigen::VectorXd::Zero(part.error.size()));
+      products.add_up(goal);
     }
 
     /// With w, the displacement that the gaps force on bodies without loads: |e|^2 / 2 - a(e, w).
@@ -262,6 +298,11 @@ namespace slipstick::app
       if (dealii::Utilities::MPI::max(largest_gap, comm) > 0)
         {
           const auto w = adjoint.solve(gaps);
+          if (products.is_missing(w))
+            {
+              goal.reason = "its linear problem was not solved";
+              return goal;
+            }
           if (products.largest(w) > 0)
             {
               const auto product = products.with(w);
@@ -269,7 +310,7 @@ namespace slipstick::app
                 goal.cells[p] -= product[p];
             }
         }
-      add_up(comm, goal);
+      products.add_up(goal);
       return goal;
     }
   } // namespace
@@ -301,12 +342,7 @@ namespace slipstick::app
               const auto z = functional.jumps.empty()
                                ? adjoint.solve(functional.loads, std::vector<double>(gaps.size(), 0.))
                                : adjoint.solve(functional.jumps);
-              if (products.largest(z) > 0)
-                error.cells = products.with(z);
-              else // what nothing but given forces determines
-                for (const auto &part : answer.stress->subdomains)
-                  error.cells.push_back(Eigen::VectorXd::Zero(part.error.size()));
-              add_up(solver.mesh().comm, error);
+              complete(answer, products, z, error);
             }
           errors.push_back(std::move(error));
         }

@@ -383,6 +383,7 @@ namespace slipstick::app
         errors = goal_errors(solver, *last, t, *wanted);
         summary.error_bars =
           error_bars(errors,
+                     summary.results,
                      contact_steps.empty() ? std::vector<contact::ContactNode>() : contact_steps.back().nodes,
                      scene.contacts);
         clock.leave();

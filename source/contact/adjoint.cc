@@ -31,6 +31,8 @@ namespace slipstick::contact
                                  qp::Goal(tolerance, dual.residual_norm(b)),
                                  options,
                                  [this](const auto &r, auto &z) { face.precondition(r, z); });
+    if (result.status != qp::Status::converged)
+      return {};
     work += result.counts;
     ++work.hessian_multiplications;
     x += result.x;

@@ -21,7 +21,7 @@ namespace slipstick::contact
 
     /// u with B u = @p jumps [mm] on the free rows under the loads [N] of this rank's subdomains, whose multipliers vanish on
     /// the other rows. For a figure g'x of the multipliers x: jumps g, no loads; for a figure of displacements: loads alone.
-    /// The energy product of its error with that of the solution is the error of the figure (Becker, Rannacher 2001).
+    /// Empty where the solver fails. The energy product of its error with that of the solution is the error of the figure (Becker, Rannacher 2001).
     std::vector<Eigen::VectorXd> solve(std::vector<Eigen::VectorXd> loads, std::vector<double> jumps);
 
     /// The same without loads.
