@@ -1,4 +1,5 @@
 #include <slipstick/app/adaptivity.h>
+#include <slipstick/mechanics/singular_points.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -24,16 +25,51 @@ namespace slipstick::app
     // Aims at this part of the allowed error, so that the last mesh does not just miss it.
     constexpr double aim = 0.9;
 
+    // A vertex is at a point when it is nearer than this part of its cell.
+    constexpr double at_vertex = 1e-6;
+
     using Entry = std::pair<double, mesh::CellKey>;
   } // namespace
 
-  CellErrors energy_errors(const mechanics::StressResult &stress, const double accuracy, const MPI_Comm)
+  std::vector<LeftOut> point_forces(const scene::Scene<2>      &scene,
+                                    const mesh::Mesh<2>        &mesh,
+                                    const mechanics::Spaces<2> &spaces,
+                                    const unsigned int          n_supports)
+  {
+    std::vector<LeftOut> list;
+    for (const auto &point : mechanics::singular_points(scene, mesh, spaces, n_supports))
+      if (point.what.rfind("the point", 0) == 0) // others have finite energy
+        {
+          double own = 0;
+          for (const auto &subdomain : mesh.subdomains)
+            if (subdomain->body == point.body)
+              for (const auto &cell : subdomain->triangulation.active_cell_iterators())
+                for (const unsigned int v : cell->vertex_indices())
+                  if (cell->vertex(v).distance(point.position) < at_vertex * cell->diameter())
+                    own = std::max(own, cell->diameter());
+          list.push_back({point.body, point.position, dealii::Utilities::MPI::max(own, mesh.comm), point.what});
+        }
+    return list;
+  }
+
+  CellErrors energy_errors(const mesh::Mesh<2>           &mesh,
+                           const mechanics::StressResult &stress,
+                           const std::vector<LeftOut>    &left_out,
+                           const double                   accuracy)
   {
     CellErrors   errors;
     const double all = stress.energy_squared + stress.error_squared;
-    for (const auto &part : stress.subdomains)
-      errors.of_cells.push_back(part.error.array().square() / (all > 0 ? all : 1.));
-    errors.total   = all > 0 ? stress.error_squared / all : 0.;
+    double       own = 0;
+    for (unsigned int p = 0; p < stress.subdomains.size(); ++p)
+      {
+        errors.of_cells.push_back(stress.subdomains[p].error.array().square() / (all > 0 ? all : 1.));
+        for (const auto &cell : mesh.subdomains[p]->triangulation.active_cell_iterators())
+          for (const auto &place : left_out)
+            if (place.body == mesh.subdomains[p]->body && cell->center().distance(place.position) < place.radius)
+              errors.of_cells[p][cell->active_cell_index()] = 0;
+        own += errors.of_cells[p].sum();
+      }
+    errors.total   = dealii::Utilities::MPI::sum(own, mesh.comm);
     errors.allowed = accuracy * accuracy;
     return errors;
   }

@@ -27,6 +27,7 @@
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -184,11 +185,14 @@ namespace slipstick::app
       }
 
       /// Says in the summary what became of an accuracy that was asked for.
-      void finish(const std::vector<output::MeshRow> &meshes, const std::string &missed)
+      void finish(const std::vector<output::MeshRow> &meshes,
+                  const std::vector<std::string>     &notes,
+                  const std::string                  &missed)
       {
         finished_steps->meshes    = meshes;
         finished_steps->time_s    = times(clock, solver.factorization_seconds());
         finished_steps->memory_mb = memory(comm);
+        finished_steps->warnings.insert(finished_steps->warnings.end(), notes.begin(), notes.end());
         if (!missed.empty())
           {
             finished_steps->status = output::RunStatus::not_converged;
@@ -209,6 +213,10 @@ namespace slipstick::app
       const mesh::Mesh<dim> &mesh() const
       {
         return solver.mesh();
+      }
+      std::vector<LeftOut> point_forces() const
+      {
+        return app::point_forces(scene, solver.mesh(), solver.spaces(), solver.n_given_supports());
       }
 
       /// After a step without equilibrium: the results of the steps before it are kept and marked.
@@ -567,7 +575,6 @@ namespace slipstick::app
                         what().c_str(),
                         options.max_meshes,
                         options.max_unknowns));
-        log.line("              mesh      cells   unknowns  energy norm   error    time [s]");
         for (;;)
           {
             steps.reset();
@@ -577,11 +584,14 @@ namespace slipstick::app
             steps.emplace(scene, directory, quiet, comm, wanted, &refinement);
             const auto &summary = steps->solve_and_write(false);
             const bool  solved  = summary.status == output::RunStatus::converged;
-            add(summary);
+            if (rows.empty() && options.goals.empty())
+              leave_out(steps->point_forces());
+            if (solved)
+              add(*steps, summary);
             const std::string missed = solved ? why_to_stop(*steps, summary) : "a mesh was not solved";
             if (!solved || reached || !missed.empty())
               {
-                steps->finish(rows, reached ? "" : missed);
+                steps->finish(rows, notes, reached ? "" : missed);
                 steps->print(log);
                 if (!reached)
                   log.warning(missed);
@@ -599,18 +609,37 @@ namespace slipstick::app
         return names.empty() ? "the energy norm" : names;
       }
 
-      void add(const output::Summary &summary)
+      void leave_out(std::vector<LeftOut> places)
+      {
+        left_out = std::move(places);
+        for (const auto &place : left_out)
+          {
+            notes.push_back(
+              format("the accuracy leaves out what is within %.3g mm of (%.6g, %.6g) of body %s, %s: the energy "
+                     "is infinite there; spread the force over an edge to have it estimated",
+                     place.radius,
+                     place.position[0],
+                     place.position[1],
+                     scene.bodies[place.body].name.c_str(),
+                     place.what.c_str()));
+            log.line("             warning: " + notes.back());
+          }
+      }
+
+      void add(const Run &steps, const output::Summary &summary)
       {
         output::MeshRow row;
         row.cells        = summary.problem.cells;
         row.unknowns     = summary.problem.primal_dofs;
         row.energy_error = summary.error.estimate_energy_relative;
-        const auto worst = options.goals.empty() ? std::optional<double>(row.energy_error)
+        const auto worst = options.goals.empty() ? std::optional<double>(std::sqrt(errors_of(steps).total))
                                                  : worst_error(summary.error_bars, options.goals);
         is_known         = dealii::Utilities::MPI::broadcast(comm, worst.has_value());
         row.error        = dealii::Utilities::MPI::broadcast(comm, worst.value_or(0.));
         row.seconds      = summary.time_s.total;
         rows.push_back(row);
+        if (rows.size() == 1)
+          log.line("              mesh      cells   unknowns  energy norm   error    time [s]");
         reached = is_known && row.error <= options.accuracy && summary.status == output::RunStatus::converged;
         log.line(format("             %5zu %10llu %10llu %10.2g %% %8s %10.2f",
                         rows.size(),
@@ -632,9 +661,8 @@ namespace slipstick::app
                     : format("after %zu meshes there is no estimate", rows.size()));
         if (rows.size() >= options.max_meshes)
           return so_far + "; allow more of them (Adaptivity/Max meshes), or begin with a finer one";
-        auto       cells    = options.goals.empty() || !is_known
-                                ? energy_errors(steps.stress(), is_known ? options.accuracy : 0., comm)
-                                : errors_of_goals(steps.goals(), options.accuracy, comm);
+        auto       cells    = options.goals.empty() || !is_known ? errors_of(steps)
+                                                                 : errors_of_goals(steps.goals(), options.accuracy, comm);
         const auto n_marked = mark(steps.mesh(), cells, refinement);
         // nine cells for one, and templates around them
         constexpr double cells_for_one = 12;
@@ -655,6 +683,12 @@ namespace slipstick::app
         return "";
       }
 
+      /// In the energy norm; on the way to a goal without an estimate as much as is useful.
+      CellErrors errors_of(const Run &steps) const
+      {
+        return energy_errors(steps.mesh(), steps.stress(), left_out, options.goals.empty() ? options.accuracy : 0.);
+      }
+
       const scene::Scene<dim>        &scene;
       const scene::AdaptivityOptions &options;
       const output::OutputDirectory  &directory;
@@ -663,6 +697,8 @@ namespace slipstick::app
       const MPI_Comm                  comm;
       mesh::Refinement                refinement;
       std::vector<output::MeshRow>    rows;
+      std::vector<LeftOut>            left_out;
+      std::vector<std::string>        notes;
       bool                            reached = false, is_known = false;
     };
   } // namespace

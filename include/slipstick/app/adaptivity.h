@@ -17,8 +17,26 @@ namespace slipstick::app
     double                       allowed = 0; // total to be reached
   };
 
+  /// Where the exact energy is infinite, so that its error does not fall: the surroundings of a point force.
+  struct LeftOut
+  {
+    unsigned int     body = 0;
+    dealii::Point<2> position;
+    double           radius = 0; // of the cells around it on the first mesh [mm]
+    std::string      what;       // "the point load tip"
+  };
+
+  /// Of all point loads and point supports. Collective.
+  std::vector<LeftOut> point_forces(const scene::Scene<2>      &scene,
+                                    const mesh::Mesh<2>        &mesh,
+                                    const mechanics::Spaces<2> &spaces,
+                                    const unsigned int          n_supports);
+
   /// Of the estimate in the energy norm: squares over that of the displacement. Collective.
-  CellErrors energy_errors(const mechanics::StressResult &stress, const double accuracy, const MPI_Comm comm);
+  CellErrors energy_errors(const mesh::Mesh<2>           &mesh,
+                           const mechanics::StressResult &stress,
+                           const std::vector<LeftOut>    &left_out,
+                           const double                   accuracy);
 
   /// Of goals: magnitudes over the figures, the sum of all. Collective.
   CellErrors errors_of_goals(const std::vector<GoalError> &goals, const double accuracy, const MPI_Comm comm);
