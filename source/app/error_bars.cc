@@ -86,6 +86,12 @@ namespace slipstick::app
           values[pair.pair + ".tangential_force"] = pair.tangential_force;
           values[pair.pair + ".max_pressure"]     = pair.max_pressure;
         }
+      for (const auto &probe : results.probes)
+        if (probe.is_point)
+          {
+            values[probe.name + ".u_x"] = probe.points.front().displacement[0];
+            values[probe.name + ".u_y"] = probe.points.front().displacement[1];
+          }
       for (const auto &support : results.forces.supports)
         {
           values[support.name + ".force_x"] = support.sum.force[0];

@@ -32,8 +32,9 @@ namespace slipstick::app
     class Functionals
     {
     public:
-      Functionals(const StepSolver &solver_, const StepSolver::Answer &answer_)
+      Functionals(const StepSolver &solver_, const mechanics::Probes<dim> &probes_, const StepSolver::Answer &answer_)
         : solver(solver_)
+        , probes(probes_)
         , answer(answer_)
         , rows(solver.dual().constraints())
         , x(answer.recovery.multipliers)
@@ -59,10 +60,24 @@ namespace slipstick::app
               if (holds(goal))
                 list.push_back(std::move(goal));
             }
+        for (unsigned int k = 0; k < scene.probes.size(); ++k)
+          if (scene.probes[k].ends.size() == 1)
+            for (unsigned int d = 0; d < dim; ++d)
+              list.push_back(displacement_at(scene.probes[k].name + (d == 0 ? ".u_x" : ".u_y"), k, d));
         return list;
       }
 
     private:
+      Functional displacement_at(const std::string &name, const unsigned int probe, const unsigned int d) const
+      {
+        Functional goal{name, "mm", 0, {}, probes.unit_force(probe, d), {}};
+        double     own = 0;
+        for (unsigned int p = 0; p < goal.loads.size(); ++p)
+          own += goal.loads[p].dot(answer.recovery.u[p]);
+        goal.value = dealii::Utilities::MPI::sum(own, comm);
+        return goal;
+      }
+
       template <class F>
       void for_points_of(const unsigned int pair, const F &f) const
       {
@@ -177,6 +192,7 @@ namespace slipstick::app
       }
 
       const StepSolver               &solver;
+      const mechanics::Probes<dim>   &probes;
       const StepSolver::Answer       &answer;
       const tfeti::Constraints       &rows;
       const tfeti::DistributedVector &x;
@@ -316,6 +332,7 @@ namespace slipstick::app
   } // namespace
 
   std::vector<GoalError> goal_errors(StepSolver                     &solver,
+                                     const mechanics::Probes<2>     &probes,
                                      const StepSolver::Answer       &answer,
                                      const double                    t,
                                      const std::vector<std::string> &quantities)
@@ -324,7 +341,7 @@ namespace slipstick::app
       return quantities.empty() || std::find(quantities.begin(), quantities.end(), name) != quantities.end();
     };
     const auto             gaps        = solver.dual().constraints().c; // before the adjoint problems change them
-    const auto             functionals = Functionals(solver, answer).all();
+    const auto             functionals = Functionals(solver, probes, answer).all();
     const ErrorProducts    products(solver, answer, t);
     contact::Adjoint       adjoint(solver.dual_for_adjoints(), solver.solution().free, scene::SolverOptions().pcpg);
     const std::string      loose = "bodies slide on all of their contacts";

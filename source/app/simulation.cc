@@ -388,7 +388,7 @@ namespace slipstick::app
       void estimate_errors(const double t, output::Summary &summary)
       {
         clock.enter("recovery");
-        errors = goal_errors(solver, *last, t, *wanted);
+        errors = goal_errors(solver, probes, *last, t, *wanted);
         summary.error_bars =
           error_bars(errors,
                      summary.results,

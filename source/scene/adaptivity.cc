@@ -19,6 +19,10 @@ namespace slipstick::scene
     for (const auto &support : scene.supports)
       for (const char *what : {"force_x", "force_y"})
         names.push_back(support.name + "." + what);
+    for (const auto &probe : scene.probes)
+      if (probe.ends.size() == 1)
+        for (const char *what : {"u_x", "u_y"})
+          names.push_back(probe.name + "." + what);
     return names;
   }
 

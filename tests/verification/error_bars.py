@@ -92,6 +92,17 @@ class ErrorBars(unittest.TestCase):
         self.check('lap_joint', 1, 0, known, (0.5, 2), ('max_displacement', 'strain_energy', 'head left.normal_force',
                                                       'joint left.normal_force', 'nut right.normal_force'))
 
+    def test_probe(self):
+        # on the outside of the ring, Lame: p 2 b^2 c / (E (c^2 - b^2))
+        probe = {'Probes': 'outside', 'Probe outside/Body': 'ring', 'Probe outside/Point': '0, 40'}
+        summary = converged(shipped('press_fit'), {**settings(2, 0), **probe, 'Error bars': 'true'}).summary
+        bar, = (bar for bar in summary['error_bars'] if bar['quantity'] == 'outside.u_y')
+        exact = PRESSURE * 2 * 20**2 * 40 / (2.1e5 * (40**2 - 20**2))
+        print('probe', bar, exact, flush=True)
+        self.assertEqual(bar['value'], summary['results']['probes'][0]['displacement'][1])
+        self.assertGreater(bar['error'], 0.2 * abs(exact - bar['value']))
+        self.assertLess(bar['error'], 1e-3 * exact)
+
     def test_press_fit(self):
         self.check('press_fit', 1, 1, reference('press_fit', 2), (0.2, 5), ('fit.normal_force', 'strain_energy'))
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <slipstick/app/step_solver.h>
+#include <slipstick/mechanics/probes.h>
 
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ namespace slipstick::app
   /// @param quantities of which errors are wanted; empty: all.
   /// The dual problem of @p solver is changed: for the last load step. Collective.
   std::vector<GoalError> goal_errors(StepSolver                     &solver,
+                                     const mechanics::Probes<2>     &probes,
                                      const StepSolver::Answer       &answer,
                                      const double                    t,
                                      const std::vector<std::string> &quantities);
