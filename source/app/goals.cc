@@ -16,6 +16,9 @@ namespace slipstick::app
     // Components of directions below this are rounding.
     constexpr double along_axis = 1e-9;
 
+    // A pair slides as a whole when nodes that stick bear no more than this part of its friction.
+    constexpr double sticking_part = 0.1;
+
     using Fields = std::vector<Eigen::VectorXd>;
 
     /// What is solved for one figure: jumps or loads, on this rank.
@@ -99,21 +102,34 @@ namespace slipstick::app
       {
         Functional goal{name, "N", 0, std::vector<double>(n_rows, 0.), {}, {}};
         for_points_of(pair, [&](const tfeti::ContactPoint &point) {
-          const unsigned int row = is_normal ? point.normal_row : point.tangential_row;
-          if (row == tfeti::invalid_row)
-            return;
-          goal.jumps[row] = 1;
-          // slip at a bound that follows the pressure
-          const auto &free = solver.solution().free;
-          if (!is_normal && !free[row] && point.normal_row != tfeti::invalid_row &&
-              solver.discrete_scene().contacts[pair].law.coefficient && x.local_element(point.normal_row) > 0)
-            goal.jumps[point.normal_row] = x.local_element(row) / x.local_element(point.normal_row);
+          if (const unsigned int row = is_normal ? point.normal_row : point.tangential_row; row != tfeti::invalid_row)
+            goal.jumps[row] = 1;
         });
-        auto own = goal.jumps; // a slipping row counts once
-        for (unsigned int r = 0; r < n_rows; ++r)
-          own[r] = rows.kind[r] == tfeti::RowKind::normal && !is_normal ? 0. : own[r];
-        goal.value = value_of(own);
+        goal.value = value_of(goal.jumps);
+        if (!is_normal && slides(pair)) // as a whole: friction follows the pressure
+          for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+            if (point.normal_row != tfeti::invalid_row && point.tangential_row != tfeti::invalid_row &&
+                !solver.solution().free[point.tangential_row] && x.local_element(point.normal_row) > 0)
+              goal.jumps[point.normal_row] = x.local_element(point.tangential_row) / x.local_element(point.normal_row);
+          });
         return goal;
+      }
+
+      /// Do nodes that slip at a bound which follows the pressure bear nearly all of its friction? Where others bear a part,
+      /// equilibrium ties them to these more than pressure does.
+      bool slides(const unsigned int pair) const
+      {
+        if (!solver.discrete_scene().contacts[pair].law.coefficient)
+          return false;
+        double sticks = 0, all = 0;
+        for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+          if (point.tangential_row == tfeti::invalid_row)
+            return;
+          const double force = std::abs(x.local_element(point.tangential_row));
+          all += force;
+          sticks += solver.solution().free[point.tangential_row] ? force : 0.;
+        });
+        return dealii::Utilities::MPI::sum(sticks, comm) <= sticking_part * dealii::Utilities::MPI::sum(all, comm);
       }
 
       Functional pressure(const std::string &name, const unsigned int pair) const

@@ -56,7 +56,7 @@ def effectivities(name, degree, refinements, known):
         largest[bar['unit']] = max(largest.get(bar['unit'], 0.), abs(bar['value']))
     rows = []
     for bar in summary['error_bars']:
-        if bar['quantity'] not in known or max(abs(bar['value']), abs(bar['error'] or 0)) <= ROUNDING * largest[bar['unit']]:
+        if bar['quantity'] not in known or abs(bar['value']) <= ROUNDING * largest[bar['unit']]:
             continue
         exact, uncertain = known[bar['quantity']]
         error = exact - bar['value']

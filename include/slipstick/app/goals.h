@@ -24,8 +24,9 @@ namespace slipstick::app
 
   /// Dual weighted residuals (Becker, Rannacher, Acta Numerica 2001): the error of a figure is the energy product of the
   /// errors of the solution and of the displacement that the figure stands for, a linear problem on the set of the solution
-  /// (contact::Adjoint); both errors are those of recovered stresses, as in the estimate of the energy norm. Slip at a
-  /// Coulomb bound follows the normal forces in the figure, not in that problem.
+  /// (contact::Adjoint); both errors are those of recovered stresses, as in the estimate of the energy norm. Bounds of
+  /// friction stay as they are in that problem; in the tangential force of a pair that slides as a whole they follow the
+  /// pressure.
   /// @param quantities of which errors are wanted; empty: all.
   /// The dual problem of @p solver is changed: for the last load step. Collective.
   std::vector<GoalError> goal_errors(StepSolver                     &solver,
