@@ -184,6 +184,13 @@ namespace slipstick::app
         print_result(to, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
       }
 
+      /// Those about input and answer.
+      void print_warnings(const Log &to) const
+      {
+        for (const std::string &text : warnings)
+          to.line("             warning: " + text);
+      }
+
       /// Says in the summary what became of an accuracy that was asked for.
       void finish(const std::vector<output::MeshRow> &meshes,
                   const std::vector<std::string>     &notes,
@@ -592,6 +599,7 @@ namespace slipstick::app
             if (!solved || reached || !missed.empty())
               {
                 steps->finish(rows, notes, reached ? "" : missed);
+                steps->print_warnings(log);
                 steps->print(log);
                 if (!reached)
                   log.warning(missed);
