@@ -91,18 +91,20 @@ namespace
               std::cout << told << std::flush;
             return static_cast<int>(ExitStatus::converged);
           }
-        const auto scene = scene::read_scene(command_line.case_file, command_line.overrides);
-        const Log  log(comm,
+        scene::AdaptivityOptions adaptivity;
+        const auto               scene = scene::read_scene(command_line.case_file, command_line.overrides, &adaptivity);
+        const Log                log(comm,
                       command_line.quiet                           ? Verbosity::quiet
-                       : command_line.verbose || command_line.check ? Verbosity::verbose
-                                                                    : Verbosity::normal);
+                                     : command_line.verbose || command_line.check ? Verbosity::verbose
+                                                                                  : Verbosity::normal);
         mesh::check_size(scene, command_line.force, comm);
         if (command_line.check)
           {
             app::check_scene(scene, command_line.picture, log, comm);
             return static_cast<int>(ExitStatus::converged);
           }
-        return static_cast<int>(app::run(scene, command_line.output_directory, command_line.resume, log, comm));
+        return static_cast<int>(
+          app::run(scene, adaptivity, command_line.output_directory, command_line.resume, log, comm));
       }
     catch (const InputError &error)
       {

@@ -1,4 +1,6 @@
+#include <slipstick/app/adaptivity.h>
 #include <slipstick/app/answer_warnings.h>
+#include <slipstick/app/error_bars.h>
 #include <slipstick/app/geometry_checks.h>
 #include <slipstick/app/held_nodes.h>
 #include <slipstick/app/interruption.h>
@@ -6,6 +8,7 @@
 #include <slipstick/app/restart.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/app/step_solver.h>
+#include <slipstick/base/memory.h>
 #include <slipstick/contact/resultants.h>
 #include <slipstick/interface/arc_length.h>
 #include <slipstick/mechanics/elasticity.h>
@@ -24,6 +27,7 @@
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -116,20 +120,26 @@ namespace slipstick::app
     class Run
     {
     public:
-      Run(const scene::Scene<dim>       &scene,
-          const output::OutputDirectory &directory_,
-          const Log                     &log_,
-          const MPI_Comm                 comm_)
+      /// @param wanted error bars of these, after the last load step; with an empty list of all; nothing: none.
+      /// @param refinement of single cells, if any.
+      Run(const scene::Scene<dim>                &scene,
+          const output::OutputDirectory          &directory_,
+          const Log                              &log_,
+          const MPI_Comm                          comm_,
+          std::optional<std::vector<std::string>> wanted_    = {},
+          mesh::Refinement                       *refinement = nullptr)
         : directory(directory_)
         , log(log_)
         , comm(comm_)
-        , solver(scene, log_, clock, comm_)
+        , wanted(std::move(wanted_))
+        , solver(scene, log_, clock, comm_, wanted.has_value(), refinement)
         , scene(solver.discrete_scene())
         , probes(this->scene, solver.mesh(), solver.spaces())
         , warnings(warnings_before(scene, solver.mesh()))
       {}
 
-      ExitStatus solve_and_write(const bool resumes)
+      /// @return the summary, which rank 0 knows completely.
+      const output::Summary &solve_and_write(const bool resumes)
       {
         output::Summary summary;
         if (resumes)
@@ -161,12 +171,62 @@ namespace slipstick::app
         output::write_summary(directory, summary);
         if (summary.status == output::RunStatus::converged)
           remove_restart(directory, comm);
-        log.line("");
-        print_forces(log, scene, summary.results);
+        finished_steps = std::move(summary);
+        return *finished_steps;
+      }
+
+      /// What was found, at the end of a run.
+      void print(const Log &to) const
+      {
+        const auto &summary = *finished_steps;
+        to.line("");
+        print_forces(to, scene, summary.results);
         if (prints())
           do_not_tell_when_interrupted();
-        print_result(log, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
-        return summary.status == output::RunStatus::converged ? ExitStatus::converged : ExitStatus::not_converged;
+        print_bars(to, summary.error_bars);
+        print_result(to, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
+      }
+
+      /// Those about input and answer.
+      void print_warnings(const Log &to) const
+      {
+        for (const std::string &text : warnings)
+          to.line("             warning: " + text);
+      }
+
+      /// Says in the summary what became of an accuracy that was asked for.
+      void finish(const std::vector<output::MeshRow> &meshes,
+                  const std::vector<std::string>     &notes,
+                  const std::string                  &missed)
+      {
+        finished_steps->meshes    = meshes;
+        finished_steps->time_s    = times(clock, solver.factorization_seconds());
+        finished_steps->memory_mb = memory(comm);
+        finished_steps->warnings.insert(finished_steps->warnings.end(), notes.begin(), notes.end());
+        if (!missed.empty())
+          {
+            finished_steps->status = output::RunStatus::not_converged;
+            finished_steps->warnings.push_back(missed);
+          }
+        output::write_summary(directory, *finished_steps);
+      }
+
+      /// Of the last load step.
+      const mechanics::StressResult &stress() const
+      {
+        return *last->stress;
+      }
+      const std::vector<GoalError> &goals() const
+      {
+        return errors;
+      }
+      const mesh::Mesh<dim> &mesh() const
+      {
+        return solver.mesh();
+      }
+      std::vector<LeftOut> point_forces() const
+      {
+        return app::point_forces(scene, solver.mesh(), solver.spaces(), solver.n_given_supports());
       }
 
       /// After a step without equilibrium: the results of the steps before it are kept and marked.
@@ -279,7 +339,8 @@ namespace slipstick::app
                           scene.load_factors.size(),
                           t,
                           time_left(step).c_str()));
-        const auto   answer    = solver.solve(step, so_far.solver.hessian_multiplications);
+        last.reset();
+        auto         answer    = solver.solve(step, so_far.solver.hessian_multiplications);
         const auto  &u         = answer->recovery.u;
         const auto  &contact   = *answer->contact;
         const auto  &stress    = *answer->stress;
@@ -327,7 +388,23 @@ namespace slipstick::app
         drop_moments(scene, summary.results);
         clock.leave();
         add_step(so_far, t, summary);
+        last = std::move(answer);
+        if (wanted && step + 1 == scene.load_factors.size() && summary.status == output::RunStatus::converged)
+          estimate_errors(t, summary);
         return summary;
+      }
+
+      /// After the last load step.
+      void estimate_errors(const double t, output::Summary &summary)
+      {
+        clock.enter("recovery");
+        errors = goal_errors(solver, probes, *last, t, *wanted);
+        summary.error_bars =
+          error_bars(errors,
+                     summary.results,
+                     contact_steps.empty() ? std::vector<contact::ContactNode>() : contact_steps.back().nodes,
+                     scene.contacts);
+        clock.leave();
       }
 
       /// Where stress and error are largest, and whether more than the mesh is in the way there.
@@ -467,23 +544,26 @@ namespace slipstick::app
           output::write_contact_csv(directory, contact_names(), contact_steps);
       }
 
-      const output::OutputDirectory   &directory;
-      const Log                       &log;
-      const MPI_Comm                   comm;
-      StageClock                       clock;
-      StepSolver                       solver;
-      const scene::Scene<dim>         &scene; // with the contact pairs that are found
-      mechanics::Probes<dim>           probes;
-      std::vector<output::ContactStep> contact_steps;
-      TotalSlip                        total_slip;
-      std::vector<std::string>         warnings;
-      std::set<std::string>            warned_about;
-      std::optional<output::Summary>   finished_steps;   // of all load steps that have ended
-      unsigned int                     first_step   = 0; // of this process
-      double                           steps_began  = 0; // [s]
-      unsigned int                     kept_steps   = 0; // in the tables on the disk
-      double                           kept_at      = 0; // when they were written [s]
-      double                           writing_time = 0; // that this took [s]
+      const output::OutputDirectory          &directory;
+      const Log                              &log;
+      const MPI_Comm                          comm;
+      std::optional<std::vector<std::string>> wanted; // error bars
+      StageClock                              clock;
+      StepSolver                              solver;
+      const scene::Scene<dim>                &scene; // with the contact pairs that are found
+      mechanics::Probes<dim>                  probes;
+      std::unique_ptr<StepSolver::Answer>     last;   // load step
+      std::vector<GoalError>                  errors; // of its figures
+      std::vector<output::ContactStep>        contact_steps;
+      TotalSlip                               total_slip;
+      std::vector<std::string>                warnings;
+      std::set<std::string>                   warned_about;
+      std::optional<output::Summary>          finished_steps;   // of all load steps that have ended
+      unsigned int                            first_step   = 0; // of this process
+      double                                  steps_began  = 0; // [s]
+      unsigned int                            kept_steps   = 0; // in the tables on the disk
+      double                                  kept_at      = 0; // when they were written [s]
+      double                                  writing_time = 0; // that this took [s]
     };
   } // namespace
 
@@ -507,18 +587,185 @@ namespace slipstick::app
     log.line("picture of the scene: " + picture);
   }
 
-  ExitStatus run(const scene::Scene<dim> &scene,
-                 const std::string       &output_directory,
-                 const bool               resumes,
-                 const Log               &log,
-                 const MPI_Comm           comm)
+  namespace
   {
+    /// Meshes that are refined until the accuracy is reached.
+    class Refining
+    {
+    public:
+      Refining(const scene::Scene<dim>        &scene_,
+               const scene::AdaptivityOptions &options_,
+               const output::OutputDirectory  &directory_,
+               const Log                      &log_,
+               const MPI_Comm                  comm_)
+        : scene(scene_)
+        , options(options_)
+        , directory(directory_)
+        , log(log_)
+        , quiet(comm_, Verbosity::quiet)
+        , comm(comm_)
+      {}
+
+      ExitStatus run(std::optional<Run> &steps)
+      {
+        print_header(log, scene, comm);
+        log.line(format("accuracy     %g %% of %s is to be reached, with at most %u meshes and %u unknowns",
+                        100 * options.accuracy,
+                        what().c_str(),
+                        options.max_meshes,
+                        options.max_unknowns));
+        for (;;)
+          {
+            steps.reset();
+            std::optional<std::vector<std::string>> wanted;
+            if (!options.goals.empty())
+              wanted = options.goals;
+            steps.emplace(scene, directory, quiet, comm, wanted, &refinement);
+            const auto &summary = steps->solve_and_write(false);
+            const bool  solved  = summary.status == output::RunStatus::converged;
+            if (rows.empty() && options.goals.empty())
+              leave_out(steps->point_forces());
+            if (solved)
+              add(*steps, summary);
+            const std::string missed = solved ? why_to_stop(*steps, summary) : "a mesh was not solved";
+            if (!solved || reached || !missed.empty())
+              {
+                steps->finish(rows, notes, reached ? "" : missed);
+                steps->print_warnings(log);
+                steps->print(log);
+                if (!reached)
+                  log.warning(missed);
+                return reached ? ExitStatus::converged : ExitStatus::not_converged;
+              }
+          }
+      }
+
+    private:
+      std::string what() const
+      {
+        std::string names;
+        for (const std::string &goal : options.goals)
+          names += (names.empty() ? "" : ", ") + goal;
+        return names.empty() ? "the energy norm" : names;
+      }
+
+      void leave_out(std::vector<LeftOut> places)
+      {
+        left_out = std::move(places);
+        for (const auto &place : left_out)
+          {
+            notes.push_back(
+              format("the accuracy leaves out what is within %.3g mm of (%.6g, %.6g) of body %s, %s: the energy "
+                     "is infinite there; spread the force over an edge to have it estimated",
+                     place.radius,
+                     place.position[0],
+                     place.position[1],
+                     scene.bodies[place.body].name.c_str(),
+                     place.what.c_str()));
+            log.line("             warning: " + notes.back());
+          }
+      }
+
+      void add(const Run &steps, const output::Summary &summary)
+      {
+        output::MeshRow row;
+        row.cells        = summary.problem.cells;
+        row.unknowns     = summary.problem.primal_dofs;
+        row.energy_error = summary.error.estimate_energy_relative;
+        const auto worst = options.goals.empty() ? std::optional<double>(std::sqrt(errors_of(steps).total))
+                                                 : worst_error(summary.error_bars, options.goals);
+        is_known         = dealii::Utilities::MPI::broadcast(comm, worst.has_value());
+        row.error        = dealii::Utilities::MPI::broadcast(comm, worst.value_or(0.));
+        row.seconds      = summary.time_s.total;
+        rows.push_back(row);
+        if (rows.size() == 1)
+          log.line("              mesh      cells   unknowns  energy norm   error    time [s]");
+        reached = is_known && row.error <= options.accuracy && summary.status == output::RunStatus::converged;
+        log.line(format("             %5zu %10llu %10llu %10.2g %% %8s %10.2f",
+                        rows.size(),
+                        static_cast<unsigned long long>(row.cells),
+                        static_cast<unsigned long long>(row.unknowns),
+                        100 * row.energy_error,
+                        is_known ? format("%.2g %%", 100 * row.error).c_str() : "none",
+                        row.seconds));
+      }
+
+      /// Marks the cells of the next mesh. @return why there is none; empty: there is one, or none is needed.
+      std::string why_to_stop(const Run &steps, const output::Summary &summary)
+      {
+        if (reached)
+          return "";
+        const std::string so_far =
+          format("the accuracy of %g %% of %s is not reached: ", 100 * options.accuracy, what().c_str()) +
+          (is_known ? format("the error is %.2g %% after %zu meshes", 100 * rows.back().error, rows.size())
+                    : format("after %zu meshes there is no estimate", rows.size()));
+        if (rows.size() >= options.max_meshes)
+          return so_far + "; allow more of them (Adaptivity/Max meshes), or begin with a finer one";
+        auto       cells    = options.goals.empty() || !is_known ? errors_of(steps)
+                                                                 : errors_of_goals(steps.goals(), options.accuracy, comm);
+        const auto n_marked = mark(steps.mesh(), cells, refinement);
+        // nine cells for one, and templates around them
+        constexpr double cells_for_one = 12;
+        const double     growth        = 1 + cells_for_one * n_marked / summary.problem.cells;
+        if (n_marked == 0)
+          return so_far + "; no cell is left that refinement would help";
+        if (growth * rows.back().unknowns > options.max_unknowns)
+          return so_far + format("; the next mesh may have %.2g unknowns, allowed are %u (Adaptivity/Max unknowns)",
+                                 growth * rows.back().unknowns,
+                                 options.max_unknowns);
+        const double needed = dealii::Utilities::MPI::broadcast(comm, summary.memory_mb.peak_total * growth);
+        const double free =
+          dealii::Utilities::MPI::broadcast(comm,
+                                            free_memory_mb(dealii::Utilities::MPI::n_mpi_processes(comm)) +
+                                              summary.memory_mb.peak_total);
+        if (needed > free)
+          return so_far + format("; the next mesh may need %.0f MB of memory, and %.0f MB are free", needed, free);
+        return "";
+      }
+
+      /// In the energy norm; on the way to a goal without an estimate as much as is useful.
+      CellErrors errors_of(const Run &steps) const
+      {
+        return energy_errors(steps.mesh(), steps.stress(), left_out, options.goals.empty() ? options.accuracy : 0.);
+      }
+
+      const scene::Scene<dim>        &scene;
+      const scene::AdaptivityOptions &options;
+      const output::OutputDirectory  &directory;
+      const Log                      &log;
+      const Log                       quiet;
+      const MPI_Comm                  comm;
+      mesh::Refinement                refinement;
+      std::vector<output::MeshRow>    rows;
+      std::vector<LeftOut>            left_out;
+      std::vector<std::string>        notes;
+      bool                            reached = false, is_known = false;
+    };
+  } // namespace
+
+  ExitStatus run(const scene::Scene<dim>        &scene,
+                 const scene::AdaptivityOptions &adaptivity,
+                 const std::string              &output_directory,
+                 const bool                      resumes,
+                 const Log                      &log,
+                 const MPI_Comm                  comm)
+  {
+    if (resumes && adaptivity.refines())
+      throw InputError("--resume: a run that refines its meshes cannot go on",
+                       "start it anew, without --resume, or give Accuracy without a percentage");
     const output::OutputDirectory directory(output_directory, comm);
     std::optional<Run>            steps;
     try
       {
-        steps.emplace(scene, directory, log, comm);
-        return steps->solve_and_write(resumes);
+        if (adaptivity.refines())
+          return Refining(scene, adaptivity, directory, log, comm).run(steps);
+        std::optional<std::vector<std::string>> wanted;
+        if (adaptivity.error_bars)
+          wanted.emplace();
+        steps.emplace(scene, directory, log, comm, wanted);
+        const bool converged = steps->solve_and_write(resumes).status == output::RunStatus::converged;
+        steps->print(log);
+        return converged ? ExitStatus::converged : ExitStatus::not_converged;
       }
     catch (const InputError &) // some of it shows in meshes and formulas only
       {

@@ -124,7 +124,12 @@ namespace slipstick::app
     }
   } // namespace
 
-  StepSolver::StepSolver(const scene::Scene<dim> &scene_, const Log &log_, StageClock &clock_, const MPI_Comm comm_)
+  StepSolver::StepSolver(const scene::Scene<dim> &scene_,
+                         const Log               &log_,
+                         StageClock              &clock_,
+                         const MPI_Comm           comm_,
+                         const bool               solves_adjoints,
+                         mesh::Refinement        *refinement)
     : scene(scene_)
     , log(log_)
     , clock(clock_)
@@ -135,11 +140,12 @@ namespace slipstick::app
     , discretization_error(infinity)
   {
     // these apply K+ more often than a single recovery does
-    options.dual.keeps_factors = scene.load_factors.size() > 1 || options.stops_at_discretization_error ||
+    options.dual.keeps_factors = solves_adjoints || scene.load_factors.size() > 1 ||
+                                 options.stops_at_discretization_error ||
                                  options.dual.operator_precision == tfeti::Precision::single_precision;
     print_header(log, scene, comm);
     clock.enter("mesh");
-    the_mesh   = std::make_unique<mesh::Mesh<dim>>(mesh::make_mesh(scene, comm));
+    the_mesh   = std::make_unique<mesh::Mesh<dim>>(mesh::make_mesh(scene, comm, refinement));
     the_spaces = std::make_unique<mechanics::Spaces<dim>>(*the_mesh, scene.discretization.degree);
     print_mesh(log, scene, *the_mesh, *the_spaces);
     for (auto &pair : interface::find_contacts(scene, *the_mesh, *the_spaces))

@@ -187,5 +187,23 @@ namespace slipstick::mechanics
     return result;
   }
 
+  template <int dim>
+  std::vector<Eigen::VectorXd> Probes<dim>::unit_force(const unsigned int k, const unsigned int d) const
+  {
+    std::vector<Eigen::VectorXd> loads;
+    for (const auto &dof_handler : spaces.dof_handlers)
+      loads.push_back(Eigen::VectorXd::Zero(dof_handler->n_dofs()));
+    const Place &place = places[k].front();
+    if (!place.is_own)
+      return loads;
+    const auto                                  &element = spaces.of(place.p);
+    std::vector<dealii::types::global_dof_index> dofs;
+    std::vector<unsigned int>                    nodes;
+    element.nodes_of(place.cell, dofs, nodes);
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      loads[place.p][dim * nodes[i] + d] += element.scalar->shape_value(i, place.unit);
+    return loads;
+  }
+
   template class Probes<2>;
 } // namespace slipstick::mechanics

@@ -156,16 +156,30 @@ namespace slipstick::mesh
 
     /// The meshes of all bodies, global vertices counted through; on rank 0.
     template <int dim>
-    std::vector<BodyMesh<dim>> make_bodies(const scene::Scene<dim> &scene)
+    std::vector<BodyMesh<dim>> make_bodies(const scene::Scene<dim> &scene, Refinement *refinement)
     {
+      if (refinement)
+        {
+          refinement->refined.resize(scene.bodies.size());
+          refinement->cells.clear();
+        }
       std::vector<BodyMesh<dim>>      bodies;
       std::map<std::string, MeshFile> files;
       GlobalVertex                    first = 0;
       for (unsigned int b = 0; b < scene.bodies.size(); ++b)
         {
-          bodies.push_back(make_body(scene, b, files));
+          std::vector<CellPath> paths;
+          bodies.push_back(make_body(scene, b, files, refinement ? &refinement->refined[b] : nullptr, &paths));
+          const auto &piece = bodies.back().piece;
           for (GlobalVertex &v : bodies.back().piece.global_vertices)
             v += first;
+          for (unsigned int c = 0; c < paths.size(); ++c)
+            {
+              std::vector<GlobalVertex> vertices;
+              for (unsigned int k = 0; k < n_corners<dim>(piece.cells[c]); ++k)
+                vertices.push_back(piece.global_vertices[piece.cells[c][k]]);
+              refinement->cells[cell_key(std::move(vertices))] = {b, std::move(paths[c])};
+            }
           first += bodies.back().piece.vertices.size();
         }
       for (auto &remark : unused_parts(scene, files))
@@ -279,7 +293,7 @@ namespace slipstick::mesh
 
     /// Rank 0 makes and cuts the bodies and sends every rank its subdomains.
     template <int dim>
-    void make_on_one_rank(const scene::Scene<dim> &scene, Mesh<dim> &mesh)
+    void make_on_one_rank(const scene::Scene<dim> &scene, Mesh<dim> &mesh, Refinement *refinement)
     {
       const unsigned int          n_ranks = mesh.first_subdomain.size() - 1;
       const bool                  is_root = dealii::Utilities::MPI::this_mpi_process(mesh.comm) == 0;
@@ -288,7 +302,7 @@ namespace slipstick::mesh
       collectively(mesh.comm, [&] {
         if (!is_root)
           return;
-        auto bodies = make_bodies(scene);
+        auto bodies = make_bodies(scene, refinement);
         for (const auto &body : bodies)
           {
             mesh.n_cells += body.piece.cells.size();
@@ -336,18 +350,18 @@ namespace slipstick::mesh
   } // namespace
 
   template <int dim>
-  Mesh<dim> make_mesh(const scene::Scene<dim> &scene, const MPI_Comm comm)
+  Mesh<dim> make_mesh(const scene::Scene<dim> &scene, const MPI_Comm comm, Refinement *refinement)
   {
     Mesh<dim> mesh;
     mesh.comm = comm;
     mesh.first_subdomain.resize(dealii::Utilities::MPI::n_mpi_processes(comm) + 1);
-    if (has_blocks(scene))
+    if (!refinement && has_blocks(scene))
       make_blocks(scene, mesh);
     else
-      make_on_one_rank(scene, mesh);
+      make_on_one_rank(scene, mesh, refinement);
     check_positions(scene, mesh);
     return mesh;
   }
 
-  template Mesh<2> make_mesh(const scene::Scene<2> &, const MPI_Comm);
+  template Mesh<2> make_mesh(const scene::Scene<2> &, const MPI_Comm, Refinement *);
 } // namespace slipstick::mesh

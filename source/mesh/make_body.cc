@@ -46,19 +46,23 @@ namespace slipstick::mesh
 
     /// Uniform refinements and the choice of kinds of cells, for a mesh as it stands in a file.
     template <int dim>
-    void refine_uniformly(const scene::Body<dim> &body, unsigned int refinements, BodyMesh<dim> &mesh)
+    void refine_uniformly(const scene::Body<dim> &body,
+                          unsigned int            refinements,
+                          const bool              refines_cells,
+                          BodyMesh<dim>          &mesh)
     {
       if (is_mixed(mesh.piece))
         {
-          const bool towards           = body.boundary_refinements > 0 && !body.refined_boundaries.empty();
+          const bool towards = refines_cells || (body.boundary_refinements > 0 && !body.refined_boundaries.empty());
           const auto [n_pieces, least] = pieces_of_one_kind(mesh.piece);
           if (towards || least << std::min(2 * refinements, 20u) < least_cells_of_one_kind)
             {
               mesh.piece = in_quadrilaterals(mesh.piece);
               mesh.remarks.push_back("body " + body.name + ": its triangles and quadrilaterals " +
-                                     (towards ? std::string("are refined towards a boundary")
-                                              : "mix in " + std::to_string(n_pieces) + " pieces, some of " +
-                                                  std::to_string(least) + " cells") +
+                                     (refines_cells ? std::string("are refined where the error is large")
+                                      : towards     ? std::string("are refined towards a boundary")
+                                                    : "mix in " + std::to_string(n_pieces) + " pieces, some of " +
+                                                    std::to_string(least) + " cells") +
                                      ", so all are divided into quadrilaterals (" +
                                      (refinements > 0 ? "in place of one refinement" : "half their size") + ")");
               refinements -= refinements > 0;
@@ -231,7 +235,11 @@ namespace slipstick::mesh
   }
 
   template <int dim>
-  BodyMesh<dim> make_body(const scene::Scene<dim> &scene, const unsigned int b, std::map<std::string, MeshFile> &files)
+  BodyMesh<dim> make_body(const scene::Scene<dim>         &scene,
+                          const unsigned int               b,
+                          std::map<std::string, MeshFile> &files,
+                          std::set<CellPath>              *refined,
+                          std::vector<CellPath>           *paths)
   {
     const scene::Body<dim> &body = scene.bodies[b];
     BodyMesh<dim>           mesh;
@@ -248,7 +256,7 @@ namespace slipstick::mesh
         of_file.clear();
         check_names(scene, b, mesh);
         smooth_outline(body, mesh);
-        refine_uniformly(body, body.refinements + scene.discretization.refinements, mesh);
+        refine_uniformly(body, body.refinements + scene.discretization.refinements, refined != nullptr, mesh);
       }
     else
       {
@@ -256,6 +264,12 @@ namespace slipstick::mesh
         check_names(scene, b, mesh);
       }
     refine_towards_boundaries(body, mesh);
+    if (refined)
+      {
+        auto finer = adapted(mesh.piece, *refined);
+        mesh.piece = std::move(finer.piece);
+        *paths     = std::move(finer.paths);
+      }
     mesh.piece.body = b;
     place_in_scene(scene, b, mesh.piece);
     add_boundary_parts(scene, b, mesh);
@@ -264,5 +278,9 @@ namespace slipstick::mesh
 
   template void                     place_in_scene(const scene::Scene<2> &, const unsigned int, MeshPiece<2> &);
   template std::vector<std::string> unused_parts(const scene::Scene<2> &, const std::map<std::string, MeshFile> &);
-  template BodyMesh<2> make_body(const scene::Scene<2> &, const unsigned int, std::map<std::string, MeshFile> &);
+  template BodyMesh<2>              make_body(const scene::Scene<2> &,
+                                              const unsigned int,
+                                              std::map<std::string, MeshFile> &,
+                                              std::set<CellPath> *,
+                                              std::vector<CellPath> *);
 } // namespace slipstick::mesh

@@ -29,6 +29,17 @@ namespace slipstick::mesh
         fine.cells.push_back(cell);
       }
 
+      /// Notes where the cells come from that were added since the last call.
+      /// @param n_regular children of a cell that is divided in its own shape.
+      void end_of(const unsigned int parent, const unsigned int n_regular)
+      {
+        const unsigned int n = fine.cells.size() - origins.size();
+        for (unsigned int child = 0; child < n; ++child)
+          origins.push_back({parent, child, n == 1 || n == n_regular, n == 1});
+      }
+
+      std::vector<CellOrigin> origins; // of the cells so far
+
       /// Point @p k of @p n equal parts of the edge from @p a to @p b; the same vertex on every call.
       unsigned int on_edge(const unsigned int a, const unsigned int b, const unsigned int k, const unsigned int n)
       {
@@ -156,6 +167,8 @@ namespace slipstick::mesh
                                     {{{{0, 1}}, {{1, 1}}, {{1, 2}}, {{0, 3}}}},
                                     {{{{1, 2}}, {{2, 2}}, {{2, 3}}, {{0, 3}}}}};
 
+    constexpr unsigned int cells_of_nine = 9;
+
     Template nine_cells()
     {
       Template cells;
@@ -247,7 +260,7 @@ namespace slipstick::mesh
     }
 
     template <int dim>
-    MeshPiece<dim> triangles_towards(const MeshPiece<dim> &piece, std::vector<bool> red)
+    RefinedPiece<dim> triangles_at(const MeshPiece<dim> &piece, std::vector<bool> red)
     {
       // a triangle with two bisected edges is itself divided into four, until nothing changes
       std::set<typename MeshPiece<dim>::Face> halved;
@@ -268,8 +281,9 @@ namespace slipstick::mesh
             }
         }
       Refiner<dim> refiner(piece);
-      for (const auto &cell : piece.cells)
+      for (unsigned int c = 0; c < piece.cells.size(); ++c)
         {
+          const auto               &cell = piece.cells[c];
           std::vector<unsigned int> edges;
           for (unsigned int f = 0; f < 3; ++f)
             if (halved.count(face_of_cell<dim>(cell, f)) > 0)
@@ -285,8 +299,10 @@ namespace slipstick::mesh
               refiner.add(triangle<dim>(a, middle, opposite));
               refiner.add(triangle<dim>(middle, b, opposite));
             }
+          refiner.end_of(c, 4);
         }
-      return refiner.finish();
+      auto origins = std::move(refiner.origins);
+      return {refiner.finish(), std::move(origins)};
     }
   } // namespace
 
@@ -312,24 +328,34 @@ namespace slipstick::mesh
   }
 
   template <int dim>
-  MeshPiece<dim> refined_towards(const MeshPiece<dim> &piece, const std::set<dealii::types::boundary_id> &ids)
+  RefinedPiece<dim> refined_at(const MeshPiece<dim> &piece, const std::vector<bool> &marked)
   {
-    const auto touches = touching(piece, ids);
     if (is_simplex<dim>(piece.cells.front()))
-      return triangles_towards(piece, touches);
+      return triangles_at(piece, marked);
 
-    std::vector<bool> marked(piece.vertices.size(), false);
+    std::vector<bool> marked_vertex(piece.vertices.size(), false);
     for (unsigned int c = 0; c < piece.cells.size(); ++c)
-      if (touches[c])
+      if (marked[c])
         for (const unsigned int v : piece.cells[c])
-          marked[v] = true;
+          marked_vertex[v] = true;
     Refiner<dim> refiner(piece);
-    for (const auto &cell : piece.cells)
-      divide_by_marks(refiner, cell, marked);
-    return refiner.finish();
+    for (unsigned int c = 0; c < piece.cells.size(); ++c)
+      {
+        divide_by_marks(refiner, piece.cells[c], marked_vertex);
+        refiner.end_of(c, cells_of_nine);
+      }
+    auto origins = std::move(refiner.origins);
+    return {refiner.finish(), std::move(origins)};
   }
 
-  template MeshPiece<2> refined(const MeshPiece<2> &);
-  template MeshPiece<2> in_quadrilaterals(const MeshPiece<2> &);
-  template MeshPiece<2> refined_towards(const MeshPiece<2> &, const std::set<dealii::types::boundary_id> &);
+  template <int dim>
+  MeshPiece<dim> refined_towards(const MeshPiece<dim> &piece, const std::set<dealii::types::boundary_id> &ids)
+  {
+    return refined_at(piece, touching(piece, ids)).piece;
+  }
+
+  template MeshPiece<2>    refined(const MeshPiece<2> &);
+  template MeshPiece<2>    in_quadrilaterals(const MeshPiece<2> &);
+  template RefinedPiece<2> refined_at(const MeshPiece<2> &, const std::vector<bool> &);
+  template MeshPiece<2>    refined_towards(const MeshPiece<2> &, const std::set<dealii::types::boundary_id> &);
 } // namespace slipstick::mesh

@@ -159,6 +159,33 @@ namespace slipstick::output
       return all;
     }
 
+    Json json(const std::vector<ErrorBar> &bars)
+    {
+      Json list = Json::array();
+      for (const ErrorBar &bar : bars)
+        {
+          list.push_back({{"quantity", bar.quantity},
+                          {"value", bar.value},
+                          {"error", bar.error ? Json(*bar.error) : Json()},
+                          {"unit", bar.unit}});
+          if (!bar.error)
+            list.back()["reason"] = bar.reason;
+        }
+      return list;
+    }
+
+    Json json(const std::vector<MeshRow> &meshes)
+    {
+      Json list = Json::array();
+      for (const MeshRow &mesh : meshes)
+        list.push_back({{"cells", mesh.cells},
+                        {"unknowns", mesh.unknowns},
+                        {"error", mesh.error},
+                        {"error_energy", mesh.energy_error},
+                        {"time", mesh.seconds}});
+      return list;
+    }
+
     Json json(const TimeSummary &time)
     {
       return {{"total", time.total},
@@ -193,26 +220,29 @@ namespace slipstick::output
 
   std::string to_json(const Summary &summary)
   {
-    const Json text = {{"case", summary.case_name},
-                       {"version", summary.version},
-                       {"ranks", summary.ranks},
-                       {"status", to_string(summary.status)},
-                       {"converged", summary.status == RunStatus::converged},
-                       {"warnings", summary.warnings},
-                       {"problem", json(summary.problem)},
-                       {"solver", json(summary.solver)},
-                       {"residuals", json(summary.residuals)},
-                       {"error",
-                        {{"estimate_energy_relative", summary.error.estimate_energy_relative},
-                         {"algebraic_relative", summary.error.algebraic_relative},
-                         {"largest_at", json(summary.error.largest_at)},
-                         {"largest_part", summary.error.largest_part}}},
-                       {"results", json(summary.results)},
-                       {"steps", json(summary.steps)},
-                       {"time_s", json(summary.time_s)},
-                       {"memory_mb",
-                        {{"peak_rank_max", summary.memory_mb.peak_rank_max},
-                         {"peak_total", summary.memory_mb.peak_total}}}};
+    Json text = {{"case", summary.case_name},
+                 {"version", summary.version},
+                 {"ranks", summary.ranks},
+                 {"status", to_string(summary.status)},
+                 {"converged", summary.status == RunStatus::converged},
+                 {"warnings", summary.warnings},
+                 {"problem", json(summary.problem)},
+                 {"solver", json(summary.solver)},
+                 {"residuals", json(summary.residuals)},
+                 {"error",
+                  {{"estimate_energy_relative", summary.error.estimate_energy_relative},
+                   {"algebraic_relative", summary.error.algebraic_relative},
+                   {"largest_at", json(summary.error.largest_at)},
+                   {"largest_part", summary.error.largest_part}}},
+                 {"results", json(summary.results)},
+                 {"steps", json(summary.steps)},
+                 {"time_s", json(summary.time_s)},
+                 {"memory_mb",
+                  {{"peak_rank_max", summary.memory_mb.peak_rank_max}, {"peak_total", summary.memory_mb.peak_total}}}};
+    if (!summary.error_bars.empty())
+      text["error_bars"] = json(summary.error_bars);
+    if (!summary.meshes.empty())
+      text["meshes"] = json(summary.meshes);
     return text.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
 

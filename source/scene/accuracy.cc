@@ -1,6 +1,7 @@
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/base/text.h>
 #include <slipstick/scene/accuracy.h>
+#include <slipstick/scene/adaptivity.h>
 
 #include <algorithm>
 
@@ -32,6 +33,13 @@ namespace slipstick::scene
                                                                   {"Solver/Prune contact", "false"},
                                                                   {"Friction/Tolerance", "1e-8"},
                                                                   {"Discretization/Degree", "2"}}}};
+
+    // Of a percentage: the algebraic error must not show in differences between meshes.
+    const Knobs of_percentage = {{"Solver/Tolerance", "1e-06"},
+                                 {"Solver/Operator precision", "double"},
+                                 {"Solver/Prune contact", "true"},
+                                 {"Friction/Tolerance", "1e-06"},
+                                 {"Discretization/Degree", "1"}};
   } // namespace
 
   std::vector<std::string> accuracy_names()
@@ -47,7 +55,7 @@ namespace slipstick::scene
     for (const auto &[word, knobs] : presets)
       if (word == preset)
         return knobs;
-    return {};
+    return accuracy_of(preset) > 0 ? of_percentage : Knobs();
   }
 
   void apply_accuracy(const Parameters &parameters, dealii::ParameterHandler &prm)

@@ -1,5 +1,6 @@
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/scene/accuracy.h>
+#include <slipstick/scene/adaptivity.h>
 #include <slipstick/scene/boundary_part.h>
 #include <slipstick/scene/checks.h>
 #include <slipstick/scene/declare.h>
@@ -8,6 +9,7 @@
 #include <slipstick/scene/read.h>
 #include <slipstick/scene/sections.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -55,6 +57,7 @@ namespace slipstick::scene
       Scene<dim> read(const Parameters &parameters);
 
       dealii::ParameterHandler prm; // bound to the members below
+      AdaptivityOptions        adaptivity;
 
     private:
       void declare_top_level(const Names &names);
@@ -113,6 +116,7 @@ namespace slipstick::scene
       declare(prm, options.friction);
       declare(prm, options.solver);
       declare(prm, options.output);
+      declare(prm, adaptivity);
     }
 
     template <int dim>
@@ -134,14 +138,31 @@ namespace slipstick::scene
                             {"axisymmetric", PlaneState::axisymmetric}},
         "what the section stands for, of all bodies; axisymmetric: half a section of bodies of revolution, x the "
         "radius, y the axis, all forces over the whole circumference");
-      add_choice(prm,
-                 "Accuracy",
-                 options.accuracy,
-                 Choices<Accuracy>{{"draft", Accuracy::draft},
-                                   {"engineering", Accuracy::engineering},
-                                   {"reference", Accuracy::reference}},
-                 "preset of Tolerance, Operator precision and Prune contact of the solver, Friction/Tolerance and "
-                 "Discretization/Degree; values that the scene sets take precedence");
+      const auto presets = std::vector<std::pair<std::string, Accuracy>>{{"draft", Accuracy::draft},
+                                                                         {"engineering", Accuracy::engineering},
+                                                                         {"reference", Accuracy::reference}};
+      add_entry(
+        prm,
+        "Accuracy",
+        "engineering",
+        "",
+        "preset of Tolerance, Operator precision and Prune contact of the solver, Friction/Tolerance and "
+        "Discretization/Degree (values that the scene sets take precedence); or the relative error to reach by refining "
+        "meshes, in the energy norm or that of Goal",
+        choice_prefix + "draft, engineering, reference, or a percentage such as 1 %",
+        [presets](const std::string &text) {
+          return accuracy_of(text) > 0 || std::any_of(presets.begin(), presets.end(), [&text](const auto &preset) {
+                   return preset.first == text;
+                 });
+        },
+        [this, presets](const std::string &text) {
+          adaptivity.accuracy = accuracy_of(text);
+          options.accuracy    = Accuracy::engineering;
+          for (const auto &[word, accuracy] : presets)
+            if (word == text)
+              options.accuracy = accuracy;
+        });
+      declare_goals(prm, adaptivity);
       for (const NamedKind &kind : named_kinds)
         add_entry(
           prm,
@@ -202,9 +223,25 @@ namespace slipstick::scene
       scene.parameters = print_values(prm);
       return scene;
     }
+
+    /// Whether the goals name quantities of the scene.
+    template <int dim>
+    void check_goals(const AdaptivityOptions &adaptivity, const Scene<dim> &scene, const Parameters &parameters)
+    {
+      if (adaptivity.goals.empty())
+        return;
+      if (!adaptivity.refines())
+        throw parameters.error("Goal",
+                               "there is no accuracy that it should have",
+                               "set Accuracy = 1 %, or leave the goal out");
+      const auto names = quantity_names(scene);
+      for (const std::string &goal : adaptivity.goals)
+        if (std::find(names.begin(), names.end(), goal) == names.end())
+          throw parameters.error("Goal", "there is no quantity '" + goal + "'", suggest_name(goal, names));
+    }
   } // namespace
 
-  Scene<2> read_scene(const std::string &file, const std::vector<std::string> &overrides)
+  Scene<2> read_scene(const std::string &file, const std::vector<std::string> &overrides, AdaptivityOptions *adaptivity)
   {
     const Parameters parameters(file, overrides, named_kinds);
     Names            names;
@@ -218,6 +255,9 @@ namespace slipstick::scene
     Scene<2> scene = declared.read(parameters);
     scene.name     = std::filesystem::path(file).stem().string();
     check_scene(scene, parameters);
+    check_goals(declared.adaptivity, scene, parameters);
+    if (adaptivity)
+      *adaptivity = declared.adaptivity;
     return scene;
   }
 

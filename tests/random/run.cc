@@ -175,7 +175,7 @@ namespace slipstick::random
       {
         const Silence silence;
         const Log     log(comm, Verbosity::quiet);
-        result.status = app::run(scene, directory, false, log, comm);
+        result.status = app::run(scene, {}, directory, false, log, comm);
       }
     catch (const InputError &error)
       {

@@ -95,6 +95,27 @@ TEST(accuracy, unknown_preset_is_refused)
   expect_refused(prm("box_on_circle"), {"Solver/Accuracy=draft"}, {"Solver/Accuracy", "did you mean 'Accuracy'"});
 }
 
+TEST(accuracy, percentage_refines_meshes)
+{
+  AdaptivityOptions none, one;
+  read_scene(prm("box_on_circle"), {}, &none);
+  EXPECT_FALSE(none.refines());
+  EXPECT_FALSE(none.error_bars);
+  const auto scene = box_without_knobs({"Accuracy=0.5 %"});
+  EXPECT_EQ(scene.solver.tolerance, 1e-6);
+  EXPECT_EQ(scene.discretization.degree, 1u);
+  read_scene(prm("box_on_circle"), {"Accuracy= 0.5%", "Goal=circle.max_pressure, strain_energy"}, &one);
+  EXPECT_DOUBLE_EQ(one.accuracy, 5e-3);
+  EXPECT_EQ(one.goals, (std::vector<std::string>{"circle.max_pressure", "strain_energy"}));
+  EXPECT_EQ(read_scene(prm("box_on_circle"), {"Accuracy=0.5 %"}).solver.tolerance, 1e-4); // set in the file
+  for (const std::string wrong : {"0 %", "100 %", "-1 %", "%", "1", "1 % 2"})
+    EXPECT_EQ(accuracy_of(wrong), 0) << wrong;
+  expect_refused(prm("box_on_circle"),
+                 {"Accuracy=1 %", "Goal=circle.max_presure"},
+                 {"Goal", "there is no quantity 'circle.max_presure'", "did you mean 'circle.max_pressure'"});
+  expect_refused(prm("box_on_circle"), {"Goal=strain_energy"}, {"Goal", "set Accuracy = 1 %"});
+}
+
 TEST(accuracy, automatic_tolerance)
 {
   const auto scene = box_without_knobs({"Solver/Tolerance=auto"});

@@ -3,7 +3,7 @@
 
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
-#include <slipstick/scene/scene.h>
+#include <slipstick/scene/adaptivity.h>
 
 namespace slipstick::app
 {
@@ -11,14 +11,16 @@ namespace slipstick::app
   /// @param picture file for a drawing of the scene (SVG); empty: none.
   void check_scene(const scene::Scene<2> &scene, const std::string &picture, const Log &log, const MPI_Comm comm);
 
-  /// Solves @p scene and writes the results to @p output_directory. Collective.
+  /// Solves @p scene, on finer meshes where @p adaptivity asks for an accuracy, and writes the results to
+  /// @p output_directory. Collective.
   /// @param resumes continues after the last finished load step of an earlier run there and gives the same answer as an
   /// uninterrupted run.
   /// @return converged or not_converged; outputs are written in both cases.
   /// @throws InputError, NoEquilibrium, NumericalError on all ranks alike.
-  ExitStatus run(const scene::Scene<2> &scene,
-                 const std::string     &output_directory,
-                 const bool             resumes,
-                 const Log             &log,
-                 const MPI_Comm         comm);
+  ExitStatus run(const scene::Scene<2>          &scene,
+                 const scene::AdaptivityOptions &adaptivity,
+                 const std::string              &output_directory,
+                 const bool                      resumes,
+                 const Log                      &log,
+                 const MPI_Comm                  comm);
 } // namespace slipstick::app

@@ -7,6 +7,7 @@
 #include <slipstick/contact/friction.h>
 #include <slipstick/interface/contact_constraints.h>
 #include <slipstick/mechanics/stress.h>
+#include <slipstick/mesh/adaptive_refinement.h>
 #include <slipstick/output/convergence.h>
 #include <slipstick/scene/scene.h>
 #include <slipstick/tfeti/dual_problem.h>
@@ -32,8 +33,15 @@ namespace slipstick::app
     };
 
     /// Makes the mesh, and finds the contact pairs that the scene leaves to a search.
+    /// @param solves_adjoints are other problems to be solved with the same matrices afterwards?
+    /// @param refinement of single cells, if any.
     /// @throws InputError for meshes and pairs that do not fit.
-    StepSolver(const scene::Scene<dim> &scene, const Log &log, StageClock &clock, const MPI_Comm comm);
+    StepSolver(const scene::Scene<dim> &scene,
+               const Log               &log,
+               StageClock              &clock,
+               const MPI_Comm           comm,
+               const bool               solves_adjoints = false,
+               mesh::Refinement        *refinement      = nullptr);
 
     /// The dual problem of the first load step. @throws InputError, NoEquilibrium.
     void build();
@@ -63,6 +71,11 @@ namespace slipstick::app
       return *the_spaces;
     }
     const tfeti::DualProblem &dual() const
+    {
+      return *the_dual;
+    }
+    /// For problems with other loads on the same rows, after the last load step.
+    tfeti::DualProblem &dual_for_adjoints()
     {
       return *the_dual;
     }
@@ -153,23 +166,23 @@ namespace slipstick::app
 
     // the same in all load steps
     std::optional<interface::BodyContacts<dim>> contacts;
-    std::shared_ptr<tfeti::Subdomains>    subdomains;
+    std::shared_ptr<tfeti::Subdomains>          subdomains;
 
     std::unique_ptr<mesh::Mesh<dim>>        the_mesh;
     std::unique_ptr<mechanics::Spaces<dim>> the_spaces;
-    std::unique_ptr<tfeti::DualProblem> the_dual;
-    tfeti::Constraints                  pruned;  // normal rows of the contact nodes without multipliers
-    tfeti::HeldContacts                 held;    // contact nodes whose gap supports prescribe
-    unsigned int                        n_given; // supports
-    std::string                         unheld_motions;
-    double                              kept_part;
-    double                              largest_load  = 0;    // of the steps so far [N]
-    double                              factorization = 0;    // [s]
-    double                              discretization_error; // last estimate in the step [sqrt(N mm)]
-    contact::DualSolution               the_solution;
-    std::unique_ptr<Answer>             accepted; // by the test of accuracy, in the step
-    std::vector<Eigen::VectorXd>        u;        // of the last step
-    contact::History                    history;  // of the steps before
-    std::vector<output::ConvergenceRow> rows;
+    std::unique_ptr<tfeti::DualProblem>     the_dual;
+    tfeti::Constraints                      pruned;  // normal rows of the contact nodes without multipliers
+    tfeti::HeldContacts                     held;    // contact nodes whose gap supports prescribe
+    unsigned int                            n_given; // supports
+    std::string                             unheld_motions;
+    double                                  kept_part;
+    double                                  largest_load  = 0;    // of the steps so far [N]
+    double                                  factorization = 0;    // [s]
+    double                                  discretization_error; // last estimate in the step [sqrt(N mm)]
+    contact::DualSolution                   the_solution;
+    std::unique_ptr<Answer>                 accepted; // by the test of accuracy, in the step
+    std::vector<Eigen::VectorXd>            u;        // of the last step
+    contact::History                        history;  // of the steps before
+    std::vector<output::ConvergenceRow>     rows;
   };
 } // namespace slipstick::app

@@ -30,6 +30,9 @@ namespace slipstick::mechanics
     std::vector<std::vector<ProbePoint<dim>>> values(const std::vector<Eigen::VectorXd> &u,
                                                      const StressResult                 &stress) const;
 
+    /// Loads, by subdomain of this rank, whose work is component @p d of the displacement at the first point of probe @p k.
+    std::vector<Eigen::VectorXd> unit_force(const unsigned int k, const unsigned int d) const;
+
   private:
     /// Of one point: values are those at a point of a cell of this rank, or another's.
     struct Place

@@ -1,6 +1,7 @@
 // From the description of a body to its mesh.
 #pragma once
 
+#include <slipstick/mesh/adaptive_refinement.h>
 #include <slipstick/mesh/body_mesh.h>
 
 namespace slipstick::mesh
@@ -8,10 +9,16 @@ namespace slipstick::mesh
   /// The complete mesh of body number @p b: read or made, refined, placed. @p files keeps what was read, by path. A
   /// body of triangles and quadrilaterals is converted to quadrilaterals if it is refined towards a boundary or if its
   /// parts of one kind are many and small.
+  /// @param refined cells that are refined further, as adapted() says, with the @p paths of the cells; such a body has
+  /// one kind of cells, too.
   /// @throws InputError as body_from_file() does, and if a boundary or point that the scene uses is missing or
   /// incomplete.
   template <int dim>
-  BodyMesh<dim> make_body(const scene::Scene<dim> &scene, const unsigned int b, std::map<std::string, MeshFile> &files);
+  BodyMesh<dim> make_body(const scene::Scene<dim>         &scene,
+                          const unsigned int               b,
+                          std::map<std::string, MeshFile> &files,
+                          std::set<CellPath>              *refined = nullptr,
+                          std::vector<CellPath>           *paths   = nullptr);
 
   /// Places a piece of body number @p b as the scene says. In bodies of revolution, nodes within rounding of the axis
   /// are moved onto it.

@@ -23,4 +23,24 @@ namespace slipstick::mesh
   /// their numbers.
   template <int dim>
   MeshPiece<dim> refined_towards(const MeshPiece<dim> &piece, const std::set<dealii::types::boundary_id> &ids);
+
+  /// Where a cell of a finer mesh comes from.
+  struct CellOrigin
+  {
+    unsigned int parent     = 0;    // cell of the coarser mesh
+    unsigned int child      = 0;    // of its children, counted as they are added
+    bool         is_regular = true; // of the parent's shape, or the parent itself: not made by a template between sizes
+    bool         is_parent  = true; // it was left as it is
+  };
+
+  template <int dim>
+  struct RefinedPiece
+  {
+    MeshPiece<dim>          piece;
+    std::vector<CellOrigin> origins; // by cell
+  };
+
+  /// Refines the cells for which @p marked holds, once, as refined_towards() does those at a boundary.
+  template <int dim>
+  RefinedPiece<dim> refined_at(const MeshPiece<dim> &piece, const std::vector<bool> &marked);
 } // namespace slipstick::mesh

@@ -173,6 +173,25 @@ namespace slipstick::output
     std::vector<ProbeResult>         probes;
   };
 
+  /// A figure of the results with the estimate of its discretisation error.
+  struct ErrorBar
+  {
+    std::string           quantity; // as in Goal: "max_displacement", "PAIR.max_pressure", ..
+    std::string           unit;
+    double                value = 0;
+    std::optional<double> error;  // of the same unit; none: see `reason`
+    std::string           reason; // why there is none
+  };
+
+  /// One mesh of a run that refines.
+  struct MeshRow
+  {
+    std::uint64_t cells = 0, unknowns = 0;
+    double        error        = 0; // relative: of the energy norm, or the worst of the goals
+    double        energy_error = 0; // relative, in the energy norm
+    double        seconds      = 0; // since the program was started
+  };
+
   /// Counts are sums over the load steps, residuals the worst of them, results those of the last.
   struct Summary
   {
@@ -190,6 +209,9 @@ namespace slipstick::output
 
     std::vector<StepSummary> steps;
     std::vector<std::string> warnings; // warnings about the input or the answer
+
+    std::vector<ErrorBar> error_bars; // of the last load step, if they were asked for
+    std::vector<MeshRow>  meshes;     // if meshes are refined
   };
 
   /// The text of summary.json. A number that is not finite becomes null, bytes that are not UTF-8 become U+FFFD.

@@ -1,0 +1,20 @@
+// "1281 +- 9 MPa": figures of the results with the estimates of their errors.
+#pragma once
+
+#include <slipstick/app/goals.h>
+#include <slipstick/output/summary.h>
+
+namespace slipstick::app
+{
+  /// Bars of the goals, and of the lengths of contact and stick, whose ends are known to half an element.
+  /// @param results what is printed: a goal that does not reproduce its figure there (of a pair some of whose nodes supports
+  /// hold) has no bar.
+  /// @param nodes of the last load step; on rank 0, whose result counts.
+  std::vector<output::ErrorBar> error_bars(const std::vector<GoalError>             &goals,
+                                           const output::ResultSummary              &results,
+                                           const std::vector<contact::ContactNode>  &nodes,
+                                           const std::vector<scene::ContactPair<2>> &pairs);
+
+  /// A line a figure.
+  void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars);
+} // namespace slipstick::app

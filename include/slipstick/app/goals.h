@@ -1,0 +1,37 @@
+// Errors of the figures that a user reads off, by dual weighted residuals with the contact set as it was found.
+#pragma once
+
+#include <slipstick/app/step_solver.h>
+#include <slipstick/mechanics/probes.h>
+
+#include <string>
+#include <vector>
+
+namespace slipstick::app
+{
+  /// Estimated discretisation error of one figure.
+  struct GoalError
+  {
+    std::string                  quantity; // as in Goal
+    std::string                  unit;
+    bool                         is_known = false;
+    std::string                  reason;       // why it is not
+    double                       value    = 0; // of the figure
+    double                       signed_  = 0; // sum over the cells: what should be added to the figure
+    double                       absolute = 0; // sum of the magnitudes
+    std::vector<Eigen::VectorXd> cells;        // by subdomain of this rank: the parts of the cells
+  };
+
+  /// Dual weighted residuals (Becker, Rannacher, Acta Numerica 2001): the error of a figure is the energy product of the
+  /// errors of the solution and of the displacement that the figure stands for, a linear problem on the set of the solution
+  /// (contact::Adjoint); both errors are those of recovered stresses, as in the estimate of the energy norm. Bounds of
+  /// friction stay as they are in that problem; in the tangential force of a pair that slides as a whole they follow the
+  /// pressure.
+  /// @param quantities of which errors are wanted; empty: all.
+  /// The dual problem of @p solver is changed: for the last load step. Collective.
+  std::vector<GoalError> goal_errors(StepSolver                     &solver,
+                                     const mechanics::Probes<2>     &probes,
+                                     const StepSolver::Answer       &answer,
+                                     const double                    t,
+                                     const std::vector<std::string> &quantities);
+} // namespace slipstick::app

@@ -1,0 +1,43 @@
+// Linear problems on the set of a solution: what is free stays free, what is at a bound stays there.
+#pragma once
+
+#include <slipstick/contact/dual_solution.h>
+#include <slipstick/qp/options.h>
+
+namespace slipstick::contact
+{
+  /// Displacements that answer loads and jumps on the rows which are free in a solution (closed, sticking, glued). Changes
+  /// loads and right-hand side of the dual problem, which another load step has to set again. Members are collective.
+  class Adjoint
+  {
+  public:
+    Adjoint(tfeti::DualProblem &dual, const std::vector<bool> &free, const qp::PcpgOptions &options);
+
+    /// Do the free rows hold all bodies? Else there is no answer.
+    bool is_possible() const
+    {
+      return face.is_regular();
+    }
+
+    /// u with B u = @p jumps [mm] on the free rows under the loads [N] of this rank's subdomains, whose multipliers vanish on
+    /// the other rows. For a figure g'x of the multipliers x: jumps g, no loads; for a figure of displacements: loads alone.
+    /// Empty where the solver fails. The energy product of its error with that of the solution is the error of the figure (Becker, Rannacher 2001).
+    std::vector<Eigen::VectorXd> solve(std::vector<Eigen::VectorXd> loads, std::vector<double> jumps);
+
+    /// The same without loads.
+    std::vector<Eigen::VectorXd> solve(std::vector<double> jumps);
+
+    /// Work of all solves.
+    const qp::Counts &counts() const
+    {
+      return work;
+    }
+
+  private:
+    tfeti::DualProblem      &dual;
+    const std::vector<bool>  free;
+    const qp::PcpgOptions    options;
+    tfeti::DualProblem::Face face;
+    qp::Counts               work;
+  };
+} // namespace slipstick::contact

@@ -1,0 +1,44 @@
+// What a run is asked for beyond the answer on the mesh as the scene has it: error bars, an accuracy to reach.
+#pragma once
+
+#include <slipstick/scene/scene.h>
+
+#include <string>
+#include <vector>
+
+namespace dealii
+{
+  class ParameterHandler;
+}
+
+namespace slipstick::scene
+{
+  struct AdaptivityOptions
+  {
+    bool                     error_bars = false;     // also solve on coarser meshes, for error bars
+    double                   accuracy   = 0;         // relative error to reach; 0: the mesh stays as it is
+    std::vector<std::string> goals;                  // quantities that are to have it; empty: the energy norm
+    unsigned int             max_meshes   = 12;      // solved in all
+    unsigned int             max_unknowns = 2000000; // of the finest mesh
+
+    /// Are meshes refined until the accuracy is reached?
+    bool refines() const
+    {
+      return accuracy > 0;
+    }
+  };
+
+  /// What can be a goal: max_displacement, strain_energy, PAIR.max_pressure, SUPPORT.force_x, ... Pairs that are found by
+  /// search have no names yet.
+  template <int dim>
+  std::vector<std::string> quantity_names(const Scene<dim> &scene);
+
+  /// The relative error that "1 %" spells; 0 if @p text is no percentage above 0 and below 100.
+  double accuracy_of(const std::string &text);
+
+  /// `Error bars` and `Goal`, at the top level.
+  void declare_goals(dealii::ParameterHandler &prm, AdaptivityOptions &options);
+
+  /// Subsection `Adaptivity`.
+  void declare(dealii::ParameterHandler &prm, AdaptivityOptions &options);
+} // namespace slipstick::scene

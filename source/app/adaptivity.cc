@@ -1,0 +1,150 @@
+#include <slipstick/app/adaptivity.h>
+#include <slipstick/mechanics/singular_points.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    // Cells with this part of the error are refined, unless fewer reach the accuracy (Doerfler 1996).
+    constexpr double most_of_error = 0.6;
+    // What is left of the additive error of a cell after it is refined; on smooth solutions of degree 1 it is 1/9 for nine
+    // quadrilaterals and 1/4 for four triangles, at singular points more.
+    constexpr double left_of_error = 0.25;
+    // Cells whose errors agree up to this part are refined together: rounding must not choose between them.
+    constexpr double alike = 1e-6;
+    // Aims at this part of the allowed error, so that the last mesh does not just miss it.
+    constexpr double aim = 0.9;
+
+    // A vertex is at a point when it is nearer than this part of its cell.
+    constexpr double at_vertex = 1e-6;
+
+    using Entry = std::pair<double, mesh::CellKey>;
+  } // namespace
+
+  std::vector<LeftOut> point_forces(const scene::Scene<2>      &scene,
+                                    const mesh::Mesh<2>        &mesh,
+                                    const mechanics::Spaces<2> &spaces,
+                                    const unsigned int          n_supports)
+  {
+    std::vector<LeftOut> list;
+    for (const auto &point : mechanics::singular_points(scene, mesh, spaces, n_supports))
+      if (point.what.rfind("the point", 0) == 0) // others have finite energy
+        {
+          double own = 0;
+          for (const auto &subdomain : mesh.subdomains)
+            if (subdomain->body == point.body)
+              for (const auto &cell : subdomain->triangulation.active_cell_iterators())
+                for (const unsigned int v : cell->vertex_indices())
+                  if (cell->vertex(v).distance(point.position) < at_vertex * cell->diameter())
+                    own = std::max(own, cell->diameter());
+          list.push_back({point.body, point.position, dealii::Utilities::MPI::max(own, mesh.comm), point.what});
+        }
+    return list;
+  }
+
+  CellErrors energy_errors(const mesh::Mesh<2>           &mesh,
+                           const mechanics::StressResult &stress,
+                           const std::vector<LeftOut>    &left_out,
+                           const double                   accuracy)
+  {
+    CellErrors   errors;
+    const double all = stress.energy_squared + stress.error_squared;
+    double       own = 0;
+    for (unsigned int p = 0; p < stress.subdomains.size(); ++p)
+      {
+        errors.of_cells.push_back(stress.subdomains[p].error.array().square() / (all > 0 ? all : 1.));
+        for (const auto &cell : mesh.subdomains[p]->triangulation.active_cell_iterators())
+          for (const auto &place : left_out)
+            if (place.body == mesh.subdomains[p]->body && cell->center().distance(place.position) < place.radius)
+              errors.of_cells[p][cell->active_cell_index()] = 0;
+        own += errors.of_cells[p].sum();
+      }
+    errors.total   = dealii::Utilities::MPI::sum(own, mesh.comm);
+    errors.allowed = accuracy * accuracy;
+    return errors;
+  }
+
+  CellErrors errors_of_goals(const std::vector<GoalError> &goals, const double accuracy, const MPI_Comm comm)
+  {
+    CellErrors errors;
+    double     estimated = 0, own = 0;
+    for (const auto &goal : goals)
+      if (goal.is_known && goal.value != 0)
+        {
+          errors.of_cells.resize(goal.cells.size());
+          for (unsigned int p = 0; p < goal.cells.size(); ++p)
+            {
+              const Eigen::VectorXd part = goal.cells[p].cwiseAbs() / std::abs(goal.value);
+              errors.of_cells[p] = errors.of_cells[p].size() > 0 ? Eigen::VectorXd(errors.of_cells[p] + part) : part;
+            }
+          estimated = std::max(estimated, std::abs(goal.signed_ / goal.value));
+        }
+    for (const auto &part : errors.of_cells)
+      own += part.sum();
+    errors.total = dealii::Utilities::MPI::sum(own, comm);
+    // magnitudes fall as the sum does, whose sign they have lost
+    errors.allowed = estimated > 0 ? errors.total * accuracy / estimated : 0.;
+    return errors;
+  }
+
+  std::size_t mark(const mesh::Mesh<2> &mesh, const CellErrors &errors, mesh::Refinement &refinement)
+  {
+    std::vector<Entry> own;
+    for (unsigned int p = 0; p < errors.of_cells.size(); ++p)
+      for (const auto &cell : mesh.subdomains[p]->triangulation.active_cell_iterators())
+        {
+          std::vector<mesh::GlobalVertex> vertices;
+          for (const unsigned int v : cell->vertex_indices())
+            vertices.push_back(mesh.subdomains[p]->global_vertices[cell->vertex_index(v)]);
+          own.emplace_back(errors.of_cells[p][cell->active_cell_index()], mesh::cell_key(std::move(vertices)));
+        }
+    const auto  gathered = dealii::Utilities::MPI::gather(mesh.comm, own);
+    std::size_t n_marked = 0;
+    if (dealii::Utilities::MPI::this_mpi_process(mesh.comm) == 0)
+      {
+        std::vector<Entry> all;
+        for (const auto &part : gathered)
+          all.insert(all.end(), part.begin(), part.end());
+        std::sort(all.begin(), all.end(), [](const Entry &a, const Entry &b) {
+          return a.first != b.first ? a.first > b.first : a.second < b.second; // alike for every number of ranks
+        });
+        double marked = 0, last = std::numeric_limits<double>::infinity();
+        for (const auto &[error, key] : all)
+          {
+            if ((marked >= most_of_error * errors.total ||
+                 errors.total - (1 - left_of_error) * marked <= aim * errors.allowed) &&
+                error < (1 - alike) * last)
+              break;
+            marked += error;
+            last                     = error;
+            const auto &[body, path] = refinement.cells.at(key);
+            refinement.refined[body].insert(path);
+            ++n_marked;
+          }
+      }
+    return dealii::Utilities::MPI::broadcast(mesh.comm, n_marked);
+  }
+
+  std::optional<double> worst_error(const std::vector<output::ErrorBar> &bars, const std::vector<std::string> &goals)
+  {
+    double worst = 0;
+    for (const auto &bar : bars)
+      if (std::find(goals.begin(), goals.end(), bar.quantity) != goals.end())
+        {
+          if (!bar.error || bar.value == 0)
+            return {};
+          worst = std::max(worst, std::abs(*bar.error / bar.value));
+        }
+    return worst;
+  }
+} // namespace slipstick::app

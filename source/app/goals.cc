@@ -1,0 +1,398 @@
+#include <slipstick/app/goals.h>
+#include <slipstick/base/collective.h>
+#include <slipstick/contact/adjoint.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    constexpr int dim = StepSolver::dim;
+
+    // Components of directions below this are rounding.
+    constexpr double along_axis = 1e-9;
+
+    // A pair slides as a whole when nodes that stick bear no more than this part of its friction.
+    constexpr double sticking_part = 0.1;
+
+    using Fields = std::vector<Eigen::VectorXd>;
+
+    /// What is solved for one figure: jumps or loads, on this rank.
+    struct Functional
+    {
+      std::string         quantity, unit;
+      double              value = 0; // the same on all ranks
+      std::vector<double> jumps;     // of the owned rows; empty: loads
+      Fields              loads;
+      std::string         reason; // why there is no estimate; empty: there is one
+    };
+
+    /// The figures of a scene, from multipliers and displacements.
+    class Functionals
+    {
+    public:
+      Functionals(const StepSolver &solver_, const mechanics::Probes<dim> &probes_, const StepSolver::Answer &answer_)
+        : solver(solver_)
+        , probes(probes_)
+        , answer(answer_)
+        , rows(solver.dual().constraints())
+        , x(answer.recovery.multipliers)
+        , comm(solver.dual().communicator())
+        , n_rows(rows.kind.size())
+      {}
+
+      std::vector<Functional> all() const
+      {
+        std::vector<Functional> list{displacement()};
+        const auto             &scene = solver.discrete_scene();
+        for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+          {
+            const std::string name = scene.contacts[k].name;
+            list.push_back(force(name + ".normal_force", k, true));
+            list.push_back(force(name + ".tangential_force", k, false));
+            list.push_back(pressure(name + ".max_pressure", k));
+          }
+        for (unsigned int s = 0; s < solver.n_given_supports(); ++s)
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              auto goal = reaction(scene.supports[s].name + (d == 0 ? ".force_x" : ".force_y"), s, d);
+              if (holds(goal))
+                list.push_back(std::move(goal));
+            }
+        for (unsigned int k = 0; k < scene.probes.size(); ++k)
+          if (scene.probes[k].ends.size() == 1)
+            for (unsigned int d = 0; d < dim; ++d)
+              list.push_back(displacement_at(scene.probes[k].name + (d == 0 ? ".u_x" : ".u_y"), k, d));
+        return list;
+      }
+
+    private:
+      Functional displacement_at(const std::string &name, const unsigned int probe, const unsigned int d) const
+      {
+        Functional goal{name, "mm", 0, {}, probes.unit_force(probe, d), {}};
+        double     own = 0;
+        for (unsigned int p = 0; p < goal.loads.size(); ++p)
+          own += goal.loads[p].dot(answer.recovery.u[p]);
+        goal.value = dealii::Utilities::MPI::sum(own, comm);
+        return goal;
+      }
+
+      template <class F>
+      void for_points_of(const unsigned int pair, const F &f) const
+      {
+        for (const auto *points : {&rows.contact_points, &rows.bonded_points})
+          for (const auto &point : *points)
+            if (point.pair == pair)
+              f(point);
+      }
+
+      double value_of(const std::vector<double> &g) const
+      {
+        double sum = 0;
+        for (unsigned int r = 0; r < n_rows; ++r)
+          sum += g[r] * x.local_element(r);
+        return dealii::Utilities::MPI::sum(sum, comm);
+      }
+
+      Functional force(const std::string &name, const unsigned int pair, const bool is_normal) const
+      {
+        Functional goal{name, "N", 0, std::vector<double>(n_rows, 0.), {}, {}};
+        for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+          if (const unsigned int row = is_normal ? point.normal_row : point.tangential_row; row != tfeti::invalid_row)
+            goal.jumps[row] = 1;
+        });
+        goal.value = value_of(goal.jumps);
+        if (!is_normal && slides(pair)) // as a whole: friction follows the pressure
+          for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+            if (point.normal_row != tfeti::invalid_row && point.tangential_row != tfeti::invalid_row &&
+                !solver.solution().free[point.tangential_row] && x.local_element(point.normal_row) > 0)
+              goal.jumps[point.normal_row] = x.local_element(point.tangential_row) / x.local_element(point.normal_row);
+          });
+        return goal;
+      }
+
+      /// Do nodes that slip at a bound which follows the pressure bear nearly all of its friction? Where others bear a part,
+      /// equilibrium ties them to these more than pressure does.
+      bool slides(const unsigned int pair) const
+      {
+        if (!solver.discrete_scene().contacts[pair].law.coefficient)
+          return false;
+        double sticks = 0, all = 0;
+        for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+          if (point.tangential_row == tfeti::invalid_row)
+            return;
+          const double force = std::abs(x.local_element(point.tangential_row));
+          all += force;
+          sticks += solver.solution().free[point.tangential_row] ? force : 0.;
+        });
+        return dealii::Utilities::MPI::sum(sticks, comm) <= sticking_part * dealii::Utilities::MPI::sum(all, comm);
+      }
+
+      Functional pressure(const std::string &name, const unsigned int pair) const
+      {
+        Functional   goal{name, "MPa", 0, std::vector<double>(n_rows, 0.), {}, {}};
+        double       largest = 0;
+        unsigned int at      = tfeti::invalid_row;
+        double       area    = 1;
+        for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+          if (point.normal_row == tfeti::invalid_row || !(point.traction_area > 0))
+            return;
+          const double p = x.local_element(point.normal_row) / point.traction_area;
+          if (p > largest)
+            {
+              largest = p;
+              at      = point.normal_row;
+              area    = point.traction_area;
+            }
+        });
+        goal.value              = dealii::Utilities::MPI::max(largest, comm);
+        const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(comm);
+        const bool         has  = at != tfeti::invalid_row && largest == goal.value;
+        const unsigned int best = dealii::Utilities::MPI::min(has ? rank : tfeti::invalid_row, comm);
+        if (best == tfeti::invalid_row)
+          goal.reason = "there is no contact";
+        else if (best == rank)
+          goal.jumps[at] = 1 / area;
+        return goal;
+      }
+
+      Functional reaction(const std::string &name, const unsigned int support, const unsigned int d) const
+      {
+        Functional goal{name, "N", 0, std::vector<double>(n_rows, 0.), {}, {}};
+        for (const auto &reaction : rows.reactions)
+          if (std::count(reaction.holders.begin(), reaction.holders.end(), support) > 0)
+            goal.jumps[reaction.row] -= reaction.direction[d] / reaction.holders.size();
+        goal.value = value_of(goal.jumps);
+        return goal;
+      }
+
+      /// Does the support hold anything along this axis?
+      bool holds(const Functional &reaction) const
+      {
+        double largest = 0;
+        for (const double g : reaction.jumps)
+          largest = std::max(largest, std::abs(g));
+        return dealii::Utilities::MPI::max(largest, comm) > along_axis;
+      }
+
+      /// Along the largest displacement, at its node.
+      Functional displacement() const
+      {
+        Functional   goal{"max_displacement", "mm", 0, {}, {}, {}};
+        double       largest = -1;
+        unsigned int at_p = 0, at_node = 0;
+        const auto  &u = answer.recovery.u;
+        for (unsigned int p = 0; p < u.size(); ++p)
+          {
+            goal.loads.push_back(Eigen::VectorXd::Zero(u[p].size()));
+            for (unsigned int i = 0; i < u[p].size() / dim; ++i)
+              if (const double size = u[p].segment<dim>(dim * i).norm(); size > largest)
+                {
+                  largest = size;
+                  at_p    = p;
+                  at_node = i;
+                }
+          }
+        goal.value              = dealii::Utilities::MPI::max(largest, comm);
+        const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(comm);
+        const unsigned int best = dealii::Utilities::MPI::min(largest == goal.value ? rank : tfeti::invalid_row, comm);
+        if (!(goal.value > 0))
+          goal.reason = "nothing moves";
+        else if (best == rank)
+          goal.loads[at_p].segment<dim>(dim * at_node) = u[at_p].segment<dim>(dim * at_node) / largest;
+        return goal;
+      }
+
+      const StepSolver               &solver;
+      const mechanics::Probes<dim>   &probes;
+      const StepSolver::Answer       &answer;
+      const tfeti::Constraints       &rows;
+      const tfeti::DistributedVector &x;
+      const MPI_Comm                  comm;
+      const std::size_t               n_rows;
+    };
+
+    /// Energy products of the errors of the answer with those of other displacements.
+    class ErrorProducts
+    {
+    public:
+      ErrorProducts(const StepSolver &solver_, const StepSolver::Answer &answer_, const double t_)
+        : solver(solver_)
+        , answer(answer_)
+        , t(t_)
+      {}
+
+      /// By subdomain and cell. With a(e, z) = (|e + z|^2 - |e - z|^2) / 4, z scaled to the size of the answer.
+      Fields with(const Fields &z) const
+      {
+        const double scale = largest(answer.recovery.u) / largest(z);
+        Fields       sum = answer.recovery.u, difference = answer.recovery.u, product;
+        for (unsigned int p = 0; p < z.size(); ++p)
+          {
+            sum[p] += scale * z[p];
+            difference[p] -= scale * z[p];
+          }
+        const auto of_sum = stress(sum), of_difference = stress(difference);
+        for (unsigned int p = 0; p < z.size(); ++p)
+          product.push_back(
+            (of_sum.subdomains[p].error.array().square() - of_difference.subdomains[p].error.array().square()) /
+            (4 * scale));
+        return product;
+      }
+
+      double largest(const Fields &u) const
+      {
+        double size = 0;
+        for (const auto &part : u)
+          size = std::max(size, part.size() > 0 ? part.lpNorm<Eigen::Infinity>() : 0.);
+        return dealii::Utilities::MPI::max(size, solver.mesh().comm);
+      }
+
+      /// Was it not solved for, on some rank?
+      bool is_missing(const Fields &z) const
+      {
+        return dealii::Utilities::MPI::max(z.size() < answer.recovery.u.size() ? 1 : 0, solver.mesh().comm) > 0;
+      }
+
+      /// The sums over the cells.
+      void add_up(GoalError &goal) const
+      {
+        double own = 0, magnitudes = 0;
+        for (const auto &part : goal.cells)
+          {
+            own += part.sum();
+            magnitudes += part.cwiseAbs().sum();
+          }
+        goal.signed_  = dealii::Utilities::MPI::sum(own, solver.mesh().comm);
+        goal.absolute = dealii::Utilities::MPI::sum(magnitudes, solver.mesh().comm);
+        goal.is_known = std::isfinite(goal.absolute);
+      }
+
+    private:
+      mechanics::StressResult stress(const Fields &u) const
+      {
+        return mechanics::recover_stress(solver.discrete_scene(),
+                                         solver.mesh(),
+                                         solver.spaces(),
+                                         solver.dual().constraints(),
+                                         u,
+                                         t);
+      }
+
+      const StepSolver         &solver;
+      const StepSolver::Answer &answer;
+      const double              t;
+    };
+
+    /// From the displacement @p z that belongs to the figure.
+    void complete(const StepSolver::Answer &answer, const ErrorProducts &products, const Fields &z, GoalError &goal)
+    {
+      if (products.is_missing(z))
+        {
+          goal.reason = "its linear problem was not solved";
+          return;
+        }
+      if (products.largest(z) > 0)
+        goal.cells = products.with(z);
+      else // what nothing but given forces determines
+        for (const auto &part : answer.stress->subdomains)
+          goal.cells.push_back(Eigen::VectorXd::Zero(part.error.size()));
+      products.add_up(goal);
+    }
+
+    /// With w, the displacement that the gaps force on bodies without loads: |e|^2 / 2 - a(e, w).
+    GoalError energy_error(const StepSolver          &solver,
+                           const StepSolver::Answer  &answer,
+                           const std::vector<double> &gaps,
+                           const ErrorProducts       &products,
+                           contact::Adjoint          &adjoint)
+    {
+      const MPI_Comm comm = solver.mesh().comm;
+      GoalError      goal;
+      goal.quantity = "strain_energy";
+      goal.unit     = "N mm";
+      goal.value    = answer.contact->checks.energy / 2;
+      if (!solver.discrete_scene().temperatures.empty())
+        {
+          goal.reason = "not estimated with changes of temperature";
+          return goal;
+        }
+      for (const auto &part : answer.stress->subdomains)
+        goal.cells.push_back(part.error.array().square() / 2);
+      const double largest_gap =
+        gaps.empty() ? 0. : std::abs(*std::max_element(gaps.begin(), gaps.end(), [](const double a, const double b) {
+          return std::abs(a) < std::abs(b);
+        }));
+      if (dealii::Utilities::MPI::max(largest_gap, comm) > 0)
+        {
+          const auto w = adjoint.solve(gaps);
+          if (products.is_missing(w))
+            {
+              goal.reason = "its linear problem was not solved";
+              return goal;
+            }
+          if (products.largest(w) > 0)
+            {
+              const auto product = products.with(w);
+              for (unsigned int p = 0; p < product.size(); ++p)
+                goal.cells[p] -= product[p];
+            }
+        }
+      products.add_up(goal);
+      return goal;
+    }
+  } // namespace
+
+  std::vector<GoalError> goal_errors(StepSolver                     &solver,
+                                     const mechanics::Probes<2>     &probes,
+                                     const StepSolver::Answer       &answer,
+                                     const double                    t,
+                                     const std::vector<std::string> &quantities)
+  {
+    const auto wanted = [&](const std::string &name) {
+      return quantities.empty() || std::find(quantities.begin(), quantities.end(), name) != quantities.end();
+    };
+    const auto             gaps        = solver.dual().constraints().c; // before the adjoint problems change them
+    const auto             functionals = Functionals(solver, probes, answer).all();
+    const ErrorProducts    products(solver, answer, t);
+    contact::Adjoint       adjoint(solver.dual_for_adjoints(), solver.solution().free, scene::SolverOptions().pcpg);
+    const std::string      loose = "bodies slide on all of their contacts";
+    std::vector<GoalError> errors;
+    for (const auto &functional : functionals)
+      if (wanted(functional.quantity))
+        {
+          GoalError error;
+          error.quantity = functional.quantity;
+          error.unit     = functional.unit;
+          error.value    = functional.value;
+          error.reason   = adjoint.is_possible() ? functional.reason : loose;
+          if (error.reason.empty())
+            {
+              const auto z = functional.jumps.empty()
+                               ? adjoint.solve(functional.loads, std::vector<double>(gaps.size(), 0.))
+                               : adjoint.solve(functional.jumps);
+              complete(answer, products, z, error);
+            }
+          errors.push_back(std::move(error));
+        }
+    if (wanted("strain_energy"))
+      {
+        if (adjoint.is_possible())
+          errors.push_back(energy_error(solver, answer, gaps, products, adjoint));
+        else
+          {
+            GoalError error;
+            error.quantity = "strain_energy";
+            error.unit     = "N mm";
+            error.value    = answer.contact->checks.energy / 2;
+            error.reason   = loose;
+            errors.push_back(std::move(error));
+          }
+      }
+    return errors;
+  }
+} // namespace slipstick::app

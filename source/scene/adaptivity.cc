@@ -1,0 +1,72 @@
+#include <slipstick/base/text.h>
+#include <slipstick/scene/adaptivity.h>
+#include <slipstick/scene/declare.h>
+
+namespace slipstick::scene
+{
+  namespace
+  {
+    constexpr unsigned int most_meshes = 100, most_unknowns = 1000000000;
+  }
+
+  template <int dim>
+  std::vector<std::string> quantity_names(const Scene<dim> &scene)
+  {
+    std::vector<std::string> names = {"max_displacement", "strain_energy"};
+    for (const auto &pair : scene.contacts)
+      for (const char *what : {"normal_force", "tangential_force", "max_pressure"})
+        names.push_back(pair.name + "." + what);
+    for (const auto &support : scene.supports)
+      for (const char *what : {"force_x", "force_y"})
+        names.push_back(support.name + "." + what);
+    for (const auto &probe : scene.probes)
+      if (probe.ends.size() == 1)
+        for (const char *what : {"u_x", "u_y"})
+          names.push_back(probe.name + "." + what);
+    return names;
+  }
+
+  template std::vector<std::string> quantity_names(const Scene<2> &);
+
+  double accuracy_of(const std::string &text)
+  {
+    const auto sign = text.find_last_not_of(" \t");
+    if (sign == std::string::npos || text[sign] != '%')
+      return 0;
+    const auto last    = sign == 0 ? std::string::npos : text.find_last_not_of(" \t", sign - 1);
+    const auto percent = last == std::string::npos ? std::nullopt : parse_number(text.substr(0, last + 1));
+    return percent && *percent > 0 && *percent < 100 ? *percent / 100 : 0.;
+  }
+
+  void declare_goals(dealii::ParameterHandler &prm, AdaptivityOptions &options)
+  {
+    add_flag(
+      prm,
+      "Error bars",
+      options.error_bars,
+      "estimate the errors of forces, pressures, lengths, displacements by solving on coarser meshes, too (some 30 % "
+      "more time)");
+    add_entry(
+      prm,
+      "Goal",
+      "",
+      "",
+      "with a percentage as Accuracy: the quantities that are to have it, such as PAIR.max_pressure; empty: the energy norm",
+      "names separated by commas",
+      [](const std::string &) { return true; },
+      [&options](const std::string &text) { options.goals = split_list(text); });
+  }
+
+  void declare(dealii::ParameterHandler &prm, AdaptivityOptions &options)
+  {
+    prm.enter_subsection("Adaptivity");
+    add_count(prm, "Max meshes", options.max_meshes, 1, most_meshes, "meshes before giving up");
+    add_count(prm,
+              "Max unknowns",
+              options.max_unknowns,
+              1,
+              most_unknowns,
+              "of a mesh, of all subdomains together: no finer one is made");
+    prm.leave_subsection();
+  }
+} // namespace slipstick::scene
