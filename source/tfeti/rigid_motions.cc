@@ -203,9 +203,10 @@ namespace slipstick::tfeti
   std::vector<RigidMotion> BodyMotions::free(const std::vector<bool> &active, const double resistance) const
   {
     std::vector<RigidMotion> motions;
+    const bool is_of_all = dealii::Utilities::MPI::min(active.empty() ? 1 : 0, comm) > 0; // not of a rank without rows
     for (const bool without_levers :
          {false, true}) // a lever taken off can resist a motion that the row itself does not
-      if (motions.empty() && (active.empty() || !without_levers))
+      if (motions.empty() && (is_of_all || !without_levers))
         {
           const Eigen::SparseMatrix<double> all = resistance_of(active, without_levers);
           for (auto &vector : null_vectors(all, resistance * std::max(largest_eigenvalue(all), 1.)))
