@@ -1,4 +1,5 @@
 // Solids on obstacles: friction within discs, against GetFEM, a prototype in numpy and the plane.
+#include <slipstick/base/exceptions.h>
 #include <slipstick/contact/checks.h>
 #include <slipstick/contact/friction.h>
 #include <slipstick/interface/contact_constraints.h>
@@ -214,4 +215,43 @@ TEST(Solids, plane_strain_between_planes_of_symmetry)
       EXPECT_EQ(in_space.result.slip_nodes, 2 * in_the_plane.result.slip_nodes);
       EXPECT_EQ(in_space.result.stick_nodes, 2 * in_the_plane.result.stick_nodes);
     }
+}
+
+namespace
+{
+  /// A block that rests on a half space in space by friction alone, weighed down along a direction that the mesh knows nothing of.
+  scene::Scene<3> resting_block(const double angle, const double friction)
+  {
+    scene::Scene<3> scene = pressed_cube<3>(2, 2);
+    scene.supports.clear();
+    const std::array<double, 3> along{{std::sin(angle) * 0.6, -std::cos(angle), std::sin(angle) * 0.8}};
+    scene.tractions.clear();
+    scene.body_forces.resize(1);
+    scene.body_forces[0].name   = "weight";
+    scene.body_forces[0].bodies = {0};
+    for (unsigned int d = 0; d < 3; ++d)
+      scene.body_forces[0].force[d] = scene::Field<3>(std::to_string(along[d]), "test");
+    touch<3>(scene, {0, 0, 0}, 1, "Coulomb", std::to_string(friction));
+    scene.obstacles[0].shape  = scene::ObstacleShape::half_plane;
+    scene.obstacles[0].normal = dealii::Point<3>(0, 1, 0);
+    scene.solver.tolerance    = 1e-8;
+    return scene;
+  }
+} // namespace
+
+// Slides when the tangent of the angle is above the coefficient, whatever the direction.
+TEST(Solids, block_rests_on_an_oblique_incline_up_to_the_angle_of_friction)
+{
+  const double    angle = 0.2;
+  const Solved<3> rests(resting_block(angle, 1.2 * std::tan(angle)));
+  EXPECT_EQ(rests.solution.status, qp::Status::converged);
+  EXPECT_NEAR(rests.result.normal_force / (1000 * std::cos(angle)), 1, 1e-4);
+  std::array<double, 3> friction{};
+  for (const auto &node : rests.nodes)
+    for (unsigned int d = 0; d < 3; ++d)
+      friction[d] += node.traction[d] * node.area;
+  EXPECT_NEAR(friction[0] / (-600 * std::sin(angle)), 1, 1e-4);
+  EXPECT_NEAR(friction[2] / (-800 * std::sin(angle)), 1, 1e-4);
+  EXPECT_LT(rests.checked.checks.worst().second, 1e-5) << rests.checked.checks.worst().first;
+  EXPECT_THROW(Solved<3>(resting_block(angle, 0.98 * std::tan(angle))), NoEquilibrium);
 }
