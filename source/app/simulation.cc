@@ -40,6 +40,9 @@ namespace slipstick::app
 
     // Tables are written again after this multiple of the time that writing them took.
     constexpr double pause_over_writing = 10;
+    // Forces on what holds motions that nothing resists are told of above this part of the largest force.
+    constexpr double negligible_held_force = 1e-6;
+    constexpr double no_force              = 1e-30; // [N]: rounding of none, in any scene
 
     /// Contact nodes of all ranks on rank 0, with their arc lengths.
     /// @param total_slip gets the slip of this step added, on rank 0.
@@ -407,11 +410,40 @@ namespace slipstick::app
                                                   answer.contact->held_forces,
                                                   answer.recovery.multipliers,
                                                   n_holders);
-        for (unsigned int h = 0; h < solver.n_given_supports(); ++h) // the others bear nothing
+        for (unsigned int h = 0; h < solver.n_given_supports(); ++h)
           sums.supports.push_back({scene.supports[h].name, "support", reactions[h]});
+        add_held_motions(reactions, sums);
         for (unsigned int h = n_supports; h < n_holders; ++h)
           sums.foundations.push_back({scene.foundations[h - n_supports].name, "foundation", reactions[h]});
         return sums;
+      }
+
+      /// No load acts along motions that nothing resists, but friction across a gap can: its two sides are at two places.
+      void add_held_motions(const std::vector<Resultant> &reactions, output::ForceSummary &sums)
+      {
+        const auto size = [](const Resultant &sum) { return std::hypot(sum.force[0], sum.force[1]); };
+        Resultant  held;
+        for (unsigned int h = solver.n_given_supports(); h < scene.supports.size(); ++h)
+          {
+            held.force[0] += reactions[h].force[0];
+            held.force[1] += reactions[h].force[1];
+            held.moment += reactions[h].moment;
+          }
+        double largest = 0;
+        for (const auto &load : sums.loads)
+          largest = std::max(largest, size(load.sum));
+        for (const auto &reaction : reactions)
+          largest = std::max(largest, size(reaction));
+        if (size(held) <= std::max(negligible_held_force * largest, no_force))
+          return;
+        sums.supports.push_back({"held motions", "support", held});
+        warn({{"held motions",
+               format(
+                 "friction across gaps leaves %.3g N (%.2g %% of the largest force) along the motions that are set to "
+                 "zero: it acts on the two sides at two places; add a support against these motions, or mesh the "
+                 "sides without the gap",
+                 size(held),
+                 100 * size(held) / largest)}});
       }
 
       output::ContactNames contact_names() const

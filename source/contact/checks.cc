@@ -25,6 +25,8 @@ namespace slipstick::contact
     constexpr double part_of_history = 1e-2;
     // A body on which less than this part of the largest forces on a body acts counts as one with this part.
     constexpr double negligible_load = 1e-3;
+    // Rounding of K u, over the diagonal entry of its row times the largest displacement.
+    constexpr double rounding_of_forces = 16 * std::numeric_limits<double>::epsilon();
     // Slip bounds above this multiple of the largest contact force only mean that nodes stick.
     constexpr double bounds_that_count = 2;
 
@@ -181,8 +183,9 @@ namespace slipstick::contact
       double          largest = 0; // nodal: largest load, contact force or reaction
     };
 
-    /// @param on_node gets the residual force at a node of this rank.
+    /// @param on_node gets the residual force at a node of this rank, beyond rounding.
     Balance balance(const tfeti::DualProblem           &dual,
+                    const std::vector<Eigen::VectorXd> &u,
                     const std::vector<Eigen::VectorXd> &nodal_forces,
                     const DistributedVector            &multipliers,
                     const unsigned int                  n_bodies,
@@ -208,9 +211,11 @@ namespace slipstick::contact
           result.largest =
             std::max({result.largest, system.load().cwiseAbs().maxCoeff(), of_outside[p].cwiseAbs().maxCoeff()});
           result.left.col(system.body()) += system.body_modes().transpose() * (system.kernel().transpose() * left);
+          const Eigen::VectorXd rounding =
+            rounding_of_forces * u[p].cwiseAbs().maxCoeff() * system.stiffness_diagonal();
           Eigen::Index unknown = 0;
           for (Eigen::Index i = 0; i < left.size(); ++i)
-            if (on_node.take(std::abs(left[i]), Place()))
+            if (on_node.take(std::max(std::abs(left[i]) - rounding[i], 0.), Place()))
               unknown = i + 1;
           if (unknown > 0)
             on_node.place = {true, system.body(), system.position(unknown - 1), true};
@@ -480,7 +485,7 @@ namespace slipstick::contact
     const double energy_before =
       part_of_history * part_of_history * std::accumulate(history.energies.begin(), history.energies.end(), 0.);
     const double energy    = std::max({checks.energy, no_force * no_strain, all_bounds * no_strain, energy_before});
-    const auto   on_bodies = balance(dual, forces, multipliers, n_bodies, largest[nodal_equilibrium]);
+    const auto   on_bodies = balance(dual, u, forces, multipliers, n_bodies, largest[nodal_equilibrium]);
     for (unsigned int b = 0; b < n_bodies; ++b)
       {
         const unsigned int k = on_bodies.left.rows(), n_forces = tfeti::n_translations(k); // the moments come last

@@ -22,6 +22,8 @@ namespace slipstick::tfeti
     constexpr double least_work = 1e-9;
     // Rows are moved by a translation when that gives more than this part of what it gives with one body.
     constexpr double rounding_of_translation = 1e-9;
+    // What is left of a vector of unit length that others contain, but for rounding of eigenvectors.
+    constexpr double rounding_of_vectors = 1e-6;
     // Resultants below this part of the sum of magnitudes are rounding of none.
     constexpr double rounding_of_loads = 1e-13;
     // Coordinates below this part of a body's size are zero.
@@ -200,18 +202,33 @@ namespace slipstick::tfeti
     return result;
   }
 
+  // Orthonormal.
+  std::vector<Eigen::VectorXd> BodyMotions::unresisted(const std::vector<bool> &active, const double resistance) const
+  {
+    const auto null_vectors_of = [&](const bool without_levers) {
+      const Eigen::SparseMatrix<double> all = resistance_of(active, without_levers);
+      return null_vectors(all, resistance * std::max(largest_eigenvalue(all), 1.));
+    };
+    std::vector<Eigen::VectorXd> result = null_vectors_of(false);
+    if (dealii::Utilities::MPI::min(active.empty() ? 1 : 0, comm) == 0) // some rank has rows that are not
+      return result;
+    for (auto &vector :
+         null_vectors_of(true)) // these need not contain the first: a row without its lever may resist more
+      {
+        for (unsigned int pass = 0; pass < 2; ++pass) // the second for what the first leaves by rounding
+          for (const auto &other : result)
+            vector -= other.dot(vector) * other;
+        if (vector.norm() > rounding_of_vectors)
+          result.push_back(vector.normalized());
+      }
+    return result;
+  }
+
   std::vector<RigidMotion> BodyMotions::free(const std::vector<bool> &active, const double resistance) const
   {
     std::vector<RigidMotion> motions;
-    const bool is_of_all = dealii::Utilities::MPI::min(active.empty() ? 1 : 0, comm) > 0; // not of a rank without rows
-    for (const bool without_levers :
-         {false, true}) // a lever taken off can resist a motion that the row itself does not
-      if (motions.empty() && (is_of_all || !without_levers))
-        {
-          const Eigen::SparseMatrix<double> all = resistance_of(active, without_levers);
-          for (auto &vector : null_vectors(all, resistance * std::max(largest_eigenvalue(all), 1.)))
-            motions.push_back({std::move(vector), 0., frames});
-        }
+    for (auto &amplitudes : unresisted(active, resistance))
+      motions.push_back({std::move(amplitudes), 0., frames});
     if (motions.empty()) // as nearly always: the loads are not asked
       return motions;
     const Eigen::VectorXd load = loads();

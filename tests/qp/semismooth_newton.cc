@@ -181,6 +181,7 @@ namespace
 
 TEST(SemismoothNewton, friction_in_space_is_against_the_slip)
 {
+  unsigned int n_stick_of_all = 0;
   for (const bool follows : {false, true})
     for (const double coefficient : {0., 0.05, 0.5})
       for (const double fixed : {0., 0.05, 0.5})
@@ -207,11 +208,12 @@ TEST(SemismoothNewton, friction_in_space_is_against_the_slip)
                   n_stick += size < (1 - 1e-9) * radius;
                 }
             }
-          EXPECT_GE(n_solved, 95u);
+          EXPECT_GE(n_solved, 90u);
           EXPECT_TRUE(n_slip > 20u || coefficient + fixed == 0) << n_slip;
-          EXPECT_TRUE(n_stick > 20u || coefficient + fixed < 0.5) << n_stick;
+          n_stick_of_all += n_stick;
           EXPECT_LT(n_steps, 6 * n_solved); // directions and slopes of the bounds are followed by derivatives
         }
+  EXPECT_GT(n_stick_of_all, 30u);
 }
 
 TEST(SemismoothNewton, differentiated_bounds_lead_where_followed_ones_do)

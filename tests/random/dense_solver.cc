@@ -16,8 +16,12 @@ namespace slipstick::random
     // A motion that the rows resist less than this (relative) counts as free, as of a round body in a round hole: only how
     // far chords are from the arc resists it.
     constexpr double least_hold = 1e-5;
+    // Points that a row joins across a gap are apart by less than this part of a body.
+    constexpr double longest_lever = 1e-2;
     // A solution is one when all conditions hold to this.
     constexpr double solved_tolerance = 1e-11;
+    // Rounding of displacements as files have them, relative to the largest: twice half a unit in the last place.
+    constexpr double single_precision = 1.2e-7;
     // Strictly inside, strictly pressed: above this.
     constexpr double strict = 1e-7;
     // Loads that no admissible forces balance, relative: above this there are none.
@@ -185,13 +189,13 @@ namespace slipstick::random
     }
   } // namespace
 
-  DenseSolver::DenseSolver(const Problem &problem_)
+  DenseSolver::DenseSolver(const Problem &problem_, const Eigen::VectorXd *displacement)
     : problem(problem_)
   {
-    condense();
+    condense(displacement);
   }
 
-  void DenseSolver::condense()
+  void DenseSolver::condense(const Eigen::VectorXd *displacement)
   {
     const int m = problem.rows.size();
     u0          = Eigen::VectorXd::Zero(problem.f.size());
@@ -324,6 +328,13 @@ namespace slipstick::random
     W                                 = precise_W.cast<double>();
     d                                 = precise_d.cast<double>();
     T                                 = row_scale.asDiagonal() * T;
+    given                             = Eigen::VectorXd::Zero(T.cols());
+    if (displacement)
+      {
+        hold_what_levers_hold(*displacement);
+        return;
+      }
+    motions = Eigen::MatrixXd::Identity(T.cols(), T.cols());
     motion_scale.setOnes(T.cols());
     for (unsigned int b = 0; b < N.size();
          ++b) // of a body, whose motions are of one size: one that nothing resists keeps 0
@@ -339,6 +350,31 @@ namespace slipstick::random
     for (int k = 0; k < e.size(); ++k)
       if (std::abs(e[k]) < 1e-13 * size_of_e)
         e[k] = 0;
+  }
+
+  /// Takes motions that rows resist by less than a lever out of T and e; they are as in @p displacement.
+  void DenseSolver::hold_what_levers_hold(const Eigen::VectorXd &displacement)
+  {
+    const Eigen::MatrixXd held = kernel_of(T / T.colwise().norm().maxCoeff(), longest_lever);
+    given                      = held * (held.transpose() * amplitudes(displacement));
+    d += T * given;
+    precise_d    = d.cast<Precise>();
+    motions      = Eigen::HouseholderQR<Eigen::MatrixXd>(held).householderQ();
+    motions      = motions.rightCols(T.cols() - held.cols()).eval();
+    T            = (T * motions).eval();
+    e            = (motions.transpose() * e).eval();
+    motion_scale = T.colwise().norm().cwiseInverse();
+    T            = (T * motion_scale.asDiagonal()).eval();
+    e            = e.cwiseProduct(motion_scale).eval();
+  }
+
+  Eigen::VectorXd DenseSolver::amplitudes(const Eigen::VectorXd &displacement) const
+  {
+    Eigen::VectorXd result(first_motion.back());
+    for (unsigned int b = 0; b < problem.bodies.size(); ++b)
+      result.segment(first_motion[b], N[b].cols()) =
+        N[b].transpose() * (Z[b].transpose() * displacement.segment(problem.bodies[b].first, Z[b].rows()));
+    return result;
   }
 
   /// H^-1 times columns: the factor in double precision, corrected until what rounding left is that of extended precision.
@@ -373,7 +409,11 @@ namespace slipstick::random
   {
     double size = 1e-300;
     if (x.size() > 0)
-      size = std::max({size, x.cwiseAbs().maxCoeff(), 1e-3 * d.cwiseAbs().maxCoeff()});
+      {
+        // where nothing presses, displacements in single precision are all there is
+        const double forces = x.cwiseAbs().maxCoeff(), jumps = d.cwiseAbs().maxCoeff();
+        size = std::max({size, forces, forces > strict * jumps ? 1e-3 * jumps : jumps});
+      }
     return size;
   }
 
@@ -679,17 +719,23 @@ namespace slipstick::random
     const Eigen::MatrixXd open = kernel_of(holds, least_hold);
     solution.position_unique   = T.cols() == 0 || open.cols() == 0;
     solution.forces_unique     = movable.empty() || kernel_of(M).cols() == 0;
-    solution.free_motions      = Eigen::MatrixXd::Zero(problem.f.size(), solution.position_unique ? 0 : open.cols());
     if (!solution.position_unique)
-      for (unsigned int b = 0; b < N.size(); ++b)
-        solution.free_motions.middleRows(problem.bodies[b].first, Z[b].rows()) =
-          Z[b] * (N[b] * (motion_scale.asDiagonal() * open).middleRows(first_motion[b], N[b].cols()));
+      solution.free_motions = displacements_under(open);
+  }
+
+  Eigen::MatrixXd DenseSolver::displacements_under(const Eigen::MatrixXd &scaled) const
+  {
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(problem.f.size(), scaled.cols());
+    for (unsigned int b = 0; b < N.size(); ++b)
+      result.middleRows(problem.bodies[b].first, Z[b].rows()) =
+        Z[b] * (N[b] * (motions * motion_scale.asDiagonal() * scaled).middleRows(first_motion[b], N[b].cols()));
+    return result;
   }
 
   Eigen::VectorXd DenseSolver::displacements(const Point &at) const
   {
     Eigen::VectorXd       u = u0;
-    const Eigen::VectorXd x = at.x.cwiseProduct(row_scale), a = at.a.cwiseProduct(motion_scale);
+    const Eigen::VectorXd x = at.x.cwiseProduct(row_scale), a = given + motions * at.a.cwiseProduct(motion_scale);
     for (unsigned int b = 0; b < problem.bodies.size(); ++b)
       {
         const Body           &body = problem.bodies[b];
@@ -706,15 +752,8 @@ namespace slipstick::random
 
   Violation DenseSolver::check(const Eigen::VectorXd &x, const Eigen::VectorXd &u) const
   {
-    Point      at{x.cwiseQuotient(row_scale), Eigen::VectorXd::Zero(T.cols())};
-    const auto project = [&](const Eigen::VectorXd &difference) {
-      Eigen::VectorXd a = Eigen::VectorXd::Zero(T.cols());
-      for (unsigned int b = 0; b < problem.bodies.size(); ++b)
-        a.segment(first_motion[b], N[b].cols()) =
-          N[b].transpose() * (Z[b].transpose() * difference.segment(problem.bodies[b].first, Z[b].rows()));
-      return Eigen::VectorXd(a.cwiseQuotient(motion_scale));
-    };
-    at.a = project(u - displacements(at));
+    Point at{x.cwiseQuotient(row_scale), Eigen::VectorXd::Zero(T.cols())};
+    at.a = (motions.transpose() * amplitudes(u - displacements(at))).cwiseQuotient(motion_scale);
     // u comes in single precision: rows that hold with equality tell the rigid part better
     const Eigen::VectorXd bound = bounds(at.x);
     const double          size  = scale(at.x);
@@ -741,9 +780,11 @@ namespace slipstick::random
         at.a += cod.solve(b);
       }
     Violation violation;
-    violation.equilibrium  = e.size() > 0 ? (T.transpose() * at.x - e).cwiseAbs().maxCoeff() / size : 0.;
-    violation.law          = residual(at);
-    const double largest   = std::max(u.cwiseAbs().maxCoeff(), 1e-13 * problem.size);
+    violation.equilibrium = e.size() > 0 ? (T.transpose() * at.x - e).cwiseAbs().maxCoeff() / size : 0.;
+    const double largest  = std::max(u.cwiseAbs().maxCoeff(), 1e-13 * problem.size);
+    const double rounding =
+      at.x.size() > 0 ? single_precision * largest * row_scale.maxCoeff() / size : 0.; // of u in jumps
+    violation.law          = std::max(0., residual(at) - rounding);
     violation.displacement = (u - displacements(at)).cwiseAbs().maxCoeff() / largest;
     return violation;
   }

@@ -52,7 +52,9 @@ namespace slipstick::random
   class DenseSolver
   {
   public:
-    explicit DenseSolver(const Problem &problem);
+    /// @param displacement if given, motions that rows resist only because they join points that a gap sets apart (decision
+    ///        0070) are held as they are there.
+    explicit DenseSolver(const Problem &problem, const Eigen::VectorXd *displacement = nullptr);
 
     DenseSolution solve() const;
 
@@ -96,7 +98,9 @@ namespace slipstick::random
     using PreciseMatrix = Eigen::Matrix<Precise, Eigen::Dynamic, Eigen::Dynamic>;
     using PreciseVector = Eigen::Matrix<Precise, Eigen::Dynamic, 1>;
 
-    void            condense();
+    void            condense(const Eigen::VectorXd *displacement);
+    void            hold_what_levers_hold(const Eigen::VectorXd &displacement);
+    Eigen::VectorXd amplitudes(const Eigen::VectorXd &displacement) const;
     PreciseMatrix   solve_stiffness(const unsigned int body, const Eigen::MatrixXd &right) const;
     Eigen::VectorXd bounds(const Eigen::VectorXd &x) const;
     Eigen::VectorXd jumps(const Point &at) const;
@@ -110,6 +114,7 @@ namespace slipstick::random
     bool            follow_sets(const Eigen::VectorXd *bound, Point &at) const;
     void            examine(const Point &at, DenseSolution &solution) const;
     Eigen::VectorXd displacements(const Point &at) const;
+    Eigen::MatrixXd displacements_under(const Eigen::MatrixXd &scaled) const;
 
     const Problem                           &problem;
     std::vector<Eigen::MatrixXd>             Z; // per body: unknowns x free ones
@@ -118,15 +123,17 @@ namespace slipstick::random
     std::vector<Eigen::MatrixXd>             C; // per body: rows x free unknowns, scaled
     std::vector<Eigen::MatrixXd>             N; // per body: free unknowns x motions
     std::vector<int>                         first_motion;
-    Eigen::VectorXd                          u0;                      // prescribed
-    Eigen::VectorXd                          row_scale, motion_scale; // x = row_scale x^, a = motion_scale a^
-    Eigen::MatrixXd                          W, T;                    // scaled: unit diagonal
-    Eigen::VectorXd                          d, e;                    // scaled; d less c
-    PreciseMatrix                            precise_W;
-    PreciseVector                            precise_d;
-    Eigen::VectorXd                          fixed_bound, mu; // scaled, by row
-    std::vector<int>                         normal_of;
-    double                                   size_of_e  = 0;
-    bool                                     is_coulomb = false;
+    Eigen::VectorXd                          u0; // prescribed
+    Eigen::VectorXd  row_scale, motion_scale;    // x = row_scale x^, a = given + motions motion_scale a^
+    Eigen::VectorXd  given;
+    Eigen::MatrixXd  motions; // orthonormal: those that are free
+    Eigen::MatrixXd  W, T;    // scaled: unit diagonal
+    Eigen::VectorXd  d, e;    // scaled; d less c
+    PreciseMatrix    precise_W;
+    PreciseVector    precise_d;
+    Eigen::VectorXd  fixed_bound, mu; // scaled, by row
+    std::vector<int> normal_of;
+    double           size_of_e  = 0;
+    bool             is_coulomb = false;
   };
 } // namespace slipstick::random

@@ -18,6 +18,11 @@ namespace slipstick::tfeti
   /// Matrices A + C_1, A + C_2, .. with C_i in the rows and columns of a few changing unknowns share the elimination of
   /// all others; each factorises its Schur complement in the changing ones alone. Where many change, they share the
   /// ordering and the pattern of L.
+  /// @code
+  /// const CoarseSolver    solver(2, {{0, 0, 2.}, {1, 0, -1.}, {1, 1, 2.}}, MPI_COMM_SELF); // entries above the diagonal follow
+  /// const Eigen::VectorXd x = solver.solve(Eigen::Vector2d(3, 0));
+  /// assert((x - Eigen::Vector2d(2, 1)).norm() < 1e-12);
+  /// @endcode
   class CoarseSolver
   {
   public:

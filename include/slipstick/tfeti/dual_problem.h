@@ -18,6 +18,33 @@ namespace slipstick::tfeti
 
   /// min 1/2 x'F x - x'd  s.t.  G x = e and bounds on x (which the contact layer knows). x: multipliers [N], one a row
   /// of B. Serves qp's Problem concept with F scaled by |P F P|, so that its norm is about 1 in any units.
+  ///
+  /// A spring pulled towards a wall by 100 N (tests/install/consumer/bar.cc: with two subdomains and a QP solver):
+  /// @code
+  /// Eigen::Matrix2d lower; // triangle of the stiffness [N/mm]
+  /// lower << 1e5, 0, -1e5, 1e5;
+  /// std::vector<SubdomainMatrices> spring(1);
+  /// spring[0].stiffness     = Eigen::SparseMatrix<double>(lower.sparseView());
+  /// spring[0].load          = Eigen::Vector2d(0, 100);
+  /// spring[0].kernel        = Eigen::MatrixXd::Ones(2, 1);
+  /// spring[0].body_modes    = Eigen::MatrixXd::Ones(1, 1);
+  /// spring[0].boundary_dofs = {0, 1};
+  /// Constraints rows; // u_0 = 0 and u_1 <= 0.4e-3 mm
+  /// rows.rows = rows.interface_dofs = std::make_shared<dealii::Utilities::MPI::Partitioner>(2);
+  /// rows.kind                       = {RowKind::prescribed, RowKind::normal};
+  /// rows.c                          = {0, 4e-4};
+  /// rows.label                      = {0, 1};
+  /// rows.blocks                     = {{{0, 0, 1.}, {1, 1, 1.}}};
+  /// rows.interface_blocks           = {{{0, 0}, {1, 1}}};
+  /// rows.interface_held             = {true, true};
+  /// DualProblem dual(std::move(spring), rows, {}, {"spring"}, MPI_COMM_SELF);
+  /// // both rows bear: G x = e gives x_0 + x_1 = 100 N, the jumps the rest
+  /// DistributedVector x = dual.particular(); // x_0 = x_1 = 50 N
+  /// x(0)                = 40;                // what stretches the spring by 0.4e-3 mm
+  /// x(1)                = 60;
+  /// const auto solution = dual.recover(x, {true, true});
+  /// assert(std::abs(solution.u[0][1] - 4e-4) < 1e-15);
+  /// @endcode
   class DualProblem
   {
   public:

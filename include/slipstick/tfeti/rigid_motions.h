@@ -70,8 +70,9 @@ namespace slipstick::tfeti
       double          lever = 0; // of these, the part of the rotation that is due to the distance of the joined points
     };
 
-    void                        find_levers();
-    Eigen::SparseMatrix<double> resistance_of(const std::vector<bool> &active, const bool without_levers) const;
+    void                         find_levers();
+    std::vector<Eigen::VectorXd> unresisted(const std::vector<bool> &active, const double resistance) const;
+    Eigen::SparseMatrix<double>  resistance_of(const std::vector<bool> &active, const bool without_levers) const;
 
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     MPI_Comm                                             comm;

@@ -10,6 +10,14 @@ namespace slipstick::tfeti
   /// P A P' = L D L' with a fill-reducing order P. A row that depends on those before it, whose pivot is no more than
   /// rounding of its diagonal entry, is left out: its entry in a solution is 0. Of a right hand side in the range of A
   /// the result solves A x = b. Up-looking elimination, Davis 2005 (LDL).
+  /// @code
+  /// Eigen::Matrix2d spring; // held nowhere: a translation costs nothing
+  /// spring << 2, -2, -2, 2;
+  /// const SemidefiniteFactor factor(spring.sparseView());
+  /// const Eigen::VectorXd    u = factor.solve(Eigen::Vector2d(-6, 6));
+  /// assert(factor.n_left_out() == 1);
+  /// assert(std::abs(u[1] - u[0] - 3) < 1e-12);
+  /// @endcode
   class SemidefiniteFactor
   {
   public:

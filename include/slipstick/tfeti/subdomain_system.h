@@ -48,6 +48,12 @@ namespace slipstick::tfeti
       cholesky.reset();
     }
 
+    /// Diagonal of K [N/mm].
+    Eigen::VectorXd stiffness_diagonal() const
+    {
+      return matrices.stiffness.diagonal();
+    }
+
     /// K x; n entries [mm] to [N].
     Eigen::VectorXd apply_stiffness(const Eigen::VectorXd &x) const
     {
