@@ -79,7 +79,7 @@ namespace slipstick::contact
     {
       unsigned int pair = 0; // its number + 1, 0 for none
       for (const auto &point : dual.constraints().contact_points)
-        for (const unsigned int row : {point.normal_row, point.tangential_row})
+        for (const unsigned int row : {point.normal_row, point.tangential_row, point.second_row})
           if (row != tfeti::invalid_row && x.local_element(row) != 0)
             pair = point.pair + 1;
       pair = dealii::Utilities::MPI::max(pair, dual.communicator());
@@ -137,6 +137,13 @@ namespace slipstick::contact
           const auto &subdomain = *dual.subdomains()[spot.subdomain];
           error.place           = place_of(subdomain, subdomain.touched()[spot.touched], pair);
         }
+    }
+
+    /// Of the displacement of a node.
+    unsigned int n_components(const tfeti::SubdomainSystem &subdomain)
+    {
+      constexpr unsigned int motions_in_space = 6;
+      return subdomain.kernel().cols() == motions_in_space ? 3 : 2;
     }
 
     double relative(const double value, const double scale)
@@ -230,6 +237,26 @@ namespace slipstick::contact
       return (point.position[0] - point.master_position[0]) * fy - (point.position[1] - point.master_position[1]) * fx;
     }
 
+    /// Vectors and lengths of tangential traction and slip.
+    void complete_in_space(const tfeti::DualProblem  &dual,
+                           const tfeti::ContactPoint &point,
+                           const DistributedVector   &multipliers,
+                           const DistributedVector   &jumps,
+                           ContactNode               &node)
+    {
+      for (const unsigned int k : {0, 1})
+        {
+          const unsigned int row = k == 0 ? point.tangential_row : point.second_row;
+          for (unsigned int d = 0; d < 3; ++d)
+            {
+              node.traction[d] -= multipliers.local_element(row) / node.area * point.tangents[k][d];
+              node.slip_vector[d] += (jumps.local_element(row) - dual.constraints().c[row]) * point.tangents[k][d];
+            }
+        }
+      node.tangential_traction = std::hypot(node.traction[0], node.traction[1], node.traction[2]);
+      node.slip                = std::hypot(node.slip_vector[0], node.slip_vector[1], node.slip_vector[2]);
+    }
+
     /// One contact node from the force on it and the jump of displacement there.
     ContactNode contact_node(const tfeti::DualProblem  &dual,
                              const tfeti::ContactPoint &point,
@@ -255,6 +282,8 @@ namespace slipstick::contact
           node.slip_bound = slip_bound[point.tangential_row] / node.area;
           node.status     = status_of(node.is_closed, node.slip_bound, free[point.tangential_row]);
         }
+      if (point.second_row != tfeti::invalid_row)
+        complete_in_space(dual, point, multipliers, jumps, node);
       node.moment_mismatch = moment_mismatch(point, node.pressure * node.area, tangential);
       return node;
     }
@@ -365,10 +394,10 @@ namespace slipstick::contact
     Eigen::VectorXd energies = Eigen::VectorXd::Zero(n_bodies);
     for (unsigned int p = 0; p < u.size(); ++p)
       {
-        // two components a node
+        const unsigned int dim = n_components(*dual.subdomains()[p]);
         checks.max_displacement =
           std::max(checks.max_displacement,
-                   Eigen::Map<const Eigen::Matrix2Xd>(u[p].data(), 2, u[p].size() / 2).colwise().norm().maxCoeff());
+                   Eigen::Map<const Eigen::MatrixXd>(u[p].data(), dim, u[p].size() / dim).colwise().norm().maxCoeff());
         energies[dual.subdomains()[p]->body()] += deformed[p].dot(forces[p] + dual.subdomains()[p]->load());
       }
     const auto violation = [&](const unsigned int r) {
@@ -425,7 +454,12 @@ namespace slipstick::contact
             // a bound far above all forces would turn rounding at sticking nodes into work
             const double capped = std::max(std::abs(T), std::min(bound, bounds_that_count * largest_contact));
             all_bounds += capped;
-            work += missing_friction_work(capped, T, node.slip);
+            const double friction_work =
+              point.second_row == tfeti::invalid_row
+                ? T * node.slip
+                : node.area * (node.traction[0] * node.slip_vector[0] + node.traction[1] * node.slip_vector[1] +
+                               node.traction[2] * node.slip_vector[2]);
+            work += missing_friction_work(capped, friction_work, node.slip);
           }
         checks.complementarity += work;
         largest[complementarity].take(work, place);

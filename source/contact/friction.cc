@@ -92,6 +92,8 @@ namespace slipstick::contact
               }
             if (newton(from, true))
               return finished();
+            if (law.has_discs()) // SMALBE-M has bounds only
+              return finished();
             refuse_overload();
             ++solution.fallbacks;
             set_bounds(law.bounds(feasible));
@@ -165,16 +167,30 @@ namespace slipstick::contact
       /// solves with either.
       double change_of_bounds(const std::vector<double> &next, const Vector &x) const
       {
-        std::array<double, 2> s{{0, 0}};
+        std::array<double, 2>     s{{0, 0}};
+        const std::vector<double> size = sizes(x);
         for (unsigned int r = 0; r < next.size(); ++r)
           {
-            const bool   is_inside = std::abs(x.local_element(r)) < std::min(next[r], solution.slip_bound[r]);
+            const bool   is_inside = size[r] < std::min(next[r], solution.slip_bound[r]);
             const double change    = is_inside ? 0. : next[r] - solution.slip_bound[r];
             s[0] += change * change;
             s[1] += next[r] * next[r];
           }
         s = dual.reduction().sum(s);
         return s[0] == 0 ? 0. : s[1] > 0 ? std::sqrt(s[0] / s[1]) : 1.;
+      }
+
+      /// Of every owned row the size of its multiplier; in space tangential ones have that of both.
+      std::vector<double> sizes(const Vector &x) const
+      {
+        std::vector<double> result(x.locally_owned_size());
+        for (unsigned int r = 0; r < result.size(); ++r)
+          result[r] = std::abs(x.local_element(r));
+        for (const auto &point : dual.constraints().contact_points)
+          if (point.second_row != tfeti::invalid_row && point.tangential_row != tfeti::invalid_row)
+            result[point.tangential_row] = result[point.second_row] =
+              std::hypot(result[point.tangential_row], result[point.second_row]);
+        return result;
       }
 
       /// Damping of the bounds: halved whenever their change has not fallen for a while.
@@ -276,7 +292,7 @@ namespace slipstick::contact
           n_pairs = std::max(n_pairs, point.pair + 1);
         std::vector<double> squares(2 * dealii::Utilities::MPI::max(n_pairs, dual.communicator()), 0.);
         for (const auto &point : dual.constraints().contact_points)
-          for (const unsigned int row : {point.normal_row, point.tangential_row})
+          for (const unsigned int row : {point.normal_row, point.tangential_row, point.second_row})
             if (row != tfeti::invalid_row)
               {
                 squares[2 * point.pair] += x.local_element(row) * x.local_element(row) / point.traction_area;
@@ -292,18 +308,21 @@ namespace slipstick::contact
       {
         Vector d = dual.d();
         d /= dual.norm();
-        auto result = qp::semismooth_newton(
-          dual,
-          1.,
-          d,
-          qp::AdmissibleSet<Vector>{box, bounds_follow ? law.pressure_bounds() : std::vector<qp::PressureBound>()},
-          qp::NewtonStart<Vector>{from, gradient, solution.directions},
-          qp::Goal(options.tolerance, solution.weighted_reference),
-          options.newton,
-          counted(),
-          acceptance(),
-          qp::ErrorTest<Vector>(
-            [this](const Vector &x, const Vector &error) { return tractions_are_right(x, error); }));
+        auto followed = law.fixed_discs(solution.slip_bound, !bounds_follow);
+        if (bounds_follow)
+          followed.insert(followed.begin(), law.pressure_bounds().begin(), law.pressure_bounds().end());
+        auto result = qp::semismooth_newton(dual,
+                                            1.,
+                                            d,
+                                            qp::AdmissibleSet<Vector>{box, std::move(followed)},
+                                            qp::NewtonStart<Vector>{from, gradient, solution.directions},
+                                            qp::Goal(options.tolerance, solution.weighted_reference),
+                                            options.newton,
+                                            counted(),
+                                            acceptance(),
+                                            qp::ErrorTest<Vector>([this](const Vector &x, const Vector &error) {
+                                              return tractions_are_right(x, error);
+                                            }));
         gradient.reset();
         solution.counts += result.counts;
         solution.status             = result.status;
@@ -480,11 +499,14 @@ namespace slipstick::contact
       {
         unsigned long long n     = 0;
         const double       noise = tfeti::force_rounding * solution.multipliers.linfty_norm();
+        const auto         size  = sizes(solution.multipliers);
         solution.free.resize(solution.multipliers.locally_owned_size());
         for (unsigned int r = 0; r < solution.free.size(); ++r)
           {
             const double x   = solution.multipliers.local_element(r);
             solution.free[r] = x - box.lower.local_element(r) > noise && box.upper.local_element(r) - x > noise;
+            if (law.has_discs() && dual.constraints().kind[r] == tfeti::RowKind::tangential)
+              solution.free[r] = solution.slip_bound[r] - size[r] > noise;
             n += !solution.free[r];
           }
         solution.active_constraints = dealii::Utilities::MPI::sum(n, dual.communicator());
@@ -559,5 +581,7 @@ namespace slipstick::contact
   }
 
   template scene::SolverOptions resolved_options(const scene::Scene<2> &);
+  template scene::SolverOptions resolved_options(const scene::Scene<3> &);
   template std::vector<double>  slip_bounds(const scene::Scene<2> &, const tfeti::DualProblem &, const double);
+  template std::vector<double>  slip_bounds(const scene::Scene<3> &, const tfeti::DualProblem &, const double);
 } // namespace slipstick::contact

@@ -18,7 +18,7 @@ namespace slipstick::contact
         double &lower = box.lower.local_element(r), &upper = box.upper.local_element(r);
         switch (dual.constraints().kind[r])
           {
-            case tfeti::RowKind::tangential:
+            case tfeti::RowKind::tangential: // in space a square around the disc
               lower = -slip_bound[r];
               upper = slip_bound[r];
               break;
@@ -56,19 +56,43 @@ namespace slipstick::contact
           const auto &pair   = scene.contacts[point.pair];
           const auto  forces = pair.law.admissible_forces(x, t, point.area, pair.name);
           if (pair.law.acts_when_open || point.normal_row == tfeti::invalid_row) // supports take the normal force
-            fixed[point.tangential_row] = forces.closed_radius(0);
+            {
+              fixed[point.tangential_row] = forces.closed_radius(0);
+              if (point.second_row == tfeti::invalid_row)
+                continue;
+              fixed[point.second_row] = fixed[point.tangential_row];
+              discs.push_back({point.tangential_row, qp::no_entry, {fixed[point.tangential_row], 0}, point.second_row});
+            }
           else
-            rows.push_back({point.tangential_row, point.normal_row, forces});
+            rows.push_back({point.tangential_row,
+                            point.normal_row,
+                            forces,
+                            point.second_row == tfeti::invalid_row ? qp::no_entry : point.second_row});
         }
     });
-    follows_pressure = dealii::Utilities::MPI::max(rows.empty() ? 0 : 1, dual.communicator()) > 0;
+    follows_pressure   = dealii::Utilities::MPI::max(rows.empty() ? 0 : 1, dual.communicator()) > 0;
+    const bool has_own = !discs.empty() || (!rows.empty() && rows.front().is_disc());
+    is_in_space        = dealii::Utilities::MPI::max(has_own ? 1 : 0, dual.communicator()) > 0;
   }
 
   std::vector<double> SlipLaw::bounds(const Vector &x) const
   {
     std::vector<double> result = fixed;
     for (const auto &row : rows)
-      result[row.tangential] = row.forces.radius(x.local_element(row.normal));
+      {
+        result[row.tangential] = row.forces.radius(x.local_element(row.normal));
+        if (row.is_disc())
+          result[row.second] = result[row.tangential];
+      }
+    return result;
+  }
+
+  std::vector<qp::PressureBound> SlipLaw::fixed_discs(const std::vector<double> &bounds, const bool all) const
+  {
+    std::vector<qp::PressureBound> result = discs;
+    for (const auto &row : rows)
+      if (all && row.is_disc())
+        result.push_back({row.tangential, qp::no_entry, {bounds[row.tangential], 0}, row.second});
     return result;
   }
 
@@ -77,6 +101,8 @@ namespace slipstick::contact
     qp::ForceSet<Vector> set{multiplier_box(dual, fixed), {}};
     for (const auto &row : rows)
       {
+        if (row.is_disc())
+          continue;
         const bool   is_box                         = row.forces.coefficient == 0; // the closure of the set
         const double bound                          = is_box ? row.forces.closed_radius(0) : qp::infinity;
         set.box.lower.local_element(row.tangential) = -bound;
@@ -86,8 +112,24 @@ namespace slipstick::contact
         set.box.lower.local_element(row.normal) = -qp::infinity;
         set.nodes.push_back(row);
       }
+    const auto add_disc = [&set](const qp::PressureBound &disc) {
+      for (const auto entry : {disc.tangential, disc.second})
+        {
+          set.box.lower.local_element(entry) = -qp::infinity;
+          set.box.upper.local_element(entry) = qp::infinity;
+        }
+      if (disc.normal != qp::no_entry)
+        set.box.lower.local_element(disc.normal) = -qp::infinity;
+      set.nodes.push_back(disc);
+    };
+    for (const auto &disc : discs)
+      add_disc(disc);
+    for (const auto &row : rows)
+      if (row.is_disc())
+        add_disc(row);
     return set;
   }
 
   template SlipLaw::SlipLaw(const scene::Scene<2> &, const tfeti::DualProblem &, const double);
+  template SlipLaw::SlipLaw(const scene::Scene<3> &, const tfeti::DualProblem &, const double);
 } // namespace slipstick::contact

@@ -1,3 +1,4 @@
+#include <slipstick/base/exceptions.h>
 #include <slipstick/interface/body_contact.h>
 #include <slipstick/interface/pair_checks.h>
 
@@ -135,6 +136,18 @@ namespace slipstick::interface
       keys.push_back(key);
     for (const auto &key : keys)
       contacts.owner[key] = first.at(groups.find(key));
+    return contacts;
+  }
+
+  template <>
+  BodyContacts<3> pair_bodies(const scene::Scene<3> &scene, const mesh::Mesh<3> &, const mechanics::Spaces<3> &)
+  {
+    for (const auto &pair : scene.contacts)
+      if (pair.master)
+        throw InputError("Contact " + pair.name + ": contact between bodies is not possible in space yet",
+                         "give an obstacle as Master");
+    BodyContacts<3> contacts;
+    contacts.rows.resize(scene.contacts.size());
     return contacts;
   }
 

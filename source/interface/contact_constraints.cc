@@ -7,6 +7,8 @@
 #include <deal.II/base/index_set.h>
 #include <deal.II/base/mpi.h>
 
+#include <cmath>
+
 namespace slipstick::interface
 {
   namespace
@@ -101,9 +103,10 @@ namespace slipstick::interface
     std::vector<double> limits;
     for (const auto &own : extents)
       {
-        const double gap     = dealii::Utilities::MPI::min(own.gap, mesh.comm);
-        const double length  = dealii::Utilities::MPI::sum(own.length, mesh.comm);
-        const double n_nodes = dealii::Utilities::MPI::sum(own.n_nodes, mesh.comm);
+        const double gap = dealii::Utilities::MPI::min(own.gap, mesh.comm);
+        // along the boundary, in space from its area
+        const double length  = std::pow(dealii::Utilities::MPI::sum(own.length, mesh.comm), 1. / (dim - 1));
+        const double n_nodes = std::pow(double(dealii::Utilities::MPI::sum(own.n_nodes, mesh.comm)), 1. / (dim - 1));
         limits.push_back(n_nodes > 0 ? gap + std::max(part * length, mesh_sizes * length / n_nodes) : 0.);
       }
     builder.limit_gaps(limits);
@@ -153,5 +156,15 @@ namespace slipstick::interface
   template tfeti::Constraints contact_constraints(const scene::Scene<2> &,
                                                   const mesh::Mesh<2> &,
                                                   const mechanics::Spaces<2> &,
+                                                  const double);
+  template ContactRows        contact_rows(const scene::Scene<3> &,
+                                           const mesh::Mesh<3> &,
+                                           const mechanics::Spaces<3> &,
+                                           const BodyContacts<3> &,
+                                           const double,
+                                           const double);
+  template tfeti::Constraints contact_constraints(const scene::Scene<3> &,
+                                                  const mesh::Mesh<3> &,
+                                                  const mechanics::Spaces<3> &,
                                                   const double);
 } // namespace slipstick::interface

@@ -2,6 +2,7 @@
 #include <slipstick/interface/interface_nodes.h>
 #include <slipstick/interface/nodal_conditions.h>
 #include <slipstick/interface/obstacle.h>
+#include <slipstick/mechanics/face_shares.h>
 #include <slipstick/mechanics/points.h>
 
 #include <deal.II/base/mpi.h>
@@ -78,22 +79,15 @@ namespace slipstick::interface
         return where.body == subdomain.body && mesh.on_boundary(where, face->boundary_id());
       };
 
-      // lengths and normals of the nodes, in the order of the face (the edge may run the other way)
-      const auto                                     edge     = mechanics::surface_edge(subdomain, spaces, cell, f);
-      const auto                                     lengths  = edge.tributary_lengths();
-      const auto                                     measures = edge.tributary_measures(kinematics);
-      std::vector<Tributary>                         areas(on_face.size());
+      const auto             shares = mechanics::face_shares(subdomain, spaces, cell, f, kinematics);
+      std::vector<Tributary> areas(on_face.size());
       std::vector<typename InterfaceNode<dim>::Side> sides(on_face.size());
       for (unsigned int i = 0; i < on_face.size(); ++i)
         {
-          unsigned int on_edge = 0;
-          while (edge.keys[on_edge] != on_face[i]->key)
-            ++on_edge;
-          areas[i]          = {measures[on_edge] * scene.bodies[subdomain.body].thickness, lengths[on_edge]};
-          const auto normal = edge.normal(edge.node_coordinate(on_edge));
-          sides[i].area     = areas[i].area;
+          areas[i]      = {shares[i].measure * scene.bodies[subdomain.body].thickness, shares[i].length};
+          sides[i].area = areas[i].area;
           for (unsigned int d = 0; d < dim; ++d)
-            sides[i].normal[d] = normal[d];
+            sides[i].normal[d] = shares[i].normal[d];
         }
       const auto add_sides = [&](const unsigned int condition) {
         for (unsigned int i = 0; i < on_face.size(); ++i)
@@ -298,5 +292,10 @@ namespace slipstick::interface
                                                          const mesh::Mesh<2> &,
                                                          const mechanics::Spaces<2> &,
                                                          const BodyContacts<2> &,
+                                                         const double);
+  template std::vector<InterfaceNode<3>> interface_nodes(const scene::Scene<3> &,
+                                                         const mesh::Mesh<3> &,
+                                                         const mechanics::Spaces<3> &,
+                                                         const BodyContacts<3> &,
                                                          const double);
 } // namespace slipstick::interface

@@ -31,7 +31,25 @@ namespace slipstick::interface
     {
       if (which < dim)
         return format("displacement %c", "xyz"[which]);
+      if (dim == 3)
+        return format("displacement along (%.3g, %.3g, %.3g)", direction[0], direction[1], direction[dim - 1]);
       return format("displacement along (%.3g, %.3g)", direction[0], direction[1]);
+    }
+
+    /// Held directions as columns, their values below; in space.
+    Eigen::Matrix<double, 3, Eigen::Dynamic> directions_of(const InterfaceNode<3> &node)
+    {
+      Eigen::Matrix<double, 3, Eigen::Dynamic> result(3, node.held.size());
+      for (unsigned int k = 0; k < node.held.size(); ++k)
+        result.col(k) = Eigen::Map<const Eigen::Vector3d>(node.held[k].direction.data());
+      return result;
+    }
+    Eigen::VectorXd values_of(const InterfaceNode<3> &node)
+    {
+      Eigen::VectorXd result(node.held.size());
+      for (unsigned int k = 0; k < node.held.size(); ++k)
+        result[k] = node.held[k].value;
+      return result;
     }
 
     /// Adds those who are not there yet.
@@ -116,11 +134,20 @@ namespace slipstick::interface
   template <int dim>
   dealii::Tensor<1, dim> InterfaceNode<dim>::free_part(const dealii::Tensor<1, dim> &direction) const
   {
-    static_assert(dim == 2, "one held direction or all");
     if (held.size() >= dim)
       return {};
     if (held.empty())
       return direction;
+    if constexpr (dim == 3)
+      {
+        const auto                              D = directions_of(*this);
+        const Eigen::Map<const Eigen::Vector3d> v(direction.begin_raw());
+        const Eigen::Vector3d                   left = v - D * D.colPivHouseholderQr().solve(v);
+        dealii::Tensor<1, dim>                  result;
+        for (unsigned int c = 0; c < dim; ++c)
+          result[c] = left[c];
+        return result;
+      }
     const auto d = tensor<dim>(held[0].direction);
     return direction - (direction * d) * d;
   }
@@ -128,18 +155,28 @@ namespace slipstick::interface
   template <int dim>
   dealii::Tensor<1, dim> InterfaceNode<dim>::held_displacement() const
   {
-    static_assert(dim == 2, "one held direction or all");
     dealii::Tensor<1, dim> u;
     if (held.empty())
       return u;
-    const auto a = tensor<dim>(held[0].direction);
-    if (held.size() == 1)
-      return held[0].value * a;
-    const auto   b    = tensor<dim>(held[1].direction);
-    const double area = mechanics::cross(a, b);
-    u[0]              = (held[0].value * b[1] - held[1].value * a[1]) / area;
-    u[1]              = (held[1].value * a[0] - held[0].value * b[0]) / area;
-    return u;
+    if constexpr (dim == 3)
+      {
+        const Eigen::Vector3d least =
+          directions_of(*this).transpose().completeOrthogonalDecomposition().solve(values_of(*this));
+        for (unsigned int c = 0; c < dim; ++c)
+          u[c] = least[c];
+        return u;
+      }
+    else
+      {
+        const auto a = tensor<dim>(held[0].direction);
+        if (held.size() == 1)
+          return held[0].value * a;
+        const auto   b    = tensor<dim>(held[1].direction);
+        const double area = mechanics::cross(a, b);
+        u[0]              = (held[0].value * b[1] - held[1].value * a[1]) / area;
+        u[1]              = (held[1].value * a[0] - held[0].value * b[0]) / area;
+        return u;
+      }
   }
 
   template <int dim>
@@ -166,7 +203,14 @@ namespace slipstick::interface
     share(nearest->by, by);
     // the value that is implied: sum of w_k value_k with direction = sum of w_k direction_k
     double there = 0, size = std::abs(value);
-    if (node.held.size() == 1)
+    if constexpr (dim == 3)
+      {
+        const Eigen::Map<const Eigen::Vector3d> v(direction.begin_raw());
+        const Eigen::VectorXd                   shares = directions_of(node).colPivHouseholderQr().solve(v);
+        there                                          = shares.dot(values_of(node));
+        size = std::max(size, shares.cwiseAbs().dot(values_of(node).cwiseAbs()));
+      }
+    else if (node.held.size() == 1)
       there = (tensor<dim>(node.held[0].direction) * direction) * node.held[0].value;
     else
       {
@@ -180,12 +224,13 @@ namespace slipstick::interface
       }
     size = std::max(size, std::abs(there));
     if (std::abs(there - value) > same_value_tolerance * size)
-      throw InputError(format("supports prescribe both %g and %g for %s at (%g, %g)",
+      throw InputError(format("supports prescribe both %g and %g for %s at (%g, %g%s)",
                               there,
                               value,
                               describe(direction, which).c_str(),
                               node.position[0],
-                              node.position[1]),
+                              node.position[1],
+                              dim == 3 ? format(", %g", node.position[dim - 1]).c_str() : ""),
                        "free that component in one of the supports, or make the values agree where boundaries meet");
   }
 
@@ -205,4 +250,11 @@ namespace slipstick::interface
                      const unsigned int,
                      const std::vector<unsigned int> &);
   template void resolve_sides(InterfaceNode<2> &, const scene::Scene<2> &, const double);
+  template struct InterfaceNode<3>;
+  template void hold(InterfaceNode<3> &,
+                     const dealii::Tensor<1, 3> &,
+                     const double,
+                     const unsigned int,
+                     const std::vector<unsigned int> &);
+  template void resolve_sides(InterfaceNode<3> &, const scene::Scene<3> &, const double);
 } // namespace slipstick::interface

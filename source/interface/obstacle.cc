@@ -18,9 +18,10 @@ namespace slipstick::interface
       return v / v.norm();
     }
 
-    ObstacleContact<2> with_circle(const scene::Obstacle<2> &obstacle, const Point &x)
+    /// With a circle, a ball or, of the ray across its axis, a cylinder.
+    template <int dim>
+    ObstacleContact<dim> with_circle(const scene::Obstacle<dim> &obstacle, const dealii::Tensor<1, dim> &ray)
     {
-      const Tensor ray      = obstacle.center - x;
       const double distance = ray.norm();
       if (!(distance > 0))
         throw InputError("a contact node lies at the centre of obstacle " + obstacle.name + ", where it has no normal",
@@ -101,15 +102,38 @@ namespace slipstick::interface
       {
         case scene::ObstacleShape::circle:
         case scene::ObstacleShape::hole:
-          return with_circle(obstacle, x);
+          return with_circle<2>(obstacle, obstacle.center - x);
         case scene::ObstacleShape::half_plane:
           return {-obstacle.normal, (x - obstacle.center) * obstacle.normal};
         case scene::ObstacleShape::polyline:
           return with_polyline(obstacle.points, x);
         case scene::ObstacleShape::function:
           return with_function(obstacle.height, x, t);
+        case scene::ObstacleShape::cylinder: // refused by the scene
+          break;
       }
     AssertThrow(false, dealii::ExcInternalError());
     return {};
+  }
+
+  template <>
+  ObstacleContact<3> contact_with(const scene::Obstacle<3> &obstacle, const dealii::Point<3> &x, const double)
+  {
+    const dealii::Tensor<1, 3> ray = obstacle.center - x;
+    switch (obstacle.shape)
+      {
+        case scene::ObstacleShape::circle:
+        case scene::ObstacleShape::hole:
+          return with_circle<3>(obstacle, ray);
+        case scene::ObstacleShape::half_plane:
+          return {-obstacle.normal, -ray * obstacle.normal};
+        case scene::ObstacleShape::cylinder:
+          return with_circle<3>(obstacle, ray - (ray * obstacle.normal) * obstacle.normal);
+        case scene::ObstacleShape::polyline:
+        case scene::ObstacleShape::function:
+          break;
+      }
+    throw InputError("Obstacle " + obstacle.name + ": its shape is none of space",
+                     "set Shape to ball, cylinder or half space");
   }
 } // namespace slipstick::interface

@@ -2,6 +2,8 @@
 #include <slipstick/interface/obstacle.h>
 #include <slipstick/interface/row_builder.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,27 +27,50 @@ namespace slipstick::interface
       return std::sqrt(squares);
     }
 
+    double product(const std::map<unsigned int, double> &v, const std::map<unsigned int, double> &w)
+    {
+      double sum = 0;
+      for (const auto &[i, value] : w)
+        if (const auto found = v.find(i); found != v.end())
+          sum += value * found->second;
+      return sum;
+    }
+
     /// v less its part along w.
     std::map<unsigned int, double> without(std::map<unsigned int, double> v, const std::map<unsigned int, double> &w)
     {
-      double product = 0;
+      const double part = product(v, w);
       for (const auto &[i, value] : w)
-        if (const auto found = v.find(i); found != v.end())
-          product += value * found->second;
-      for (const auto &[i, value] : w)
-        v[i] -= product / (norm(w) * norm(w)) * value;
+        v[i] -= part / (norm(w) * norm(w)) * value;
       return v;
     }
 
+    /// Unit vectors across the normal and each other. In space the first is nearest to the axis that is most across.
     template <int dim>
-    dealii::Tensor<1, dim> tangent_of(const dealii::Tensor<1, dim> &normal)
+    std::array<dealii::Tensor<1, dim>, dim - 1> tangents_of(const dealii::Tensor<1, dim> &normal)
     {
-      static_assert(dim == 2, "one tangent: two dimensions");
-      dealii::Tensor<1, dim> tangent;
-      tangent[0] = -normal[1];
-      tangent[1] = normal[0];
-      return tangent;
+      std::array<dealii::Tensor<1, dim>, dim - 1> tangents;
+      if constexpr (dim == 2)
+        {
+          tangents[0][0] = -normal[1];
+          tangents[0][1] = normal[0];
+        }
+      else
+        {
+          unsigned int axis = 0;
+          for (unsigned int d = 1; d < dim; ++d)
+            if (std::abs(normal[d]) < std::abs(normal[axis]))
+              axis = d;
+          tangents[0][axis] = 1;
+          tangents[0] -= normal[axis] * normal;
+          tangents[0] /= tangents[0].norm();
+          tangents[1] = cross_product_3d(normal, tangents[0]);
+        }
+      return tangents;
     }
+
+    // What tells the names of the rows along both tangents of a node apart.
+    constexpr std::uint64_t second_tangent = std::uint64_t(1) << 48;
 
     // Sums below this part of their terms are rounding.
     constexpr double rounding_of_sums = 1e-12;
@@ -366,7 +391,7 @@ namespace slipstick::interface
   template <int dim>
   typename RowBuilder<dim>::Vector RowBuilder<dim>::bond(const Touch &touch, const unsigned int direction) const
   {
-    return jump(touch, direction == 0 ? touch.normal : tangent_of<dim>(touch.normal));
+    return jump(touch, direction == 0 ? touch.normal : tangents_of<dim>(touch.normal)[direction - 1]);
   }
 
   template <int dim>
@@ -401,7 +426,7 @@ namespace slipstick::interface
           }
     for (const auto &list : by_pair)
       for (const auto &[i, touch] : list)
-        for (const unsigned int d : {0, 1})
+        for (unsigned int d = 0; d < dim; ++d)
           if (bonds.add(free_part(bond(touch, d)), held_direction_tolerance, dim * i, dim * (i + 1)))
             kept_bonds.insert(std::array<unsigned int, 4>{{i, touch.pair, touch.side, d}});
   }
@@ -416,13 +441,13 @@ namespace slipstick::interface
     for (Touch &touch : touches)
       if (scene.contacts[touch.pair].law.is_bonded)
         {
-          for (const unsigned int d : {0, 1})
+          for (unsigned int d = 0; d < dim; ++d)
             {
               if (kept_bonds.count(std::array<unsigned int, 4>{{i, touch.pair, touch.side, d}}) == 0)
                 continue;
               const unsigned int number =
                 new_row(tfeti::RowKind::bonded, 0., key, (1ull << 32) + 16 * touch.pair + 4 * touch.side + d);
-              (d == 0 ? touch.point.normal_row : touch.point.tangential_row) = number;
+              (d == 0 ? touch.point.normal_row : d == 1 ? touch.point.tangential_row : touch.point.second_row) = number;
               fill(number, bond(touch, d));
               ++constraints.counts.gluing;
             }
@@ -444,19 +469,17 @@ namespace slipstick::interface
               add_pruned(touch, normal);
             continue;
           }
-        const auto tangential = jump(touch, tangent_of<dim>(touch.normal));
-        auto       across     = bonds.reduce(free_part(tangential));
-        if (has_normal)
-          across = without(across, left);
-        const bool has_tangent =
-          touch.has_tangent && is_free(across) && !(!has_normal && is_held_open(held.points.back()));
-        if (!has_normal && !has_tangent)
+        std::vector<Vector> across; // along the tangents that are not held
+        if (touch.has_tangent && !(!has_normal && is_held_open(held.points.back())))
+          across = free_tangents(touch, has_normal ? left : Vector());
+        if (!has_normal && across.empty())
           continue;
         const std::uint64_t which = touch.pair + (std::uint64_t(touch.side) << 32);
-        if (has_tangent)
+        for (unsigned int k = 0; k < across.size(); ++k)
           {
-            touch.point.tangential_row = new_row(tfeti::RowKind::tangential, 0., key, which);
-            fill(touch.point.tangential_row, tangential);
+            const unsigned int row = new_row(tfeti::RowKind::tangential, 0., key, which + k * second_tangent);
+            (k == 0 ? touch.point.tangential_row : touch.point.second_row) = row;
+            fill(row, across[k]);
             ++constraints.counts.tangential;
           }
         if (has_normal)
@@ -470,6 +493,38 @@ namespace slipstick::interface
         ++constraints.counts.candidates;
         constraints.contact_points.push_back(touch.point);
       }
+  }
+
+  template <int dim>
+  std::vector<typename RowBuilder<dim>::Vector> RowBuilder<dim>::free_tangents(Touch &touch, const Vector &left) const
+  {
+    const auto free_of = [&](const Vector &row) {
+      auto free = bonds.reduce(free_part(row));
+      return left.empty() ? free : without(free, left);
+    };
+    auto                tangents = tangents_of<dim>(touch.normal);
+    std::vector<Vector> rows;
+    if constexpr (dim == 3)
+      { // where supports hold a tangent the force is along the other one: the disc becomes an interval
+        const Vector    a = free_of(jump(touch, tangents[0])), b = free_of(jump(touch, tangents[1]));
+        Eigen::Matrix2d gram;
+        gram << product(a, a), product(a, b), product(a, b), product(b, b);
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(gram);
+        if (principal.eigenvalues()[0] <= held_direction_tolerance * held_direction_tolerance)
+          {
+            const auto v = principal.eigenvectors().col(1);
+            const auto t = v[0] * tangents[0] + v[1] * tangents[1];
+            tangents[1]  = v[0] * tangents[1] - v[1] * tangents[0];
+            tangents[0]  = t;
+          }
+        for (unsigned int k = 0; k + 1 < dim; ++k)
+          for (unsigned int d = 0; d < dim; ++d)
+            touch.point.tangents[k][d] = tangents[k][d];
+      }
+    for (const auto &tangent : tangents)
+      if (const auto row = jump(touch, tangent); norm(free_of(row)) > held_direction_tolerance)
+        rows.push_back(row);
+    return rows;
   }
 
   template <int dim>
@@ -538,4 +593,5 @@ namespace slipstick::interface
   }
 
   template class RowBuilder<2>;
+  template class RowBuilder<3>;
 } // namespace slipstick::interface

@@ -109,7 +109,6 @@ namespace slipstick::mechanics
                         const LameCoefficients      &lame,
                         dealii::FullMatrix<double>  &local)
     {
-      static_assert(dim == 2, "the circumference of a radius");
       const auto        &values  = *at;
       const unsigned int n_nodes = values.dofs_per_cell;
       local                      = 0;
@@ -172,7 +171,7 @@ namespace slipstick::mechanics
                                                    const Element<dim>            &element,
                                                    const dealii::DoFHandler<dim> &dof_handler)
     {
-      const auto             lame = lame_coefficients(scene.materials[scene.bodies[body].material], scene.plane_state);
+      const auto             lame = lame_coefficients(scene.materials[scene.bodies[body].material], state_of(scene));
       const double           thickness = scene.bodies[body].thickness;
       const bool             project   = scene.discretization.element == scene::ElementKind::nearly_incompressible;
       const LameCoefficients as_displaced{project ? 0. : lame.lambda, lame.mu};
@@ -276,5 +275,9 @@ namespace slipstick::mechanics
   template std::vector<tfeti::SubdomainMatrices> assemble(const scene::Scene<2> &,
                                                           const mesh::Mesh<2> &,
                                                           const Spaces<2> &,
+                                                          const double);
+  template std::vector<tfeti::SubdomainMatrices> assemble(const scene::Scene<3> &,
+                                                          const mesh::Mesh<3> &,
+                                                          const Spaces<3> &,
                                                           const double);
 } // namespace slipstick::mechanics

@@ -47,4 +47,5 @@ namespace slipstick::mechanics
   }
 
   template class DilatationProjection<2>;
+  template class DilatationProjection<3>;
 } // namespace slipstick::mechanics

@@ -62,4 +62,5 @@ namespace slipstick::mechanics
   }
 
   template class TemperatureOfBody<2>;
+  template class TemperatureOfBody<3>;
 } // namespace slipstick::mechanics

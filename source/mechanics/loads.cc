@@ -153,11 +153,12 @@ namespace slipstick::mechanics
                 if (const auto &traction = scene.tractions[k];
                     traction.where.body == number && mesh.on_boundary(traction.where, cell->face(f)->boundary_id()))
                   {
-                    if (!is_constant(traction))
-                      {
-                        add_formula(traction, cell, f, sums[k]);
-                        continue;
-                      }
+                    if constexpr (dim == 2) // in space by the quadrature that constants have
+                      if (!is_constant(traction))
+                        {
+                          add_formula(traction, cell, f, sums[k]);
+                          continue;
+                        }
                     values.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell), f);
                     element.nodes_of(cell, dofs, nodes);
                     add_traction(traction, values, sums[k]);
@@ -281,7 +282,7 @@ namespace slipstick::mechanics
         const TemperatureOfBody<dim> temperature(scene, number, t);
         if (temperature.is_zero())
           return;
-        const ElasticLaw          law(scene.materials[body.material], scene.plane_state);
+        const ElasticLaw          law(scene.materials[body.material], state_of(scene));
         const bool                project = scene.discretization.element == scene::ElementKind::nearly_incompressible;
         DilatationProjection<dim> projection(element);
         const auto                rule = element.stiffness_rule(kinematics);
@@ -466,5 +467,10 @@ namespace slipstick::mechanics
   template std::vector<Eigen::VectorXd> assemble_loads(const scene::Scene<2> &,
                                                        const mesh::Mesh<2> &,
                                                        const Spaces<2> &,
+                                                       const double);
+
+  template std::vector<Eigen::VectorXd> assemble_loads(const scene::Scene<3> &,
+                                                       const mesh::Mesh<3> &,
+                                                       const Spaces<3> &,
                                                        const double);
 } // namespace slipstick::mechanics

@@ -135,4 +135,10 @@ namespace slipstick::mechanics
                                               const Spaces<2> &,
                                               const std::vector<scene::PointName<2>> &,
                                               const std::vector<std::string> &);
+  template struct PointNode<3>;
+  template std::vector<PointNode<3>> nodes_at(const scene::Scene<3> &,
+                                              const mesh::Mesh<3> &,
+                                              const Spaces<3> &,
+                                              const std::vector<scene::PointName<3>> &,
+                                              const std::vector<std::string> &);
 } // namespace slipstick::mechanics

@@ -28,6 +28,16 @@ namespace slipstick::mechanics
         }
       return points;
     }
+    /// What a small rotation makes of @p r; in space about axis number @p m.
+    template <int dim>
+    dealii::Tensor<1, dim> rotation(const unsigned int m, const dealii::Tensor<1, dim> &r)
+    {
+      dealii::Tensor<1, dim> moved;
+      const unsigned int     a = dim == 2 ? 0 : (m + 1) % dim, b = dim == 2 ? 1 : (m + 2) % dim; // from a to b
+      moved[a] = -r[b];
+      moved[b] = r[a];
+      return moved;
+    }
   } // namespace
 
   template <int dim>
@@ -66,7 +76,6 @@ namespace slipstick::mechanics
                    const mesh::Kinematics<dim>   &kinematics,
                    tfeti::SubdomainMatrices      &system)
   {
-    static_assert(dim == 2, "one rotation: two dimensions");
     const auto points = positions_of_unknowns(element, dof_handler);
     system.positions.resize(dim, points.size() / dim);
     for (unsigned int i = 0; i < points.size(); ++i)
@@ -96,13 +105,18 @@ namespace slipstick::mechanics
       {
         const dealii::Tensor<1, dim> r = (points[i] - own.center) / own.length;
         system.kernel(i, i % dim)      = 1;
-        system.kernel(i, dim)          = i % dim == 0 ? -r[1] : r[0];
+        for (unsigned int m = dim; m < k; ++m)
+          system.kernel(i, m) = rotation<dim>(m - dim, r)[i % dim];
       }
     // rotation about the body's centre = scaled own rotation + translation of the own centre
     const dealii::Tensor<1, dim> offset = (own.center - body.center) / body.length;
-    system.body_modes(0, 2)             = -offset[1];
-    system.body_modes(1, 2)             = offset[0];
-    system.body_modes(2, 2)             = own.length / body.length;
+    for (unsigned int m = dim; m < k; ++m)
+      {
+        const dealii::Tensor<1, dim> moved = rotation<dim>(m - dim, offset);
+        for (unsigned int d = 0; d < dim; ++d)
+          system.body_modes(d, m) = moved[d];
+        system.body_modes(m, m) = own.length / body.length;
+      }
   }
 
   template std::vector<Frame<2>> body_frames(const scene::Scene<2> &, const mesh::Mesh<2> &);
@@ -110,5 +124,11 @@ namespace slipstick::mechanics
                                              const dealii::DoFHandler<2> &,
                                              const Frame<2> &,
                                              const mesh::Kinematics<2> &,
+                                             tfeti::SubdomainMatrices &);
+  template std::vector<Frame<3>> body_frames(const scene::Scene<3> &, const mesh::Mesh<3> &);
+  template void                  rigid_modes(const Element<3> &,
+                                             const dealii::DoFHandler<3> &,
+                                             const Frame<3> &,
+                                             const mesh::Kinematics<3> &,
                                              tfeti::SubdomainMatrices &);
 } // namespace slipstick::mechanics

@@ -34,8 +34,8 @@ namespace slipstick::mechanics
         for (const unsigned int v : cell->vertex_indices())
           points.push_back(cell->vertex(v));
         if (this->get_degree() == 2)
-          for (const unsigned int e : cell->face_indices())
-            points.push_back(cell->face(e)->center(true));
+          for (const unsigned int e : cell->line_indices())
+            points.push_back(cell->line(e)->center(true));
         return points;
       }
     };
@@ -79,8 +79,8 @@ namespace slipstick::mechanics
     , loads(cell_quadrature(degree + 2))
     , stress(cell_quadrature(degree))
   {
-    static_assert(dim == 2, "cell types and edges of two dimensions");
-    AssertThrow(degree == 1 || degree == 2, dealii::ExcMessage("a face node is identified by its edge: degree 1 or 2"));
+    AssertThrow(degree == 1 || (degree == 2 && dim == 2),
+                dealii::ExcMessage("a face node is identified by its edge: degree 1 or 2, in space 1"));
   }
 
   template <int dim>
@@ -140,5 +140,7 @@ namespace slipstick::mechanics
   }
 
   template struct Element<2>;
+  template struct Element<3>;
   template struct Spaces<2>;
+  template struct Spaces<3>;
 } // namespace slipstick::mechanics

@@ -194,4 +194,6 @@ namespace slipstick::mechanics
                                                 const scene::BoundaryName &);
   template std::vector<unsigned int>   smooth_normals(const std::vector<dealii::Tensor<1, 2>> &,
                                                       std::vector<dealii::Tensor<1, 2>> &);
+  template std::vector<unsigned int>   smooth_normals(const std::vector<dealii::Tensor<1, 3>> &,
+                                                      std::vector<dealii::Tensor<1, 3>> &);
 } // namespace slipstick::mechanics

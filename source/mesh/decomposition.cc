@@ -25,6 +25,9 @@ namespace slipstick::mesh
     // many subdomains?".
     constexpr double automatic_cells_per_subdomain = 10000;
 
+    // The same in space: a cube of 10 cells a side (time of factors and coarse problem, space.md of the first steps).
+    constexpr double automatic_cells_per_subdomain_in_space = 1000;
+
     // Bodies that may not share units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus): the larger size or modulus
     // over the smaller one. Parts of one assembly differ less in size; steel and rubber differ by 1e5 in modulus. What
     // is doubtful together: the smaller of two bodies is the stiffer one, as it is when metres and pascal meet mm and
@@ -120,7 +123,7 @@ namespace slipstick::mesh
             ++k;
           mesh.n_cells += product<dim>(n);
           first_vertex.push_back(first_vertex.back() + product<dim>(n_vertices));
-          mesh.boundary_ids.push_back(shape_boundary_ids(body.shape));
+          mesh.boundary_ids.push_back(shape_boundary_ids(body.shape, dim));
         }
       mesh.combined_ids.resize(scene.bodies.size());
       mesh.points.resize(scene.bodies.size());
@@ -139,11 +142,12 @@ namespace slipstick::mesh
       collectively(mesh.comm, [&] {
         for (unsigned int s = mesh.first_subdomain[rank]; s < mesh.first_subdomain[rank + 1]; ++s)
           {
-            const unsigned int body = s / per_body, b = s % per_body;
-            auto               piece = rectangle_piece<dim>(scene.bodies[body],
-                                              rectangle_cells(scene, scene.bodies[body]),
-                                              n_blocks,
-                                              {{b % N, b / N}});
+            const unsigned int            body = s / per_body;
+            std::array<unsigned int, dim> block;
+            for (unsigned int d = 0, b = s % per_body; d < dim; ++d, b /= N)
+              block[d] = b % N;
+            auto piece =
+              rectangle_piece<dim>(scene.bodies[body], rectangle_cells(scene, scene.bodies[body]), n_blocks, block);
             place_in_scene(scene, body, piece);
             piece.subdomain = s;
             piece.body      = body;
@@ -249,9 +253,11 @@ namespace slipstick::mesh
       const bool         one_each          = scene.decomposition.method == scene::DecompositionMethod::none;
       const unsigned int asked             = one_each ? scene.bodies.size() : scene.decomposition.subdomains;
       const double       total             = std::accumulate(cost.begin(), cost.end(), 0.);
-      const double       unknowns_per_node = scene.discretization.degree * scene.discretization.degree;
+      const double       unknowns_per_node = std::pow(scene.discretization.degree, dim);
+      const double       cells_per_subdomain =
+        dim == 3 ? automatic_cells_per_subdomain_in_space : automatic_cells_per_subdomain;
       const unsigned int wanted =
-        asked > 0 ? asked : std::max(1., std::round(total * unknowns_per_node / automatic_cells_per_subdomain));
+        asked > 0 ? asked : std::max(1., std::round(total * unknowns_per_node / cells_per_subdomain));
       if (asked > 0 && asked < wholes.size())
         remarks.push_back(std::to_string(wholes.size()) + " subdomains instead of " + std::to_string(asked) +
                           ": at least one for each body and cell type");
@@ -364,4 +370,5 @@ namespace slipstick::mesh
   }
 
   template Mesh<2> make_mesh(const scene::Scene<2> &, const MPI_Comm, Refinement *);
+  template Mesh<3> make_mesh(const scene::Scene<3> &, const MPI_Comm, Refinement *);
 } // namespace slipstick::mesh

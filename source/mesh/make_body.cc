@@ -243,42 +243,60 @@ namespace slipstick::mesh
   {
     const scene::Body<dim> &body = scene.bodies[b];
     BodyMesh<dim>           mesh;
-    if (body.shape == scene::Shape::mesh)
-      {
-        if (files.count(body.file) == 0)
-          {
-            files[body.file] = read_mesh_file(body.file);
-            remark_on_plane_state(scene, files[body.file]);
-          }
-        mesh          = body_from_file(body, files[body.file]);
-        auto &of_file = files[body.file].remarks; // once
-        mesh.remarks.insert(mesh.remarks.begin(), of_file.begin(), of_file.end());
-        of_file.clear();
-        check_names(scene, b, mesh);
-        smooth_outline(body, mesh);
-        refine_uniformly(body, body.refinements + scene.discretization.refinements, refined != nullptr, mesh);
-      }
-    else
+    if constexpr (dim == 3)
       {
         mesh = body_from_shape(scene, body);
         check_names(scene, b, mesh);
+        mesh.piece.body = b;
+        place_in_scene(scene, b, mesh.piece);
+        return mesh;
       }
-    refine_towards_boundaries(body, mesh);
-    if (refined)
+    else
       {
-        auto finer = adapted(mesh.piece, *refined);
-        mesh.piece = std::move(finer.piece);
-        *paths     = std::move(finer.paths);
+        if (body.shape == scene::Shape::mesh)
+          {
+            if (files.count(body.file) == 0)
+              {
+                files[body.file] = read_mesh_file(body.file);
+                remark_on_plane_state(scene, files[body.file]);
+              }
+            mesh          = body_from_file(body, files[body.file]);
+            auto &of_file = files[body.file].remarks; // once
+            mesh.remarks.insert(mesh.remarks.begin(), of_file.begin(), of_file.end());
+            of_file.clear();
+            check_names(scene, b, mesh);
+            smooth_outline(body, mesh);
+            refine_uniformly(body, body.refinements + scene.discretization.refinements, refined != nullptr, mesh);
+          }
+        else
+          {
+            mesh = body_from_shape(scene, body);
+            check_names(scene, b, mesh);
+          }
+        refine_towards_boundaries(body, mesh);
+        if (refined)
+          {
+            auto finer = adapted(mesh.piece, *refined);
+            mesh.piece = std::move(finer.piece);
+            *paths     = std::move(finer.paths);
+          }
+        mesh.piece.body = b;
+        place_in_scene(scene, b, mesh.piece);
+        add_boundary_parts(scene, b, mesh);
+        return mesh;
       }
-    mesh.piece.body = b;
-    place_in_scene(scene, b, mesh.piece);
-    add_boundary_parts(scene, b, mesh);
-    return mesh;
   }
 
   template void                     place_in_scene(const scene::Scene<2> &, const unsigned int, MeshPiece<2> &);
+  template void                     place_in_scene(const scene::Scene<3> &, const unsigned int, MeshPiece<3> &);
   template std::vector<std::string> unused_parts(const scene::Scene<2> &, const std::map<std::string, MeshFile> &);
+  template std::vector<std::string> unused_parts(const scene::Scene<3> &, const std::map<std::string, MeshFile> &);
   template BodyMesh<2>              make_body(const scene::Scene<2> &,
+                                              const unsigned int,
+                                              std::map<std::string, MeshFile> &,
+                                              std::set<CellPath> *,
+                                              std::vector<CellPath> *);
+  template BodyMesh<3>              make_body(const scene::Scene<3> &,
                                               const unsigned int,
                                               std::map<std::string, MeshFile> &,
                                               std::set<CellPath> *,

@@ -36,5 +36,6 @@ namespace slipstick::mesh
   }
 
   template struct Mesh<2>;
+  template struct Mesh<3>;
   template bool on_boundary(const Mesh<2> &, const unsigned int, const std::string &, const dealii::types::boundary_id);
 } // namespace slipstick::mesh

@@ -11,6 +11,19 @@ namespace slipstick::mesh
   {
     constexpr unsigned int most_bisected = 8; // parts
 
+    /// About an axis of any length, z if it has none (Rodrigues).
+    dealii::Tensor<1, 3> turned(const dealii::Tensor<1, 3> &x,
+                                const dealii::Tensor<1, 3> &axis,
+                                const double                cosine,
+                                const double                sine)
+    {
+      dealii::Tensor<1, 3> a;
+      a[2] = 1;
+      if (axis.norm() > 0)
+        a = axis / axis.norm();
+      return cosine * x + sine * cross_product_3d(a, x) + (1 - cosine) * (a * x) * a;
+    }
+
     /// Sub-piece of the given cells.
     template <int dim>
     MeshPiece<dim> extract(
@@ -25,7 +38,7 @@ namespace slipstick::mesh
       for (const unsigned int c : cells)
         {
           auto cell = whole.cells[c];
-          for (unsigned int f = 0; f < n_corners<dim>(cell); ++f)
+          for (unsigned int f = 0; f < n_faces<dim>(cell); ++f)
             {
               const auto found = boundary.find(face_of_cell<dim>(cell, f));
               if (found != boundary.end())
@@ -57,7 +70,7 @@ namespace slipstick::mesh
     std::vector<std::pair<typename MeshPiece<dim>::Face, unsigned int>> faces;
     faces.reserve(piece.cells.size() * dealii::GeometryInfo<dim>::faces_per_cell);
     for (unsigned int c = 0; c < piece.cells.size(); ++c)
-      for (unsigned int f = 0; f < n_corners<dim>(piece.cells[c]); ++f)
+      for (unsigned int f = 0; f < n_faces<dim>(piece.cells[c]); ++f)
         faces.emplace_back(face_of_cell<dim>(piece.cells[c], f), c);
     std::sort(faces.begin(), faces.end());
     return faces;
@@ -83,7 +96,9 @@ namespace slipstick::mesh
     std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> faces;
     for (auto face : piece.boundary_faces)
       {
-        if (face.vertices[0] > face.vertices[1])
+        if constexpr (dim == 3)
+          std::sort(face.vertices.begin(), face.vertices.end());
+        else if (face.vertices[0] > face.vertices[1])
           {
             std::swap(face.vertices[0], face.vertices[1]);
             face.curve = face.curve.reversed();
@@ -99,51 +114,78 @@ namespace slipstick::mesh
                                  const std::array<unsigned int, dim> &n_blocks,
                                  const std::array<unsigned int, dim> &block)
   {
-    static_assert(dim == 2, "the lattice below is written for two dimensions");
-    std::array<unsigned int, dim> first, n; // lattice cells of this block
+    std::array<unsigned int, dim> first, n, stride; // lattice cells of this block; from a vertex to the next
+    unsigned int                  n_vertices = 1, n_own_cells = 1;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        n[d]     = n_cells[d] / n_blocks[d];
-        first[d] = block[d] * n[d];
+        n[d]      = n_cells[d] / n_blocks[d];
+        first[d]  = block[d] * n[d];
+        stride[d] = n_vertices;
+        n_vertices *= n[d] + 1;
+        n_own_cells *= n[d];
       }
     MeshPiece<dim> piece;
-    piece.ordered     = true;
-    const auto vertex = [&](const unsigned int i, const unsigned int j) { return j * (n[0] + 1) + i; };
-    for (unsigned int j = 0; j <= n[1]; ++j)
-      for (unsigned int i = 0; i <= n[0]; ++i)
+    piece.ordered       = true;
+    const auto place_of = [](unsigned int                         i,
+                             const std::array<unsigned int, dim> &size) { // the first direction runs fastest
+      std::array<unsigned int, dim> at;
+      for (unsigned int d = 0; d < dim; ++d)
         {
-          // from the lattice of the whole body, so that copies of a vertex have the same coordinates to the last bit
-          const std::array<unsigned int, dim> lattice{{first[0] + i, first[1] + j}};
-          dealii::Point<dim>                  x;
-          for (unsigned int d = 0; d < dim; ++d)
-            x[d] = body.origin[d] + body.size[d] * lattice[d] / n_cells[d];
-          piece.vertices.push_back(x);
-          piece.global_vertices.push_back(GlobalVertex(lattice[1]) * (n_cells[0] + 1) + lattice[0]);
+          at[d] = i % size[d];
+          i /= size[d];
         }
-    for (unsigned int j = 0; j < n[1]; ++j)
-      for (unsigned int i = 0; i < n[0]; ++i)
-        piece.cells.push_back({{vertex(i, j), vertex(i + 1, j), vertex(i, j + 1), vertex(i + 1, j + 1)}});
-    for (unsigned int j = 0; j < n[1]; ++j)
+      return at;
+    };
+    auto n_points = n;
+    for (unsigned int &k : n_points)
+      ++k;
+    for (unsigned int i = 0; i < n_vertices; ++i)
       {
-        if (block[0] == 0)
-          piece.boundary_faces.push_back({{{vertex(0, j), vertex(0, j + 1)}}, 0});
-        if (block[0] + 1 == n_blocks[0])
-          piece.boundary_faces.push_back({{{vertex(n[0], j), vertex(n[0], j + 1)}}, 1});
+        // from the lattice of the whole body, so that copies of a vertex have the same coordinates to the last bit
+        const auto         own = place_of(i, n_points);
+        dealii::Point<dim> x;
+        GlobalVertex       number = 0;
+        for (unsigned int d = dim; d-- > 0;)
+          {
+            x[d]   = body.origin[d] + body.size[d] * (first[d] + own[d]) / n_cells[d];
+            number = number * (n_cells[d] + 1) + first[d] + own[d];
+          }
+        piece.vertices.push_back(x);
+        piece.global_vertices.push_back(number);
       }
-    for (unsigned int i = 0; i < n[0]; ++i)
+    const auto vertex = [&](const std::array<unsigned int, dim> &cell, const unsigned int corner) {
+      unsigned int v = 0;
+      for (unsigned int d = 0; d < dim; ++d)
+        v += (cell[d] + (corner >> d & 1)) * stride[d];
+      return v;
+    };
+    for (unsigned int c = 0; c < n_own_cells; ++c)
       {
-        if (block[1] == 0)
-          piece.boundary_faces.push_back({{{vertex(i, 0), vertex(i + 1, 0)}}, 2});
-        if (block[1] + 1 == n_blocks[1])
-          piece.boundary_faces.push_back({{{vertex(i, n[1]), vertex(i + 1, n[1])}}, 3});
+        const auto                    at = place_of(c, n);
+        typename MeshPiece<dim>::Cell cell;
+        for (unsigned int v = 0; v < cell.size(); ++v)
+          cell[v] = vertex(at, v);
+        piece.cells.push_back(cell);
       }
+    // faces 2 d and 2 d + 1 at the ends of direction d; both of one pair in turn
+    for (unsigned int d = 0; d < dim; ++d)
+      for (unsigned int c = 0; c < n_own_cells; ++c)
+        if (auto at = place_of(c, n); at[d] == 0)
+          for (const unsigned int end : {0, 1})
+            if (block[d] + 1 == (end == 0 ? 1 : n_blocks[d]))
+              {
+                at[d] = end == 0 ? 0 : n[d] - 1;
+                typename MeshPiece<dim>::Face face;
+                for (unsigned int v = 0; v < face.size(); ++v)
+                  face[v] = vertex(at, dealii::GeometryInfo<dim>::face_to_cell_vertices(2 * d + end, v));
+                piece.boundary_faces.push_back({face, 2 * d + end});
+              }
     return piece;
   }
 
   template <int dim>
   void place(MeshPiece<dim> &piece, const scene::Placement<dim> &placement)
   {
-    static_assert(dim == 2, "turned in the plane");
     // whole quarters are exact
     const double quarters = placement.rotation / 90;
     const bool   whole    = quarters == std::round(quarters);
@@ -156,7 +198,10 @@ namespace slipstick::mesh
         x[0] = -x[0];
       if (placement.mirror_y)
         x[1] = -x[1];
-      x = dealii::Point<dim>(cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]) + placement.translation;
+      if constexpr (dim == 3)
+        x = dealii::Point<dim>(turned(x, placement.axis, cosine, sine)) + placement.translation;
+      else
+        x = dealii::Point<dim>(cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]) + placement.translation;
     };
     for (auto &x : piece.vertices)
       move(x);
@@ -164,7 +209,12 @@ namespace slipstick::mesh
       face.curve.move(move);
     if (placement.mirror_x != placement.mirror_y)
       for (auto &cell : piece.cells)
-        std::swap(cell[1], cell[2]); // of a quadrilateral in lexicographic order, and of a triangle
+        {
+          if (dim == 2)
+            std::swap(cell[1], cell[2]); // of a quadrilateral in lexicographic order, and of a triangle
+          for (unsigned int v = 0; dim == 3 && v < cell.size(); v += 2)
+            std::swap(cell[v], cell[v + 1]);
+        }
   }
 
   template <int dim>
@@ -269,4 +319,15 @@ namespace slipstick::mesh
   template void                                                     place(MeshPiece<2> &, const scene::Placement<2> &);
   template std::vector<MeshPiece<2>> cut(const MeshPiece<2> &, const std::vector<unsigned int> &);
   template std::vector<unsigned int> metis_parts(const MeshPiece<2> &, const unsigned int, const unsigned int);
+  template struct MeshPiece<3>;
+  template std::vector<std::pair<MeshPiece<3>::Face, unsigned int>> faces_with_cells(const MeshPiece<3> &);
+  template std::map<MeshPiece<3>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<3> &);
+  template std::map<MeshPiece<3>::Face, MeshPiece<3>::BoundaryFace> boundary_by_vertices(const MeshPiece<3> &);
+  template MeshPiece<3>                                             rectangle_piece<3>(const scene::Body<3> &,
+                                           const std::array<unsigned int, 3> &,
+                                           const std::array<unsigned int, 3> &,
+                                           const std::array<unsigned int, 3> &);
+  template void                                                     place(MeshPiece<3> &, const scene::Placement<3> &);
+  template std::vector<MeshPiece<3>> cut(const MeshPiece<3> &, const std::vector<unsigned int> &);
+  template std::vector<unsigned int> metis_parts(const MeshPiece<3> &, const unsigned int, const unsigned int);
 } // namespace slipstick::mesh

@@ -1,3 +1,4 @@
+#include <slipstick/base/exceptions.h>
 #include <slipstick/mesh/shapes.h>
 
 #include <cmath>
@@ -281,8 +282,10 @@ namespace slipstick::mesh
     return n;
   }
 
-  std::map<std::string, dealii::types::boundary_id> shape_boundary_ids(const scene::Shape shape)
+  std::map<std::string, dealii::types::boundary_id> shape_boundary_ids(const scene::Shape shape, const unsigned int dim)
   {
+    if (dim == 3)
+      return {{"left", 0}, {"right", 1}, {"bottom", 2}, {"top", 3}, {"back", 4}, {"front", 5}};
     switch (shape)
       {
         case scene::Shape::rectangle:
@@ -332,5 +335,17 @@ namespace slipstick::mesh
     return mesh;
   }
 
+  template <>
+  BodyMesh<3> body_from_shape(const scene::Scene<3> &scene, const scene::Body<3> &body)
+  {
+    if (body.shape != scene::Shape::rectangle)
+      throw InputError("Body " + body.name + ": its shape is none of space", "set Shape = cuboid");
+    BodyMesh<3> mesh;
+    mesh.boundary_ids = shape_boundary_ids(body.shape, 3);
+    mesh.piece        = rectangle_piece<3>(body, rectangle_cells(scene, body), {{1, 1, 1}}, {{0, 0, 0}});
+    return mesh;
+  }
+
   template std::array<unsigned int, 2> rectangle_cells<2>(const scene::Scene<2> &, const scene::Body<2> &);
+  template std::array<unsigned int, 3> rectangle_cells<3>(const scene::Scene<3> &, const scene::Body<3> &);
 } // namespace slipstick::mesh

@@ -71,6 +71,11 @@ namespace slipstick::mesh
               const double n = double(scene.decomposition.blocks) * scene.decomposition.cells_per_block;
               const double a = body.cells ? (*body.cells)[0] : n, b = body.cells ? (*body.cells)[1] : n;
               count = {a * b, 2 * (a + b)};
+              if (dim == 3)
+                {
+                  const double c = body.cells ? (*body.cells)[dim - 1] : n;
+                  count          = {a * b * c * refined, 2 * (a * b + b * c + c * a) * refined};
+                }
               break;
             }
           case scene::Shape::disc: // a square of a quarter of the edges a side, and about as many around it
@@ -197,4 +202,5 @@ namespace slipstick::mesh
   template SizeEstimate estimate_size(const scene::Scene<2> &);
   template void         check_size(const scene::Scene<2> &, const bool, const MPI_Comm);
   template void         check_positions(const scene::Scene<2> &, const Mesh<2> &);
+  template void         check_positions(const scene::Scene<3> &, const Mesh<3> &);
 } // namespace slipstick::mesh

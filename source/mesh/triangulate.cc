@@ -25,8 +25,10 @@ namespace slipstick::mesh
     mesh->triangulation.create_triangulation(piece.vertices, cells, dealii::SubCellData());
 
     // every face starts as a cut, the boundaries are marked from their vertices
-    const auto boundary = boundary_by_vertices(piece);
-    const auto middles  = middles_of_edges(piece, boundary);
+    const auto   boundary = boundary_by_vertices(piece);
+    Middles<dim> middles; // edges are straight in space
+    if constexpr (dim == 2)
+      middles = middles_of_edges(piece, boundary);
     for (const auto &cell : mesh->triangulation.active_cell_iterators())
       for (const auto &face : cell->face_iterators())
         if (face->at_boundary())
@@ -39,15 +41,20 @@ namespace slipstick::mesh
             face->set_boundary_id(found == boundary.end() ? cut_id : found->second.id);
             if (found == boundary.end())
               continue;
-            if (const auto &curve = found->second.curve; curve || curve.left_out > 0)
-              mesh->curves[key] = curve;
-            if (middles.count(key) > 0)
-              face->set_manifold_id(EdgeMiddles<dim>::id);
+            if constexpr (dim == 2)
+              {
+                if (const auto &curve = found->second.curve; curve || curve.left_out > 0)
+                  mesh->curves[key] = curve;
+                if (middles.count(key) > 0)
+                  face->set_manifold_id(EdgeMiddles<dim>::id);
+              }
           }
-    if (!middles.empty())
-      mesh->triangulation.set_manifold(EdgeMiddles<dim>::id, EdgeMiddles<dim>(middles));
+    if constexpr (dim == 2)
+      if (!middles.empty())
+        mesh->triangulation.set_manifold(EdgeMiddles<dim>::id, EdgeMiddles<dim>(middles));
     return mesh;
   }
 
   template std::unique_ptr<SubdomainMesh<2>> triangulate(const MeshPiece<2> &);
+  template std::unique_ptr<SubdomainMesh<3>> triangulate(const MeshPiece<3> &);
 } // namespace slipstick::mesh

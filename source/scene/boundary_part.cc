@@ -68,6 +68,9 @@ namespace slipstick::scene
   }
 
   template bool has_boundary_parts(const Scene<2> &);
+  template bool has_boundary_parts(const Scene<3> &);
   template void check_condition<2>(const BoundaryPart &, const std::string &);
+  template void check_condition<3>(const BoundaryPart &, const std::string &);
   template std::vector<std::pair<std::string, BoundaryName>> used_boundaries(const Scene<2> &);
+  template std::vector<std::pair<std::string, BoundaryName>> used_boundaries(const Scene<3> &);
 } // namespace slipstick::scene

@@ -29,4 +29,5 @@ namespace slipstick::scene
   }
 
   template LawKind<2> cohesion_law();
+  template LawKind<3> cohesion_law();
 } // namespace slipstick::scene

@@ -130,8 +130,13 @@ namespace slipstick::scene
   }
 
   template struct LawNumber<2>;
+  template struct LawNumber<3>;
   template struct ContactLaw<2>;
+  template struct ContactLaw<3>;
   template struct LawKind<2>;
+  template struct LawKind<3>;
   template const std::vector<LawKind<2>> &law_kinds();
+  template const std::vector<LawKind<3>> &law_kinds();
   template ContactLaw<2>                  make_law(const std::string &, const std::vector<std::string> &);
+  template ContactLaw<3>                  make_law(const std::string &, const std::vector<std::string> &);
 } // namespace slipstick::scene

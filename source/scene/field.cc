@@ -160,4 +160,5 @@ namespace slipstick::scene
   }
 
   template class Field<2>;
+  template class Field<3>;
 } // namespace slipstick::scene

@@ -177,6 +177,8 @@ namespace slipstick::scene
           result.height = Field<dim>(height, parameters.locate(section + "/Height"));
           fitting.push_back("Height");
           break;
+        case ObstacleShape::cylinder: // not offered in the plane
+          break;
       }
     for (const std::string &other : geometry)
       // the default is harmless, and a .prm that the program printed sets everything

@@ -22,6 +22,9 @@ namespace slipstick::tfeti
     constexpr unsigned int max_newton_steps = 50;
     // A step must lower what is out of balance by this part times its length, or is halved, down to the shortest.
     constexpr double least_decrease = 1e-4, shortest_step = 1e-6;
+    // Of a line search with discs: the longest step, over the first, and bisections.
+    constexpr double       longest_step   = 1e12;
+    constexpr unsigned int max_bisections = 50;
     // Rounds of Newton's method with bounds as they are, then with bounds that follow.
     constexpr unsigned int max_rounds = 5;
     // Forces are out of balance by less than this part of all of them: rounding.
@@ -94,29 +97,39 @@ namespace slipstick::tfeti
                                                               const std::vector<double>                  &k,
                                                               const qp::AdmissibleSet<DistributedVector> &bounds) const
   {
-    constexpr unsigned int width = 9;
+    constexpr unsigned int width = 10;
     std::vector<double>    numbers;
     for (const unsigned int r : own)
       {
         const double l = bounds.box.lower.local_element(r), u = bounds.box.upper.local_element(r);
-        numbers.insert(numbers.end(), {double(place_of[r]), t[r], k[r], l, u, -1., 0., 0., 0.});
+        numbers.insert(numbers.end(), {double(place_of[r]), t[r], k[r], l, u, -1., 0., 0., 0., -1.});
       }
     for (const auto &bound : bounds.pressure_bounds)
-      if (place_of[bound.tangential] >= 0 && place_of[bound.normal] >= 0)
-        {
-          const auto i   = std::lower_bound(own.begin(), own.end(), bound.tangential) - own.begin();
-          double    *row = numbers.data() + width * i;
-          row[5]         = place_of[bound.normal];
-          row[6]         = bound.forces.fixed;
-          row[7]         = bound.forces.coefficient;
-          row[8]         = bound.forces.cap;
-        }
+      for (const std::size_t entry : {bound.tangential, bound.second})
+        if (entry != qp::no_entry && place_of[entry] >= 0)
+          {
+            const auto i   = std::lower_bound(own.begin(), own.end(), entry) - own.begin();
+            double    *row = numbers.data() + width * i;
+            if (bound.is_disc())
+              {
+                row[4] = bound.forces.closed_radius(0);
+                row[3] = -row[4];
+                row[9] = place_of[entry == bound.second ? bound.tangential : bound.second];
+              }
+            if (bound.normal == qp::no_entry || place_of[bound.normal] < 0)
+              continue;
+            row[5] = place_of[bound.normal];
+            row[6] = bound.forces.fixed;
+            row[7] = bound.forces.coefficient;
+            row[8] = bound.forces.cap;
+          }
     std::vector<Row> result(shares.rows());
     for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
       for (std::size_t i = 0; i < of_rank.size(); i += width)
         {
-          const double *n                        = of_rank.data() + i;
-          result[static_cast<std::size_t>(n[0])] = {n[1], n[2], n[3], n[4], static_cast<int>(n[5]), {n[6], n[7], n[8]}};
+          const double *n = of_rank.data() + i;
+          result[static_cast<std::size_t>(n[0])] =
+            {n[1], n[2], n[3], n[4], static_cast<int>(n[5]), {n[6], n[7], n[8]}, static_cast<int>(n[9])};
         }
     return result;
   }
@@ -134,12 +147,75 @@ namespace slipstick::tfeti
         }
   }
 
+  Eigen::VectorXd BodyEquilibrium::clipped(const std::vector<Row> &rows, const Eigen::VectorXd &moved)
+  {
+    Eigen::VectorXd forces(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (const int j = rows[i].partner; j < 0)
+        forces[i] = qp::clip(moved[i], rows[i].lower, rows[i].upper);
+      else
+        {
+          const double size = std::hypot(moved[i], moved[j]);
+          forces[i]         = size > rows[i].upper ? moved[i] * (rows[i].upper / size) : moved[i];
+        }
+    return forces;
+  }
+
+  // Derivative of clipped() by what is moved, times k; bounds do not follow.
+  Eigen::SparseMatrix<double> BodyEquilibrium::stiffness_of(const std::vector<Row> &rows, const Eigen::VectorXd &moved)
+  {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (const int j = rows[i].partner; j < 0)
+        entries.emplace_back(i, i, moved[i] > rows[i].lower && moved[i] < rows[i].upper ? rows[i].k : 0.);
+      else
+        {
+          const double size = std::hypot(moved[i], moved[j]);
+          if (size < rows[i].upper)
+            entries.emplace_back(i, i, rows[i].k);
+          else if (size > 0) // across the force alone
+            {
+              const double c = moved[i] / size, s = moved[j] / size, part = rows[i].k * rows[i].upper / size;
+              entries.emplace_back(i, i, part * s * s);
+              entries.emplace_back(i, j, -part * s * c);
+            }
+        }
+    Eigen::SparseMatrix<double> result(rows.size(), rows.size());
+    result.setFromTriplets(entries.begin(), entries.end());
+    return result;
+  }
+
+  double BodyEquilibrium::slope_along(const std::vector<Row> &rows,
+                                      const Eigen::VectorXd  &slips,
+                                      const Eigen::VectorXd  &along,
+                                      const double            load,
+                                      const double            s)
+  {
+    Eigen::VectorXd moved(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      moved[i] = rows[i].t - rows[i].k * (slips[i] + s * along[i]);
+    return load - along.dot(clipped(rows, moved));
+  }
+
   // Along a + s p: the slope is sum_i -S_i p clip(t_i - k_i (slip_i + s along_i)) + L'p, which grows with s.
   double BodyEquilibrium::line_minimum(const std::vector<Row> &rows,
                                        const Eigen::VectorXd  &slips,
                                        const Eigen::VectorXd  &along,
                                        const double            load) const
   {
+    if (std::any_of(rows.begin(), rows.end(), [](const Row &row) { return row.partner >= 0; }))
+      { // not piecewise linear: bisection
+        double low = 0, high = 1;
+        for (; slope_along(rows, slips, along, load, high) < 0; high *= 4)
+          if (low = high; high > longest_step)
+            return HUGE_VAL; // nothing resists any more
+        for (unsigned int k = 0; k < max_bisections; ++k)
+          {
+            const double middle                                              = (low + high) / 2;
+            (slope_along(rows, slips, along, load, middle) < 0 ? low : high) = middle;
+          }
+        return high;
+      }
     const auto slope = [&](const double s) {
       double sum = load;
       for (std::size_t i = 0; i < rows.size(); ++i)
@@ -182,18 +258,15 @@ namespace slipstick::tfeti
     for (unsigned int step = 0; step < max_newton_steps; ++step)
       {
         const Eigen::VectorXd slips = shares * a;
-        Eigen::VectorXd       forces(rows.size()), inside(rows.size());
+        Eigen::VectorXd       moved(rows.size());
         for (std::size_t i = 0; i < rows.size(); ++i)
-          {
-            const double t = rows[i].t - rows[i].k * slips[i];
-            forces[i]      = qp::clip(t, rows[i].lower, rows[i].upper);
-            inside[i]      = t > rows[i].lower && t < rows[i].upper ? rows[i].k : 0.;
-          }
-        const Eigen::VectorXd slope = loads - shares.transpose() * forces;
-        size                        = std::max(size, sum_of_magnitudes(loads, forces));
+          moved[i] = rows[i].t - rows[i].k * slips[i];
+        const Eigen::VectorXd forces = clipped(rows, moved);
+        const Eigen::VectorXd slope  = loads - shares.transpose() * forces;
+        size                         = std::max(size, sum_of_magnitudes(loads, forces));
         if (slope.norm() <= balanced * size)
           return true;
-        Eigen::SparseMatrix<double> H = by_columns.transpose() * inside.asDiagonal() * by_columns;
+        Eigen::SparseMatrix<double> H = by_columns.transpose() * stiffness_of(rows, moved) * by_columns;
         for (Eigen::Index m = 0; m < a.size(); ++m)
           H.coeffRef(m, m) += least[m] + std::numeric_limits<double>::min();
         const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(H);
@@ -222,23 +295,25 @@ namespace slipstick::tfeti
   {
     follow_pressures(a, rows);
     const Eigen::VectorXd slips = shares * a;
-    Eigen::VectorXd       moved(rows.size()), forces(rows.size());
+    Eigen::VectorXd       moved(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
-      {
-        moved[i]  = rows[i].t - rows[i].k * slips[i];
-        forces[i] = qp::clip(moved[i], rows[i].lower, rows[i].upper);
-      }
-    size = sum_of_magnitudes(loads, forces);
+      moved[i] = rows[i].t - rows[i].k * slips[i];
+    const Eigen::VectorXd forces = clipped(rows, moved);
+    size                         = sum_of_magnitudes(loads, forces);
     if (derivative)
       {
-        std::vector<Eigen::Triplet<double>> entries; // of the forces by the slips
+        std::vector<Eigen::Triplet<double>> entries; // of the forces by the slips, where bounds follow
         for (std::size_t i = 0; i < rows.size(); ++i)
-          if (moved[i] > rows[i].lower && moved[i] < rows[i].upper)
-            entries.emplace_back(i, i, -rows[i].k);
-          else if (const int n = rows[i].follows; n >= 0 && forces[n] > 0)
-            entries.emplace_back(i, n, -(moved[i] > 0 ? 1. : -1.) * rows[i].forces.slope(rows[i].upper) * rows[n].k);
+          if (const int n = rows[i].follows; n >= 0 && forces[n] > 0)
+            {
+              const int    j      = rows[i].partner;
+              const double length = j < 0 ? std::abs(moved[i]) : std::hypot(moved[i], moved[j]);
+              if (length >= rows[i].upper && length > 0)
+                entries.emplace_back(i, n, -moved[i] / length * rows[i].forces.slope(rows[i].upper) * rows[n].k);
+            }
         Eigen::SparseMatrix<double> by_slips(rows.size(), rows.size());
         by_slips.setFromTriplets(entries.begin(), entries.end());
+        by_slips -= stiffness_of(rows, moved);
         *derivative = -(by_columns.transpose() * by_slips * by_columns);
       }
     return loads - shares.transpose() * forces;

@@ -4,31 +4,52 @@
 
 namespace slipstick::tfeti
 {
-  DualProblem::Face DualProblem::face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties) const
+  DualProblem::Face DualProblem::face(const std::vector<bool>     &free,
+                                      const std::vector<qp::Tie>  &ties,
+                                      const std::vector<qp::Turn> &turns) const
   {
-    return Face(*this, free, ties);
+    return Face(*this, free, ties, turns);
   }
 
-  DualProblem::Face::Face(const DualProblem          &problem_,
-                          const std::vector<bool>    &free_,
-                          const std::vector<qp::Tie> &ties_)
+  DualProblem::Face::Face(const DualProblem           &problem_,
+                          const std::vector<bool>     &free_,
+                          const std::vector<qp::Tie>  &ties_,
+                          const std::vector<qp::Turn> &turns_)
     : problem(problem_)
     , free(free_)
     , ties(ties_)
+    , turns(turns_)
   {
-    if (!problem.bodies->free(free).empty())
+    std::vector<bool> holds = free;
+    for (const qp::Turn &turn : turns) // across the force a node is held as well as along the row nearer to that
+      if (free[turn.second] && std::abs(turn.sine) > std::abs(turn.cosine))
+        {
+          holds[turn.first]  = true;
+          holds[turn.second] = false;
+        }
+    if (!problem.bodies->free(holds).empty())
       return;
+    // a row that yields by kappa on top of 1/k has the stiffness 1/(kappa + 1/k)
+    std::vector<double> metric = problem.metric;
+    for (const qp::Turn &turn : turns)
+      {
+        stiffness.push_back(
+          metric.empty() ? 1.
+                         : 1 / (1 + turn.compliance * problem.norm() * problem.least_stiffness * metric[turn.second]));
+        if (!metric.empty())
+          metric[turn.second] *= stiffness.back();
+      }
     projector =
-      std::make_unique<Projector>(*problem.projector, free, problem.comm, std::vector<qp::Tie>(), problem.metric);
+      std::make_unique<Projector>(*problem.projector, free, problem.comm, std::vector<qp::Tie>(), metric, turns);
     if (dealii::Utilities::MPI::max(ties.empty() ? 0 : 1, problem.comm) > 0)
       {
         std::vector<bool> moving = free;
         for (const auto &tie : ties)
           moving[tie.tied] = true;
-        tied = std::make_unique<Projector>(*problem.projector, moving, problem.comm, ties, problem.metric);
+        tied = std::make_unique<Projector>(*problem.projector, moving, problem.comm, ties, metric, turns);
       }
     if (problem.preconditioner)
-      weights = std::make_unique<RowWeights::Inverse>(problem.preconditioner->weights(), free);
+      weights = std::make_unique<RowWeights::Inverse>(problem.preconditioner->weights(), free, turns);
   }
 
   void DualProblem::Face::multiply(const DistributedVector &x, DistributedVector &y) const
@@ -46,7 +67,7 @@ namespace slipstick::tfeti
     return problem.reduce;
   }
 
-  // Twice where the rounding of the first shows.
+  // Twice where the rounding of the first shows. Of turned rows.
   void DualProblem::Face::projected(const Projection project, const DistributedVector &x, DistributedVector &y) const
   {
     (*projector.*project)(x, y);
@@ -60,10 +81,12 @@ namespace slipstick::tfeti
 
   void DualProblem::Face::project_range(const DistributedVector &x, DistributedVector &y) const
   {
-    projected(&Projector::project_range, x, y);
+    const DistributedVector at = turned(x);
+    projected(&Projector::project_range, at, y);
     for (unsigned int r = 0; r < free.size(); ++r)
       if (!free[r])
-        y.local_element(r) = x.local_element(r);
+        y.local_element(r) = at.local_element(r);
+    qp::turn_back(turns, y);
   }
 
   void DualProblem::Face::balance(DistributedVector &x) const
@@ -72,22 +95,26 @@ namespace slipstick::tfeti
     for (unsigned int pass = 0; pass < (problem.projects_twice ? 2 : 1); ++pass)
       {
         balancing().particular(problem.resultants - problem.projector->multiply(x), step);
+        qp::turn_back(turns, step);
         x += step;
       }
   }
 
   void DualProblem::Face::project_kernel(DistributedVector &p) const
   {
+    qp::turn(turns, p);
     for (const qp::Tie &tie : ties)
       p.local_element(tie.tied) = tie.factor * p.local_element(tie.to);
     DistributedVector range = problem.zero();
     balancing().excess(p, range);
     p -= range;
+    qp::turn_back(turns, p);
   }
 
   void DualProblem::Face::multiplier_shift(const DistributedVector &v, DistributedVector &y) const
   {
-    projected(&Projector::extend_range, v, y);
+    projected(&Projector::extend_range, turned(v), y);
+    qp::turn_back(turns, y);
   }
 
   void DualProblem::Face::precondition(const DistributedVector &r, DistributedVector &z) const
@@ -97,7 +124,26 @@ namespace slipstick::tfeti
         z.copy_locally_owned_data_from(r);
         return;
       }
-    problem.preconditioner->apply(*weights, r, z);
+    DistributedVector at(r);
+    soften(at);
+    problem.preconditioner->apply(*weights, at, z);
+    soften(z);
     z *= problem.norm();
+  }
+
+  DistributedVector DualProblem::Face::turned(const DistributedVector &x) const
+  {
+    DistributedVector result(x);
+    qp::turn(turns, result);
+    return result;
+  }
+
+  // Half of what the compliance of turned rows does to M.
+  void DualProblem::Face::soften(DistributedVector &x) const
+  {
+    qp::turn(turns, x);
+    for (std::size_t k = 0; k < turns.size(); ++k)
+      x.local_element(turns[k].second) *= std::sqrt(stiffness[k]);
+    qp::turn_back(turns, x);
   }
 } // namespace slipstick::tfeti

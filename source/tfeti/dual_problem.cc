@@ -103,6 +103,11 @@ namespace slipstick::tfeti
                                       comm);
         for (double &stiffness : metric)
           stiffness /= least;
+        least_stiffness = least;
+        for (const auto &point : rows.contact_points) // both tangents of a node alike: discs stay round
+          if (point.tangential_row != invalid_row && point.second_row != invalid_row)
+            metric[point.tangential_row] = metric[point.second_row] =
+              std::sqrt(metric[point.tangential_row] * metric[point.second_row]);
         projects_twice =
           dealii::Utilities::MPI::max(metric.empty() ? 1. : *std::max_element(metric.begin(), metric.end()), comm) >
           large_stiffness_ratio;

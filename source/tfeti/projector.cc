@@ -80,6 +80,14 @@ namespace slipstick::tfeti
       unsigned int next = 0;
     };
 
+    std::vector<ColumnPart> times(const double factor, std::vector<ColumnPart> column)
+    {
+      for (ColumnPart &part : column)
+        for (double &value : part.values)
+          value *= factor;
+      return column;
+    }
+
     /// Column of the row that another one is tied to, with the tied one's share.
     std::vector<ColumnPart> sum_of(std::vector<ColumnPart>        column,
                                    const std::vector<ColumnPart> &tied,
@@ -224,15 +232,17 @@ namespace slipstick::tfeti
     const std::shared_ptr<const CoarseSolver::Elimination> &staying_part(const std::vector<double> &metric,
                                                                          const MPI_Comm             comm) const
     {
-      const bool is_other =
-        !of_staying || metric_of_staying != metric; // not on ranks without rows, which have no metric
+      std::vector<double> of_these; // none on ranks without rows
+      for (const unsigned int r : staying)
+        of_these.push_back(metric.empty() ? 1. : metric[r]);
+      const bool is_other = !of_staying || metric_of_staying != of_these;
       if (dealii::Utilities::MPI::max(is_other ? 1 : 0, comm) > 0)
         {
           Gram gram;
           for (const unsigned int r : staying)
             add(r, metric.empty() ? 1. : metric[r], gram);
           of_staying        = CoarseSolver::eliminate(gram.entries(), changes, comm);
-          metric_of_staying = metric;
+          metric_of_staying = std::move(of_these);
         }
       return of_staying;
     }
@@ -286,11 +296,14 @@ namespace slipstick::tfeti
                        const std::vector<bool>    &active,
                        const MPI_Comm              comm,
                        const std::vector<qp::Tie> &ties,
-                       const std::vector<double>  &metric)
+                       const std::vector<double>  &metric,
+                       std::vector<qp::Turn>       turns_)
     : scatter_gather(all.scatter_gather)
     , G(all.G)
     , ties(ties)
     , metric(metric)
+    , turns(std::move(turns_))
+    , has_turns(dealii::Utilities::MPI::max(turns.empty() ? 0 : 1, comm) > 0)
     , source(all.source)
     , target(all.target)
   {
@@ -306,12 +319,21 @@ namespace slipstick::tfeti
       indicator.local_element(r) = active.empty() || active[r];
     indicator.update_ghost_values();
 
-    std::map<unsigned int, std::vector<ColumnPart>> with_ties; // columns of the rows that others are tied to
-    std::set<unsigned int>                          tied;
+    std::map<unsigned int, std::vector<ColumnPart>>
+      other_columns; // of turned rows, and of those that others are tied to
+    for (const qp::Turn &turn : turns)
+      {
+        const auto first = G->column(turn.first), second = G->column(turn.second);
+        other_columns[turn.first]  = sum_of(times(turn.cosine, first), second, turn.sine);
+        other_columns[turn.second] = sum_of(times(turn.cosine, second), first, -turn.sine);
+      }
+    std::set<unsigned int> tied;
     for (const qp::Tie &tie : ties)
       {
-        const auto column = with_ties.emplace(tie.to, G->column(tie.to)).first;
-        column->second    = sum_of(std::move(column->second), G->column(tie.tied), tie.factor);
+        const auto turned  = other_columns.find(tie.tied);
+        const auto of_tied = turned == other_columns.end() ? G->column(tie.tied) : turned->second;
+        const auto column  = other_columns.emplace(tie.to, G->column(tie.to)).first;
+        column->second     = sum_of(std::move(column->second), of_tied, tie.factor);
         tied.insert(tie.tied);
       }
     Gram gram;
@@ -320,7 +342,7 @@ namespace slipstick::tfeti
         const double weight = indicator.local_element(r) == 0 || tied.count(r) > 0 ? 0.
                               : metric.empty()                                     ? 1.
                                                                                    : metric[r];
-        if (const auto column = with_ties.find(r); column != with_ties.end())
+        if (const auto column = other_columns.find(r); column != other_columns.end())
           gram.add(column->second.data(), column->second.data() + column->second.size(), weight);
         else
           G->add(r, weight, gram); // without weight too: all faces have one pattern
@@ -332,10 +354,20 @@ namespace slipstick::tfeti
 
   Eigen::VectorXd Projector::multiply(const DistributedVector &x) const
   {
-    scatter_gather.import(x, source);
-    const unsigned int n_present = source.locally_owned_size() + source.get_partitioner()->n_ghost_indices();
-    for (unsigned int r = 0; r < n_present; ++r)
-      source.begin()[r] *= indicator.begin()[r];
+    if (has_turns) // ghosts may be of turned rows
+      {
+        DistributedVector not_turned(x);
+        mask(not_turned);
+        qp::turn_back(turns, not_turned);
+        scatter_gather.import(not_turned, source);
+      }
+    else
+      {
+        scatter_gather.import(x, source);
+        const unsigned int n_present = source.locally_owned_size() + source.get_partitioner()->n_ghost_indices();
+        for (unsigned int r = 0; r < n_present; ++r)
+          source.begin()[r] *= indicator.begin()[r];
+      }
     Eigen::VectorXd a = Eigen::VectorXd::Zero(G->n_motions);
     for (const auto &block : G->blocks)
       block.add_product(source.begin(), a.data() + block.first);
@@ -350,6 +382,7 @@ namespace slipstick::tfeti
       block.add_transposed_product(a.data() + block.first, target.begin());
     target.compress(dealii::VectorOperation::add);
     y.copy_locally_owned_data_from(target);
+    qp::turn(turns, y);
   }
 
   void Projector::mask(DistributedVector &y) const

@@ -136,7 +136,7 @@ namespace slipstick::tfeti
   // either is one between bodies.
   void BodyMotions::find_levers()
   {
-    if (motions_of_body < 3) // bodies of revolution do not rotate
+    if (motions_of_body != 3) // bodies of revolution do not rotate; solids do so about three axes
       return;
     for (auto begin = shares.begin(); begin != shares.end();)
       {

@@ -263,24 +263,107 @@ namespace slipstick::tfeti
       }
   }
 
-  RowWeights::Inverse::Inverse(const RowWeights &weights_, const std::vector<bool> &active)
+  std::vector<RowWeights::Block> RowWeights::turned(const std::vector<qp::Turn> &turns,
+                                                    std::set<unsigned int>      &singles,
+                                                    std::set<unsigned int>      &taken) const
+  {
+    std::vector<Block>                   groups;
+    std::map<unsigned int, unsigned int> group_of; // by row
+    const auto                           add = [&](const Block &block) {
+      for (const unsigned int row : block.rows)
+        group_of[row] = groups.size();
+      groups.push_back(block);
+    };
+    std::set<unsigned int> rows;
+    for (const qp::Turn &turn : turns)
+      rows.insert({static_cast<unsigned int>(turn.first), static_cast<unsigned int>(turn.second)});
+    for (unsigned int b = 0; b < blocks.size(); ++b)
+      if (std::any_of(blocks[b].rows.begin(), blocks[b].rows.end(), [&](const auto row) {
+            return rows.count(row) > 0;
+          }))
+        {
+          add(blocks[b]);
+          taken.insert(b);
+        }
+    for (unsigned int k = 0; k < single_rows.size(); ++k)
+      if (rows.count(single_rows[k]) > 0)
+        {
+          Block single;
+          single.rows = {single_rows[k]};
+          single.matrix.resize(1, 1);
+          single.matrix.insert(0, 0) = single_weights[k];
+          add(single);
+          singles.insert(k);
+        }
+    for (const qp::Turn &turn : turns)
+      if (const unsigned int a = group_of.at(turn.first), b = group_of.at(turn.second); a != b)
+        {
+          const unsigned int                  n = groups[a].rows.size(), m = groups[b].rows.size();
+          std::vector<Eigen::Triplet<double>> entries;
+          for (const auto &[block, first] : {std::pair(&groups[a], 0u), std::pair(&groups[b], n)})
+            for (unsigned int k = 0; k < block->rows.size(); ++k)
+              for (Eigen::SparseMatrix<double>::InnerIterator entry(block->matrix, k); entry; ++entry)
+                entries.emplace_back(first + entry.row(), first + k, entry.value());
+          for (const unsigned int row : groups[b].rows)
+            {
+              groups[a].rows.push_back(row);
+              group_of[row] = a;
+            }
+          groups[a].matrix.resize(n + m, n + m);
+          groups[a].matrix.setFromTriplets(entries.begin(), entries.end());
+          groups[b].rows.clear();
+        }
+    std::vector<std::vector<qp::Turn>> turns_of(groups.size());
+    for (const qp::Turn &turn : turns)
+      turns_of[group_of.at(turn.first)].push_back(turn);
+    std::vector<Block> result;
+    for (unsigned int g = 0; g < groups.size(); ++g)
+      if (Block &group = groups[g]; !group.rows.empty())
+        {
+          const auto place = [&group](const std::size_t row) {
+            return std::find(group.rows.begin(), group.rows.end(), row) - group.rows.begin();
+          };
+          Eigen::SparseMatrix<double> Q(group.rows.size(), group.rows.size());
+          Q.setIdentity();
+          for (const qp::Turn &turn : turns_of[g])
+            {
+              const auto first = place(turn.first), second = place(turn.second);
+              Q.coeffRef(first, first) = Q.coeffRef(second, second) = turn.cosine;
+              Q.coeffRef(first, second)                             = turn.sine;
+              Q.coeffRef(second, first)                             = -turn.sine;
+            }
+          group.matrix = (Q * group.matrix * Q.transpose()).eval();
+          result.push_back(std::move(group));
+        }
+    return result;
+  }
+
+  RowWeights::Inverse::Inverse(const RowWeights        &weights_,
+                               const std::vector<bool> &active,
+                               std::vector<qp::Turn>    turns_)
     : weights(weights_)
+    , turns(std::move(turns_))
   {
     const auto is_active = [&active](const unsigned int row) { return active.empty() || active[row]; };
-    for (const unsigned int row : weights.single_rows)
-      if (!is_active(row))
-        inactive.push_back(row);
-    for (const auto &full : weights.blocks)
-      {
-        if (std::all_of(full.rows.begin(), full.rows.end(), is_active))
-          continue;
-        for (const unsigned int row : full.rows)
-          if (!is_active(row))
-            inactive.push_back(row);
-        const Block part = restricted(full, is_active);
-        if (!part.rows.empty())
-          changed.add(part.rows, part.matrix);
-      }
+    const auto change    = [&](const Block &full) {
+      for (const unsigned int row : full.rows)
+        if (!is_active(row))
+          inactive.push_back(row);
+      const Block part = restricted(full, is_active);
+      if (!part.rows.empty())
+        changed.add(part.rows, part.matrix);
+    };
+    std::set<unsigned int> turned_singles, turned_blocks;
+    if (!turns.empty())
+      for (const Block &block : weights.turned(turns, turned_singles, turned_blocks))
+        change(block);
+    for (unsigned int k = 0; k < weights.single_rows.size(); ++k)
+      if (!is_active(weights.single_rows[k]) && turned_singles.count(k) == 0)
+        inactive.push_back(weights.single_rows[k]);
+    for (unsigned int b = 0; b < weights.blocks.size(); ++b)
+      if (turned_blocks.count(b) == 0 &&
+          !std::all_of(weights.blocks[b].rows.begin(), weights.blocks[b].rows.end(), is_active))
+        change(weights.blocks[b]);
   }
 
   void RowWeights::Inverse::apply(const DistributedVector &x, DistributedVector &y) const
@@ -288,6 +371,14 @@ namespace slipstick::tfeti
     weights.inverse.apply(x.begin(), y.begin());
     for (const unsigned int row : inactive)
       y.local_element(row) = 0;
-    changed.apply(x.begin(), y.begin());
+    if (turns.empty())
+      {
+        changed.apply(x.begin(), y.begin());
+        return;
+      }
+    DistributedVector at(x);
+    qp::turn(turns, at);
+    changed.apply(at.begin(), y.begin());
+    qp::turn_back(turns, y);
   }
 } // namespace slipstick::tfeti

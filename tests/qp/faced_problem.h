@@ -18,11 +18,26 @@ namespace slipstick::qp::test
     class Face
     {
     public:
-      Face(const FacedProblem &problem_, const std::vector<bool> &free_, const std::vector<Tie> &ties_)
+      Face(const FacedProblem      &problem_,
+           const std::vector<bool> &free_,
+           const std::vector<Tie>  &ties_,
+           const std::vector<Turn> &turns_)
         : problem(problem_)
         , free(free_)
         , ties(ties_)
-      {}
+        , turns(turns_)
+        , G(problem_.G)
+      {
+        for (std::size_t k = 0; k < G.m; ++k)
+          {
+            Vector row(G.n);
+            for (std::size_t j = 0; j < G.n; ++j)
+              row[j] = G(k, j);
+            turn(turns, row);
+            for (std::size_t j = 0; j < G.n; ++j)
+              G(k, j) = row[j];
+          }
+      }
 
       void multiply(const Vector &x, Vector &y) const
       {
@@ -36,43 +51,56 @@ namespace slipstick::qp::test
 
       void project_range(const Vector &x, Vector &y) const
       {
-        const Vector z = transposed(amplitudes(masked(x), false));
+        Vector at = x;
+        turn(turns, at);
+        const Vector z = transposed(amplitudes(masked(at), false));
         for (std::size_t i = 0; i < x.size(); ++i)
-          y[i] = free[i] ? z[i] : x[i];
+          y[i] = free[i] ? z[i] : at[i];
+        turn_back(turns, y);
       }
 
       void multiplier_shift(const Vector &v, Vector &y) const
       {
-        y = transposed(amplitudes(masked(v), false));
+        Vector at = v;
+        turn(turns, at);
+        y = transposed(amplitudes(masked(at), false));
+        turn_back(turns, y);
       }
 
       void balance(Vector &x) const
       {
-        move_by(minus(problem.e, problem.G * x), x);
+        turn(turns, x);
+        move_by(minus(problem.e, G * x), x);
+        turn_back(turns, x);
       }
 
       void project_kernel(Vector &p) const
       {
+        turn(turns, p);
         for (const Tie &tie : ties)
           p[tie.tied] = tie.factor * p[tie.to];
         Vector moving = masked(p);
         for (const Tie &tie : ties)
           moving[tie.tied] = p[tie.tied];
-        Vector minus_Gp = problem.G * moving;
+        Vector minus_Gp = G * moving;
         for (double &entry : minus_Gp)
           entry = -entry;
         move_by(minus_Gp, p);
+        turn_back(turns, p);
       }
 
       void precondition(const Vector &r, Vector &z) const
       {
+        Vector at = r;
+        turn(turns, at);
         for (std::size_t i = 0; i < r.size(); ++i)
-          z[i] = free[i] ? r[i] / problem.F(i, i) : 0.;
+          z[i] = free[i] ? at[i] / problem.F(i, i) : 0.;
+        turn_back(turns, z);
       }
 
       bool is_regular() const
       {
-        return solve(gram(false), Vector(problem.G.m, 1.)).has_value();
+        return solve(gram(false), Vector(G.m, 1.)).has_value();
       }
 
     private:
@@ -86,16 +114,16 @@ namespace slipstick::qp::test
       // column i of G with what is tied to it
       double column(const std::size_t k, const std::size_t i, const bool with_ties) const
       {
-        double value = problem.G(k, i);
+        double value = G(k, i);
         for (const Tie &tie : ties)
           if (with_ties && tie.to == i)
-            value += tie.factor * problem.G(k, tie.tied);
+            value += tie.factor * G(k, tie.tied);
         return value;
       }
 
       Matrix gram(const bool with_ties) const
       {
-        Matrix A(problem.G.m, problem.G.m);
+        Matrix A(G.m, G.m);
         for (std::size_t k = 0; k < A.m; ++k)
           for (std::size_t l = 0; l < A.m; ++l)
             for (std::size_t i = 0; i < free.size(); ++i)
@@ -105,7 +133,7 @@ namespace slipstick::qp::test
 
       Vector amplitudes(const Vector &x, const bool with_ties) const
       {
-        return *solve(gram(with_ties), problem.G * x);
+        return *solve(gram(with_ties), G * x);
       }
 
       Vector transposed(const Vector &a) const
@@ -113,7 +141,7 @@ namespace slipstick::qp::test
         Vector y(free.size(), 0.);
         for (std::size_t k = 0; k < a.size(); ++k)
           for (std::size_t i = 0; i < y.size(); ++i)
-            y[i] += problem.G(k, i) * a[k];
+            y[i] += G(k, i) * a[k];
         return y;
       }
 
@@ -133,11 +161,13 @@ namespace slipstick::qp::test
       const FacedProblem &problem;
       std::vector<bool>   free;
       std::vector<Tie>    ties;
+      std::vector<Turn>   turns;
+      Matrix              G; // of turned entries
     };
 
-    Face face(const std::vector<bool> &free, const std::vector<Tie> &ties) const
+    Face face(const std::vector<bool> &free, const std::vector<Tie> &ties, const std::vector<Turn> &turns = {}) const
     {
-      return Face(*this, free, ties);
+      return Face(*this, free, ties, turns);
     }
 
     /// The entries with the least gaps become free until the face is regular.

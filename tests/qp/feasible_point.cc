@@ -279,6 +279,79 @@ TEST(ForceSet, derivative_is_that_of_the_projection)
     }
 }
 
+namespace
+{
+  // Nodes in space, n/3: cones, discs with cohesion, discs that follow no normal force (their third entry has no bounds).
+  ForceSet<Vector> random_discs(Random &random, const std::size_t n)
+  {
+    ForceSet<Vector> set{{Vector(n, -infinity), Vector(n, infinity)}, {}};
+    for (std::size_t i = 0; i + 2 < n; i += 3)
+      {
+        const bool    follows = i % 9 != 0;
+        const NodeSet forces{i % 2 == 0 || !follows ? random.uniform(0.1, 1.0) : 0.,
+                             follows ? random.uniform(0.1, 1.0) : 0.};
+        set.nodes.push_back({i, follows ? i + 2 : no_entry, forces, i + 1});
+      }
+    return set;
+  }
+} // namespace
+
+TEST(ForceSet, discs_are_projected_on_and_differentiated_as_nearest_points)
+{
+  Random random(3);
+  for (unsigned int k = 0; k < 100; ++k)
+    {
+      const auto   set = random_discs(random, 18);
+      const Vector y = random.vector(18), p = random.vector(18);
+      Vector       x(y), other              = random.vector(18);
+      project(set, x);
+      project(set, other);
+      for (const auto &node : set.nodes)
+        EXPECT_LE(std::hypot(x[node.tangential], x[node.second]),
+                  node.forces.closed_radius(node.normal == no_entry ? 0. : x[node.normal]) + 1e-14);
+      EXPECT_LE(inner(minus(y, x), minus(other, x)), 1e-13); // the angle is not acute: the set is convex, x nearest
+      const double h = 1e-6;
+      Vector       forward(y), backward(y), derivative(p);
+      for (std::size_t i = 0; i < 18; ++i)
+        {
+          forward[i] += h * p[i];
+          backward[i] -= h * p[i];
+        }
+      project(set, forward);
+      project(set, backward);
+      multiply_derivative(set, y, derivative);
+      for (std::size_t i = 0; i < 18; ++i)
+        EXPECT_NEAR(derivative[i], (forward[i] - backward[i]) / (2 * h), 1e-5) << k;
+    }
+}
+
+TEST(FeasiblePoint, in_discs_is_found_or_refuted)
+{
+  unsigned int n_infeasible = 0, n_undecided = 0; // near the border of what is feasible
+  for (unsigned int seed = 0; seed < 60; ++seed)
+    {
+      Random             random(seed);
+      const DenseProblem problem(identity(30), random.orthonormal(18, 30));
+      const auto         set    = random_discs(random, 30);
+      Vector             inside = random.vector(30);
+      if (seed % 2 == 0)
+        project(set, inside);
+      const auto result = feasible_point(problem, inside, set);
+      EXPECT_TRUE(seed % 2 == 1 || result.status == Status::converged) << seed;
+      n_infeasible += result.status == Status::infeasible;
+      n_undecided += result.status != Status::infeasible && result.status != Status::converged;
+      if (result.status != Status::converged)
+        continue;
+      Vector there = result.x, left = result.x;
+      project(set, there);
+      EXPECT_LT(distance(there, result.x), 1e-12) << seed;
+      problem.project_range(minus(result.x, inside), left);
+      EXPECT_LT(length(left), 1e-10) << seed;
+    }
+  EXPECT_GT(n_infeasible, 3u);
+  EXPECT_LE(n_undecided, 2u);
+}
+
 TEST(FeasiblePoint, in_friction_cones_is_the_nearest)
 {
   for (unsigned int seed = 0; seed < 60; ++seed)

@@ -129,6 +129,93 @@ TEST(SemismoothNewton, bounds_that_follow_the_pressure_are_met)
         }
 }
 
+namespace
+{
+  /// Entries in fours: one without bounds, one normal, two tangential.
+  struct ContactInSpace : Instance
+  {
+    ContactInSpace(const unsigned int seed, const std::size_t nodes, const NodeSet &forces, const bool follows)
+      : Instance(seed, 4 * nodes, 2)
+      , set{{Vector(4 * nodes, -infinity), Vector(4 * nodes, infinity)}, {}}
+    {
+      for (std::size_t k = 0; k < nodes; ++k)
+        {
+          set.box.lower[4 * k + 1] = 0;
+          set.pressure_bounds.push_back({4 * k + 2, follows ? 4 * k + 1 : no_entry, forces, 4 * k + 3});
+        }
+    }
+
+    /// By how much x and F x - d + G'a miss the laws of contact and friction, a from the entries without bounds.
+    double violation(const Vector &x) const
+    {
+      std::vector<bool> unbounded(x.size());
+      for (std::size_t i = 0; i < x.size(); ++i)
+        unbounded[i] = i % 4 == 0;
+      Vector g = minus(problem.F * x, d), w = g;
+      problem.face(unbounded, {}).multiplier_shift(g, w);
+      add(-1., w, g);
+      double worst = 0;
+      for (std::size_t k = 0; k < x.size(); k += 4)
+        {
+          const auto  &bound = set.pressure_bounds[k / 4];
+          const double n = x[k + 1], size = std::hypot(x[k + 2], x[k + 3]), radius = this->radius(bound, x);
+          const double slip = std::hypot(g[k + 2], g[k + 3]);
+          worst             = std::max({worst, std::abs(g[k]), -n, size - radius});
+          worst             = std::max(worst, n > 0 ? std::abs(g[k + 1]) : -g[k + 1]);
+          if (radius > 0) // the force is against the slip
+            worst =
+              std::max(worst,
+                       size < (1 - 1e-9) * radius ? slip : slip + (x[k + 2] * g[k + 2] + x[k + 3] * g[k + 3]) / size);
+        }
+      return worst;
+    }
+
+    static double radius(const PressureBound &bound, const Vector &x)
+    {
+      return bound.normal == no_entry ? bound.forces.closed_radius(0) : bound.forces.radius(x[bound.normal]);
+    }
+
+    AdmissibleSet<Vector> set;
+  };
+} // namespace
+
+TEST(SemismoothNewton, friction_in_space_is_against_the_slip)
+{
+  unsigned int n_stick_of_all = 0;
+  for (const bool follows : {false, true})
+    for (const double coefficient : {0., 0.05, 0.5})
+      for (const double fixed : {0., 0.05, 0.5})
+        {
+          if (!follows && coefficient > 0)
+            continue;
+          SCOPED_TRACE(std::to_string(follows) + ", " + std::to_string(coefficient) + ", " + std::to_string(fixed));
+          unsigned int n_solved = 0, n_slip = 0, n_stick = 0, n_steps = 0;
+          for (unsigned int seed = 0; seed < 100; ++seed)
+            {
+              const ContactInSpace p(seed, 4, {fixed, coefficient}, follows);
+              const auto           found = p.solve(p.set);
+              if (found.status != Status::converged)
+                continue;
+              ++n_solved;
+              n_steps += found.counts.outer_iterations;
+              EXPECT_LT(p.violation(found.x), 1e-8) << seed;
+              EXPECT_LT(p.imbalance(found.x), 1e-8) << seed;
+              for (const auto &bound : p.set.pressure_bounds)
+                {
+                  const double radius = p.radius(bound, found.x),
+                               size   = std::hypot(found.x[bound.tangential], found.x[bound.second]);
+                  n_slip += radius > 0 && size >= (1 - 1e-9) * radius;
+                  n_stick += size < (1 - 1e-9) * radius;
+                }
+            }
+          EXPECT_GE(n_solved, 90u);
+          EXPECT_TRUE(n_slip > 20u || coefficient + fixed == 0) << n_slip;
+          n_stick_of_all += n_stick;
+          EXPECT_LT(n_steps, 6 * n_solved); // directions and slopes of the bounds are followed by derivatives
+        }
+  EXPECT_GT(n_stick_of_all, 30u);
+}
+
 TEST(SemismoothNewton, differentiated_bounds_lead_where_followed_ones_do)
 {
   unsigned int n_compared = 0;

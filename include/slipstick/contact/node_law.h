@@ -34,9 +34,9 @@ namespace slipstick::contact
   }
 
   /// Friction work missing from the maximum that the law admits (the support function of its disc) [N mm].
-  /// @param T tangential force on the slave body.
-  inline double missing_friction_work(const double bound, const double T, const double slip)
+  /// @param work of the tangential force on the slave body, its product with the slip: negative.
+  inline double missing_friction_work(const double bound, const double work, const double slip)
   {
-    return std::abs(bound * std::abs(slip) + T * slip);
+    return std::abs(bound * std::abs(slip) + work);
   }
 } // namespace slipstick::contact

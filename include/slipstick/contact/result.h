@@ -1,6 +1,7 @@
 // What contact returns, node by node and pair by pair.
 //
-// Sign conventions: normal = outward normal of the slave body; tangent = normal rotated by +90 degrees (2D). Positive
+// Sign conventions: normal = outward normal of the slave body; tangent = normal turned by +90 degrees (2D); in space two
+// tangents across each other, tangential traction and slip are lengths beside their vectors. Positive
 // pressure is compression. Gap >= 0 open, < 0 penetrating, in the deformed configuration (linearised). Slip is the
 // tangential displacement of the slave relative to the other side. Traction acts on the slave body.
 #pragma once
@@ -38,18 +39,20 @@ namespace slipstick::contact
     double                pressure            = 0; // [MPa]
     double                tangential_traction = 0; // [MPa]
     double                slip                = 0; // of the load step [mm]
-    double                total_slip          = 0; // of all load steps so far [mm]
-    ContactStatus         status              = ContactStatus::open; // see is_closed
-    bool                  is_closed           = false;               // pressed on the other side
-    double                slip_bound          = 0; // [MPa], of the law: Tresca bound or mu times pressure
-    double                moment_mismatch     = 0; // of the forces on the two sides [N mm], see PairResult
+    std::array<double, 3> traction{{0, 0, 0}};     // in space: the tangential one [MPa] ...
+    std::array<double, 3> slip_vector{{0, 0, 0}};  // ... and the slip [mm]
+    double                total_slip      = 0;     // of all load steps so far [mm]
+    ContactStatus         status          = ContactStatus::open; // see is_closed
+    bool                  is_closed       = false;               // pressed on the other side
+    double                slip_bound      = 0;                   // [MPa], of the law: Tresca bound or mu times pressure
+    double                moment_mismatch = 0; // of the forces on the two sides [N mm], see PairResult
 
     /// For sending between ranks (Boost serialization, through deal.II's MPI utilities).
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &pair &position &normal &arc_length &area &length &gap &pressure &tangential_traction &slip &total_slip
-        &status &is_closed &slip_bound &moment_mismatch;
+      archive &pair &position &normal &arc_length &area &length &gap &pressure &tangential_traction &slip &traction
+        &slip_vector &total_slip &status &is_closed &slip_bound &moment_mismatch;
     }
   };
 

@@ -39,12 +39,24 @@ namespace slipstick::contact
       return rows;
     }
 
+    /// Discs of a solver that holds the bounds at these values: of all nodes in space with friction, or, where the solver
+    /// follows the normal forces, of those that depend on none.
+    std::vector<qp::PressureBound> fixed_discs(const std::vector<double> &bounds, const bool all) const;
+
+    /// Has it discs (on any rank)?
+    bool has_discs() const
+    {
+      return is_in_space;
+    }
+
     /// All multipliers that some pressure admits.
     qp::ForceSet<tfeti::DistributedVector> admissible(const tfeti::DualProblem &dual) const;
 
   private:
     std::vector<double>            fixed; // [N], of every owned row; 0 where the bound follows the pressure
     std::vector<qp::PressureBound> rows;  // owned, whose bound does
+    std::vector<qp::PressureBound> discs; // owned, in space, whose bound does not
     bool                           follows_pressure = false;
+    bool                           is_in_space      = false;
   };
 } // namespace slipstick::contact

@@ -99,6 +99,8 @@ namespace slipstick::interface
     /// Row of a bond along the normal (0) or the tangent (1).
     Vector bond(const Touch &touch, const unsigned int direction) const;
     bool   is_pruned(const Touch &touch) const;
+    /// Rows along the tangents that supports, bonds and @p left, what they leave of the normal row, do not hold.
+    std::vector<Vector> free_tangents(Touch &touch, const Vector &left) const;
     /// Do supports hold it apart, and does its law act where contact is closed alone?
     bool is_held_open(const tfeti::HeldContacts::Point &point) const;
     /// Adds @p coefficients to @p to as row @p row.

@@ -17,6 +17,13 @@ namespace slipstick::mechanics
   };
   LameCoefficients lame_coefficients(const scene::Material &material, const scene::PlaneState state);
 
+  /// What Hooke's law goes by: solids have the coefficients of plane strain, in all directions.
+  template <int dim>
+  scene::PlaneState state_of(const scene::Scene<dim> &scene)
+  {
+    return dim == 3 ? scene::PlaneState::plane_strain : scene.plane_state;
+  }
+
   /// sigma = lambda (div - e_V T) I + 2 mu (eps - e T I) of the displacement gradient and the change of temperature T;
   /// e = alpha, e_V = 3 alpha in plane strain (the strain along z is held too) and in bodies of revolution (whose hoop
   /// strain is part of div), 2 alpha in plane stress. The two parts are kept apart because the nearly incompressible

@@ -22,7 +22,8 @@ namespace slipstick::mechanics
   template <int dim>
   struct Element
   {
-    /// @p cell: quadrilateral or triangle; @p degree: 1 or 2; @p is_curved: does the mesh have manifolds to follow?
+    /// @p cell: quadrilateral or triangle, hexahedron; @p degree: 1 or 2, in space 1; @p is_curved: does the mesh have manifolds to
+    /// follow?
     Element(const dealii::ReferenceCell cell, const unsigned int degree, const bool is_curved = true);
 
     dealii::ReferenceCell                             cell;
@@ -80,16 +81,18 @@ namespace slipstick::mechanics
                             const typename dealii::DoFHandler<dim>::active_face_iterator &face,
                             const F                                                      &f) const
     {
-      std::array<mesh::GlobalVertex, 2> ends;
-      for (unsigned int v = 0; v < 2; ++v)
+      constexpr unsigned int                     n_vertices = 2 * (dim - 1); // of edges and quadrilaterals
+      std::array<mesh::GlobalVertex, n_vertices> ends;
+      for (unsigned int v = 0; v < n_vertices; ++v)
         {
           ends[v] = mesh.global_vertices[face->vertex_index(v)];
           f(face->vertex_dof_index(v, 0) / dim, NodeKey{{ends[v], ends[v]}}, face->vertex(v));
         }
-      if (degree == 2)
-        f(face->dof_index(0) / dim,
-          NodeKey{{std::min(ends[0], ends[1]), std::max(ends[0], ends[1])}},
-          face->center(true)); // on the manifold of the edge, as in the mapping
+      if constexpr (dim == 2)
+        if (degree == 2)
+          f(face->dof_index(0) / dim,
+            NodeKey{{std::min(ends[0], ends[1]), std::max(ends[0], ends[1])}},
+            face->center(true)); // on the manifold of the edge, as in the mapping
     }
 
   private:

@@ -25,7 +25,7 @@ namespace slipstick::mesh
     /// Stands behind the last vertex of a simplex.
     static constexpr unsigned int no_vertex = std::numeric_limits<unsigned int>::max();
 
-    /// Local vertices in deal.II's order: lexicographic for quadrilaterals, counterclockwise for triangles.
+    /// Local vertices in deal.II's order: lexicographic for quadrilaterals and hexahedra, counterclockwise for triangles.
     using Cell = std::array<unsigned int, vertices_per_cell>;
 
     /// Local vertices of a face.
@@ -67,18 +67,24 @@ namespace slipstick::mesh
     return cell.back() == MeshPiece<dim>::no_vertex;
   }
 
-  /// Number of vertices, which in the plane is that of faces, too.
+  /// Number of vertices, which in the plane is that of faces, too. In space cells are hexahedra.
   template <int dim>
   unsigned int n_corners(const typename MeshPiece<dim>::Cell &cell)
   {
-    static_assert(dim == 2, "triangles and quadrilaterals");
-    return is_simplex<dim>(cell) ? 3 : 4;
+    return dim == 3 ? MeshPiece<dim>::vertices_per_cell : is_simplex<dim>(cell) ? 3 : 4;
+  }
+
+  template <int dim>
+  unsigned int n_faces(const typename MeshPiece<dim>::Cell &cell)
+  {
+    return dim == 3 ? dealii::GeometryInfo<dim>::faces_per_cell : n_corners<dim>(cell);
   }
 
   /// Corner @p k of a cell, counted counterclockwise (and around again: 0 after the last).
   template <int dim>
   unsigned int corner(const typename MeshPiece<dim>::Cell &cell, const unsigned int k)
   {
+    static_assert(dim == 2, "around a cell of the plane");
     constexpr std::array<unsigned int, 4> around = {{0, 1, 3, 2}};
     return is_simplex<dim>(cell) ? cell[k % 3] : cell[around[k % 4]];
   }
@@ -100,12 +106,18 @@ namespace slipstick::mesh
     return {{a, b, d, c}};
   }
 
-  /// Face from corner @p f to the next, vertices in ascending order: the same from both sides.
+  /// Face from corner @p f to the next, in space deal.II's face @p f, vertices in ascending order: the same from both sides.
   template <int dim>
   typename MeshPiece<dim>::Face face_of_cell(const typename MeshPiece<dim>::Cell &cell, const unsigned int f)
   {
-    const unsigned int a = corner<dim>(cell, f), b = corner<dim>(cell, f + 1);
-    return {{std::min(a, b), std::max(a, b)}};
+    typename MeshPiece<dim>::Face face;
+    if constexpr (dim == 2)
+      face = {{corner<dim>(cell, f), corner<dim>(cell, f + 1)}};
+    else
+      for (unsigned int v = 0; v < face.size(); ++v)
+        face[v] = cell[dealii::GeometryInfo<dim>::face_to_cell_vertices(f, v)];
+    std::sort(face.begin(), face.end());
+    return face;
   }
 
   /// All faces with the cells behind them (one at the boundary, two inside), sorted by face.
@@ -121,7 +133,7 @@ namespace slipstick::mesh
   std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> boundary_by_vertices(
     const MeshPiece<dim> &piece);
 
-  /// Block @p block (of n_blocks per direction) of a rectangle meshed by a lattice of equal cells, not yet placed.
+  /// Block @p block (of n_blocks per direction) of a rectangle or cuboid meshed by a lattice of equal cells, not yet placed.
   template <int dim>
   MeshPiece<dim> rectangle_piece(const scene::Body<dim>              &body,
                                  const std::array<unsigned int, dim> &n_cells,

@@ -28,6 +28,9 @@ namespace slipstick::qp
     /// Of every owned entry: -1 at the lower bound, 1 at the upper, 0 free.
     using Sides = std::vector<signed char>;
 
+    // Across a slipping force that yields by more than this times what its entry does, over the norm of F, the entry is held.
+    constexpr double rigid_compliance = 1e3;
+
     /// `balance_bodies` of problems that have it; others have no bodies that contact alone holds.
     template <typename Problem, typename Set>
     auto balance_bodies(const Problem             &problem,
@@ -74,8 +77,16 @@ namespace slipstick::qp
       {
         for (std::size_t i = 0; i < active.size(); ++i)
           bounded.push_back(set.box.lower.begin()[i] > -HUGE_VAL || set.box.upper.begin()[i] < HUGE_VAL);
+        in_disc.assign(active.size(), false);
         for (const PressureBound &bound : set.pressure_bounds)
-          bounded[bound.tangential] = true;
+          {
+            bounded[bound.tangential] = true;
+            if (!bound.is_disc())
+              continue;
+            bounded[bound.second] = in_disc[bound.tangential] = in_disc[bound.second] = true;
+            discs.push_back({bound.tangential, bound.second});
+            bounds_of_discs.push_back(bound);
+          }
       }
 
       const Sides &sides() const
@@ -96,6 +107,35 @@ namespace slipstick::qp
         return set.box;
       }
 
+      /// How a face of the set sees slipping nodes in space; all that is said of single entries holds for turned ones.
+      const std::vector<Turn> &turns() const
+      {
+        return turned;
+      }
+
+      /// x := nearest point within the bounds as they were set last.
+      void project_on_bounds(Vector &x) const
+      {
+        for (std::size_t i = 0; i < active.size(); ++i)
+          if (!in_disc[i])
+            x.begin()[i] = clip(x.begin()[i], set.box.lower.begin()[i], set.box.upper.begin()[i]);
+        for (const Turn &disc : discs)
+          put_within(radius_of(disc), x.begin()[disc.first], x.begin()[disc.second]);
+      }
+
+      /// g, the gradient at x, is cleared where a face was solved: what is left on free entries says nothing of the set. What
+      /// turns the force of a slipping node stays.
+      void clear_solved(const Vector &x, Vector &g) const
+      {
+        turn(turned, g);
+        for (std::size_t i = 0; i < active.size(); ++i)
+          g.begin()[i] = active[i] == 0 ? 0. : g.begin()[i];
+        for (const Turn &of : turned)
+          if (active[of.second] == 0)
+            g.begin()[of.second] = -of.compliance * (of.cosine * x.begin()[of.second] - of.sine * x.begin()[of.first]);
+        turn_back(turned, g);
+      }
+
       /// Halve s where bodies rest on s g. @return whether it is smaller.
       bool soften()
       {
@@ -109,13 +149,15 @@ namespace slipstick::qp
       /// The set becomes that of x - s g. @return whether it is another one, on any process.
       bool predict(const Vector &x, const Vector &g)
       {
-        const Sides before = active;
+        const Sides             before       = active;
+        const std::vector<Turn> discs_before = discs;
         map(x, g, [this](const std::size_t i, const double, const double projected, const double moved) {
           beyond[i] = std::abs(moved - projected) * norm / (step * weight(i));
         });
         for (std::size_t i = 0; i < active.size(); ++i)
           if (active[i] * before[i] < 0 && set.box.lower.begin()[i] < set.box.upper.begin()[i])
             active[i] = 0; // from one bound to the other by way of the inside: s g is cut to the width
+        find_turns(before, discs_before, g);
         if (balances)
           adapt_step();
         return problem.reduction().min(active == before ? 1. : 0.) < 1;
@@ -124,8 +166,9 @@ namespace slipstick::qp
       /// |x - proj(x - s g)| / s of the entries with bounds and |g| of the others, weighted: a residual as those of faces.
       double natural_residual(const Vector &x, const Vector &g)
       {
-        const Sides before = active;
-        double      sum    = 0;
+        const Sides             before       = active;
+        const std::vector<Turn> discs_before = discs;
+        double                  sum          = 0;
         for (std::size_t i = 0; i < active.size(); ++i)
           if (!bounded[i])
             {
@@ -137,6 +180,7 @@ namespace slipstick::qp
           sum += r * r;
         });
         active = before;
+        discs  = discs_before;
         return std::sqrt(problem.reduction().sum(std::array<double, 1>{{sum}})[0]);
       }
 
@@ -148,12 +192,20 @@ namespace slipstick::qp
         std::array<double, 2> sum{{0, 0}};
         for (std::size_t i = 0; i < active.size(); ++i)
           {
+            if (in_disc[i])
+              continue;
             const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i], xi = x.begin()[i],
                          gi = g.begin()[i];
             const double gp = active[i] == 0 ? gi : !(l < u) ? 0. : active[i] < 0 ? std::min(gi, 0.) : std::max(gi, 0.);
             const double out = xi - (active[i] < 0 ? l : active[i] > 0 ? u : clip(xi, l, u));
             sum[0] += weight(i) * weight(i) * gp * gp;
             sum[1] += out * out; // F out is as much smaller as the weight is larger
+          }
+        for (const Turn &disc : discs)
+          {
+            const auto [gp, out] = residuals_on(disc, x, g);
+            sum[0] += weight(disc.first) * weight(disc.first) * gp * gp;
+            sum[1] += out * out;
           }
         sum = problem.reduction().sum(sum);
         return {{std::sqrt(sum[0]), norm * std::sqrt(sum[1])}};
@@ -177,7 +229,7 @@ namespace slipstick::qp
         std::vector<Tie> result;
         for (const PressureBound &bound : set.pressure_bounds)
           if (const double slope = bound.forces.slope(set.box.upper.begin()[bound.tangential]);
-              active[bound.tangential] != 0 && active[bound.normal] == 0 && slope > 0)
+              active[bound.tangential] != 0 && bound.normal != no_entry && active[bound.normal] == 0 && slope > 0)
             result.push_back({bound.tangential, bound.normal, active[bound.tangential] * slope});
         return result;
       }
@@ -191,13 +243,15 @@ namespace slipstick::qp
       std::vector<double> conditions(const Vector &p, const std::vector<Tie> &ties) const
       {
         std::vector<double> result;
-        for (std::size_t i = 0; i < active.size(); ++i)
-          if (active[i] != 0)
-            result.push_back(p.begin()[i]);
-        if (ties.empty())
-          return result;
-        result.clear();
+        if (ties.empty() && turned.empty())
+          {
+            for (std::size_t i = 0; i < active.size(); ++i)
+              if (active[i] != 0)
+                result.push_back(p.begin()[i]);
+            return result;
+          }
         std::vector<double> value(p.begin(), p.end());
+        turn(turned, value);
         for (const Tie &tie : ties)
           value[tie.tied] -= tie.factor * value[tie.to];
         for (std::size_t i = 0; i < active.size(); ++i)
@@ -218,15 +272,21 @@ namespace slipstick::qp
         for (std::size_t i = 0; i < active.size(); ++i)
           if (free[i])
             active[i] = 0;
+        turned.erase(std::remove_if(turned.begin(),
+                                    turned.end(),
+                                    [this](const Turn &of) { return active[of.first] == 0 && active[of.second] == 0; }),
+                     turned.end()); // they stick
       }
 
       /// x to the bounds of the set, which follow x.
       void put_on_bounds(Vector &x)
       {
         move_bounds(x);
+        turn(turned, x);
         for (std::size_t i = 0; i < active.size(); ++i)
           if (active[i] != 0)
             x.begin()[i] = active[i] < 0 ? set.box.lower.begin()[i] : set.box.upper.begin()[i];
+        turn_back(turned, x);
       }
 
     private:
@@ -255,13 +315,76 @@ namespace slipstick::qp
       void move_bounds(const Vector &x)
       {
         for (const PressureBound &bound : set.pressure_bounds)
-          set_radius(bound, active[bound.normal] == 0 ? bound.forces.closed_radius(x.begin()[bound.normal]) : 0.);
+          set_radius(bound,
+                     bound.normal == no_entry    ? bound.forces.closed_radius(0)
+                     : active[bound.normal] == 0 ? bound.forces.closed_radius(x.begin()[bound.normal])
+                                                 : 0.);
+      }
+
+      double radius_of(const Turn &disc) const
+      {
+        return set.box.upper.begin()[disc.first];
+      }
+
+      static void put_within(const double radius, double &x1, double &x2)
+      {
+        const double size = std::hypot(x1, x2);
+        if (size <= radius)
+          return;
+        x1 *= radius / size;
+        x2 *= radius / size;
+      }
+
+      // The parts of g that count, and how far x is from where it should be, as in residuals().
+      std::pair<double, double> residuals_on(const Turn &disc, const Vector &x, const Vector &g) const
+      {
+        const double radius = radius_of(disc), x1 = x.begin()[disc.first], x2 = x.begin()[disc.second],
+                     g1 = g.begin()[disc.first], g2 = g.begin()[disc.second], size = std::hypot(x1, x2);
+        if (active[disc.first] == 0)
+          return {std::hypot(g1, g2), std::max(0., size - radius)};
+        if (!(radius > 0))
+          return {0., size};
+        const double c = size > 0 ? x1 / size : disc.cosine, s = size > 0 ? x2 / size : disc.sine;
+        return {std::hypot(std::max(0., c * g1 + s * g2), c * g2 - s * g1), size - radius};
+      }
+
+      // The turns of the slipping nodes of a new set, g the gradient that it was told with. A force that turns round goes by
+      // way of the inside.
+      void find_turns(const Sides &before, const std::vector<Turn> &discs_before, const Vector &g)
+      {
+        turned.clear();
+        for (std::size_t k = 0; k < discs.size(); ++k)
+          {
+            Turn        &disc   = discs[k];
+            const double radius = radius_of(disc), excess = std::hypot(beyond[disc.first], beyond[disc.second]);
+            beyond[disc.first]  = excess;
+            beyond[disc.second] = radius > 0 ? 0. : excess;
+            if (active[disc.first] == 0 || !(radius > 0))
+              continue;
+            if (before[disc.first] != 0 && before[disc.second] == 0 &&
+                disc.cosine * discs_before[k].cosine + disc.sine * discs_before[k].sine < 0)
+              {
+                active[disc.first] = 0;
+                continue;
+              }
+            disc.compliance =
+              std::max(0., -(disc.cosine * g.begin()[disc.first] + disc.sine * g.begin()[disc.second])) / radius;
+            if (disc.compliance * weight(disc.second) > rigid_compliance)
+              active[disc.second] = 1; // at 0
+            turned.push_back(disc);
+            set_radius(bounds_of_discs[k], radius);
+          }
       }
 
       void set_radius(const PressureBound &bound, const double radius)
       {
         set.box.lower.begin()[bound.tangential] = -radius;
         set.box.upper.begin()[bound.tangential] = radius;
+        if (!bound.is_disc())
+          return;
+        const bool is_held = !(radius > 0) || (active[bound.tangential] != 0 && active[bound.second] != 0);
+        set.box.lower.begin()[bound.second] = is_held ? 0. : -HUGE_VAL;
+        set.box.upper.begin()[bound.second] = is_held ? 0. : HUGE_VAL;
       }
 
       // The set, and action(i, x_i, proj(x - s g)_i, (x - s g)_i) for all entries with bounds. Normal entries come first: bounds of
@@ -283,28 +406,51 @@ namespace slipstick::qp
           projected[i] = clip(moved[i], l, u);
         };
         for (std::size_t i = 0; i < active.size(); ++i)
-          if (bounded[i])
+          if (bounded[i] && !in_disc[i])
             place(i);
         for (const PressureBound &bound : set.pressure_bounds)
+          if (!bound.is_disc())
+            {
+              set_radius(bound, bound.forces.radius(projected[bound.normal]));
+              place(bound.tangential);
+            }
+        for (std::size_t k = 0; k < discs.size(); ++k)
           {
-            set_radius(bound, bound.forces.radius(projected[bound.normal]));
-            place(bound.tangential);
+            Turn                &disc  = discs[k];
+            const PressureBound &bound = bounds_of_discs[k];
+            const double         radius =
+              bound.normal == no_entry ? bound.forces.closed_radius(0) : bound.forces.radius(projected[bound.normal]);
+            double &x1 = projected[disc.first] = moved[disc.first], &x2 = projected[disc.second] = moved[disc.second];
+            const double size = std::hypot(x1, x2);
+            if (size > 0)
+              {
+                disc.cosine = x1 / size;
+                disc.sine   = x2 / size;
+              }
+            active[disc.first]  = size >= radius ? 1 : 0;
+            active[disc.second] = radius > 0 ? 0 : 1;
+            set_radius(bound, radius);
+            put_within(radius, x1, x2);
           }
         for (std::size_t i = 0; i < active.size(); ++i)
           if (bounded[i])
             action(i, x.begin()[i], projected[i], moved[i]);
       }
 
-      const Problem        &problem;
-      const double          norm;
-      const bool            balances;
-      double                step;
-      double                softening = 1; // of s, <= 1
-      AdmissibleSet<Vector> set;
-      const double         *weights;
-      std::vector<bool>     bounded;
-      Sides                 active;
-      std::vector<double>   beyond;
+      const Problem             &problem;
+      const double               norm;
+      const bool                 balances;
+      double                     step;
+      double                     softening = 1; // of s, <= 1
+      AdmissibleSet<Vector>      set;
+      const double              *weights;
+      std::vector<bool>          bounded;
+      std::vector<bool>          in_disc;
+      std::vector<PressureBound> bounds_of_discs;
+      std::vector<Turn>          discs;  // all, in that order
+      std::vector<Turn>          turned; // those that slip
+      Sides                      active;
+      std::vector<double>        beyond;
     };
   } // namespace detail
 } // namespace slipstick::qp

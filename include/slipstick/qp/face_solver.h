@@ -8,6 +8,7 @@
 #include <slipstick/qp/direction_store.h>
 #include <slipstick/qp/kernels.h>
 #include <slipstick/qp/options.h>
+#include <slipstick/qp/pressure_bounds.h>
 #include <slipstick/qp/types.h>
 
 #include <memory>
@@ -117,17 +118,21 @@ namespace slipstick::qp
   {
   public:
     /// @param face, d, store, options are referred to. @param conditions as in admissible_combinations().
+    /// @param turns_ those of the face, whose compliances C count as part of F.
     template <typename Conditions>
     FaceSolver(const Face              &face_,
                const Vector            &d_,
                DirectionStore<Vector>  &store_,
                const Conditions        &conditions,
-               const FaceSolverOptions &options_)
+               const FaceSolverOptions &options_,
+               std::vector<Turn>        turns_ = {})
       : face(face_)
       , d(d_)
       , store(store_)
       , options(options_)
+      , turns(std::move(turns_))
       , reduction(face_.reduction())
+      , yields(reduction.min(turns.empty() ? 1. : 0.) < 1)
       , weights(residual_weights(face_, 0))
       , recycled(store_, admissible_combinations(store_, conditions, reduction))
       , n_recycled(store_.size())
@@ -152,8 +157,11 @@ namespace slipstick::qp
       std::optional<PivotedCholesky> known;
       if (recycled.size() > 0 && norm_r > target)
         {
-          known.emplace(
-            recycled.factor([this](const std::size_t i, const std::size_t j) { return store.energy(i, j); }));
+          if (yields)
+            known.emplace(recycled.factor(energies_with_compliance()));
+          else
+            known.emplace(
+              recycled.factor([this](const std::size_t i, const std::size_t j) { return store.energy(i, j); }));
           for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
             {
               const auto c = recycled.coefficients(known->solve(recycled.combined(dots(r, &Direction::p))));
@@ -180,7 +188,7 @@ namespace slipstick::qp
           Vector p = preconditioned();
           if (known)
             {
-              const auto c = recycled.coefficients(known->solve(recycled.combined(dots(p, &Direction::Fp))));
+              const auto c = recycled.coefficients(known->solve(recycled.combined(dots_with_products(p))));
               recycled.add_combination(
                 -1.,
                 c,
@@ -195,8 +203,10 @@ namespace slipstick::qp
             add(-along[j] / energies[j], own[j].first, p);
           Vector Fp(p);
           multiply(p, Fp);
+          Vector Ap(Fp); // (F + C) p
+          add_compliance(turns, p, Ap);
           const auto [pr, pFp, pp] =
-            reduction.sum(std::array<double, 3>{{local_dot(p, r), local_dot(p, Fp), local_dot(p, p)}});
+            reduction.sum(std::array<double, 3>{{local_dot(p, r), local_dot(p, Ap), local_dot(p, p)}});
           if (!std::isfinite(pr) || !std::isfinite(pFp) || !(pr > 0))
             return ended(Status::stagnated);
           if (pFp <= options.smallest_curvature * largest * pp)
@@ -207,7 +217,7 @@ namespace slipstick::qp
           const double before = norm_r;
           update_residual();
           ++counts.cg_steps;
-          own.emplace_back(p, Fp);
+          own.emplace_back(p, std::move(Ap));
           energies.push_back(pFp);
           keep(std::move(p), std::move(Fp));
           if (stagnates(before))
@@ -224,7 +234,7 @@ namespace slipstick::qp
       if (recycled.size() > 0 && norm_r > target)
         {
           for (std::size_t j = 0; j < n_recycled; ++j)
-            images.push_back(image(store[j].Fp));
+            images.push_back(image(store[j].p, store[j].Fp));
           const SmallSymmetric all = gram(images);
           known.emplace(recycled.factor([&all](const std::size_t i, const std::size_t j) { return all(i, j); }));
           for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
@@ -255,7 +265,7 @@ namespace slipstick::qp
           Vector p = preconditioned();
           Vector Fp(p);
           multiply(p, Fp);
-          Vector       q     = image(Fp);
+          Vector       q     = image(p, Fp);
           const double first = norm(q, reduction);
           for (unsigned int pass = 0; pass < 2; ++pass) // twice is enough
             {
@@ -336,11 +346,17 @@ namespace slipstick::qp
       ++counts.hessian_multiplications;
     }
 
-    // r = P(d - F x)
+    // r = P(d - F x - C x)
     void update_residual()
     {
       std::copy(d.begin(), d.end(), r.begin());
       add(-1.0, Fx, r);
+      if (yields)
+        {
+          set_zero(w);
+          add_compliance(turns, x, w);
+          add(-1.0, w, r);
+        }
       face.project_range(r, w);
       add(-1.0, w, r);
       norm_r = std::sqrt(reduction.sum(std::array<double, 1>{{local_weighted_dot(weights, r, r)}})[0]);
@@ -364,10 +380,12 @@ namespace slipstick::qp
       return result;
     }
 
-    Vector image(const Vector &Fp)
+    // weighted P (F + C) p
+    Vector image(const Vector &p, const Vector &Fp)
     {
       Vector q(Fp);
-      face.project_range(Fp, w);
+      add_compliance(turns, p, q);
+      face.project_range(static_cast<const Vector &>(q), w);
       add(-1.0, w, q);
       return weighted(q);
     }
@@ -379,6 +397,40 @@ namespace slipstick::qp
         result.push_back(local_dot(v, store[j].*part));
       sum_all(result, reduction);
       return result;
+    }
+
+    // v'(F + C) p_j
+    std::vector<double> dots_with_products(const Vector &v) const
+    {
+      if (!yields)
+        return dots(v, &Direction::Fp);
+      Vector Cv = zero_like(v);
+      add_compliance(turns, v, Cv);
+      std::vector<double> result;
+      for (std::size_t j = 0; j < n_recycled; ++j)
+        result.push_back(local_dot(v, store[j].Fp) + local_dot(Cv, store[j].p));
+      sum_all(result, reduction);
+      return result;
+    }
+
+    // p_i'(F + C) p_j of the directions of the store
+    auto energies_with_compliance() const
+    {
+      std::vector<double> products;
+      for (std::size_t i = 0; i < n_recycled; ++i)
+        {
+          Vector Cp = zero_like(store[i].p);
+          add_compliance(turns, store[i].p, Cp);
+          for (std::size_t j = 0; j <= i; ++j)
+            products.push_back(local_dot(Cp, store[j].p));
+        }
+      sum_all(products, reduction);
+      SmallSymmetric result(n_recycled);
+      std::size_t    next = 0;
+      for (std::size_t i = 0; i < n_recycled; ++i)
+        for (std::size_t j = 0; j <= i; ++j)
+          result(i, j) = result(j, i) = store.energy(i, j) + products[next++];
+      return [result](const std::size_t i, const std::size_t j) { return result(i, j); };
     }
 
     std::vector<double> dots(const Vector &v, const std::vector<Vector> &images) const
@@ -411,7 +463,9 @@ namespace slipstick::qp
     const Vector            &d;
     DirectionStore<Vector>  &store;
     const FaceSolverOptions &options;
+    const std::vector<Turn>  turns;
     const ReductionType     &reduction;
+    const bool               yields; // turns on any process
     const double            *weights;
     detail::Recycled<Vector> recycled;
     const std::size_t        n_recycled;

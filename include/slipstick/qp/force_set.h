@@ -15,8 +15,68 @@ namespace slipstick::qp
   struct ForceSet
   {
     Box<Vector>                box;
-    std::vector<PressureBound> nodes;
+    std::vector<PressureBound> nodes; // of discs that follow no normal force the radius alone counts
   };
+
+  namespace detail
+  {
+    /// The forces of a node in space by the length of the tangential force, whose direction c, s stays.
+    class DiscPoint
+    {
+    public:
+      template <typename Iterator>
+      DiscPoint(const PressureBound &node_, const Iterator x)
+        : node(node_)
+        , size(std::hypot(x[node.tangential], x[node.second]))
+        , normal(node.normal == no_entry ? 0. : x[node.normal])
+      {
+        c = size > 0 ? x[node.tangential] / size : 1.;
+        s = size > 0 ? x[node.second] / size : 0.;
+        projected(near_size, near_normal);
+      }
+
+      template <typename Iterator>
+      void project(const Iterator x) const
+      {
+        x[node.tangential] = c * near_size;
+        x[node.second]     = s * near_size;
+        if (node.normal != no_entry)
+          x[node.normal] = near_normal;
+      }
+
+      /// p := derivative of the projection, times p: across the force the circle shrinks.
+      template <typename Iterator>
+      void multiply_derivative(const Iterator p) const
+      {
+        double along  = c * p[node.tangential] + s * p[node.second],
+               across = c * p[node.second] - s * p[node.tangential], dn = node.normal == no_entry ? 0. : p[node.normal];
+        across *= size > 0 ? near_size / size : 1.;
+        if (node.normal == no_entry)
+          along = size < node.forces.closed_radius(0) ? along : 0.;
+        else
+          node.forces.multiply_derivative(size, normal, along, dn);
+        p[node.tangential] = c * along - s * across;
+        p[node.second]     = s * along + c * across;
+        if (node.normal != no_entry)
+          p[node.normal] = dn;
+      }
+
+    private:
+      void projected(double &t, double &n) const
+      {
+        t = size;
+        n = normal;
+        if (node.normal == no_entry)
+          t = std::min(t, node.forces.closed_radius(0));
+        else
+          node.forces.project(t, n);
+      }
+
+      const PressureBound &node;
+      const double         size, normal;
+      double               c = 1, s = 0, near_size = 0, near_normal = 0;
+    };
+  } // namespace detail
 
   /// x := projection of x on the set.
   template <typename Vector>
@@ -25,7 +85,10 @@ namespace slipstick::qp
     project(set.box, x);
     const auto xi = x.begin();
     for (const PressureBound &node : set.nodes)
-      node.forces.project(xi[node.tangential], xi[node.normal]);
+      if (node.is_disc())
+        detail::DiscPoint(node, xi).project(xi);
+      else
+        node.forces.project(xi[node.tangential], xi[node.normal]);
   }
 
   /// p := derivative of the projection at y, times p.
@@ -36,7 +99,10 @@ namespace slipstick::qp
     const auto yi = y.begin();
     const auto pi = p.begin();
     for (const PressureBound &node : set.nodes)
-      node.forces.multiply_derivative(yi[node.tangential], yi[node.normal], pi[node.tangential], pi[node.normal]);
+      if (node.is_disc())
+        detail::DiscPoint(node, yi).multiply_derivative(pi);
+      else
+        node.forces.multiply_derivative(yi[node.tangential], yi[node.normal], pi[node.tangential], pi[node.normal]);
   }
 
   template <typename Vector>
@@ -45,11 +111,13 @@ namespace slipstick::qp
     return n_contradictions(set.box);
   }
 
-  /// Are all nodes cones (on this process)?
+  /// Are all nodes cones of the plane, which have two sides (on this process)?
   template <typename Vector>
   bool are_cones(const ForceSet<Vector> &set)
   {
-    return std::all_of(set.nodes.begin(), set.nodes.end(), [](const auto &node) { return node.forces.is_cone(); });
+    return std::all_of(set.nodes.begin(), set.nodes.end(), [](const auto &node) {
+      return node.forces.is_cone() && !node.is_disc();
+    });
   }
 
   // A point of a cone is the sum of parts along its two sides, which are any numbers from 0: x_T = s (a - b),
@@ -123,7 +191,8 @@ namespace slipstick::qp
     const auto            ri = r.begin();
     for (const PressureBound &node : set.nodes)
       {
-        const double t = ri[node.tangential], n = ri[node.normal];
+        const double t       = node.is_disc() ? std::hypot(ri[node.tangential], ri[node.second]) : ri[node.tangential];
+        const double n       = node.normal == no_entry ? 0. : ri[node.normal];
         const auto   support = node.forces.support(t, n);
         s[0] -= support.value;
         s[1] += support.unbounded - (t * t + n * n); // the box took both as unbounded

@@ -7,8 +7,9 @@
 // multiplication: the line search (nonmonotone: Grippo, Lampariello, Lucidi 1986) costs vector operations only.
 //
 // Besides the Problem of types.h it needs
-//   `auto face(const std::vector<bool> &free, const std::vector<Tie> &ties) const`   the problem on the free entries
-//       (owned ones) with others tied to them, which has multiply, reduction as the Problem, and
+//   `auto face(const std::vector<bool> &free, const std::vector<Tie> &ties, const std::vector<Turn> &turns) const`
+//       the problem on the free entries (owned ones) with others tied to them, where entries of nodes that slip in space count
+//       as turned (pressure_bounds.h; vectors are not turned), which has multiply, reduction as the Problem, and
 //       `project_range(x, y)`   y = Q_f x on the free entries, y = x on the others, so that P_f = I - Q_f keeps G x
 //       `balance(x)`            moves the free entries (the tied ones with them) by the least that makes G x = e
 //       `project_kernel(p)`     the same for G p = 0; then sets the tied entries to factor times theirs
@@ -118,12 +119,12 @@ namespace slipstick::qp
             set.predict(x, zero_like(x));
           }
         set.put_on_bounds(x); // ties to the last bit
-        project(set.box(), x);
+        set.project_on_bounds(x);
         return {status, std::move(x), set.free(), residual, counts};
       }
 
     private:
-      using Face = decltype(std::declval<Problem>().face(std::vector<bool>(), std::vector<Tie>()));
+      using Face = decltype(std::declval<Problem>().face(std::vector<bool>(), std::vector<Tie>(), std::vector<Turn>()));
 
       Status iterate()
       {
@@ -196,7 +197,7 @@ namespace slipstick::qp
         face.project_kernel(error);
         Vector at = y;
         set.put_on_bounds(at);
-        project(set.box(), at);
+        set.project_on_bounds(at);
         for (std::size_t i = 0; i < local_size(at); ++i)
           error.begin()[i] += at.begin()[i] - y.begin()[i];
         return error;
@@ -212,7 +213,7 @@ namespace slipstick::qp
           {
             ties = set.ties();
             std::optional<Face> face;
-            face.emplace(problem.face(set.free(), ties));
+            face.emplace(problem.face(set.free(), ties, set.turns()));
             if (face->is_regular())
               return face;
             set.release(problem.hold(set.free(), set.gaps(), false));
@@ -230,19 +231,20 @@ namespace slipstick::qp
         face->balance(x);
         problem.multiply(x, Fx);
         ++counts.hessian_multiplications;
-        gradient_on(*face, Fx, g);
+        gradient_on(*face, x, Fx, g);
         merits.push_back(set.natural_residual(x, g));
         set.predict(x, g);
         return true;
       }
 
-      // g = F x - d + G'a with the a that makes it least on the free entries.
-      void gradient_on(const Face &face, const Vector &product, Vector &gradient) const
+      // g = F x - d + G'a with the a that makes it, with what the turns of forces add, least on the free entries.
+      void gradient_on(const Face &face, const Vector &at, const Vector &product, Vector &gradient) const
       {
         combine(1.0, product, 0.0, gradient);
         add(-1.0, d, gradient);
-        Vector shift(gradient);
-        face.multiplier_shift(gradient, shift);
+        Vector shift(gradient), left(gradient);
+        add_compliance(set.turns(), at, left);
+        face.multiplier_shift(static_cast<const Vector &>(left), shift);
         add(-1.0, shift, gradient);
       }
 
@@ -258,7 +260,8 @@ namespace slipstick::qp
           d,
           store,
           [this](const Vector &p) { return set.conditions(p, ties); },
-          options.face);
+          options.face,
+          set.turns());
         const double first = solver.start(std::move(y), std::move(Fy));
         const double target =
           std::max(options.last_forcing * tolerance * goal.reference, options.forcing * std::min(first, merits.back()));
@@ -266,7 +269,7 @@ namespace slipstick::qp
         counts += result.counts;
         y  = std::move(result.x);
         Fy = std::move(result.product);
-        gradient_on(face, Fy, gy);
+        gradient_on(face, y, Fy, gy);
       }
 
       // on any process
@@ -299,7 +302,8 @@ namespace slipstick::qp
       void descend(const Face &face, Vector &step)
       {
         Vector r(g), shift(g), p(g);
-        face.multiplier_shift(g, shift);
+        add_compliance(set.turns(), x, r);
+        face.multiplier_shift(static_cast<const Vector &>(r), shift);
         add(-1., shift, r);
         combine(-1., r, 0., r);
         face.precondition(static_cast<const Vector &>(r), p);
@@ -311,15 +315,13 @@ namespace slipstick::qp
       // Along the step to the next point and set. @return whether the residual falls along it.
       bool step()
       {
-        const auto   solved = set.free();
-        const double t      = line_search();
+        const double t = line_search();
         if (t == 0) // once more with the set of x itself
           return !has_met_goal && restart();
         is_stuck = false;
-        Vector known(g); // what is left on free entries after a whole step says nothing of the set
+        Vector known(g);
         if (t == 1)
-          for (std::size_t i = 0; i < solved.size(); ++i)
-            known.begin()[i] = solved[i] ? 0. : known.begin()[i];
+          set.clear_solved(x, known);
         set.predict(x, known);
         return true;
       }

@@ -34,7 +34,7 @@ namespace slipstick::scene
 
   enum class Shape
   {
-    rectangle,    // left, right, bottom, top
+    rectangle,    // left, right, bottom, top; in space a cuboid, front and back (z) besides
     disc,         // arc
     half_disc,    // arc, flat; the half below its centre, flat side up
     quarter_disc, // arc, flat, side; the quarter below and to the right of its centre
@@ -47,10 +47,11 @@ namespace slipstick::scene
   template <int dim>
   struct Placement
   {
-    bool               mirror_x = false; // x -> -x
-    bool               mirror_y = false; // y -> -y
-    double             rotation = 0;     // [degrees], counterclockwise
-    dealii::Point<dim> translation;      // [mm]
+    bool                 mirror_x = false; // x -> -x
+    bool                 mirror_y = false; // y -> -y
+    double               rotation = 0;     // [degrees], counterclockwise; in space about ...
+    dealii::Tensor<1, 3> axis;             // ... this one (none: z), seen against it
+    dealii::Point<dim>   translation;      // [mm]
   };
 
   /// One elastic body, of a built-in shape or from a mesh file.
@@ -59,7 +60,7 @@ namespace slipstick::scene
   {
     std::string                                  name;
     Shape                                        shape = Shape::rectangle;
-    dealii::Point<dim>                           origin;            // rectangle: lower left corner [mm]
+    dealii::Point<dim>                           origin;            // rectangle: lower left (and front) corner [mm]
     dealii::Point<dim>                           size;              // rectangle: edge lengths [mm], > 0
     dealii::Point<dim>                           center;            // discs and rings [mm]
     double                                       radius       = 1;  // discs and rings: outer radius [mm], > 0
@@ -161,9 +162,10 @@ namespace slipstick::scene
 
   enum class ObstacleShape
   {
-    circle,     // bodies are outside
-    hole,       // circle with the bodies inside
-    half_plane, // through `center`; bodies are where `normal` points
+    circle,     // bodies are outside; in space a ball
+    hole,       // circle with the bodies inside; in space a ball
+    half_plane, // through `center`; bodies are where `normal` points; in space a half space
+    cylinder,   // in space alone: about the line through `center` along `normal`; bodies are outside
     polyline,   // bodies are to the left of the direction of travel
     function    // bodies are above y = height(x)
   };
@@ -176,7 +178,7 @@ namespace slipstick::scene
     ObstacleShape                   shape = ObstacleShape::circle;
     dealii::Point<dim>              center;     // circle, hole; a point of the half plane [mm]
     double                          radius = 1; // circle, hole [mm], > 0
-    dealii::Tensor<1, dim>          normal;     // half plane, unit length, towards the bodies
+    dealii::Tensor<1, dim>          normal;     // unit length; half plane: towards the bodies; cylinder: its axis
     std::vector<dealii::Point<dim>> points;     // polyline, at least two [mm]
     Field<dim>                      height;     // function [mm], of x and t
   };

@@ -53,7 +53,9 @@ namespace slipstick::tfeti
     std::array<std::uint64_t, 2> key{{0, 0}};                  // the mesh's name of the node
     unsigned int                 normal_row     = invalid_row; // owned rows; invalid where a support takes their place
     unsigned int                 tangential_row = invalid_row;
-    unsigned int                 interface_dof  = 0; // owned number of the node's first interface unknown
+    unsigned int                 second_row     = invalid_row; // in space: along the other tangent
+    std::array<std::array<double, 3>, 2> tangents{};           // in space
+    unsigned int                         interface_dof = 0;    // owned number of the node's first interface unknown
   };
 
   /// What holds a node externally in one direction: supports, foundations, bonds to obstacles.

@@ -135,8 +135,11 @@ namespace slipstick::tfeti
     /// that hold each other in more ways than one). This does not affect u. Collective.
     std::vector<bool> ambiguous(const std::vector<bool> &free) const;
 
-    /// The problem on the free rows (owned ones), the others held, or tied to free ones. Collective.
-    Face face(const std::vector<bool> &free, const std::vector<qp::Tie> &ties = {}) const;
+    /// The problem on the free rows (owned ones), the others held, or tied to free ones; rows of slipping nodes in space are
+    /// turned ones. Collective.
+    Face face(const std::vector<bool>     &free,
+              const std::vector<qp::Tie>  &ties  = {},
+              const std::vector<qp::Turn> &turns = {}) const;
 
     /// A motion of bodies for which friction at the current bounds is too weak.
     struct Overload
@@ -294,7 +297,8 @@ namespace slipstick::tfeti
     std::unique_ptr<BodyEquilibrium>                     held_by_contact; // bodies that nothing else holds
     std::unique_ptr<Projector>                           projector;
     std::unique_ptr<RowPreconditioner>                   preconditioner;
-    std::vector<double>                                  metric; // stiffnesses of the owned rows
+    std::vector<double>                                  metric; // stiffnesses of the owned rows over the least one ...
+    double                                               least_stiffness = 1; // ... which this is [N/mm]
     bool               projects_twice = false; // rounding of one projection would show in the stiffest rows
     DistributedVector  dual_load;
     Eigen::VectorXd    resultants; // e of this rank's subdomains in turn
@@ -309,7 +313,10 @@ namespace slipstick::tfeti
   class DualProblem::Face
   {
   public:
-    Face(const DualProblem &problem, const std::vector<bool> &free, const std::vector<qp::Tie> &ties);
+    Face(const DualProblem           &problem,
+         const std::vector<bool>     &free,
+         const std::vector<qp::Tie>  &ties,
+         const std::vector<qp::Turn> &turns);
 
     void                       multiply(const DistributedVector &x, DistributedVector &y) const; // y = F x / |P F P|
     const MpiReduction        &reduction() const;
@@ -339,18 +346,22 @@ namespace slipstick::tfeti
 
   private:
     using Projection = void (Projector::*)(const DistributedVector &, DistributedVector &) const;
-    void projected(const Projection project, const DistributedVector &x, DistributedVector &y) const;
+    void              projected(const Projection project, const DistributedVector &x, DistributedVector &y) const;
+    DistributedVector turned(const DistributedVector &x) const;
+    void              soften(DistributedVector &x) const;
 
     const Projector &balancing() const
     {
       return tied ? *tied : *projector;
     }
 
-    const DualProblem                   &problem;
-    std::vector<bool>                    free;
-    std::vector<qp::Tie>                 ties;
-    std::unique_ptr<Projector>           projector; // none if the free rows do not hold the bodies
-    std::unique_ptr<Projector>           tied;      // of free and tied rows, if some rank has ties
+    const DualProblem         &problem;
+    std::vector<bool>          free;
+    std::vector<qp::Tie>       ties;
+    std::vector<qp::Turn>      turns;
+    std::vector<double>        stiffness; // by turns: of the row across the force, over that without compliance
+    std::unique_ptr<Projector> projector; // none if the free rows do not hold the bodies
+    std::unique_ptr<Projector> tied;      // of free and tied rows, if some rank has ties
     std::unique_ptr<RowWeights::Inverse> weights;
   };
 } // namespace slipstick::tfeti

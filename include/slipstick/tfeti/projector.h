@@ -33,12 +33,15 @@ namespace slipstick::tfeti
     /// @param active true for the owned rows that take part; the others count as zero columns of G.
     /// @param ties owned rows, active too, whose entries are factor times those of another active one: with x = T y of
     ///        the untied entries y, Q is T (G T)'(G T (G T)')^-1 G then (a projector on vectors that obey the ties).
-    /// @param metric of the owned rows; empty: 1. Collective.
+    /// @param metric of the owned rows; empty: 1.
+    /// @param turns of the owned rows: all that is said of rows holds for turned ones, and all dual vectors, arguments
+    ///        and results, are turned. Collective.
     Projector(const Projector            &all,
               const std::vector<bool>    &active,
               const MPI_Comm              comm,
               const std::vector<qp::Tie> &ties   = {},
-              const std::vector<double>  &metric = {});
+              const std::vector<double>  &metric = {},
+              std::vector<qp::Turn>       turns  = {});
     ~Projector();
 
     /// y = Q x, owned entries; with a metric that of residuals. Not with ties. Collective.
@@ -79,6 +82,8 @@ namespace slipstick::tfeti
     std::shared_ptr<const Motions> G;
     std::vector<qp::Tie>           ties;
     std::vector<double>            metric; // of the owned rows; empty: 1
+    std::vector<qp::Turn>          turns;
+    bool                           has_turns = false; // on any rank
     std::unique_ptr<CoarseSolver>  coarse;
     DistributedVector              indicator; // 1 on active rows, ghosts included
     mutable DistributedVector      source, target;

@@ -1,11 +1,13 @@
 // Weights of the rows in the preconditioners of the dual problem.
 #pragma once
 
+#include <slipstick/qp/pressure_bounds.h>
 #include <slipstick/tfeti/dual_operator.h>
 #include <slipstick/tfeti/semidefinite_factor.h>
 
 #include <functional>
 #include <memory>
+#include <set>
 
 namespace slipstick::tfeti
 {
@@ -59,15 +61,17 @@ namespace slipstick::tfeti
     {
     public:
       /// @param weights are kept by reference.
-      Inverse(const RowWeights &weights, const std::vector<bool> &active);
+      /// @param active of turned rows, if there are @p turns.
+      Inverse(const RowWeights &weights, const std::vector<bool> &active, std::vector<qp::Turn> turns = {});
 
-      /// y = W^-1 x on the active rows, 0 on the others; owned entries.
+      /// y = W^-1 x on the active rows, 0 on the others; owned entries, not turned.
       void apply(const DistributedVector &x, DistributedVector &y) const;
 
     private:
       const RowWeights         &weights;
       std::vector<unsigned int> inactive;
-      InverseBlocks             changed; // those with inactive rows
+      InverseBlocks             changed; // those with inactive or turned rows
+      std::vector<qp::Turn>     turns;
     };
 
   private:
@@ -80,6 +84,12 @@ namespace slipstick::tfeti
 
     /// W on the active rows of a block, and these rows.
     static Block restricted(const Block &full, const std::function<bool(unsigned int)> &is_active);
+
+    /// The blocks with turned rows, turned; those that turns couple have become one.
+    /// @param singles, taken receive the numbers of the single rows and of the blocks that they are made of.
+    std::vector<Block> turned(const std::vector<qp::Turn> &turns,
+                              std::set<unsigned int>      &singles,
+                              std::set<unsigned int>      &taken) const;
 
     std::vector<unsigned int> single_rows; // nearly all: they share no unknown with others
     std::vector<double>       single_weights;
