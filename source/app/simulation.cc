@@ -301,7 +301,6 @@ namespace slipstick::app
           return;
         clock.enter("output");
         const double begin = clock.total();
-        write_tables(summary);
         summary.status    = output::RunStatus::unfinished;
         summary.time_s    = times(clock, solver.factorization_seconds());
         summary.memory_mb = memory(comm);
@@ -310,6 +309,7 @@ namespace slipstick::app
                       scene,
                       {solver.state(), summary, contact_steps, total_slip, warnings, warned_about},
                       comm);
+        write_tables(summary); // these last, next to each other: they agree unless a signal comes right here
         kept_steps = step + 1;
         output::write_summary(directory, summary);
         announce(step + 1);

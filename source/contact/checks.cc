@@ -178,12 +178,13 @@ namespace slipstick::contact
     /// Forces and moments left on the bodies by K u - f + B'x, and the force scales.
     struct Balance
     {
-      Eigen::MatrixXd left;        // motions x bodies
-      Eigen::VectorXd scale;       // by body: sum of the magnitudes of all outside forces
-      double          largest = 0; // nodal: largest load, contact force or reaction
+      Eigen::MatrixXd left;                // motions x bodies
+      Eigen::VectorXd scale;               // by body: sum of the magnitudes of all outside forces
+      double          largest         = 0; // nodal: largest load, contact force or reaction
+      double          beyond_rounding = 0; // nodal: what is left beyond the rounding of K u
     };
 
-    /// @param on_node gets the residual force at a node of this rank, beyond rounding.
+    /// @param on_node gets the residual force at a node of this rank.
     Balance balance(const tfeti::DualProblem           &dual,
                     const std::vector<Eigen::VectorXd> &u,
                     const std::vector<Eigen::VectorXd> &nodal_forces,
@@ -215,14 +216,18 @@ namespace slipstick::contact
             rounding_of_forces * u[p].cwiseAbs().maxCoeff() * system.stiffness_diagonal();
           Eigen::Index unknown = 0;
           for (Eigen::Index i = 0; i < left.size(); ++i)
-            if (on_node.take(std::max(std::abs(left[i]) - rounding[i], 0.), Place()))
-              unknown = i + 1;
+            {
+              if (on_node.take(std::abs(left[i]), Place()))
+                unknown = i + 1;
+              result.beyond_rounding = std::max(result.beyond_rounding, std::abs(left[i]) - rounding[i]);
+            }
           if (unknown > 0)
             on_node.place = {true, system.body(), system.position(unknown - 1), true};
         }
       MPI_Allreduce(MPI_IN_PLACE, result.left.data(), result.left.size(), MPI_DOUBLE, MPI_SUM, dual.communicator());
       MPI_Allreduce(MPI_IN_PLACE, result.scale.data(), result.scale.size(), MPI_DOUBLE, MPI_SUM, dual.communicator());
-      result.largest = dealii::Utilities::MPI::max(result.largest, dual.communicator());
+      result.largest         = dealii::Utilities::MPI::max(result.largest, dual.communicator());
+      result.beyond_rounding = dealii::Utilities::MPI::max(result.beyond_rounding, dual.communicator());
       return result;
     }
 
@@ -515,13 +520,16 @@ namespace slipstick::contact
         largest[i].over_all_ranks(comm);
         checks.places[i] = largest[i].place;
       }
-    checks.body_error        = std::max(largest[energy_norm].value, checks.algebraic_error);
-    checks.interface_jump    = relative(largest[jump].value, length);
-    checks.penetration       = relative(largest[penetration].value, length);
-    checks.tension           = relative(largest[tension].value, force);
-    checks.friction_bound    = relative(largest[friction_bound].value, force);
-    checks.complementarity   = relative(checks.complementarity, energy);
-    checks.nodal_equilibrium = relative(largest[nodal_equilibrium].value, std::max(on_bodies.largest, no_force));
+    checks.body_error      = std::max(largest[energy_norm].value, checks.algebraic_error);
+    checks.interface_jump  = relative(largest[jump].value, length);
+    checks.penetration     = relative(largest[penetration].value, length);
+    checks.tension         = relative(largest[tension].value, force);
+    checks.friction_bound  = relative(largest[friction_bound].value, force);
+    checks.complementarity = relative(checks.complementarity, energy);
+    // where nothing bears anything, the displacement of stiff bodies leaves rounding alone
+    checks.nodal_equilibrium = on_bodies.largest < no_force && !std::isnan(largest[nodal_equilibrium].value)
+                                 ? relative(on_bodies.beyond_rounding, no_force)
+                                 : relative(largest[nodal_equilibrium].value, std::max(on_bodies.largest, no_force));
     checks.force_balance     = largest[force_balance].value;
     checks.moment_balance    = largest[moment_balance].value;
     return result;
