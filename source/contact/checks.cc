@@ -25,8 +25,9 @@ namespace slipstick::contact
     constexpr double part_of_history = 1e-2;
     // Lower limit on the forces that count for a body, relative to the largest forces on any body.
     constexpr double negligible_load = 1e-3;
-    // Rounding of K u, over the diagonal entry of its row times the largest displacement.
-    constexpr double rounding_of_forces = 16 * std::numeric_limits<double>::epsilon();
+    // Rounding of K u, over the diagonal entry of its row times the largest displacement: the magnitudes of a row add up to some
+    // six times that entry, and displacements are sums themselves.
+    constexpr double rounding_of_forces = 128 * std::numeric_limits<double>::epsilon();
     // Slip bounds above this multiple of the largest contact force only mean that nodes stick.
     constexpr double bounds_that_count = 2;
 
