@@ -146,8 +146,7 @@ namespace slipstick::app
           {
             pressure->error.reset();
             pressure->reason =
-              "it stands alone: a peak that grows with every refinement (a corner, an edge), or that needs a "
-              "finer mesh";
+              "a peak at a single node: it grows with every refinement (a corner, an edge) or needs a finer mesh";
           }
         else if (pressure->error)
           *pressure->error += *resolved;
@@ -160,6 +159,19 @@ namespace slipstick::app
     return bars;
   }
 
+  namespace
+  {
+    /// Two digits, without an exponent where none is needed: "170", "0.0079".
+    std::string rounded_error(const double error)
+    {
+      constexpr double first_with_exponent = 1e6;
+      if (!(error >= 10 && error < first_with_exponent))
+        return format("%.2g", error);
+      const double unit = std::pow(10., std::floor(std::log10(error)) - 1);
+      return format("%.0f", std::round(error / unit) * unit);
+    }
+  } // namespace
+
   void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars)
   {
     if (bars.empty())
@@ -171,10 +183,10 @@ namespace slipstick::app
       if (bar.error && std::max(std::abs(bar.value), *bar.error) <= nothing * largest.at(bar.unit))
         continue;
       else if (bar.error)
-        log.line(format("             %-36s %14.6g +- %-10.2g %s",
+        log.line(format("             %-36s %14.6g +- %-10s %s",
                         bar.quantity.c_str(),
                         bar.value,
-                        *bar.error,
+                        rounded_error(*bar.error).c_str(),
                         bar.unit.c_str()));
       else
         log.line(format("             %-36s %14.6g    no bar: %s (%s)",
