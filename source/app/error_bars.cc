@@ -1,4 +1,5 @@
 #include <slipstick/app/error_bars.h>
+#include <slipstick/base/text.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,7 @@ namespace slipstick::app
     using contact::ContactNode;
 
     // Contributions of cells cancel; where they do so nearly completely the sum is accidental, and this part of the sum of
-    // their magnitudes is left (measured: doc/verification.md).
+    // their magnitudes is left (measured: doc/error_bars.md).
     constexpr double least_part = 0.1;
     // A nodal pressure is a mean with the shape function of the node, and the largest one may lie between two: together at
     // most this part of the second difference of the pressures.
@@ -159,19 +160,6 @@ namespace slipstick::app
     return bars;
   }
 
-  namespace
-  {
-    /// Two digits, without an exponent where none is needed: "170", "0.0079".
-    std::string rounded_error(const double error)
-    {
-      constexpr double first_with_exponent = 1e6;
-      if (!(error >= 10 && error < first_with_exponent))
-        return format("%.2g", error);
-      const double unit = std::pow(10., std::floor(std::log10(error)) - 1);
-      return format("%.0f", std::round(error / unit) * unit);
-    }
-  } // namespace
-
   void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars)
   {
     if (bars.empty())
@@ -183,10 +171,10 @@ namespace slipstick::app
       if (bar.error && std::max(std::abs(bar.value), *bar.error) <= nothing * largest.at(bar.unit))
         continue;
       else if (bar.error)
-        log.line(format("             %-36s %14.6g +- %-10s %s",
+        log.line(format("             %-36s %14.6g +- %-10.6g %s",
                         bar.quantity.c_str(),
                         bar.value,
-                        rounded_error(*bar.error).c_str(),
+                        *bar.error > 0 ? rounded_up(*bar.error) : 0.,
                         bar.unit.c_str()));
       else
         log.line(format("             %-36s %14.6g    no bar: %s (%s)",

@@ -1,5 +1,6 @@
 #include <slipstick/app/geometry_checks.h>
 #include <slipstick/base/log.h>
+#include <slipstick/base/text.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,13 +26,6 @@ namespace slipstick::app
     std::string place(const interface::Penetration &deepest)
     {
       return format("(%.6g, %.6g)", deepest.at[0], deepest.at[1]);
-    }
-
-    /// Rounded up to two digits.
-    double rounded_up(const double value)
-    {
-      const double unit = std::pow(10., std::floor(std::log10(value)) - 1);
-      return std::ceil(value / unit) * unit;
     }
   } // namespace
 

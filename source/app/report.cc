@@ -1,4 +1,5 @@
 #include <slipstick/app/report.h>
+#include <slipstick/base/text.h>
 #include <slipstick/scene/checks.h>
 
 #include <deal.II/base/config.h>
@@ -25,13 +26,6 @@ namespace slipstick::app
     std::string line(const char *stage, const std::string &text)
     {
       return format("%-12s ", stage) + text;
-    }
-
-    /// Two digits, never below.
-    double rounded_up(const double value)
-    {
-      const double unit = std::pow(10., std::floor(std::log10(value)) - 1);
-      return std::ceil(value / unit) * unit;
     }
 
     /// " at (1, 2) of body box, contact joint"

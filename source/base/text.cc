@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -62,5 +63,11 @@ namespace slipstick
     std::array<char, 32> buffer; // the shortest text of a double has at most 24 characters
     const auto           result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
     return std::string(buffer.data(), result.ptr);
+  }
+
+  double rounded_up(const double value)
+  {
+    const double unit = std::pow(10., std::floor(std::log10(value)) - 1);
+    return std::ceil(value / unit) * unit;
   }
 } // namespace slipstick

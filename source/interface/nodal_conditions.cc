@@ -36,19 +36,35 @@ namespace slipstick::interface
       return format("displacement along (%.3g, %.3g)", direction[0], direction[1]);
     }
 
-    /// Held directions as columns, their values below; in space.
-    Eigen::Matrix<double, 3, Eigen::Dynamic> directions_of(const InterfaceNode<3> &node)
+    /// Held directions as columns; their values.
+    template <int dim>
+    Eigen::Matrix<double, dim, Eigen::Dynamic> directions_of(const InterfaceNode<dim> &node)
     {
-      Eigen::Matrix<double, 3, Eigen::Dynamic> result(3, node.held.size());
+      Eigen::Matrix<double, dim, Eigen::Dynamic> result(dim, node.held.size());
       for (unsigned int k = 0; k < node.held.size(); ++k)
-        result.col(k) = Eigen::Map<const Eigen::Vector3d>(node.held[k].direction.data());
+        result.col(k) = Eigen::Map<const Eigen::Matrix<double, dim, 1>>(node.held[k].direction.data());
       return result;
     }
-    Eigen::VectorXd values_of(const InterfaceNode<3> &node)
+    template <int dim>
+    Eigen::VectorXd values_of(const InterfaceNode<dim> &node)
     {
       Eigen::VectorXd result(node.held.size());
       for (unsigned int k = 0; k < node.held.size(); ++k)
         result[k] = node.held[k].value;
+      return result;
+    }
+
+    template <int dim>
+    Eigen::Matrix<double, dim, 1> vector(const dealii::Tensor<1, dim> &v)
+    {
+      return Eigen::Map<const Eigen::Matrix<double, dim, 1>>(v.begin_raw());
+    }
+
+    template <int dim>
+    dealii::Tensor<1, dim> tensor(const Eigen::Matrix<double, dim, 1> &v)
+    {
+      dealii::Tensor<1, dim> result;
+      std::copy(v.data(), v.data() + dim, result.begin_raw());
       return result;
     }
 
@@ -138,45 +154,19 @@ namespace slipstick::interface
       return {};
     if (held.empty())
       return direction;
-    if constexpr (dim == 3)
-      {
-        const auto                              D = directions_of(*this);
-        const Eigen::Map<const Eigen::Vector3d> v(direction.begin_raw());
-        const Eigen::Vector3d                   left = v - D * D.colPivHouseholderQr().solve(v);
-        dealii::Tensor<1, dim>                  result;
-        for (unsigned int c = 0; c < dim; ++c)
-          result[c] = left[c];
-        return result;
-      }
-    const auto d = tensor<dim>(held[0].direction);
-    return direction - (direction * d) * d;
+    const auto                          D = directions_of(*this);
+    const Eigen::Matrix<double, dim, 1> v = vector(direction);
+    return tensor<dim>(Eigen::Matrix<double, dim, 1>(v - D * D.colPivHouseholderQr().solve(v)));
   }
 
   template <int dim>
   dealii::Tensor<1, dim> InterfaceNode<dim>::held_displacement() const
   {
-    dealii::Tensor<1, dim> u;
     if (held.empty())
-      return u;
-    if constexpr (dim == 3)
-      {
-        const Eigen::Vector3d least =
-          directions_of(*this).transpose().completeOrthogonalDecomposition().solve(values_of(*this));
-        for (unsigned int c = 0; c < dim; ++c)
-          u[c] = least[c];
-        return u;
-      }
-    else
-      {
-        const auto a = tensor<dim>(held[0].direction);
-        if (held.size() == 1)
-          return held[0].value * a;
-        const auto   b    = tensor<dim>(held[1].direction);
-        const double area = mechanics::cross(a, b);
-        u[0]              = (held[0].value * b[1] - held[1].value * a[1]) / area;
-        u[1]              = (held[1].value * a[0] - held[0].value * b[0]) / area;
-        return u;
-      }
+      return {};
+    const Eigen::Matrix<double, dim, 1> least =
+      directions_of(*this).transpose().completeOrthogonalDecomposition().solve(values_of(*this));
+    return tensor<dim>(least);
   }
 
   template <int dim>
@@ -202,27 +192,9 @@ namespace slipstick::interface
     });
     share(nearest->by, by);
     // the value that is implied: sum of w_k value_k with direction = sum of w_k direction_k
-    double there = 0, size = std::abs(value);
-    if constexpr (dim == 3)
-      {
-        const Eigen::Map<const Eigen::Vector3d> v(direction.begin_raw());
-        const Eigen::VectorXd                   shares = directions_of(node).colPivHouseholderQr().solve(v);
-        there                                          = shares.dot(values_of(node));
-        size = std::max(size, shares.cwiseAbs().dot(values_of(node).cwiseAbs()));
-      }
-    else if (node.held.size() == 1)
-      there = (tensor<dim>(node.held[0].direction) * direction) * node.held[0].value;
-    else
-      {
-        const auto   a = tensor<dim>(node.held[0].direction), b = tensor<dim>(node.held[1].direction);
-        const double area = mechanics::cross(a, b);
-        there =
-          (mechanics::cross(direction, b) * node.held[0].value + mechanics::cross(a, direction) * node.held[1].value) /
-          area;
-        const double turn = std::abs(area); // rounding of a nearly singular pair of directions
-        size              = std::max(size, (std::abs(node.held[0].value) + std::abs(node.held[1].value)) / turn);
-      }
-    size = std::max(size, std::abs(there));
+    const Eigen::VectorXd shares = directions_of(node).colPivHouseholderQr().solve(vector(direction));
+    const double          there  = shares.dot(values_of(node));
+    const double          size   = std::max(std::abs(value), shares.cwiseAbs().dot(values_of(node).cwiseAbs()));
     if (std::abs(there - value) > same_value_tolerance * size)
       throw InputError(format("supports prescribe both %g and %g for %s at (%g, %g%s)",
                               there,

@@ -133,7 +133,7 @@ namespace slipstick::interface
         case scene::ObstacleShape::function:
           break;
       }
-    throw InputError("Obstacle " + obstacle.name + ": its shape is none of space",
+    throw InputError("Obstacle " + obstacle.name + ": its shape is not available in space",
                      "set Shape to ball, cylinder or half space");
   }
 } // namespace slipstick::interface

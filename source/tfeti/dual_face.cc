@@ -20,25 +20,10 @@ namespace slipstick::tfeti
     , ties(ties_)
     , turns(turns_)
   {
-    std::vector<bool> holds = free;
-    for (const qp::Turn &turn : turns) // across the force a node is held as well as along the row nearer to that
-      if (free[turn.second] && std::abs(turn.sine) > std::abs(turn.cosine))
-        {
-          holds[turn.first]  = true;
-          holds[turn.second] = false;
-        }
-    if (!problem.bodies->free(holds).empty())
+    if (!problem.bodies->free(turns.empty() ? free : nearest_rows()).empty())
       return;
-    // a row that yields by kappa on top of 1/k has the stiffness 1/(kappa + 1/k)
-    std::vector<double> metric = problem.metric;
-    for (const qp::Turn &turn : turns)
-      {
-        stiffness.push_back(
-          metric.empty() ? 1.
-                         : 1 / (1 + turn.compliance * problem.norm() * problem.least_stiffness * metric[turn.second]));
-        if (!metric.empty())
-          metric[turn.second] *= stiffness.back();
-      }
+    const std::vector<double>  softened = softened_metric();
+    const std::vector<double> &metric   = turns.empty() ? problem.metric : softened;
     projector =
       std::make_unique<Projector>(*problem.projector, free, problem.comm, std::vector<qp::Tie>(), metric, turns);
     if (dealii::Utilities::MPI::max(ties.empty() ? 0 : 1, problem.comm) > 0)
@@ -50,6 +35,38 @@ namespace slipstick::tfeti
       }
     if (problem.preconditioner)
       weights = std::make_unique<RowWeights::Inverse>(problem.preconditioner->weights(), free, turns);
+  }
+
+  // Across the force a node is held as well as along the row nearer to that.
+  std::vector<bool> DualProblem::Face::nearest_rows() const
+  {
+    std::vector<bool> holds = free;
+    for (const qp::Turn &turn : turns)
+      if (free[turn.second] && std::abs(turn.sine) > std::abs(turn.cosine))
+        {
+          holds[turn.first]  = true;
+          holds[turn.second] = false;
+        }
+    return holds;
+  }
+
+  // A row that yields by kappa on top of 1/k has the stiffness 1/(kappa + 1/k). Empty without turned rows.
+  std::vector<double> DualProblem::Face::softened_metric()
+  {
+    if (turns.empty())
+      return {};
+    std::vector<double> result = problem.metric;
+    for (const qp::Turn &turn : turns)
+      {
+        double part = 1;
+        if (!result.empty())
+          {
+            part = 1 / (1 + turn.compliance * problem.norm() * problem.least_stiffness * result[turn.second]);
+            result[turn.second] *= part;
+          }
+        stiffness.push_back(part);
+      }
+    return result;
   }
 
   void DualProblem::Face::multiply(const DistributedVector &x, DistributedVector &y) const
@@ -81,7 +98,8 @@ namespace slipstick::tfeti
 
   void DualProblem::Face::project_range(const DistributedVector &x, DistributedVector &y) const
   {
-    const DistributedVector at = turned(x);
+    std::optional<DistributedVector> copy;
+    const DistributedVector         &at = turned(x, copy);
     projected(&Projector::project_range, at, y);
     for (unsigned int r = 0; r < free.size(); ++r)
       if (!free[r])
@@ -113,7 +131,8 @@ namespace slipstick::tfeti
 
   void DualProblem::Face::multiplier_shift(const DistributedVector &v, DistributedVector &y) const
   {
-    projected(&Projector::extend_range, turned(v), y);
+    std::optional<DistributedVector> copy;
+    projected(&Projector::extend_range, turned(v, copy), y);
     qp::turn_back(turns, y);
   }
 
@@ -124,18 +143,27 @@ namespace slipstick::tfeti
         z.copy_locally_owned_data_from(r);
         return;
       }
-    DistributedVector at(r);
-    soften(at);
-    problem.preconditioner->apply(*weights, at, z);
-    soften(z);
+    if (turns.empty())
+      problem.preconditioner->apply(*weights, r, z);
+    else
+      {
+        DistributedVector at(r);
+        soften(at);
+        problem.preconditioner->apply(*weights, at, z);
+        soften(z);
+      }
     z *= problem.norm();
   }
 
-  DistributedVector DualProblem::Face::turned(const DistributedVector &x) const
+  // x itself where no rows are turned.
+  const DistributedVector &DualProblem::Face::turned(const DistributedVector          &x,
+                                                     std::optional<DistributedVector> &copy) const
   {
-    DistributedVector result(x);
-    qp::turn(turns, result);
-    return result;
+    if (turns.empty())
+      return x;
+    copy.emplace(x);
+    qp::turn(turns, *copy);
+    return *copy;
   }
 
   // Half of what the compliance of turned rows does to M.

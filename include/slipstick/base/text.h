@@ -21,4 +21,7 @@ namespace slipstick
 
   /// The shortest text that reads back as @p value.
   std::string number_text(const double value);
+
+  /// @p value, positive, rounded to two digits, never below it.
+  double rounded_up(const double value);
 } // namespace slipstick

@@ -346,9 +346,11 @@ namespace slipstick::tfeti
 
   private:
     using Projection = void (Projector::*)(const DistributedVector &, DistributedVector &) const;
-    void              projected(const Projection project, const DistributedVector &x, DistributedVector &y) const;
-    DistributedVector turned(const DistributedVector &x) const;
-    void              soften(DistributedVector &x) const;
+    void                projected(const Projection project, const DistributedVector &x, DistributedVector &y) const;
+    std::vector<bool>   nearest_rows() const;
+    std::vector<double> softened_metric();
+    const DistributedVector &turned(const DistributedVector &x, std::optional<DistributedVector> &copy) const;
+    void                     soften(DistributedVector &x) const;
 
     const Projector &balancing() const
     {
