@@ -29,7 +29,9 @@ namespace slipstick::app
     }
   } // namespace
 
-  GeometryFindings judge(const scene::Scene<2> &scene, const interface::Penetrations &found, const double largest)
+  GeometryFindings geometry_findings(const scene::Scene<2>         &scene,
+                                     const interface::Penetrations &found,
+                                     const double                   largest)
   {
     GeometryFindings                                findings;
     std::set<std::pair<unsigned int, unsigned int>> joined;

@@ -17,5 +17,7 @@ namespace slipstick::app
   };
 
   /// @param largest displacement [mm], to compare with.
-  GeometryFindings judge(const scene::Scene<2> &scene, const interface::Penetrations &found, const double largest);
+  GeometryFindings geometry_findings(const scene::Scene<2>         &scene,
+                                     const interface::Penetrations &found,
+                                     const double                   largest);
 } // namespace slipstick::app
