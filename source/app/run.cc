@@ -37,7 +37,7 @@ namespace slipstick::app
     }
 
     /// The summary of a run that ended without equilibrium.
-    output::Summary summary_without_equilibrium(const scene::Scene<dim> &scene, const MPI_Comm comm)
+    output::Summary summary_without_equilibrium(const scene::Scene<2> &scene, const MPI_Comm comm)
     {
       output::Summary summary = empty_summary(scene, comm);
       summary.status          = output::RunStatus::no_equilibrium;
