@@ -1,0 +1,123 @@
+// Boundary faces of solids as surfaces of their own: nodes, shape functions, normals.
+#pragma once
+
+#include <slipstick/mechanics/surface.h>
+
+#include <boost/serialization/array.hpp>
+
+#include <type_traits>
+
+namespace slipstick::mechanics
+{
+  /// A face on the surface of a solid: a triangle with local coordinates in the unit triangle, or a quadrilateral with
+  /// those in the unit square, of degree 1. Nodes run counter-clockwise as seen from outside, the one with the smallest
+  /// key first.
+  struct SurfaceFacet
+  {
+    static constexpr unsigned int max_nodes = 4;
+
+    using Place  = dealii::Point<2>; // local coordinates
+    using Shape  = std::array<double, max_nodes>;
+    using Tensor = dealii::Tensor<1, 3>;
+
+    unsigned int                                 body      = 0;
+    unsigned int                                 boundary  = 0; // boundary id
+    unsigned int                                 subdomain = 0;
+    unsigned int                                 n_nodes   = 4;
+    std::array<NodeKey, max_nodes>               keys{};
+    std::array<std::array<double, 3>, max_nodes> at{}; // [mm]
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &body &boundary &subdomain &n_nodes &keys &at;
+    }
+
+    dealii::Point<3> node(const unsigned int i) const
+    {
+      return dealii::Point<3>(at[i][0], at[i][1], at[i][2]);
+    }
+
+    /// Shape functions of the nodes; 0 for nodes that are none.
+    Shape shape(const Place &s) const;
+
+    dealii::Point<3> point(const Place &s) const;
+
+    /// Across the surface, outward, as long as the area for one of local coordinates [mm^2].
+    Tensor area_vector(const Place &s) const;
+
+    /// Outward, unit length.
+    Tensor normal(const Place &s) const
+    {
+      const Tensor a = area_vector(s);
+      return a / a.norm();
+    }
+
+    Place node_coordinate(const unsigned int i) const;
+    Place middle() const;
+
+    /// Mean length of the edges [mm].
+    double size() const;
+
+    /// Integral of the shape function of every node over the facet [mm^2].
+    Shape tributary_areas() const;
+
+    /// Order of the facets of all bodies that does not depend on the decomposition.
+    bool operator<(const SurfaceFacet &other) const
+    {
+      return std::tie(body, keys) < std::tie(other.body, other.keys);
+    }
+  };
+
+  /// What the boundary of a body is made of.
+  template <int dim>
+  using SurfacePart = std::conditional_t<dim == 2, SurfaceEdge<2>, SurfaceFacet>;
+
+  /// Length of an edge, mean length of the edges of a facet [mm].
+  inline double size_of(const SurfaceEdge<2> &edge)
+  {
+    return edge.chord();
+  }
+  inline double size_of(const SurfaceFacet &facet)
+  {
+    return facet.size();
+  }
+
+  /// Outward unit normals.
+  inline dealii::Tensor<1, 2> middle_normal(const SurfaceEdge<2> &edge)
+  {
+    return edge.normal(0.5);
+  }
+  inline dealii::Tensor<1, 3> middle_normal(const SurfaceFacet &facet)
+  {
+    return facet.normal(facet.middle());
+  }
+  inline dealii::Tensor<1, 2> node_normal(const SurfaceEdge<2> &edge, const unsigned int i)
+  {
+    return edge.normal(edge.node_coordinate(i));
+  }
+  inline dealii::Tensor<1, 3> node_normal(const SurfaceFacet &facet, const unsigned int i)
+  {
+    return facet.normal(facet.node_coordinate(i));
+  }
+
+  /// Some points between the nodes.
+  std::vector<dealii::Point<2>> inner_points(const SurfaceEdge<2> &edge);
+  std::vector<dealii::Point<3>> inner_points(const SurfaceFacet &facet);
+
+  /// The facets of the surfaces of bodies (by index: wanted or not), known to every rank, sorted. Collective.
+  std::vector<SurfaceFacet> outlines(const mesh::Mesh<3>     &mesh,
+                                     const Spaces<3>         &spaces,
+                                     const std::vector<bool> &wanted);
+
+  /// Those on one boundary, in their order.
+  std::vector<SurfaceFacet>          parts_on(const mesh::Mesh<3>             &mesh,
+                                              const std::vector<SurfaceFacet> &surfaces,
+                                              const scene::BoundaryName       &where);
+  inline std::vector<SurfaceEdge<2>> parts_on(const mesh::Mesh<2>               &mesh,
+                                              const std::vector<SurfaceEdge<2>> &outlines,
+                                              const scene::BoundaryName         &where)
+  {
+    return edges_on(mesh, outlines, where);
+  }
+} // namespace slipstick::mechanics
