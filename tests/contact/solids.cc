@@ -7,6 +7,7 @@
 #include <slipstick/mesh/decomposition.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ namespace
       , dual(mechanics::assemble(scene, mesh, spaces, 1.),
              interface::contact_constraints(scene, mesh, spaces, 1.),
              contact::resolved_options(scene).dual,
-             {"body"},
+             {"body", "other"},
              MPI_COMM_WORLD)
       , solution(
           contact::solve(dual, contact::SlipLaw(scene, dual, 1.), contact::resolved_options(scene), scene.friction, {}))
@@ -39,7 +40,7 @@ namespace
                                dual.recover(solution.multipliers, solution.free).u,
                                solution.slip_bound,
                                solution.free,
-                               1))
+                               scene.bodies.size()))
     {
       for (const auto &of_rank : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, checked.nodes))
         nodes.insert(nodes.end(), of_rank.begin(), of_rank.end());
@@ -254,4 +255,105 @@ TEST(Solids, block_rests_on_an_oblique_incline_up_to_the_angle_of_friction)
   EXPECT_NEAR(friction[2] / (-800 * std::sin(angle)), 1, 1e-4);
   EXPECT_LT(rests.checked.checks.worst().second, 1e-5) << rests.checked.checks.worst().first;
   EXPECT_THROW(Solved<3>(resting_block(angle, 0.98 * std::tan(angle))), NoEquilibrium);
+}
+
+namespace
+{
+  /// Two blocks of 10 x 5 x 10 mm, one on the other, with meshes that do not match, between planes of symmetry, pressed by 100 MPa.
+  scene::Scene<3> two_blocks(const std::string &law, const std::string &number, const double poisson_ratio)
+  {
+    scene::Scene<3> scene            = pressed_cube<3>(1, 1);
+    scene.decomposition.method       = scene::DecompositionMethod::metis;
+    scene.decomposition.subdomains   = 5;
+    scene.materials[0].poisson_ratio = poisson_ratio;
+    scene.bodies.push_back(scene.bodies[0]);
+    scene.bodies[0].size[1] = scene.bodies[1].size[1] = 5;
+    scene.bodies[0].cells                             = std::array<unsigned int, 3>{{3, 2, 4}};
+    scene.bodies[1].cells                             = std::array<unsigned int, 3>{{4, 3, 5}};
+    scene.bodies[1].name                              = "other";
+    scene.bodies[1].placement.translation             = dealii::Point<3>(0, 5, 0);
+    scene.supports.clear();
+    for (const auto &[body, side] : std::vector<std::pair<unsigned int, std::string>>{{0, "bottom"},
+                                                                                      {0, "left"},
+                                                                                      {0, "back"},
+                                                                                      {1, "left"},
+                                                                                      {1, "back"}})
+      {
+        scene.supports.emplace_back();
+        scene.supports.back().name   = side + std::to_string(body);
+        scene.supports.back().where  = {body, side};
+        scene.supports.back().normal = field<3>("0");
+      }
+    scene.tractions[0].where    = {1, "top"};
+    scene.tractions[0].pressure = field<3>("100");
+    scene.contacts.resize(1);
+    scene.contacts[0].name   = "contact";
+    scene.contacts[0].slave  = {1, "bottom"};
+    scene.contacts[0].master = scene::BoundaryName{0, "top"};
+    scene.contacts[0].law    = scene::make_law<3>(law, {number});
+    scene.solver.tolerance   = 1e-12;
+    return scene;
+  }
+
+  dealii::Tensor<1, 3> turned(const dealii::Tensor<1, 3> &x, const double angle, const dealii::Tensor<1, 3> &axis)
+  {
+    return std::cos(angle) * x + std::sin(angle) * cross_product_3d(axis, x) +
+           (1 - std::cos(angle)) * (axis * x) * axis;
+  }
+
+  /// Everything as the turned scene.
+  void turn(scene::Scene<3> &scene, const double degrees, const dealii::Point<3> &axis)
+  {
+    for (auto &body : scene.bodies)
+      {
+        const auto along           = dealii::Tensor<1, 3>(axis) / axis.norm();
+        body.placement.rotation    = degrees;
+        body.placement.axis        = axis;
+        body.placement.translation = dealii::Point<3>(
+          turned(dealii::Tensor<1, 3>(body.placement.translation), degrees * dealii::numbers::PI / 180, along));
+      }
+  }
+} // namespace
+
+// Uniform stress between meshes that do not match, flat and turned.
+TEST(Solids, patch_test_between_meshes_that_do_not_match)
+{
+  for (const double poisson_ratio : {0., 0.3})
+    for (const double degrees : {0., 37.})
+      for (const auto &[law, number] :
+           {std::pair("frictionless", "0"), std::pair("Coulomb", "0.3"), std::pair("bonded", "0")})
+        for (const bool is_exchanged : {false, true})
+          {
+            SCOPED_TRACE(law + std::to_string(degrees) + " " + std::to_string(poisson_ratio));
+            auto scene = two_blocks(law, number, poisson_ratio);
+            if (is_exchanged)
+              std::swap(scene.contacts[0].slave, *scene.contacts[0].master);
+            turn(scene, degrees, dealii::Point<3>(1, 2, 2));
+            const Solved<3> solved(scene);
+            EXPECT_EQ(solved.solution.status, qp::Status::converged);
+            EXPECT_NEAR(solved.result.normal_force / 1e4, 1, 1e-10);
+            EXPECT_EQ(solved.nodes.size(), is_exchanged ? 20u : 30u);
+            for (const auto &node : solved.nodes)
+              EXPECT_NEAR(node.pressure, 100, 1e-8);
+            EXPECT_LT(solved.checked.checks.worst().second, 1e-9) << solved.checked.checks.worst().first;
+            // u = (nu, -1, nu) p / E times the coordinates
+            const double               E = 1e5, angle = degrees * dealii::numbers::PI / 180;
+            const dealii::Tensor<1, 3> axis({1. / 3, 2. / 3, 2. / 3});
+            const auto                 u = solved.dual.recover(solved.solution.multipliers, solved.solution.free).u;
+            for (unsigned int p = 0; p < u.size(); ++p)
+              {
+                std::map<dealii::types::global_dof_index, dealii::Point<3>> places;
+                dealii::DoFTools::map_dofs_to_support_points(*solved.spaces.of(p).mapping,
+                                                             *solved.spaces.dof_handlers[p],
+                                                             places);
+                for (unsigned int i = 0; i < u[p].size(); i += 3)
+                  {
+                    const auto x = turned(dealii::Tensor<1, 3>(places[i]), -angle, axis);
+                    const auto v = turned(dealii::Tensor<1, 3>({u[p][i], u[p][i + 1], u[p][i + 2]}), -angle, axis);
+                    EXPECT_NEAR(v[0], poisson_ratio * 100 / E * x[0], 1e-12);
+                    EXPECT_NEAR(v[1], -100 / E * x[1], 1e-12);
+                    EXPECT_NEAR(v[2], poisson_ratio * 100 / E * x[2], 1e-12);
+                  }
+              }
+          }
 }
