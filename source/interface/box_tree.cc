@@ -48,7 +48,10 @@ namespace slipstick::interface
       dealii::Tensor<1, dim> apart;
       for (unsigned int d = 0; d < dim; ++d)
         apart[d] = std::max({low[d] - x[d], x[d] - high[d], 0.});
-      return apart.norm();
+      double length = 0;
+      for (unsigned int d = 0; d < dim; ++d)
+        length = std::hypot(length, apart[d]);
+      return length;
     }
   } // namespace
 
