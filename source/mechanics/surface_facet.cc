@@ -9,46 +9,41 @@
 
 namespace slipstick::mechanics
 {
-  namespace
-  {
-    using Place  = SurfaceFacet::Place;
-    using Tensor = SurfaceFacet::Tensor;
+  using Place  = SurfaceFacet::Place;
+  using Tensor = SurfaceFacet::Tensor;
 
-    SurfaceFacet facet_of(const mesh::SubdomainMesh<3>                      &subdomain,
-                          const Spaces<3>                                   &spaces,
-                          const dealii::DoFHandler<3>::active_cell_iterator &cell,
-                          const unsigned int                                 f)
-    {
-      const auto   face = cell->face(f);
-      SurfaceFacet facet;
-      facet.body      = subdomain.body;
-      facet.boundary  = face->boundary_id();
-      facet.subdomain = subdomain.subdomain;
-      facet.n_nodes   = 0;
-      spaces.for_each_face_node(subdomain,
-                                face,
-                                [&](const unsigned int, const NodeKey &key, const dealii::Point<3> &x) {
-                                  facet.keys[facet.n_nodes] = key;
-                                  facet.at[facet.n_nodes]   = {{x[0], x[1], x[2]}};
-                                  ++facet.n_nodes;
-                                });
-      if (facet.n_nodes == 4) // in rows: now around
-        {
-          std::swap(facet.keys[2], facet.keys[3]);
-          std::swap(facet.at[2], facet.at[3]);
-        }
-      if (facet.area_vector(facet.middle()) * (facet.point(facet.middle()) - cell->center()) < 0)
-        {
-          std::reverse(facet.keys.begin(), facet.keys.begin() + facet.n_nodes);
-          std::reverse(facet.at.begin(), facet.at.begin() + facet.n_nodes);
-        }
-      const auto end      = facet.keys.begin() + facet.n_nodes;
-      const auto smallest = std::min_element(facet.keys.begin(), end) - facet.keys.begin();
-      std::rotate(facet.keys.begin(), facet.keys.begin() + smallest, end);
-      std::rotate(facet.at.begin(), facet.at.begin() + smallest, facet.at.begin() + facet.n_nodes);
-      return facet;
-    }
-  } // namespace
+  SurfaceFacet surface_part(const mesh::SubdomainMesh<3>                      &subdomain,
+                            const Spaces<3>                                   &spaces,
+                            const dealii::DoFHandler<3>::active_cell_iterator &cell,
+                            const unsigned int                                 f)
+  {
+    const auto   face = cell->face(f);
+    SurfaceFacet facet;
+    facet.body      = subdomain.body;
+    facet.boundary  = face->boundary_id();
+    facet.subdomain = subdomain.subdomain;
+    facet.n_nodes   = 0;
+    spaces.for_each_face_node(subdomain, face, [&](const unsigned int, const NodeKey &key, const dealii::Point<3> &x) {
+      facet.keys[facet.n_nodes] = key;
+      facet.at[facet.n_nodes]   = {{x[0], x[1], x[2]}};
+      ++facet.n_nodes;
+    });
+    if (facet.n_nodes == 4) // in rows: now around
+      {
+        std::swap(facet.keys[2], facet.keys[3]);
+        std::swap(facet.at[2], facet.at[3]);
+      }
+    if (facet.area_vector(facet.middle()) * (facet.point(facet.middle()) - cell->center()) < 0)
+      {
+        std::reverse(facet.keys.begin(), facet.keys.begin() + facet.n_nodes);
+        std::reverse(facet.at.begin(), facet.at.begin() + facet.n_nodes);
+      }
+    const auto end      = facet.keys.begin() + facet.n_nodes;
+    const auto smallest = std::min_element(facet.keys.begin(), end) - facet.keys.begin();
+    std::rotate(facet.keys.begin(), facet.keys.begin() + smallest, end);
+    std::rotate(facet.at.begin(), facet.at.begin() + smallest, facet.at.begin() + facet.n_nodes);
+    return facet;
+  }
 
   SurfaceFacet::Shape SurfaceFacet::shape(const Place &s) const
   {
@@ -146,7 +141,7 @@ namespace slipstick::mechanics
         for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
           for (const unsigned int f : cell->face_indices())
             if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != mesh::cut_id)
-              own.push_back(facet_of(*mesh.subdomains[p], spaces, cell, f));
+              own.push_back(surface_part(*mesh.subdomains[p], spaces, cell, f));
     for (const auto &list : dealii::Utilities::MPI::all_gather(mesh.comm, own))
       all.insert(all.end(), list.begin(), list.end());
     std::sort(all.begin(), all.end());

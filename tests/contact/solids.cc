@@ -11,6 +11,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
+
 using namespace slipstick;
 
 namespace
@@ -295,6 +298,70 @@ namespace
     return scene;
   }
 
+  /// Writes a block of n cells a direction from (0, 0, 0) to @p size in Gmsh's format: hexahedra, or six tetrahedra for each.
+  std::string write_block(const std::string                 &file,
+                          const dealii::Point<3>            &size,
+                          const std::array<unsigned int, 3> &n,
+                          const bool                         in_tetrahedra)
+  {
+    const auto node = [&](const unsigned int i, const unsigned int j, const unsigned int k) {
+      return 1 + i + (n[0] + 1) * (j + (n[1] + 1) * k);
+    };
+    std::ostringstream nodes, elements;
+    unsigned int       n_elements = 0;
+    nodes.precision(17);
+    for (unsigned int k = 0; k <= n[2]; ++k)
+      for (unsigned int j = 0; j <= n[1]; ++j)
+        for (unsigned int i = 0; i <= n[0]; ++i)
+          nodes << node(i, j, k) << ' ' << size[0] * i / n[0] << ' ' << size[1] * j / n[1] << ' ' << size[2] * k / n[2]
+                << '\n';
+    const auto add = [&](const int type, const int physical, const std::vector<unsigned int> &of) {
+      elements << ++n_elements << ' ' << type << " 2 " << physical << ' ' << physical;
+      for (const unsigned int v : of)
+        elements << ' ' << v;
+      elements << '\n';
+    };
+    const std::array<std::string, 6> names = {{"left", "right", "bottom", "top", "back", "front"}};
+    for (unsigned int k = 0; k < n[2]; ++k)
+      for (unsigned int j = 0; j < n[1]; ++j)
+        for (unsigned int i = 0; i < n[0]; ++i)
+          {
+            const std::array<unsigned int, 3> at{{i, j, k}};
+            const auto                        v = [&](const unsigned int corner) {
+              return node(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2));
+            };
+            if (in_tetrahedra) // along the six ways from corner 0 to corner 7
+              for (const auto &[a, b] :
+                   std::vector<std::pair<int, int>>{{1, 3}, {3, 2}, {2, 6}, {6, 4}, {4, 5}, {5, 1}})
+                add(4, 7, {v(0), v(a), v(b), v(7)});
+            else
+              add(5, 7, {v(0), v(1), v(3), v(2), v(4), v(5), v(7), v(6)});
+            for (unsigned int f = 0; f < 6; ++f)
+              if (at[f / 2] == (f % 2 == 0 ? 0 : n[f / 2] - 1))
+                {
+                  std::vector<unsigned int> of;
+                  for (unsigned int c = 0; c < 8; ++c)
+                    if ((c >> (f / 2) & 1) == f % 2)
+                      of.push_back(v(c));
+                  if (in_tetrahedra) // all diagonals run from the least corner to the largest
+                    for (const unsigned int other : {1, 2})
+                      add(2, f + 1, {of[0], of[other], of[3]});
+                  else
+                    add(3, f + 1, {of[0], of[1], of[3], of[2]});
+                }
+          }
+    std::ofstream out(file);
+    out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n7\n";
+    for (unsigned int f = 0; f < 6; ++f)
+      out << "2 " << f + 1 << " \"" << names[f] << "\"\n";
+    out << "3 7 \"block\"\n$EndPhysicalNames\n$Nodes\n"
+        << node(n[0], n[1], n[2]) << '\n'
+        << nodes.str() << "$EndNodes\n$Elements\n"
+        << n_elements << '\n'
+        << elements.str() << "$EndElements\n";
+    return file;
+  }
+
   dealii::Tensor<1, 3> turned(const dealii::Tensor<1, 3> &x, const double angle, const dealii::Tensor<1, 3> &axis)
   {
     return std::cos(angle) * x + std::sin(angle) * cross_product_3d(axis, x) +
@@ -322,10 +389,17 @@ TEST(Solids, patch_test_between_meshes_that_do_not_match)
     for (const double degrees : {0., 37.})
       for (const auto &[law, number] :
            {std::pair("frictionless", "0"), std::pair("Coulomb", "0.3"), std::pair("bonded", "0")})
-        for (const bool is_exchanged : {false, true})
+        for (const std::string how : {"", "exchanged", "tetrahedra", "hexahedra"})
           {
-            SCOPED_TRACE(law + std::to_string(degrees) + " " + std::to_string(poisson_ratio));
+            const bool is_exchanged = how == "exchanged";
+            SCOPED_TRACE(std::string(law) + " " + how + std::to_string(degrees) + " " + std::to_string(poisson_ratio));
             auto scene = two_blocks(law, number, poisson_ratio);
+            if (how == "tetrahedra" || how == "hexahedra")
+              {
+                auto &body = scene.bodies[0];
+                body.shape = scene::Shape::mesh;
+                body.file  = write_block("solids.msh", {10, 5, 10}, {{3, 2, 4}}, how == "tetrahedra");
+              }
             if (is_exchanged)
               std::swap(scene.contacts[0].slave, *scene.contacts[0].master);
             turn(scene, degrees, dealii::Point<3>(1, 2, 2));

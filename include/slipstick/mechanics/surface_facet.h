@@ -59,8 +59,16 @@ namespace slipstick::mechanics
     /// Mean length of the edges [mm].
     double size() const;
 
-    /// Integral of the shape function of every node over the facet [mm^2].
+    /// Integral of the shape function of every node over the facet [mm^2]: what lengths and measures are in space.
     Shape tributary_areas() const;
+    Shape tributary_lengths() const
+    {
+      return tributary_areas();
+    }
+    Shape tributary_measures(const mesh::Kinematics<3> &) const
+    {
+      return tributary_areas();
+    }
 
     /// Order of the facets of all bodies that does not depend on the decomposition.
     bool operator<(const SurfaceFacet &other) const
@@ -72,6 +80,19 @@ namespace slipstick::mechanics
   /// What the boundary of a body is made of.
   template <int dim>
   using SurfacePart = std::conditional_t<dim == 2, SurfaceEdge<2>, SurfaceFacet>;
+
+  /// The part of the surface that face @p face of @p cell is.
+  inline SurfaceEdge<2> surface_part(const mesh::SubdomainMesh<2>                      &subdomain,
+                                     const Spaces<2>                                   &spaces,
+                                     const dealii::DoFHandler<2>::active_cell_iterator &cell,
+                                     const unsigned int                                 face)
+  {
+    return surface_edge(subdomain, spaces, cell, face);
+  }
+  SurfaceFacet surface_part(const mesh::SubdomainMesh<3>                      &subdomain,
+                            const Spaces<3>                                   &spaces,
+                            const dealii::DoFHandler<3>::active_cell_iterator &cell,
+                            const unsigned int                                 face);
 
   /// Length of an edge, mean length of the edges of a facet [mm].
   inline double size_of(const SurfaceEdge<2> &edge)
