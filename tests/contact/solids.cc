@@ -294,7 +294,7 @@ namespace
     scene.contacts[0].slave  = {1, "bottom"};
     scene.contacts[0].master = scene::BoundaryName{0, "top"};
     scene.contacts[0].law    = scene::make_law<3>(law, {number});
-    scene.solver.tolerance   = 1e-12;
+    scene.solver.tolerance   = 1e-11;
     return scene;
   }
 
