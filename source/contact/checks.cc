@@ -233,14 +233,26 @@ namespace slipstick::contact
     }
 
     /// Moment of the forces on both sides: force on the slave body at its node, the opposite one at the mean of the
-    /// master nodes; two dimensions.
-    /// @param N compressive force, @param T minus the tangential force on the slave body.
-    double moment_mismatch(const tfeti::ContactPoint &point, const double N, const double T)
+    /// master nodes.
+    /// @param N compressive force, @param T minus the tangential force on the slave body, in the plane.
+    std::array<double, 3> moment_mismatch(const tfeti::ContactPoint &point,
+                                          const ContactNode         &node,
+                                          const double               N,
+                                          const double               T)
     {
       if (!point.has_master)
-        return 0;
-      const double fx = -(N * point.normal[0] - T * point.normal[1]), fy = -(N * point.normal[1] + T * point.normal[0]);
-      return (point.position[0] - point.master_position[0]) * fy - (point.position[1] - point.master_position[1]) * fx;
+        return {{0, 0, 0}};
+      std::array<double, 3> force{
+        {-(N * point.normal[0] - T * point.normal[1]), -(N * point.normal[1] + T * point.normal[0]), 0}};
+      if (point.second_row != tfeti::invalid_row)
+        for (unsigned int d = 0; d < 3; ++d)
+          force[d] = node.traction[d] * node.area - N * point.normal[d];
+      std::array<double, 3> apart;
+      for (unsigned int d = 0; d < 3; ++d)
+        apart[d] = point.position[d] - point.master_position[d];
+      Resultant mismatch;
+      mismatch.add<3>(force, apart);
+      return mismatch.moment;
     }
 
     /// Vectors and lengths of tangential traction and slip.
@@ -290,7 +302,7 @@ namespace slipstick::contact
         }
       if (point.second_row != tfeti::invalid_row)
         complete_in_space(dual, point, multipliers, jumps, node);
-      node.moment_mismatch = moment_mismatch(point, node.pressure * node.area, tangential);
+      node.moment_mismatch = moment_mismatch(point, node, node.pressure * node.area, tangential);
       return node;
     }
 
@@ -316,7 +328,7 @@ namespace slipstick::contact
           node.tangential_traction = -tangential / node.area;
           node.slip                = jumps.local_element(point.tangential_row);
         }
-      node.moment_mismatch = moment_mismatch(point, node.pressure * node.area, tangential);
+      node.moment_mismatch = moment_mismatch(point, node, node.pressure * node.area, tangential);
       return node;
     }
   } // namespace
@@ -537,7 +549,8 @@ namespace slipstick::contact
   }
 
   std::vector<PairResult> pair_results(const std::vector<ContactNode> &nodes,
-                                       const std::vector<std::string> &pair_names)
+                                       const std::vector<std::string> &pair_names,
+                                       const unsigned int              dim)
   {
     std::vector<PairResult> results(pair_names.size());
     for (unsigned int k = 0; k < pair_names.size(); ++k)
@@ -547,11 +560,16 @@ namespace slipstick::contact
         PairResult &result = results[node.pair];
         result.normal_force += node.pressure * node.area;
         result.tangential_force += node.tangential_traction * node.area;
-        result.moment_mismatch += node.moment_mismatch;
-        const double N = node.pressure * node.area, T = node.tangential_traction * node.area;
-        result.on_slave.add(-N * node.normal[0] - T * node.normal[1],
-                            -N * node.normal[1] + T * node.normal[0],
-                            node.position);
+        const double          N = node.pressure * node.area, T = node.tangential_traction * node.area;
+        std::array<double, 3> force{
+          {-N * node.normal[0] - T * node.normal[1], -N * node.normal[1] + T * node.normal[0], 0}};
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            result.moment_mismatch[d] += node.moment_mismatch[d];
+            if (dim == 3)
+              force[d] = node.traction[d] * node.area - N * node.normal[d];
+          }
+        result.on_slave.add<3>(force, node.position);
         result.max_pressure = std::max(result.max_pressure, node.pressure);
         result.contact_length += node.is_closed ? node.length : 0.;
         result.contact_nodes += node.is_closed;

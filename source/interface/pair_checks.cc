@@ -10,19 +10,19 @@
 
 namespace slipstick::interface
 {
-  template <>
-  std::string describe(const scene::Scene<2> &scene, const scene::BoundaryName &where)
+  template <int dim>
+  std::string describe(const scene::Scene<dim> &scene, const scene::BoundaryName &where)
   {
     return scene.bodies[where.body].name + "/" + where.boundary;
   }
 
-  template <>
-  double extent(const std::vector<mechanics::SurfaceEdge<2>> &edges)
+  template <class Part>
+  double extent(const std::vector<Part> &edges)
   {
-    dealii::Point<2> low = edges[0].node(0), high = low;
+    auto low = edges[0].node(0), high = low;
     for (const auto &edge : edges)
       for (unsigned int i = 0; i < edge.n_nodes; ++i)
-        for (unsigned int d = 0; d < 2; ++d)
+        for (unsigned int d = 0; d < edge.at[i].size(); ++d)
           {
             low[d]  = std::min(low[d], edge.at[i][d]);
             high[d] = std::max(high[d], edge.at[i][d]);
@@ -41,6 +41,10 @@ namespace slipstick::interface
     constexpr double       infinity   = std::numeric_limits<double>::infinity();
 
     using Edges = std::vector<mechanics::SurfaceEdge<2>>;
+
+    /// Edges or faces.
+    template <int dim>
+    using Parts = std::vector<mechanics::BoundaryPart<dim>>;
 
     double degrees(const double cosine)
     {
@@ -94,14 +98,15 @@ namespace slipstick::interface
     }
 
     /// Largest displacement that a support prescribes at any load factor [mm].
-    double largest_prescribed(const scene::Scene<2> &scene, const mesh::Mesh<2> &mesh, const Edges &all)
+    template <int dim>
+    double largest_prescribed(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh, const Parts<dim> &all)
     {
       double largest = 0;
       for (const auto &support : scene.supports)
         {
-          std::vector<dealii::Point<2>> places;
+          std::vector<dealii::Point<dim>> places;
           if (!support.point)
-            for (const auto &edge : mechanics::edges_on(mesh, all, support.where))
+            for (const auto &edge : mechanics::parts_on(mesh, all, support.where))
               for (unsigned int i = 0; i < edge.n_nodes; ++i)
                 places.push_back(edge.node(i));
           else if (support.point->coordinates)
@@ -124,17 +129,18 @@ namespace slipstick::interface
     }
 
     /// @param size of the sides, @param gap the smallest one of all load steps.
-    void check_automatic_reach(const scene::Scene<2>       &scene,
-                               const mesh::Mesh<2>         &mesh,
-                               const scene::ContactPair<2> &pair,
-                               const Edges                 &all,
-                               const std::string           &names,
-                               const double                 size,
-                               const double                 gap)
+    template <int dim>
+    void check_automatic_reach(const scene::Scene<dim>       &scene,
+                               const mesh::Mesh<dim>         &mesh,
+                               const scene::ContactPair<dim> &pair,
+                               const Parts<dim>              &all,
+                               const std::string             &names,
+                               const double                   size,
+                               const double                   gap)
     {
       if (gap <= size) // the common case, without a look at the supports
         return;
-      const double prescribed = largest_prescribed(scene, mesh, all);
+      const double prescribed = largest_prescribed<dim>(scene, mesh, all);
       if (gap > size + prescribed)
         throw InputError(names +
                            format(" are out of reach of each other: the smallest gap is %g mm, the automatic reach "
@@ -153,9 +159,10 @@ namespace slipstick::interface
       double gap    = infinity;
     };
 
-    AgainstObstacle against_obstacle(const scene::Scene<2>       &scene,
-                                     const scene::ContactPair<2> &pair,
-                                     const Edges                 &slave)
+    template <int dim>
+    AgainstObstacle against_obstacle(const scene::Scene<dim>       &scene,
+                                     const scene::ContactPair<dim> &pair,
+                                     const Parts<dim>              &slave)
     {
       AgainstObstacle result;
       for (const double t : scene.load_factors)
@@ -165,21 +172,22 @@ namespace slipstick::interface
               const auto   x       = edge.node(i);
               const auto   contact = contact_with(scene.obstacles[pair.obstacle], x, t);
               const double gap     = pair.gap ? pair.gap->value(x, t) : contact.gap;
-              result.cosine        = std::max(result.cosine, contact.normal * edge.normal(edge.node_coordinate(i)));
+              result.cosine        = std::max(result.cosine, contact.normal * edge.normal_at(i));
               result.gap           = std::min(result.gap, gap + pair.offset.value(x, t));
             }
       return result;
     }
 
-    void check_obstacle_pair(const scene::Scene<2>       &scene,
-                             const mesh::Mesh<2>         &mesh,
-                             const scene::ContactPair<2> &pair,
-                             const Edges                 &all)
+    template <int dim>
+    void check_obstacle_pair(const scene::Scene<dim>       &scene,
+                             const mesh::Mesh<dim>         &mesh,
+                             const scene::ContactPair<dim> &pair,
+                             const Parts<dim>              &all)
     {
-      const auto  slave    = mechanics::edges_on(mesh, all, pair.slave);
+      const auto  slave    = mechanics::parts_on(mesh, all, pair.slave);
       const auto &obstacle = scene.obstacles[pair.obstacle];
       const auto names = "Contact " + pair.name + ": " + describe(scene, pair.slave) + " and obstacle " + obstacle.name;
-      const auto found = against_obstacle(scene, pair, slave);
+      const auto found = against_obstacle<dim>(scene, pair, slave);
       if (found.cosine <= -facing_cosine)
         throw InputError(names +
                            format(" face away from each other: the outward normals of the slave are %g degrees or "
@@ -193,15 +201,16 @@ namespace slipstick::interface
                                         *pair.reach),
                          "move the body or the obstacle, or set Contact " + pair.name + "/Reach to more than that gap");
       const bool is_round =
-        obstacle.shape == scene::ObstacleShape::circle || obstacle.shape == scene::ObstacleShape::hole;
+        obstacle.shape == scene::ObstacleShape::circle || obstacle.shape == scene::ObstacleShape::hole ||
+        obstacle.shape == scene::ObstacleShape::cylinder || obstacle.shape == scene::ObstacleShape::bore;
       if (!pair.reach && !pair.gap)
-        check_automatic_reach(scene,
-                              mesh,
-                              pair,
-                              all,
-                              names,
-                              std::max(extent(slave), is_round ? 2 * obstacle.radius : 0.),
-                              found.gap);
+        check_automatic_reach<dim>(scene,
+                                   mesh,
+                                   pair,
+                                   all,
+                                   names,
+                                   std::max(extent(slave), is_round ? 2 * obstacle.radius : 0.),
+                                   found.gap);
     }
   } // namespace
 
@@ -272,17 +281,19 @@ namespace slipstick::interface
     for (const double t : scene.load_factors)
       for (const auto &row : rows)
         gap = std::min(gap, row.gap + pair.offset.value(row.position, t));
-    check_automatic_reach(scene,
-                          mesh,
-                          pair,
-                          all,
-                          between(scene, pair),
-                          std::max(extent(sides.slave), extent(sides.master)),
-                          gap);
+    check_automatic_reach<2>(scene,
+                             mesh,
+                             pair,
+                             all,
+                             between(scene, pair),
+                             std::max(extent(sides.slave), extent(sides.master)),
+                             gap);
   }
 
-  template <>
-  void check_obstacle_pairs(const scene::Scene<2> &scene, const mesh::Mesh<2> &mesh, const mechanics::Spaces<2> &spaces)
+  template <int dim>
+  void check_obstacle_pairs(const scene::Scene<dim>      &scene,
+                            const mesh::Mesh<dim>        &mesh,
+                            const mechanics::Spaces<dim> &spaces)
   {
     const auto        is_checked = [](const auto &pair) { return !pair.master && !pair.law.is_bonded; };
     std::vector<bool> wanted(scene.bodies.size(), false);
@@ -291,9 +302,16 @@ namespace slipstick::interface
         wanted[pair.slave.body] = true;
     if (std::find(wanted.begin(), wanted.end(), true) == wanted.end())
       return;
-    const auto all = mechanics::outlines(mesh, spaces, wanted);
+    const auto all = mechanics::boundary_parts(mesh, spaces, wanted);
     for (const auto &pair : scene.contacts)
       if (is_checked(pair))
-        check_obstacle_pair(scene, mesh, pair, all);
+        check_obstacle_pair<dim>(scene, mesh, pair, all);
   }
+
+  template std::string describe(const scene::Scene<2> &, const scene::BoundaryName &);
+  template std::string describe(const scene::Scene<3> &, const scene::BoundaryName &);
+  template double      extent(const Parts<2> &);
+  template double      extent(const Parts<3> &);
+  template void check_obstacle_pairs(const scene::Scene<2> &, const mesh::Mesh<2> &, const mechanics::Spaces<2> &);
+  template void check_obstacle_pairs(const scene::Scene<3> &, const mesh::Mesh<3> &, const mechanics::Spaces<3> &);
 } // namespace slipstick::interface

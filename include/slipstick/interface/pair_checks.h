@@ -2,6 +2,7 @@
 #pragma once
 
 #include <slipstick/interface/mortar.h>
+#include <slipstick/mechanics/surface_face.h>
 
 namespace slipstick::interface
 {
@@ -13,9 +14,9 @@ namespace slipstick::interface
     std::vector<mechanics::SurfaceEdge<dim>> slave_outline, master_outline;
   };
 
-  /// Diagonal of the box around the nodes of some edges [mm].
-  template <int dim>
-  double extent(const std::vector<mechanics::SurfaceEdge<dim>> &edges);
+  /// Diagonal of the box around the nodes of some edges or faces [mm].
+  template <class Part>
+  double extent(const std::vector<Part> &parts);
 
   /// BODY/BOUNDARY
   template <int dim>
