@@ -232,6 +232,13 @@ namespace slipstick::contact
       return result;
     }
 
+    /// Has it tangents of its own?
+    bool is_in_space(const tfeti::ContactPoint &point)
+    {
+      const auto &t = point.tangents[0];
+      return t[0] != 0 || t[1] != 0 || t[2] != 0;
+    }
+
     /// Moment of the forces on both sides: force on the slave body at its node, the opposite one at the mean of the
     /// master nodes.
     /// @param N compressive force, @param T minus the tangential force on the slave body, in the plane.
@@ -244,7 +251,7 @@ namespace slipstick::contact
         return {{0, 0, 0}};
       std::array<double, 3> force{
         {-(N * point.normal[0] - T * point.normal[1]), -(N * point.normal[1] + T * point.normal[0]), 0}};
-      if (point.second_row != tfeti::invalid_row)
+      if (is_in_space(point))
         for (unsigned int d = 0; d < 3; ++d)
           force[d] = node.traction[d] * node.area - N * point.normal[d];
       std::array<double, 3> apart;
@@ -265,6 +272,8 @@ namespace slipstick::contact
       for (const unsigned int k : {0, 1})
         {
           const unsigned int row = k == 0 ? point.tangential_row : point.second_row;
+          if (row == tfeti::invalid_row) // a support holds the node there
+            continue;
           for (unsigned int d = 0; d < 3; ++d)
             {
               node.traction[d] -= multipliers.local_element(row) / node.area * point.tangents[k][d];
@@ -300,7 +309,7 @@ namespace slipstick::contact
           node.slip_bound = slip_bound[point.tangential_row] / node.area;
           node.status     = status_of(node.is_closed, node.slip_bound, free[point.tangential_row]);
         }
-      if (point.second_row != tfeti::invalid_row)
+      if (is_in_space(point))
         complete_in_space(dual, point, multipliers, jumps, node);
       node.moment_mismatch = moment_mismatch(point, node, node.pressure * node.area, tangential);
       return node;
@@ -472,11 +481,10 @@ namespace slipstick::contact
             // a bound far above all forces would turn rounding at sticking nodes into work
             const double capped = std::max(std::abs(T), std::min(bound, bounds_that_count * largest_contact));
             all_bounds += capped;
-            const double friction_work =
-              point.second_row == tfeti::invalid_row
-                ? T * node.slip
-                : node.area * (node.traction[0] * node.slip_vector[0] + node.traction[1] * node.slip_vector[1] +
-                               node.traction[2] * node.slip_vector[2]);
+            const double friction_work = !is_in_space(point) ? T * node.slip
+                                                             : node.area * (node.traction[0] * node.slip_vector[0] +
+                                                                            node.traction[1] * node.slip_vector[1] +
+                                                                            node.traction[2] * node.slip_vector[2]);
             work += missing_friction_work(capped, friction_work, node.slip);
           }
         checks.complementarity += work;

@@ -136,8 +136,9 @@ TEST(round_trip, parameters_of_solids_read_back)
   for (const std::string &file : shipped_scenes(3))
     {
       const auto first = read_scene<3>(file);
-      EXPECT_EQ(read_scene<3>(directory.write("parameters.prm", first.parameters)).parameters, first.parameters) << file;
-      EXPECT_EQ(read_dimension(directory.path("parameters.prm")), 3u);
+      EXPECT_EQ(read_scene<3>(directory.write("parameters.prm", first.parameters)).parameters, first.parameters)
+        << file;
+      EXPECT_EQ(read_dimension((directory.path / "parameters.prm").string()), 3u);
     }
 }
 
