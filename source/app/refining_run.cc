@@ -21,7 +21,7 @@ namespace slipstick::app
     , comm(comm_)
   {}
 
-  ExitStatus RefiningRun::run(std::optional<Run> &steps)
+  ExitStatus RefiningRun::run(std::optional<Run<dim>> &steps)
   {
     print_header(log, scene, comm);
     log.line(format("accuracy     %g %% of %s is to be reached, with at most %u meshes and %u unknowns",
@@ -80,7 +80,7 @@ namespace slipstick::app
       }
   }
 
-  void RefiningRun::add(const Run &steps, const output::Summary &summary)
+  void RefiningRun::add(const Run<dim> &steps, const output::Summary &summary)
   {
     output::MeshRow row;
     row.cells        = summary.problem.cells;
@@ -104,7 +104,7 @@ namespace slipstick::app
                     row.seconds));
   }
 
-  std::string RefiningRun::why_to_stop(const Run &steps, const output::Summary &summary)
+  std::string RefiningRun::why_to_stop(const Run<dim> &steps, const output::Summary &summary)
   {
     if (reached)
       return "";
@@ -136,7 +136,7 @@ namespace slipstick::app
     return "";
   }
 
-  CellErrors RefiningRun::errors_of(const Run &steps) const
+  CellErrors RefiningRun::errors_of(const Run<dim> &steps) const
   {
     return energy_errors(steps.mesh(), steps.stress(), left_out, options.goals.empty() ? options.accuracy : 0.);
   }

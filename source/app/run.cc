@@ -37,7 +37,8 @@ namespace slipstick::app
     }
 
     /// The summary of a run that ended without equilibrium.
-    output::Summary summary_without_equilibrium(const scene::Scene<2> &scene, const MPI_Comm comm)
+    template <int dim>
+    output::Summary summary_without_equilibrium(const scene::Scene<dim> &scene, const MPI_Comm comm)
     {
       output::Summary summary = empty_summary(scene, comm);
       summary.status          = output::RunStatus::no_equilibrium;
@@ -65,12 +66,13 @@ namespace slipstick::app
            "against this motion if it matters";
   }
 
-  Run::Run(const scene::Scene<dim>                &scene_,
-           const output::OutputDirectory          &directory_,
-           const Log                              &log_,
-           const MPI_Comm                          comm_,
-           std::optional<std::vector<std::string>> wanted_,
-           mesh::Refinement                       *refinement)
+  template <int dim>
+  Run<dim>::Run(const scene::Scene<dim>                &scene_,
+                const output::OutputDirectory          &directory_,
+                const Log                              &log_,
+                const MPI_Comm                          comm_,
+                std::optional<std::vector<std::string>> wanted_,
+                mesh::Refinement                       *refinement)
     : directory(directory_)
     , log(log_)
     , comm(comm_)
@@ -81,7 +83,8 @@ namespace slipstick::app
     , warnings(warnings_before(scene_, solver.mesh()))
   {}
 
-  const output::Summary &Run::solve_and_write(const bool resumes)
+  template <int dim>
+  const output::Summary &Run<dim>::solve_and_write(const bool resumes)
   {
     output::Summary summary;
     if (resumes)
@@ -115,7 +118,8 @@ namespace slipstick::app
     return *finished_steps;
   }
 
-  void Run::print(const Log &to) const
+  template <int dim>
+  void Run<dim>::print(const Log &to) const
   {
     const auto &summary = *finished_steps;
     to.line("");
@@ -126,15 +130,17 @@ namespace slipstick::app
     print_result(to, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
   }
 
-  void Run::print_warnings(const Log &to) const
+  template <int dim>
+  void Run<dim>::print_warnings(const Log &to) const
   {
     for (const std::string &text : warnings)
       to.line("             warning: " + text);
   }
 
-  void Run::finish(const std::vector<output::MeshRow> &meshes,
-                   const std::vector<std::string>     &notes,
-                   const std::string                  &missed)
+  template <int dim>
+  void Run<dim>::finish(const std::vector<output::MeshRow> &meshes,
+                        const std::vector<std::string>     &notes,
+                        const std::string                  &missed)
   {
     describe_run(*finished_steps);
     finished_steps->meshes = meshes;
@@ -147,12 +153,17 @@ namespace slipstick::app
     output::write_summary(directory, *finished_steps);
   }
 
-  std::vector<LeftOut> Run::point_forces() const
+  template <int dim>
+  std::vector<LeftOut> Run<dim>::point_forces() const
   {
-    return app::point_forces(scene, solver.mesh(), solver.spaces(), solver.n_given_supports());
+    if constexpr (dim == 2)
+      return app::point_forces(scene, solver.mesh(), solver.spaces(), solver.n_given_supports());
+    else
+      return {}; // the scene knows no goals in space
   }
 
-  void Run::write_without_equilibrium()
+  template <int dim>
+  void Run<dim>::write_without_equilibrium()
   {
     if (!finished_steps)
       {
@@ -167,7 +178,8 @@ namespace slipstick::app
     log.line(format("finished load steps whose results are kept: %zu", contact_steps.size()));
   }
 
-  output::Summary Run::resume()
+  template <int dim>
+  output::Summary Run<dim>::resume()
   {
     RunState state = read_restart(directory, scene, comm);
     contact_steps  = std::move(state.contact_steps);
@@ -181,7 +193,8 @@ namespace slipstick::app
     return std::move(state.summary);
   }
 
-  std::string Run::time_left(const unsigned int step) const
+  template <int dim>
+  std::string Run<dim>::time_left(const unsigned int step) const
   {
     if (step == first_step)
       return "";
@@ -189,12 +202,14 @@ namespace slipstick::app
     return ", about " + duration_text(left) + " left";
   }
 
-  bool Run::prints() const
+  template <int dim>
+  bool Run<dim>::prints() const
   {
     return dealii::Utilities::MPI::this_mpi_process(comm) == 0;
   }
 
-  void Run::announce(const unsigned int step) const
+  template <int dim>
+  void Run<dim>::announce(const unsigned int step) const
   {
     if (prints())
       tell_when_interrupted(
@@ -207,7 +222,8 @@ namespace slipstick::app
            : std::string("there are no results")));
   }
 
-  void Run::keep(const unsigned int step, output::Summary summary)
+  template <int dim>
+  void Run<dim>::keep(const unsigned int step, output::Summary summary)
   {
     using dealii::Utilities::MPI::broadcast;
     if (step + 1 == scene.load_factors.size() ||
@@ -227,7 +243,8 @@ namespace slipstick::app
     clock.leave();
   }
 
-  void Run::warn(const Warnings &texts)
+  template <int dim>
+  void Run<dim>::warn(const Warnings &texts)
   {
     for (const auto &[about, text] : texts)
       if (warned_about.insert(about).second)
@@ -237,7 +254,8 @@ namespace slipstick::app
         }
   }
 
-  output::Summary Run::load_step(const unsigned int step, const output::Summary &so_far)
+  template <int dim>
+  output::Summary Run<dim>::load_step(const unsigned int step, const output::Summary &so_far)
   {
     const double t = scene.load_factors[step];
     if (scene.load_factors.size() > 1)
@@ -264,8 +282,8 @@ namespace slipstick::app
       {
         contact_steps.push_back(gather_contact(solver, contact, total_slip));
         contact_steps.back().step = step;
-        output::write_contact_vtp(directory, contact_steps.back());
-        summary.results.contact = contact::pair_results(contact_steps.back().nodes, contact_names(scene).pairs);
+        output::write_contact_vtp(directory, contact_steps.back(), dim);
+        summary.results.contact = contact::pair_results(contact_steps.back().nodes, contact_names(scene).pairs, dim);
       }
     drop_moments(scene, summary.results);
     clock.leave();
@@ -276,7 +294,8 @@ namespace slipstick::app
     return summary;
   }
 
-  bool Run::warn_of_answer(const double t, const StepSolver::Answer &answer)
+  template <int dim>
+  bool Run<dim>::warn_of_answer(const double t, const StepAnswer &answer)
   {
     const auto  &u         = answer.recovery.u;
     const auto  &contact   = *answer.contact;
@@ -301,7 +320,8 @@ namespace slipstick::app
     return !geometry.failure;
   }
 
-  void Run::write_fields(const unsigned int step, const StepSolver::Answer &answer) const
+  template <int dim>
+  void Run<dim>::write_fields(const unsigned int step, const StepAnswer &answer) const
   {
     if (!scene.output.vtu)
       return;
@@ -309,32 +329,41 @@ namespace slipstick::app
     output::write_pvd(directory, {scene.load_factors.begin(), scene.load_factors.begin() + step + 1});
   }
 
-  void Run::estimate_errors(const double t, output::Summary &summary)
+  template <int dim>
+  void Run<dim>::estimate_errors(const double t, output::Summary &summary)
   {
-    clock.enter("recovery");
-    errors = goal_errors(solver, probes, *last, t, *wanted);
-    summary.error_bars =
-      error_bars(errors,
-                 summary.results,
-                 contact_steps.empty() ? std::vector<contact::ContactNode>() : contact_steps.back().nodes,
-                 scene.contacts);
-    clock.leave();
+    if constexpr (dim == 2) // the scene knows no error bars in space
+      {
+        clock.enter("recovery");
+        errors = goal_errors(solver, probes, *last, t, *wanted);
+        summary.error_bars =
+          error_bars(errors,
+                     summary.results,
+                     contact_steps.empty() ? std::vector<contact::ContactNode>() : contact_steps.back().nodes,
+                     scene.contacts);
+        clock.leave();
+      }
   }
 
-  void Run::write_tables(const output::Summary &summary) const
+  template <int dim>
+  void Run<dim>::write_tables(const output::Summary &summary) const
   {
-    output::write_history(directory, summary.steps);
-    output::write_probes(directory, summary.steps);
+    output::write_history(directory, summary.steps, dim);
+    output::write_probes(directory, summary.steps, dim);
     output::write_convergence(directory, solver.convergence());
     directory.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
     if (scene.has_contact())
       output::write_contact_csv(directory, contact_names(scene), contact_steps);
   }
 
-  void Run::describe_run(output::Summary &summary) const
+  template <int dim>
+  void Run<dim>::describe_run(output::Summary &summary) const
   {
     summary.time_s    = times(clock, solver.factorization_seconds());
     summary.memory_mb = memory(comm);
     summary.warnings  = warnings;
   }
+
+  template class Run<2>;
+  template class Run<3>;
 } // namespace slipstick::app

@@ -7,15 +7,14 @@
 
 namespace slipstick::app
 {
-  namespace
-  {
-    constexpr int dim = 2;
-  }
-
+  template <int dim>
   void check_scene(const scene::Scene<dim> &scene, const std::string &picture, const Log &log, const MPI_Comm comm)
   {
-    StageClock clock;
-    StepSolver solver(scene, log, clock, comm);
+    if (dim == 3 && !picture.empty())
+      throw InputError("--draw: scenes in space (Dimension = 3) cannot be drawn yet",
+                       "use --check, or look at the meshes in ParaView after a run");
+    StageClock      clock;
+    StepSolver<dim> solver(scene, log, clock, comm);
     mechanics::Probes<dim>(scene, solver.mesh(), solver.spaces());
     solver.build();
     if (!solver.unheld().empty())
@@ -24,14 +23,18 @@ namespace slipstick::app
              (solver.unheld().empty() ? ", every body is held by supports or contact" : ""));
     if (picture.empty())
       return;
-    auto as_given = solver.discrete_scene();
-    as_given.supports.resize(solver.n_given_supports());
-    const std::filesystem::path   file(picture);
-    const output::OutputDirectory directory(file.has_parent_path() ? file.parent_path().string() : ".", comm);
-    output::write_scene_picture(directory, file.filename().string(), as_given, solver.mesh(), solver.spaces());
-    log.line("picture of the scene: " + picture);
+    if constexpr (dim == 2)
+      {
+        auto as_given = solver.discrete_scene();
+        as_given.supports.resize(solver.n_given_supports());
+        const std::filesystem::path   file(picture);
+        const output::OutputDirectory directory(file.has_parent_path() ? file.parent_path().string() : ".", comm);
+        output::write_scene_picture(directory, file.filename().string(), as_given, solver.mesh(), solver.spaces());
+        log.line("picture of the scene: " + picture);
+      }
   }
 
+  template <int dim>
   ExitStatus run(const scene::Scene<dim>        &scene,
                  const scene::AdaptivityOptions &adaptivity,
                  const std::string              &output_directory,
@@ -43,11 +46,12 @@ namespace slipstick::app
       throw InputError("--resume: a run that refines its meshes cannot go on",
                        "start it anew, without --resume, or give Accuracy without a percentage");
     const output::OutputDirectory directory(output_directory, comm);
-    std::optional<Run>            steps;
+    std::optional<Run<dim>>       steps;
     try
       {
-        if (adaptivity.refines())
-          return RefiningRun(scene, adaptivity, directory, log, comm).run(steps);
+        if constexpr (dim == 2) // the scene knows no refinement in space
+          if (adaptivity.refines())
+            return RefiningRun(scene, adaptivity, directory, log, comm).run(steps);
         std::optional<std::vector<std::string>> wanted;
         if (adaptivity.error_bars)
           wanted.emplace();
@@ -68,4 +72,19 @@ namespace slipstick::app
         throw;
       }
   }
+
+  template void       check_scene(const scene::Scene<2> &, const std::string &, const Log &, const MPI_Comm);
+  template void       check_scene(const scene::Scene<3> &, const std::string &, const Log &, const MPI_Comm);
+  template ExitStatus run(const scene::Scene<2> &,
+                          const scene::AdaptivityOptions &,
+                          const std::string &,
+                          const bool,
+                          const Log &,
+                          const MPI_Comm);
+  template ExitStatus run(const scene::Scene<3> &,
+                          const scene::AdaptivityOptions &,
+                          const std::string &,
+                          const bool,
+                          const Log &,
+                          const MPI_Comm);
 } // namespace slipstick::app

@@ -1,23 +1,24 @@
 #include <slipstick/app/step_results.h>
+#include <slipstick/base/text.h>
 #include <slipstick/contact/resultants.h>
 #include <slipstick/interface/arc_length.h>
 #include <slipstick/mechanics/elasticity.h>
 #include <slipstick/mechanics/loads.h>
 #include <slipstick/mechanics/singular_points.h>
+#include <slipstick/mechanics/surface_facet.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace slipstick::app
 {
   namespace
   {
-    constexpr int dim = 2;
-
     // A singular point raises the stress as far as so many diameters of the cells around the node with the largest one:
     // stresses at nodes are means over cells, and may be largest beside it.
     constexpr double cells_of_singularity = 1.5;
@@ -27,23 +28,31 @@ namespace slipstick::app
 
     constexpr double rounding = 1e-12; // of displacements, relative
 
+    template <int dim>
+    std::array<double, 3> in_space(const dealii::Tensor<1, dim> &x)
+    {
+      std::array<double, 3> all{{0, 0, 0}};
+      for (unsigned int d = 0; d < dim; ++d)
+        all[d] = x[d];
+      return all;
+    }
+
     /// No load acts along motions that nothing resists, but friction across a gap can: its two sides are at two places.
-    void add_held_motions(const StepSolver             &solver,
-                          const StepSolver::Answer     &answer,
+    template <int dim>
+    void add_held_motions(const StepSolver<dim>        &solver,
+                          const StepAnswer             &answer,
                           const std::vector<Resultant> &reactions,
                           output::ForceSummary         &sums,
                           Warnings                     &warnings)
     {
       if (solver.n_given_supports() == solver.discrete_scene().supports.size())
         return;
-      const auto size = [](const Resultant &sum) { return std::hypot(sum.force[0], sum.force[1]); };
-      Resultant  held;
+      const auto size = [](const Resultant &sum) {
+        return dim == 2 ? std::hypot(sum.force[0], sum.force[1]) : std::hypot(sum.force[0], sum.force[1], sum.force[2]);
+      };
+      Resultant held;
       for (unsigned int h = solver.n_given_supports(); h < solver.discrete_scene().supports.size(); ++h)
-        {
-          held.force[0] += reactions[h].force[0];
-          held.force[1] += reactions[h].force[1];
-          held.moment += reactions[h].moment;
-        }
+        held += reactions[h];
       // the least force that can be told from none: rounding of the displacement, over the compliance |PFP|
       double largest =
         rounding * answer.contact->checks.max_displacement / solver.dual().norm() / negligible_held_force;
@@ -62,14 +71,43 @@ namespace slipstick::app
                size(held),
                100 * size(held) / largest));
     }
+
+    using NodeOfPair = TotalSlip::key_type;
+
+    /// The faces of slave boundaries all of whose vertices are among the nodes (@p number). Collective.
+    void add_faces(const StepSolver<3>                      &solver,
+                   const std::map<NodeOfPair, std::int64_t> &number,
+                   output::ContactStep                      &step)
+    {
+      const auto       &scene = solver.discrete_scene();
+      std::vector<bool> wanted(scene.bodies.size());
+      for (const auto &pair : scene.contacts)
+        wanted[pair.slave.body] = true;
+      const auto all = mechanics::outlines(solver.mesh(), solver.spaces(), wanted);
+      for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+        for (const auto &face : mechanics::parts_on(solver.mesh(), all, scene.contacts[k].slave))
+          {
+            std::array<std::int64_t, 4> nodes;
+            bool                        is_complete = true;
+            for (unsigned int v = 0; v < nodes.size(); ++v)
+              {
+                const auto found = number.find({k, face.keys[v]});
+                is_complete      = is_complete && found != number.end();
+                nodes[v]         = is_complete ? found->second : 0;
+              }
+            if (is_complete)
+              step.faces.push_back(nodes);
+          }
+    }
   } // namespace
 
-  void add_places(const StepSolver &solver, const mechanics::StressResult &stress, output::Summary &summary)
+  template <int dim>
+  void add_places(const StepSolver<dim> &solver, const mechanics::StressResult &stress, output::Summary &summary)
   {
     const auto &scene    = solver.discrete_scene();
     const auto  places   = mechanics::stress_places(solver.mesh(), solver.spaces(), stress);
     const auto  as_place = [&](const mechanics::Peak<dim> &peak) {
-      return output::Place{scene.bodies[peak.body].name, {{peak.position[0], peak.position[1]}}};
+      return output::Place{scene.bodies[peak.body].name, in_space(peak.position)};
     };
     summary.results.max_von_mises_at = as_place(places.von_mises);
     summary.error.largest_at         = as_place(places.error);
@@ -85,6 +123,7 @@ namespace slipstick::app
         }
   }
 
+  template <int dim>
   std::vector<output::ProbeResult> probe_results(const scene::Scene<dim>            &scene,
                                                  const mechanics::Probes<dim>       &probes,
                                                  const std::vector<Eigen::VectorXd> &u,
@@ -100,14 +139,11 @@ namespace slipstick::app
         for (const auto &point : points)
           {
             output::ProbeValues values;
-            values.distance = point.distance;
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                values.position[d]     = point.position[d];
-                values.displacement[d] = point.displacement[d];
-              }
-            values.stress    = point.stress;
-            values.von_mises = mechanics::von_mises(point.stress[0], point.stress[1], point.stress[2], point.stress[3]);
+            values.distance     = point.distance;
+            values.position     = in_space(point.position);
+            values.displacement = in_space(point.displacement);
+            values.stress       = point.stress;
+            values.von_mises    = mechanics::von_mises<dim>(point.stress);
             result.points.push_back(values);
           }
         results.push_back(std::move(result));
@@ -115,10 +151,11 @@ namespace slipstick::app
     return results;
   }
 
-  output::ForceSummary forces(const StepSolver         &solver,
-                              const StepSolver::Answer &answer,
-                              const double              t,
-                              Warnings                 &warnings)
+  template <int dim>
+  output::ForceSummary forces(const StepSolver<dim> &solver,
+                              const StepAnswer      &answer,
+                              const double           t,
+                              Warnings              &warnings)
   {
     const auto          &scene = solver.discrete_scene();
     output::ForceSummary sums;
@@ -130,14 +167,12 @@ namespace slipstick::app
           const auto &sum = loads[next++];
           sums.loads.push_back({load.name, kind, sum.sum});
           if (sum.unresolved)
-            warnings.emplace(
-              "load " + kind + load.name,
-              format("%s %s: its formula changes faster than can be integrated at (%.6g, %.6g), so that its "
-                                "resultant may be off; smooth the formula, or refine the mesh there",
-                     kind.c_str(),
-                     load.name.c_str(),
-                     (*sum.unresolved)[0],
-                     (*sum.unresolved)[1]));
+            warnings.emplace("load " + kind + load.name,
+                             format("%s %s: its formula changes faster than can be integrated at %s, so that its "
+                                               "resultant may be off; smooth the formula, or refine the mesh there",
+                                    kind.c_str(),
+                                    load.name.c_str(),
+                                    point_text(*sum.unresolved, dim).c_str()));
         }
     };
     take(scene.tractions, "traction");
@@ -157,25 +192,55 @@ namespace slipstick::app
     return sums;
   }
 
-  output::ContactStep gather_contact(const StepSolver              &solver,
+  template <int dim>
+  output::ContactStep gather_contact(const StepSolver<dim>         &solver,
                                      const contact::CheckedContact &own,
                                      TotalSlip                     &total_slip)
   {
-    const auto          lengths = interface::arc_lengths(solver.discrete_scene(), solver.mesh(), solver.spaces());
-    const auto          nodes   = dealii::Utilities::MPI::gather(solver.mesh().comm, own.nodes);
-    const auto          keys    = dealii::Utilities::MPI::gather(solver.mesh().comm, own.keys);
-    output::ContactStep step;
+    const auto &scene = solver.discrete_scene();
+    const auto  nodes = dealii::Utilities::MPI::gather(solver.mesh().comm, own.nodes);
+    const auto  keys  = dealii::Utilities::MPI::gather(solver.mesh().comm, own.keys);
+    std::vector<std::pair<contact::ContactNode, NodeOfPair>> all;
     for (unsigned int rank = 0; rank < nodes.size(); ++rank)
       for (unsigned int i = 0; i < nodes[rank].size(); ++i)
         {
-          auto node       = nodes[rank][i];
-          node.arc_length = lengths.at({node.pair, keys[rank][i]});
-          node.total_slip = total_slip[{node.pair, keys[rank][i]}] += node.slip;
-          step.nodes.push_back(node);
+          all.emplace_back(nodes[rank][i], NodeOfPair(nodes[rank][i].pair, keys[rank][i]));
+          auto &node  = all.back().first;
+          auto &total = total_slip[all.back().second];
+          if (dim == 2)
+            node.total_slip = total[0] += node.slip;
+          for (unsigned int d = 0; d < 3 && dim == 3; ++d)
+            total[d] += node.slip_vector[d];
+          if (dim == 3)
+            node.total_slip = std::hypot(total[0], total[1], total[2]);
         }
+    output::ContactStep step;
+    if constexpr (dim == 2)
+      {
+        const auto lengths = interface::arc_lengths(scene, solver.mesh(), solver.spaces());
+        for (auto &[node, key] : all)
+          {
+            node.arc_length = lengths.at(key);
+            step.nodes.push_back(node);
+          }
+      }
+    else
+      {
+        std::sort(all.begin(), all.end(), [](const auto &a, const auto &b) {
+          return std::tie(a.first.pair, a.first.position) < std::tie(b.first.pair, b.first.position);
+        });
+        std::map<NodeOfPair, std::int64_t> number;
+        for (const auto &[node, key] : all)
+          {
+            number.emplace(key, step.nodes.size());
+            step.nodes.push_back(node);
+          }
+        add_faces(solver, number, step);
+      }
     return step;
   }
 
+  template <int dim>
   output::ContactNames contact_names(const scene::Scene<dim> &scene)
   {
     output::ContactNames names;
@@ -184,6 +249,24 @@ namespace slipstick::app
         names.pairs.push_back(pair.name);
         names.slave_bodies.push_back(scene.bodies[pair.slave.body].name);
       }
+    names.dimension = dim;
     return names;
   }
+
+  template output::ForceSummary forces(const StepSolver<2> &, const StepAnswer &, const double, Warnings &);
+  template void                 add_places(const StepSolver<2> &, const mechanics::StressResult &, output::Summary &);
+  template std::vector<output::ProbeResult> probe_results(const scene::Scene<2> &,
+                                                          const mechanics::Probes<2> &,
+                                                          const std::vector<Eigen::VectorXd> &,
+                                                          const mechanics::StressResult &);
+  template output::ContactStep  gather_contact(const StepSolver<2> &, const contact::CheckedContact &, TotalSlip &);
+  template output::ContactNames contact_names(const scene::Scene<2> &);
+  template output::ForceSummary forces(const StepSolver<3> &, const StepAnswer &, const double, Warnings &);
+  template void                 add_places(const StepSolver<3> &, const mechanics::StressResult &, output::Summary &);
+  template std::vector<output::ProbeResult> probe_results(const scene::Scene<3> &,
+                                                          const mechanics::Probes<3> &,
+                                                          const std::vector<Eigen::VectorXd> &,
+                                                          const mechanics::StressResult &);
+  template output::ContactStep  gather_contact(const StepSolver<3> &, const contact::CheckedContact &, TotalSlip &);
+  template output::ContactNames contact_names(const scene::Scene<3> &);
 } // namespace slipstick::app

@@ -13,7 +13,7 @@ namespace slipstick::interface
     {
       double sum = 0;
       for (const auto &part : parts)
-        sum += mechanics::size_of(part);
+        sum += part.chord();
       return sum / parts.size();
     }
 
@@ -39,10 +39,10 @@ namespace slipstick::interface
     }
 
     template <int dim>
-    std::vector<MortarRow<dim>> rows_of(const scene::Scene<dim>                        &scene,
-                                        const mesh::Mesh<dim>                          &mesh,
-                                        const scene::ContactPair<dim>                  &pair,
-                                        const std::vector<mechanics::SurfacePart<dim>> &all)
+    std::vector<MortarRow<dim>> rows_of(const scene::Scene<dim>                         &scene,
+                                        const mesh::Mesh<dim>                           &mesh,
+                                        const scene::ContactPair<dim>                   &pair,
+                                        const std::vector<mechanics::BoundaryPart<dim>> &all)
     {
       const PairSides<dim> sides{mechanics::parts_on(mesh, all, pair.slave),
                                  mechanics::parts_on(mesh, all, *pair.master),

@@ -26,7 +26,7 @@ namespace slipstick::interface
       if (!(distance > 0))
         throw InputError("a contact node lies at the centre of obstacle " + obstacle.name + ", where it has no normal",
                          "move the obstacle, or give the contact another slave boundary");
-      if (obstacle.shape == scene::ObstacleShape::hole)
+      if (obstacle.shape == scene::ObstacleShape::hole || obstacle.shape == scene::ObstacleShape::bore)
         return {-ray / distance, obstacle.radius - distance};
       return {ray / distance, distance - obstacle.radius};
     }
@@ -109,7 +109,8 @@ namespace slipstick::interface
           return with_polyline(obstacle.points, x);
         case scene::ObstacleShape::function:
           return with_function(obstacle.height, x, t);
-        case scene::ObstacleShape::cylinder: // refused by the scene
+        case scene::ObstacleShape::cylinder: // not offered in the plane
+        case scene::ObstacleShape::bore:
           break;
       }
     AssertThrow(false, dealii::ExcInternalError());
@@ -128,6 +129,7 @@ namespace slipstick::interface
         case scene::ObstacleShape::half_plane:
           return {-obstacle.normal, -ray * obstacle.normal};
         case scene::ObstacleShape::cylinder:
+        case scene::ObstacleShape::bore:
           return with_circle<3>(obstacle, ray - (ray * obstacle.normal) * obstacle.normal);
         case scene::ObstacleShape::polyline:
         case scene::ObstacleShape::function:

@@ -27,8 +27,9 @@ namespace slipstick::interface
     constexpr unsigned int n_compared = 500;
     constexpr double       infinity   = std::numeric_limits<double>::infinity();
 
+    /// Edges or faces.
     template <int dim>
-    using Parts = std::vector<mechanics::SurfacePart<dim>>;
+    using Parts = std::vector<mechanics::BoundaryPart<dim>>;
 
     double degrees(const double cosine)
     {
@@ -131,7 +132,7 @@ namespace slipstick::interface
     {
       if (gap <= size) // the common case, without a look at the supports
         return;
-      const double prescribed = largest_prescribed(scene, mesh, all);
+      const double prescribed = largest_prescribed<dim>(scene, mesh, all);
       if (gap > size + prescribed)
         throw InputError(names +
                            format(" are out of reach of each other: the smallest gap is %g mm, the automatic reach "
@@ -163,7 +164,7 @@ namespace slipstick::interface
               const auto   x       = edge.node(i);
               const auto   contact = contact_with(scene.obstacles[pair.obstacle], x, t);
               const double gap     = pair.gap ? pair.gap->value(x, t) : contact.gap;
-              result.cosine        = std::max(result.cosine, contact.normal * mechanics::node_normal(edge, i));
+              result.cosine        = std::max(result.cosine, contact.normal * edge.normal_at(i));
               result.gap           = std::min(result.gap, gap + pair.offset.value(x, t));
             }
       return result;
@@ -178,7 +179,7 @@ namespace slipstick::interface
       const auto  slave    = mechanics::parts_on(mesh, all, pair.slave);
       const auto &obstacle = scene.obstacles[pair.obstacle];
       const auto names = "Contact " + pair.name + ": " + describe(scene, pair.slave) + " and obstacle " + obstacle.name;
-      const auto found = against_obstacle(scene, pair, slave);
+      const auto found = against_obstacle<dim>(scene, pair, slave);
       if (found.cosine <= -facing_cosine)
         throw InputError(names +
                            format(" face away from each other: the outward normals of the slave are %g degrees or "
@@ -192,15 +193,16 @@ namespace slipstick::interface
                                         *pair.reach),
                          "move the body or the obstacle, or set Contact " + pair.name + "/Reach to more than that gap");
       const bool is_round =
-        obstacle.shape == scene::ObstacleShape::circle || obstacle.shape == scene::ObstacleShape::hole;
+        obstacle.shape == scene::ObstacleShape::circle || obstacle.shape == scene::ObstacleShape::hole ||
+        obstacle.shape == scene::ObstacleShape::cylinder || obstacle.shape == scene::ObstacleShape::bore;
       if (!pair.reach && !pair.gap)
-        check_automatic_reach(scene,
-                              mesh,
-                              pair,
-                              all,
-                              names,
-                              std::max(extent(slave), is_round ? 2 * obstacle.radius : 0.),
-                              found.gap);
+        check_automatic_reach<dim>(scene,
+                                   mesh,
+                                   pair,
+                                   all,
+                                   names,
+                                   std::max(extent(slave), is_round ? 2 * obstacle.radius : 0.),
+                                   found.gap);
     }
   } // namespace
 
@@ -209,7 +211,7 @@ namespace slipstick::interface
   {
     double chords = 0;
     for (const auto &edge : sides.slave)
-      chords += mechanics::size_of(edge);
+      chords += edge.chord();
     for (const auto &row : rows)
       if (row.gap > -deep * chords / sides.slave.size())
         return false;
@@ -295,7 +297,7 @@ namespace slipstick::interface
     const auto all = mechanics::outlines(mesh, spaces, wanted);
     for (const auto &pair : scene.contacts)
       if (is_checked(pair))
-        check_obstacle_pair(scene, mesh, pair, all);
+        check_obstacle_pair<dim>(scene, mesh, pair, all);
   }
 
   template std::string describe(const scene::Scene<2> &, const scene::BoundaryName &);

@@ -28,7 +28,7 @@ namespace slipstick::interface
     {
       const double twist =
         facet.n_nodes == 3 ? 0. : ((facet.node(0) - facet.node(1)) + (facet.node(2) - facet.node(3))).norm();
-      return twist <= smallest_cover * facet.size();
+      return twist <= smallest_cover * facet.chord();
     }
 
     /// The integrals of all slave facets, by node.
@@ -218,14 +218,14 @@ namespace slipstick::interface
       for (const auto &facet : a)
         for (unsigned int i = 0; i <= facet.n_nodes; ++i)
           {
-            const auto s = i < facet.n_nodes ? facet.node_coordinate(i) : facet.middle();
+            const auto s = i < facet.n_nodes ? facet.node_coordinate(i) : facet.middle_place();
             const auto x = facet.point(s);
             const auto n = facet.normal(s);
             tree.for_each_by_distance(
               x,
               [&] { return smallest; },
               [&](const unsigned int m) {
-                if (b[m].normal(b[m].middle()) * n < facing_cosine)
+                if (b[m].normal(b[m].middle_place()) * n < facing_cosine)
                   smallest = std::min(smallest, distance_to(b[m], x));
                 return true;
               });

@@ -47,7 +47,7 @@ namespace slipstick::interface
               node_of[e][i]      = first + side[k];
               auto &node         = nodes[first + side[k]];
               node.covered += surface[e].tributary_areas()[i];
-              node.size = std::max(node.size, surface[e].size());
+              node.size = std::max(node.size, surface[e].chord());
             }
         }
       return node_of;
@@ -88,7 +88,7 @@ namespace slipstick::interface
     dealii::Tensor<1, 2> twist; // 0 for parallelograms
     if (!is_triangle)
       twist = (corner[2] - corner[0]) - u - v;
-    dealii::Point<2> s = facet.middle();
+    dealii::Point<2> s = facet.middle_place();
     for (unsigned int i = 0; i < max_steps; ++i)
       {
         const auto                 off = corner[0] + s[0] * u + s[1] * v + s[0] * s[1] * twist - x;
@@ -162,8 +162,8 @@ namespace slipstick::interface
     for (const unsigned int m : candidates({node.position}, node.normal, node.size))
       {
         const Facet &facet = master[m];
-        if (facet.normal(facet.middle()) * node.normal >= facing_cosine ||
-            !contains(plane.project(facet), {0, 0}, on_edge * facet.size()))
+        if (facet.normal(facet.middle_place()) * node.normal >= facing_cosine ||
+            !contains(plane.project(facet), {0, 0}, on_edge * facet.chord()))
           continue;
         const auto   place = plane.place_on(facet, {0, 0});
         const double gap   = (facet.point(place) - node.position) * node.normal;
@@ -202,7 +202,7 @@ namespace slipstick::interface
     Tensor n;
     for (unsigned int i = 0; i < slave[e].n_nodes; ++i)
       n += all_nodes[node_of[e][i]].normal;
-    return Plane(slave[e].point(slave[e].middle()), n);
+    return Plane(slave[e].point(slave[e].middle_place()), n);
   }
 
   double SurfacePairing::gap(const unsigned int      e,
@@ -221,9 +221,9 @@ namespace slipstick::interface
     for (unsigned int i = 0; i < slave[e].n_nodes; ++i)
       corners.push_back(slave[e].node(i));
     std::vector<Part> result;
-    for (const unsigned int m : candidates(corners, own.normal, slave[e].size()))
+    for (const unsigned int m : candidates(corners, own.normal, slave[e].chord()))
       {
-        if (master[m].normal(master[m].middle()) * own.normal >= facing_cosine)
+        if (master[m].normal(master[m].middle_place()) * own.normal >= facing_cosine)
           continue;
         Part part{m, intersection(polygon, own.project(master[m]))};
         if (area(part.polygon) <= smallest_part * area(polygon))

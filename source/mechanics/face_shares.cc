@@ -21,7 +21,7 @@ namespace slipstick::mechanics
                                 unsigned int i = 0;
                                 while (part.keys[i] != key)
                                   ++i;
-                                shares.push_back({measures[i], lengths[i], node_normal(part, i)});
+                                shares.push_back({measures[i], lengths[i], part.normal_at(i)});
                               });
     return shares;
   }

@@ -33,7 +33,7 @@ namespace slipstick::mechanics
         std::swap(facet.keys[2], facet.keys[3]);
         std::swap(facet.at[2], facet.at[3]);
       }
-    if (facet.area_vector(facet.middle()) * (facet.point(facet.middle()) - cell->center()) < 0)
+    if (facet.area_vector(facet.middle_place()) * (facet.middle() - cell->center()) < 0)
       {
         std::reverse(facet.keys.begin(), facet.keys.begin() + facet.n_nodes);
         std::reverse(facet.at.begin(), facet.at.begin() + facet.n_nodes);
@@ -77,13 +77,13 @@ namespace slipstick::mechanics
     return {square[i][0], square[i][1]};
   }
 
-  SurfaceFacet::Place SurfaceFacet::middle() const
+  SurfaceFacet::Place SurfaceFacet::middle_place() const
   {
     const double c = n_nodes == 3 ? 1. / 3 : 0.5;
     return {c, c};
   }
 
-  double SurfaceFacet::size() const
+  double SurfaceFacet::chord() const
   {
     double sum = 0;
     for (unsigned int i = 0; i < n_nodes; ++i)
@@ -97,7 +97,7 @@ namespace slipstick::mechanics
     Shape areas{};
     if (n_nodes == 3)
       {
-        areas.fill(area_vector(middle()).norm() / 6);
+        areas.fill(area_vector(middle_place()).norm() / 6);
         areas[3] = 0;
         return areas;
       }
@@ -124,7 +124,7 @@ namespace slipstick::mechanics
   std::vector<dealii::Point<3>> inner_points(const SurfaceFacet &facet)
   {
     std::vector<dealii::Point<3>> points;
-    const auto                    middle = facet.middle();
+    const auto                    middle = facet.middle_place();
     for (const double part : {0., 0.5, 0.9}) // of the way to a corner
       for (unsigned int i = 0; i < (part > 0 ? facet.n_nodes : 1); ++i)
         points.push_back(facet.point(middle + part * (facet.node_coordinate(i) - middle)));
@@ -146,16 +146,5 @@ namespace slipstick::mechanics
       all.insert(all.end(), list.begin(), list.end());
     std::sort(all.begin(), all.end());
     return all;
-  }
-
-  std::vector<SurfaceFacet> parts_on(const mesh::Mesh<3>             &mesh,
-                                     const std::vector<SurfaceFacet> &surfaces,
-                                     const scene::BoundaryName       &where)
-  {
-    std::vector<SurfaceFacet> facets;
-    std::copy_if(surfaces.begin(), surfaces.end(), std::back_inserter(facets), [&](const auto &facet) {
-      return facet.body == where.body && mesh.on_boundary(where, facet.boundary);
-    });
-    return facets;
   }
 } // namespace slipstick::mechanics

@@ -259,6 +259,7 @@ namespace slipstick::mesh
         check_names(scene, b, mesh);
         mesh.piece.body = b;
         place_in_scene(scene, b, mesh.piece);
+        add_boundary_parts(scene, b, mesh);
         return mesh;
       }
     else

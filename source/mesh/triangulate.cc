@@ -15,7 +15,7 @@ namespace slipstick::mesh
                dealii::ExcMessage("cells of one subdomain are of one kind"));
         cells[c].vertices.assign(piece.cells[c].begin(), piece.cells[c].begin() + n_corners<dim>(piece.cells[c]));
       }
-    if (!piece.ordered && !is_simplex<dim>(piece.cells[0]))
+    if (dim == 2 && !piece.ordered && !is_simplex<dim>(piece.cells[0]))
       dealii::GridTools::consistently_order_cells(cells);
 
     auto mesh             = std::make_unique<SubdomainMesh<dim>>();

@@ -10,7 +10,6 @@ namespace slipstick::scene
   namespace
   {
     const std::string boundary_format = "BODY/BOUNDARY, such as box/left";
-    const std::string field_format    = "a number or a formula of x, y, t";
 
     /// A formula whose value, where it is a number, is not negative.
     template <int dim>
@@ -59,7 +58,8 @@ namespace slipstick::scene
                  parameter.name,
                  text,
                  parameter.unit,
-                 (parameter.default_text.empty() ? "" : parameter.default_text + ", or ") + field_format + ", >= 0",
+                 (parameter.default_text.empty() ? "" : parameter.default_text + ", or ") + field_format<dim>() +
+                   ", >= 0",
                  parameter.meaning);
       }
     add_choice(prm,
@@ -67,7 +67,12 @@ namespace slipstick::scene
                only_closed,
                Choices<bool>{{"boundary", false}, {"contact", true}},
                "Tresca: on the whole slave boundary, open nodes included, or where it is in contact");
-    add_text(prm, "Offset", offset, "mm", field_format, "added to the gap; negative: interference of a press fit");
+    add_text(prm,
+             "Offset",
+             offset,
+             "mm",
+             field_format<dim>(),
+             "added to the gap; negative: interference of a press fit");
   }
 
   template <int dim>
@@ -111,14 +116,15 @@ namespace slipstick::scene
              "Master",
              master,
              "",
-             "BODY/BOUNDARY, or a name from Obstacles",
-             "boundary of a body or rigid obstacle that it may touch; must be set");
+             dim == 3 ? "a name from Obstacles" : "BODY/BOUNDARY, or a name from Obstacles",
+             dim == 3 ? "rigid obstacle that it may touch; must be set"
+                      : "boundary of a body or rigid obstacle that it may touch; must be set");
     law.declare(prm);
     add_text(prm,
              "Gap",
              gap,
              "mm",
-             "geometry, " + field_format,
+             "geometry, " + field_format<dim>(),
              "initial distance along the normal: that of the geometry, or a given one instead");
     add_text(prm,
              "Reach",
@@ -127,13 +133,15 @@ namespace slipstick::scene
              "auto, or a number > 0",
              "nodes farther apart along the normal are not paired; auto: two bodies from distance and mesh, obstacles "
              "without limit");
-    add_choice(prm,
-               "Discretization",
-               discretization,
-               Choices<ContactDiscretization>{{"auto", ContactDiscretization::automatic},
-                                              {"node to node", ContactDiscretization::node_to_node},
-                                              {"mortar", ContactDiscretization::mortar}},
-               "two bodies: auto is node to node where every slave node has a master node opposite, otherwise mortar");
+    if (dim == 2)
+      add_choice(
+        prm,
+        "Discretization",
+        discretization,
+        Choices<ContactDiscretization>{{"auto", ContactDiscretization::automatic},
+                                       {"node to node", ContactDiscretization::node_to_node},
+                                       {"mortar", ContactDiscretization::mortar}},
+        "two bodies: auto is node to node where every slave node has a master node opposite, otherwise mortar");
     prm.leave_subsection();
   }
 
@@ -146,7 +154,9 @@ namespace slipstick::scene
     std::vector<std::string> obstacles;
     for (const Obstacle<dim> &obstacle : scene.obstacles)
       obstacles.push_back(obstacle.name);
-    parameters.require(path, "set BODY/BOUNDARY, or a name from Obstacles (" + join_names(obstacles) + ")");
+    parameters.require(path,
+                       std::string("set ") + (dim == 3 ? "" : "BODY/BOUNDARY, or ") + "a name from Obstacles (" +
+                         join_names(obstacles) + ")");
     if (master.find('/') == std::string::npos)
       {
         pair.obstacle = std::find(obstacles.begin(), obstacles.end(), master) - obstacles.begin();
@@ -154,6 +164,11 @@ namespace slipstick::scene
           throw parameters.error(path, "unknown obstacle", suggest_name(master, obstacles));
         return;
       }
+    if (dim == 3)
+      throw parameters.error(path,
+                             "contact between bodies is not available in space (Dimension = 3) yet",
+                             "name one of the Obstacles" +
+                               (obstacles.empty() ? std::string() : ": " + join_names(obstacles)));
     pair.master = read_boundary(master, path, parameters, scene.bodies);
     if (pair.master->body == pair.slave.body &&
         (pair.master->boundary == pair.slave.boundary || pair.master->boundary == "*" || pair.slave.boundary == "*"))
@@ -218,4 +233,7 @@ namespace slipstick::scene
   template struct ContactLawSection<2>;
   template struct ContactSection<2>;
   template struct ContactSearchSection<2>;
+  template struct ContactLawSection<3>;
+  template struct ContactSection<3>;
+  template struct ContactSearchSection<3>;
 } // namespace slipstick::scene

@@ -17,7 +17,8 @@ namespace slipstick::app
   };
 
   /// @param largest displacement [mm], to compare with.
-  GeometryFindings geometry_findings(const scene::Scene<2>         &scene,
+  template <int dim>
+  GeometryFindings geometry_findings(const scene::Scene<dim>       &scene,
                                      const interface::Penetrations &found,
                                      const double                   largest);
 } // namespace slipstick::app

@@ -19,7 +19,7 @@ namespace slipstick::app
                 const MPI_Comm                  comm);
 
     /// @param steps of the mesh solved last. Collective.
-    ExitStatus run(std::optional<Run> &steps);
+    ExitStatus run(std::optional<Run<dim>> &steps);
 
   private:
     /// What is to be accurate.
@@ -28,13 +28,13 @@ namespace slipstick::app
     void leave_out(std::vector<LeftOut> places);
 
     /// One line a mesh.
-    void add(const Run &steps, const output::Summary &summary);
+    void add(const Run<dim> &steps, const output::Summary &summary);
 
     /// Marks the cells of the next mesh. @return why there is none; empty: there is one, or none is needed.
-    std::string why_to_stop(const Run &steps, const output::Summary &summary);
+    std::string why_to_stop(const Run<dim> &steps, const output::Summary &summary);
 
     /// In the energy norm; on the way to a goal without an estimate as much as is useful.
-    CellErrors errors_of(const Run &steps) const;
+    CellErrors errors_of(const Run<dim> &steps) const;
 
     const scene::Scene<dim>        &scene;
     const scene::AdaptivityOptions &options;

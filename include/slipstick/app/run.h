@@ -15,11 +15,10 @@ namespace slipstick::app
   std::string set_to_zero(const std::string &motion);
 
   /// Load steps and their results. Members are collective, except those that only return known values.
+  template <int dim>
   class Run
   {
   public:
-    static constexpr int dim = 2;
-
     /// @param wanted error bars of these, after the last load step; with an empty list of all; nothing: none.
     /// @param refinement of single cells, if any.
     Run(const scene::Scene<dim>                &scene,
@@ -59,6 +58,7 @@ namespace slipstick::app
     {
       return solver.mesh();
     }
+    /// Of a scene in the plane.
     std::vector<LeftOut> point_forces() const;
 
   private:
@@ -84,14 +84,14 @@ namespace slipstick::app
     output::Summary load_step(const unsigned int step, const output::Summary &so_far);
 
     /// Prints the checks of an answer and warns of what is found in it. @return whether its contacts are kept.
-    bool warn_of_answer(const double t, const StepSolver::Answer &answer);
+    bool warn_of_answer(const double t, const StepAnswer &answer);
 
     /// After the last load step.
     void estimate_errors(const double t, output::Summary &summary);
 
     void write_tables(const output::Summary &summary) const;
 
-    void write_fields(const unsigned int step, const StepSolver::Answer &answer) const;
+    void write_fields(const unsigned int step, const StepAnswer &answer) const;
 
     /// Puts times, memory and warnings into @p summary.
     void describe_run(output::Summary &summary) const;
@@ -101,10 +101,10 @@ namespace slipstick::app
     const MPI_Comm                          comm;
     std::optional<std::vector<std::string>> wanted; // error bars
     StageClock                              clock;
-    StepSolver                              solver;
+    StepSolver<dim>                         solver;
     const scene::Scene<dim>                &scene; // with the contact pairs that are found
     mechanics::Probes<dim>                  probes;
-    std::unique_ptr<StepSolver::Answer>     last;   // load step
+    std::unique_ptr<StepAnswer>             last;   // load step
     std::vector<GoalError>                  errors; // of its figures
     std::vector<output::ContactStep>        contact_steps;
     TotalSlip                               total_slip;

@@ -18,25 +18,30 @@ namespace slipstick::app
   /// Resultants of loads, supports and foundations at load factor @p t. Collective.
   /// @param warnings gets loads whose formulas no mesh resolves, and forces on motions that are held because nothing
   /// resists them.
-  output::ForceSummary forces(const StepSolver         &solver,
-                              const StepSolver::Answer &answer,
-                              const double              t,
-                              Warnings                 &warnings);
+  template <int dim>
+  output::ForceSummary forces(const StepSolver<dim> &solver,
+                              const StepAnswer      &answer,
+                              const double           t,
+                              Warnings              &warnings);
 
   /// Puts into @p summary where stress and error are largest, and whether more than the mesh is in the way there. Collective.
-  void add_places(const StepSolver &solver, const mechanics::StressResult &stress, output::Summary &summary);
+  template <int dim>
+  void add_places(const StepSolver<dim> &solver, const mechanics::StressResult &stress, output::Summary &summary);
 
   /// Collective.
-  std::vector<output::ProbeResult> probe_results(const scene::Scene<2>              &scene,
-                                                 const mechanics::Probes<2>         &probes,
+  template <int dim>
+  std::vector<output::ProbeResult> probe_results(const scene::Scene<dim>            &scene,
+                                                 const mechanics::Probes<dim>       &probes,
                                                  const std::vector<Eigen::VectorXd> &u,
                                                  const mechanics::StressResult      &stress);
 
-  /// Contact nodes of all ranks on rank 0, with their arc lengths. Collective.
+  /// Contact nodes of all ranks on rank 0, with their arc lengths; in space with the faces between them. Collective.
   /// @param total_slip gets the slip of this step added, on rank 0.
-  output::ContactStep gather_contact(const StepSolver              &solver,
+  template <int dim>
+  output::ContactStep gather_contact(const StepSolver<dim>         &solver,
                                      const contact::CheckedContact &own,
                                      TotalSlip                     &total_slip);
 
-  output::ContactNames contact_names(const scene::Scene<2> &scene);
+  template <int dim>
+  output::ContactNames contact_names(const scene::Scene<dim> &scene);
 } // namespace slipstick::app

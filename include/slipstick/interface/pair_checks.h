@@ -9,8 +9,8 @@ namespace slipstick::interface
   template <int dim>
   struct PairSides
   {
-    std::vector<mechanics::SurfacePart<dim>> slave, master;
-    std::vector<mechanics::SurfacePart<dim>> slave_outline, master_outline;
+    std::vector<mechanics::BoundaryPart<dim>> slave, master;
+    std::vector<mechanics::BoundaryPart<dim>> slave_outline, master_outline;
   };
 
   /// Diagonal of the box around the nodes of some edges or facets [mm].
@@ -54,7 +54,7 @@ namespace slipstick::interface
                    const mesh::Mesh<dim>                          &mesh,
                    const scene::ContactPair<dim>                  &pair,
                    const PairSides<dim>                           &sides,
-                   const std::vector<mechanics::SurfacePart<dim>> &all,
+                   const std::vector<mechanics::BoundaryPart<dim>> &all,
                    const std::vector<MortarRow<dim>>              &rows);
 
   /// Checks the pairs with obstacles: some node must have an outward normal against the obstacle (facing_cosine) and a

@@ -53,11 +53,21 @@ namespace slipstick::mechanics
       return a / a.norm();
     }
 
+    Tensor normal_at(const unsigned int i) const
+    {
+      return normal(node_coordinate(i));
+    }
+
     Place node_coordinate(const unsigned int i) const;
-    Place middle() const;
+    Place middle_place() const;
+
+    dealii::Point<3> middle() const
+    {
+      return point(middle_place());
+    }
 
     /// Mean length of the edges [mm].
-    double size() const;
+    double chord() const;
 
     /// Integral of the shape function of every node over the facet [mm^2]: what lengths and measures are in space.
     Shape tributary_areas() const;
@@ -79,7 +89,7 @@ namespace slipstick::mechanics
 
   /// What the boundary of a body is made of.
   template <int dim>
-  using SurfacePart = std::conditional_t<dim == 2, SurfaceEdge<2>, SurfaceFacet>;
+  using BoundaryPart = std::conditional_t<dim == 2, SurfaceEdge<2>, SurfaceFacet>;
 
   /// The part of the surface that face @p face of @p cell is.
   inline SurfaceEdge<2> surface_part(const mesh::SubdomainMesh<2>                      &subdomain,
@@ -94,16 +104,6 @@ namespace slipstick::mechanics
                             const dealii::DoFHandler<3>::active_cell_iterator &cell,
                             const unsigned int                                 face);
 
-  /// Length of an edge, mean length of the edges of a facet [mm].
-  inline double size_of(const SurfaceEdge<2> &edge)
-  {
-    return edge.chord();
-  }
-  inline double size_of(const SurfaceFacet &facet)
-  {
-    return facet.size();
-  }
-
   /// Outward unit normals.
   inline dealii::Tensor<1, 2> middle_normal(const SurfaceEdge<2> &edge)
   {
@@ -111,17 +111,8 @@ namespace slipstick::mechanics
   }
   inline dealii::Tensor<1, 3> middle_normal(const SurfaceFacet &facet)
   {
-    return facet.normal(facet.middle());
+    return facet.normal(facet.middle_place());
   }
-  inline dealii::Tensor<1, 2> node_normal(const SurfaceEdge<2> &edge, const unsigned int i)
-  {
-    return edge.normal(edge.node_coordinate(i));
-  }
-  inline dealii::Tensor<1, 3> node_normal(const SurfaceFacet &facet, const unsigned int i)
-  {
-    return facet.normal(facet.node_coordinate(i));
-  }
-
   /// Some points between the nodes.
   std::vector<dealii::Point<2>> inner_points(const SurfaceEdge<2> &edge);
   std::vector<dealii::Point<3>> inner_points(const SurfaceFacet &facet);
@@ -131,14 +122,16 @@ namespace slipstick::mechanics
                                      const Spaces<3>         &spaces,
                                      const std::vector<bool> &wanted);
 
-  /// Those on one boundary, in their order.
-  std::vector<SurfaceFacet>          parts_on(const mesh::Mesh<3>             &mesh,
-                                              const std::vector<SurfaceFacet> &surfaces,
-                                              const scene::BoundaryName       &where);
-  inline std::vector<SurfaceEdge<2>> parts_on(const mesh::Mesh<2>               &mesh,
-                                              const std::vector<SurfaceEdge<2>> &outlines,
-                                              const scene::BoundaryName         &where)
+  /// Those parts that are on one boundary, in their order.
+  template <int dim, class Part>
+  std::vector<Part> parts_on(const mesh::Mesh<dim>     &mesh,
+                             const std::vector<Part>   &parts,
+                             const scene::BoundaryName &where)
   {
-    return edges_on(mesh, outlines, where);
+    std::vector<Part> found;
+    for (const auto &part : parts)
+      if (part.body == where.body && mesh.on_boundary(where, part.boundary))
+        found.push_back(part);
+    return found;
   }
 } // namespace slipstick::mechanics
