@@ -87,8 +87,8 @@ namespace slipstick::app
       for (unsigned int k = 0; k < scene.contacts.size(); ++k)
         for (const auto &face : mechanics::parts_on(solver.mesh(), all, scene.contacts[k].slave))
           {
-            std::array<std::int64_t, 4> nodes;
-            bool                        is_complete = true;
+            std::vector<std::int64_t> nodes(face.n_nodes);
+            bool                      is_complete = true;
             for (unsigned int v = 0; v < nodes.size(); ++v)
               {
                 const auto found = number.find({k, face.keys[v]});

@@ -164,11 +164,6 @@ namespace slipstick::scene
           throw parameters.error(path, "unknown obstacle", suggest_name(master, obstacles));
         return;
       }
-    if (dim == 3)
-      throw parameters.error(path,
-                             "contact between bodies is not available in space (Dimension = 3) yet",
-                             "name one of the Obstacles" +
-                               (obstacles.empty() ? std::string() : ": " + join_names(obstacles)));
     pair.master = read_boundary(master, path, parameters, scene.bodies);
     if (pair.master->body == pair.slave.body &&
         (pair.master->boundary == pair.slave.boundary || pair.master->boundary == "*" || pair.slave.boundary == "*"))
