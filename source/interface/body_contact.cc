@@ -1,5 +1,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/interface/body_contact.h>
+#include <slipstick/interface/matching_faces.h>
 #include <slipstick/interface/pair_checks.h>
 
 #include <algorithm>
@@ -41,6 +42,19 @@ namespace slipstick::interface
       std::vector<mechanics::SurfaceEdge<dim>> outline;
       std::copy_if(all.begin(), all.end(), std::back_inserter(outline), [&](const auto &e) { return e.body == body; });
       return outline;
+    }
+
+    std::vector<MortarRow<3>> rows_of(const scene::Scene<3>                     &scene,
+                                      const mesh::Mesh<3>                       &mesh,
+                                      const scene::ContactPair<3>               &pair,
+                                      const std::vector<mechanics::SurfaceFace> &all)
+    {
+      auto rows = matching_rows(scene,
+                                pair,
+                                mechanics::parts_on(mesh, all, pair.slave),
+                                mechanics::parts_on(mesh, all, *pair.master));
+      check_first_gap(scene, mesh, pair, all, rows);
+      return rows;
     }
 
     template <int dim>
@@ -110,7 +124,7 @@ namespace slipstick::interface
         wanted[pair.slave.body] = wanted[pair.master->body] = true;
     if (std::find(wanted.begin(), wanted.end(), true) == wanted.end())
       return contacts;
-    const auto all = mechanics::outlines(mesh, spaces, wanted);
+    const auto all = mechanics::boundary_parts(mesh, spaces, wanted);
 
     Groups groups;
     for (unsigned int k = 0; k < scene.contacts.size(); ++k)
@@ -139,17 +153,6 @@ namespace slipstick::interface
     return contacts;
   }
 
-  template <>
-  BodyContacts<3> pair_bodies(const scene::Scene<3> &scene, const mesh::Mesh<3> &, const mechanics::Spaces<3> &)
-  {
-    for (const auto &pair : scene.contacts)
-      if (pair.master)
-        throw InputError("Contact " + pair.name + ": contact between bodies is not possible in space yet",
-                         "give an obstacle as Master");
-    BodyContacts<3> contacts;
-    contacts.rows.resize(scene.contacts.size());
-    return contacts;
-  }
-
   template BodyContacts<2> pair_bodies(const scene::Scene<2> &, const mesh::Mesh<2> &, const mechanics::Spaces<2> &);
+  template BodyContacts<3> pair_bodies(const scene::Scene<3> &, const mesh::Mesh<3> &, const mechanics::Spaces<3> &);
 } // namespace slipstick::interface

@@ -79,7 +79,8 @@ namespace slipstick::interface
       return least;
     }
 
-    std::string between(const scene::Scene<2> &scene, const scene::ContactPair<2> &pair)
+    template <int dim>
+    std::string between(const scene::Scene<dim> &scene, const scene::ContactPair<dim> &pair)
     {
       return "Contact " + pair.name + ": " + describe(scene, pair.slave) + " and " + describe(scene, *pair.master);
     }
@@ -275,19 +276,30 @@ namespace slipstick::interface
   {
     if (lies_behind(sides, rows))
       refuse_facing_away(scene, pair, rows);
+    check_first_gap(scene, mesh, pair, all, rows);
+  }
+
+  template <int dim>
+  void check_first_gap(const scene::Scene<dim>           &scene,
+                       const mesh::Mesh<dim>             &mesh,
+                       const scene::ContactPair<dim>     &pair,
+                       const Parts<dim>                  &all,
+                       const std::vector<MortarRow<dim>> &rows)
+  {
     if (pair.reach || pair.gap)
       return;
     double gap = infinity;
     for (const double t : scene.load_factors)
       for (const auto &row : rows)
         gap = std::min(gap, row.gap + pair.offset.value(row.position, t));
-    check_automatic_reach<2>(scene,
-                             mesh,
-                             pair,
-                             all,
-                             between(scene, pair),
-                             std::max(extent(sides.slave), extent(sides.master)),
-                             gap);
+    check_automatic_reach<dim>(scene,
+                               mesh,
+                               pair,
+                               all,
+                               between(scene, pair),
+                               std::max(extent(mechanics::parts_on(mesh, all, pair.slave)),
+                                        extent(mechanics::parts_on(mesh, all, *pair.master))),
+                               gap);
   }
 
   template <int dim>
@@ -308,6 +320,11 @@ namespace slipstick::interface
         check_obstacle_pair<dim>(scene, mesh, pair, all);
   }
 
+  template void        check_first_gap(const scene::Scene<3> &,
+                                       const mesh::Mesh<3> &,
+                                       const scene::ContactPair<3> &,
+                                       const Parts<3> &,
+                                       const std::vector<MortarRow<3>> &);
   template std::string describe(const scene::Scene<2> &, const scene::BoundaryName &);
   template std::string describe(const scene::Scene<3> &, const scene::BoundaryName &);
   template double      extent(const Parts<2> &);

@@ -397,7 +397,7 @@ namespace slipstick::interface
     return found;
   }
 
-  // Bodies touch obstacles alone.
+  // With obstacles: meshes of bodies in contact match.
   template <>
   Penetrations penetrations(const scene::Scene<3>              &scene,
                             const mesh::Mesh<3>                &mesh,
@@ -413,7 +413,7 @@ namespace slipstick::interface
     const auto moves = moves_of_outlines(mesh, spaces, u);
     const auto all   = mechanics::surfaces(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
     for (unsigned int k = 0; k < scene.contacts.size(); ++k)
-      if (const auto &pair = scene.contacts[k]; is_watched(pair))
+      if (const auto &pair = scene.contacts[k]; is_watched(pair) && !pair.master)
         {
           const auto slave = mechanics::parts_on(mesh, all, pair.slave);
           if (pair.reach)

@@ -21,6 +21,20 @@ namespace slipstick::interface
       return both;
     }
 
+    bool face_each_other(const Parts<2> &a, const Parts<2> &b)
+    {
+      return facing_distance(a, b).has_value();
+    }
+
+    bool face_each_other(const Parts<3> &a, const Parts<3> &b)
+    {
+      return std::any_of(a.begin(), a.end(), [&b](const auto &face) {
+        return std::any_of(b.begin(), b.end(), [&face](const auto &other) {
+          return face.normal() * other.normal() < facing_cosine;
+        });
+      });
+    }
+
     template <int dim>
     struct Sides
     {
@@ -66,14 +80,13 @@ namespace slipstick::interface
             refuse<dim>(scene, first, second, slave.front());
           return;
         }
-      if constexpr (dim == 2)
-        for (const bool is_crossed : {false, true})
-          {
-            const auto slave  = common(a.slave, is_crossed ? b.master : b.slave);
-            const auto master = common(a.master, is_crossed ? b.slave : b.master);
-            if (!slave.empty() && !master.empty() && facing_distance(slave, master))
-              refuse<dim>(scene, first, second, slave.front());
-          }
+      for (const bool is_crossed : {false, true})
+        {
+          const auto slave  = common(a.slave, is_crossed ? b.master : b.slave);
+          const auto master = common(a.master, is_crossed ? b.slave : b.master);
+          if (!slave.empty() && !master.empty() && face_each_other(slave, master))
+            refuse<dim>(scene, first, second, slave.front());
+        }
     }
   } // namespace
 

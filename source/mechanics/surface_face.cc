@@ -5,6 +5,7 @@
 #include <boost/serialization/vector.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace slipstick::mechanics
 {
@@ -19,6 +20,7 @@ namespace slipstick::mechanics
       SurfaceFace                           face;
       unsigned int                          v = 0;
       face.body                               = subdomain.body;
+      face.subdomain                          = subdomain.subdomain;
       face.boundary                           = cell->face(f)->boundary_id();
       spaces.for_each_face_node(subdomain,
                                 cell->face(f),
@@ -59,6 +61,23 @@ namespace slipstick::mechanics
   double SurfaceFace::chord() const
   {
     return std::max(node(0).distance(node(2)), node(1).distance(node(3)));
+  }
+
+  std::array<double, 4> SurfaceFace::shares() const
+  {
+    const double          gauss = 0.5 / std::sqrt(3.);
+    std::array<double, 4> result{};
+    for (const double s : {0.5 - gauss, 0.5 + gauss})
+      for (const double t : {0.5 - gauss, 0.5 + gauss})
+        {
+          const auto                  along_s = (1 - t) * (node(1) - node(0)) + t * (node(2) - node(3));
+          const auto                  along_t = (1 - s) * (node(3) - node(0)) + s * (node(2) - node(1));
+          const double                area    = cross_product_3d(along_s, along_t).norm() / 4;
+          const std::array<double, 4> N       = {{(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t}};
+          for (unsigned int i = 0; i < 4; ++i)
+            result[i] += N[i] * area;
+        }
+    return result;
   }
 
   std::vector<SurfaceFace> surfaces(const mesh::Mesh<3> &mesh, const Spaces<3> &spaces, const std::vector<bool> &wanted)

@@ -116,9 +116,9 @@ namespace slipstick::scene
              "Master",
              master,
              "",
-             dim == 3 ? "a name from Obstacles" : "BODY/BOUNDARY, or a name from Obstacles",
-             dim == 3 ? "rigid obstacle that it may touch; must be set"
-                      : "boundary of a body or rigid obstacle that it may touch; must be set");
+             "BODY/BOUNDARY, or a name from Obstacles",
+             std::string("boundary of a body or rigid obstacle that it may touch; must be set") +
+               (dim == 3 ? "; the meshes of two bodies must match where they face each other" : ""));
     law.declare(prm);
     add_text(prm,
              "Gap",
@@ -154,9 +154,7 @@ namespace slipstick::scene
     std::vector<std::string> obstacles;
     for (const Obstacle<dim> &obstacle : scene.obstacles)
       obstacles.push_back(obstacle.name);
-    parameters.require(path,
-                       std::string("set ") + (dim == 3 ? "" : "BODY/BOUNDARY, or ") + "a name from Obstacles (" +
-                         join_names(obstacles) + ")");
+    parameters.require(path, "set BODY/BOUNDARY, or a name from Obstacles (" + join_names(obstacles) + ")");
     if (master.find('/') == std::string::npos)
       {
         pair.obstacle = std::find(obstacles.begin(), obstacles.end(), master) - obstacles.begin();
@@ -164,11 +162,6 @@ namespace slipstick::scene
           throw parameters.error(path, "unknown obstacle", suggest_name(master, obstacles));
         return;
       }
-    if (dim == 3)
-      throw parameters.error(path,
-                             "contact between bodies is not available in space (Dimension = 3) yet",
-                             "name one of the Obstacles" +
-                               (obstacles.empty() ? std::string() : ": " + join_names(obstacles)));
     pair.master = read_boundary(master, path, parameters, scene.bodies);
     if (pair.master->body == pair.slave.body &&
         (pair.master->boundary == pair.slave.boundary || pair.master->boundary == "*" || pair.slave.boundary == "*"))

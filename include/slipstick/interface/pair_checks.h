@@ -47,6 +47,14 @@ namespace slipstick::interface
                    const std::vector<mechanics::SurfaceEdge<dim>> &all,
                    const std::vector<MortarRow<dim>>              &rows);
 
+  /// The rule of check_sides on the gap of the nearest row alone.
+  template <int dim>
+  void check_first_gap(const scene::Scene<dim>                         &scene,
+                       const mesh::Mesh<dim>                           &mesh,
+                       const scene::ContactPair<dim>                   &pair,
+                       const std::vector<mechanics::BoundaryPart<dim>> &all,
+                       const std::vector<MortarRow<dim>>               &rows);
+
   /// Checks the pairs with obstacles: some node must have an outward normal against the obstacle (facing_cosine) and a
   /// gap within the Reach; with an automatic one the rule is that of check_sides with the size of the slave boundary
   /// (and the diameter of a circle if that is larger). Bonds to obstacles are supports: they are not checked.

@@ -11,8 +11,9 @@ namespace slipstick::mechanics
   /// the one with the smallest key.
   struct SurfaceFace
   {
-    unsigned int                         body     = 0;
-    unsigned int                         boundary = 0; // boundary id
+    unsigned int                         body      = 0;
+    unsigned int                         boundary  = 0; // boundary id
+    unsigned int                         subdomain = 0;
     std::array<NodeKey, 4>               keys{};
     std::array<std::array<double, 3>, 4> at{}; // [mm]
     static constexpr unsigned int        n_nodes = 4;
@@ -20,7 +21,7 @@ namespace slipstick::mechanics
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &body &boundary &keys &at;
+      archive &body &boundary &subdomain &keys &at;
     }
 
     dealii::Point<3> node(const unsigned int i) const
@@ -39,6 +40,9 @@ namespace slipstick::mechanics
     }
 
     double chord() const; // longer diagonal [mm]
+
+    /// Integral of the shape function of every node [mm^2].
+    std::array<double, 4> shares() const;
 
     /// Order of the faces of all bodies that does not depend on the decomposition.
     bool operator<(const SurfaceFace &other) const
