@@ -5,7 +5,7 @@
 #include <slipstick/mechanics/elasticity.h>
 #include <slipstick/mechanics/loads.h>
 #include <slipstick/mechanics/singular_points.h>
-#include <slipstick/mechanics/surface_face.h>
+#include <slipstick/mechanics/surface_facet.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -83,12 +83,12 @@ namespace slipstick::app
       std::vector<bool> wanted(scene.bodies.size());
       for (const auto &pair : scene.contacts)
         wanted[pair.slave.body] = true;
-      const auto all = mechanics::surfaces(solver.mesh(), solver.spaces(), wanted);
+      const auto all = mechanics::outlines(solver.mesh(), solver.spaces(), wanted);
       for (unsigned int k = 0; k < scene.contacts.size(); ++k)
         for (const auto &face : mechanics::parts_on(solver.mesh(), all, scene.contacts[k].slave))
           {
-            std::array<std::int64_t, 4> nodes;
-            bool                        is_complete = true;
+            std::vector<std::int64_t> nodes(face.n_nodes);
+            bool                      is_complete = true;
             for (unsigned int v = 0; v < nodes.size(); ++v)
               {
                 const auto found = number.find({k, face.keys[v]});

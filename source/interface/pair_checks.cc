@@ -3,6 +3,7 @@
 #include <slipstick/interface/edge_tree.h>
 #include <slipstick/interface/obstacle.h>
 #include <slipstick/interface/pair_checks.h>
+#include <slipstick/interface/surface_pairing.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,20 +17,6 @@ namespace slipstick::interface
     return scene.bodies[where.body].name + "/" + where.boundary;
   }
 
-  template <class Part>
-  double extent(const std::vector<Part> &edges)
-  {
-    auto low = edges[0].node(0), high = low;
-    for (const auto &edge : edges)
-      for (unsigned int i = 0; i < edge.n_nodes; ++i)
-        for (unsigned int d = 0; d < edge.at[i].size(); ++d)
-          {
-            low[d]  = std::min(low[d], edge.at[i][d]);
-            high[d] = std::max(high[d], edge.at[i][d]);
-          }
-    return low.distance(high);
-  }
-
   namespace
   {
     // A master is behind its slave when it is deeper than this part of a mean slave edge.
@@ -40,8 +27,6 @@ namespace slipstick::interface
     constexpr unsigned int n_compared = 500;
     constexpr double       infinity   = std::numeric_limits<double>::infinity();
 
-    using Edges = std::vector<mechanics::SurfaceEdge<2>>;
-
     /// Edges or faces.
     template <int dim>
     using Parts = std::vector<mechanics::BoundaryPart<dim>>;
@@ -51,27 +36,32 @@ namespace slipstick::interface
       return std::acos(std::min(1., std::max(-1., cosine))) * 180 / dealii::numbers::PI;
     }
 
-    bool any_inside(const Edges &side, const ClosedOutline &body)
+    /// Is any point of a side inside the body with the outline?
+    template <class Part>
+    bool any_inside(const std::vector<Part> &side, const std::vector<Part> &outline)
     {
-      for (const auto &edge : side)
-        for (const double s : {0.05, 0.25, 0.5, 0.75, 0.95})
-          if (body.contains(edge.point(s)))
+      const ClosedSurface<Part> body(outline);
+      for (const auto &part : side)
+        for (const auto &x : mechanics::inner_points(part))
+          if (body.contains(x))
             return true;
       return false;
     }
 
     /// Largest angle between outward normals of two sides [degrees].
-    double largest_angle(const Edges &a, const Edges &b)
+    template <class Part>
+    double largest_angle(const std::vector<Part> &a, const std::vector<Part> &b)
     {
       const unsigned int step_a = a.size() / n_compared + 1, step_b = b.size() / n_compared + 1;
       double             least = 1;
       for (unsigned int i = 0; i < a.size(); i += step_a)
         for (unsigned int j = 0; j < b.size(); j += step_b)
-          least = std::min(least, a[i].normal(0.5) * b[j].normal(0.5));
+          least = std::min(least, mechanics::middle_normal(a[i]) * mechanics::middle_normal(b[j]));
       return degrees(least);
     }
 
-    double least_gap(const std::vector<MortarRow<2>> &rows)
+    template <int dim>
+    double least_gap(const std::vector<MortarRow<dim>> &rows)
     {
       double least = infinity;
       for (const auto &row : rows)
@@ -85,9 +75,10 @@ namespace slipstick::interface
       return "Contact " + pair.name + ": " + describe(scene, pair.slave) + " and " + describe(scene, *pair.master);
     }
 
-    [[noreturn]] void refuse_facing_away(const scene::Scene<2>           &scene,
-                                         const scene::ContactPair<2>     &pair,
-                                         const std::vector<MortarRow<2>> &rows)
+    template <int dim>
+    [[noreturn]] void refuse_facing_away(const scene::Scene<dim>           &scene,
+                                         const scene::ContactPair<dim>     &pair,
+                                         const std::vector<MortarRow<dim>> &rows)
     {
       throw InputError(
         between(scene, pair) +
@@ -215,8 +206,8 @@ namespace slipstick::interface
     }
   } // namespace
 
-  template <>
-  bool lies_behind(const PairSides<2> &sides, const std::vector<MortarRow<2>> &rows)
+  template <int dim>
+  bool lies_behind(const PairSides<dim> &sides, const std::vector<MortarRow<dim>> &rows)
   {
     double chords = 0;
     for (const auto &edge : sides.slave)
@@ -226,15 +217,15 @@ namespace slipstick::interface
         return false;
     if (!rows.empty() && sides.slave.front().body == sides.master.front().body)
       return true; // their outline is one: all points of both are on it
-    return !rows.empty() && !any_inside(sides.slave, ClosedOutline(sides.master_outline)) &&
-           !any_inside(sides.master, ClosedOutline(sides.slave_outline));
+    return !rows.empty() && !any_inside(sides.slave, sides.master_outline) &&
+           !any_inside(sides.master, sides.slave_outline);
   }
 
-  template <>
-  void refuse_pair(const scene::Scene<2>       &scene,
-                   const scene::ContactPair<2> &pair,
-                   const PairSides<2>          &sides,
-                   const double                 reach)
+  template <int dim>
+  void refuse_pair(const scene::Scene<dim>       &scene,
+                   const scene::ContactPair<dim> &pair,
+                   const PairSides<dim>          &sides,
+                   const double                   reach)
   {
     const std::string normals_remedy = "choose boundaries whose outward normals oppose each other, or move the bodies";
     if (sides.slave.empty() || sides.master.empty())
@@ -266,40 +257,29 @@ namespace slipstick::interface
                      "raise Contact " + pair.name + "/Reach, move the bodies, or exchange slave and master");
   }
 
-  template <>
-  void check_sides(const scene::Scene<2>           &scene,
-                   const mesh::Mesh<2>             &mesh,
-                   const scene::ContactPair<2>     &pair,
-                   const PairSides<2>              &sides,
-                   const Edges                     &all,
-                   const std::vector<MortarRow<2>> &rows)
+  template <int dim>
+  void check_sides(const scene::Scene<dim>           &scene,
+                   const mesh::Mesh<dim>             &mesh,
+                   const scene::ContactPair<dim>     &pair,
+                   const PairSides<dim>              &sides,
+                   const Parts<dim>                  &all,
+                   const std::vector<MortarRow<dim>> &rows)
   {
     if (lies_behind(sides, rows))
       refuse_facing_away(scene, pair, rows);
-    check_first_gap(scene, mesh, pair, all, rows);
-  }
-
-  template <int dim>
-  void check_first_gap(const scene::Scene<dim>           &scene,
-                       const mesh::Mesh<dim>             &mesh,
-                       const scene::ContactPair<dim>     &pair,
-                       const Parts<dim>                  &all,
-                       const std::vector<MortarRow<dim>> &rows)
-  {
     if (pair.reach || pair.gap)
       return;
     double gap = infinity;
     for (const double t : scene.load_factors)
       for (const auto &row : rows)
         gap = std::min(gap, row.gap + pair.offset.value(row.position, t));
-    check_automatic_reach<dim>(scene,
-                               mesh,
-                               pair,
-                               all,
-                               between(scene, pair),
-                               std::max(extent(mechanics::parts_on(mesh, all, pair.slave)),
-                                        extent(mechanics::parts_on(mesh, all, *pair.master))),
-                               gap);
+    check_automatic_reach(scene,
+                          mesh,
+                          pair,
+                          all,
+                          between(scene, pair),
+                          std::max(extent(sides.slave), extent(sides.master)),
+                          gap);
   }
 
   template <int dim>
@@ -314,21 +294,30 @@ namespace slipstick::interface
         wanted[pair.slave.body] = true;
     if (std::find(wanted.begin(), wanted.end(), true) == wanted.end())
       return;
-    const auto all = mechanics::boundary_parts(mesh, spaces, wanted);
+    const auto all = mechanics::outlines(mesh, spaces, wanted);
     for (const auto &pair : scene.contacts)
       if (is_checked(pair))
         check_obstacle_pair<dim>(scene, mesh, pair, all);
   }
 
-  template void        check_first_gap(const scene::Scene<3> &,
-                                       const mesh::Mesh<3> &,
-                                       const scene::ContactPair<3> &,
-                                       const Parts<3> &,
-                                       const std::vector<MortarRow<3>> &);
   template std::string describe(const scene::Scene<2> &, const scene::BoundaryName &);
   template std::string describe(const scene::Scene<3> &, const scene::BoundaryName &);
-  template double      extent(const Parts<2> &);
-  template double      extent(const Parts<3> &);
+  template bool        lies_behind(const PairSides<2> &, const std::vector<MortarRow<2>> &);
+  template bool        lies_behind(const PairSides<3> &, const std::vector<MortarRow<3>> &);
+  template void refuse_pair(const scene::Scene<2> &, const scene::ContactPair<2> &, const PairSides<2> &, const double);
+  template void refuse_pair(const scene::Scene<3> &, const scene::ContactPair<3> &, const PairSides<3> &, const double);
+  template void check_sides(const scene::Scene<2> &,
+                            const mesh::Mesh<2> &,
+                            const scene::ContactPair<2> &,
+                            const PairSides<2> &,
+                            const Parts<2> &,
+                            const std::vector<MortarRow<2>> &);
+  template void check_sides(const scene::Scene<3> &,
+                            const mesh::Mesh<3> &,
+                            const scene::ContactPair<3> &,
+                            const PairSides<3> &,
+                            const Parts<3> &,
+                            const std::vector<MortarRow<3>> &);
   template void check_obstacle_pairs(const scene::Scene<2> &, const mesh::Mesh<2> &, const mechanics::Spaces<2> &);
   template void check_obstacle_pairs(const scene::Scene<3> &, const mesh::Mesh<3> &, const mechanics::Spaces<3> &);
 } // namespace slipstick::interface

@@ -108,18 +108,14 @@ namespace slipstick::interface
     }
 
     /// On a face, bilinear.
-    dealii::Point<3> at_place(const mechanics::SurfaceFace &face, const unsigned int i)
+    dealii::Point<3> at_place(const mechanics::SurfaceFacet &face, const unsigned int i)
     {
-      const double                s = double(i % n_places_across) / (n_places_across - 1);
-      const double                t = double(i / n_places_across) / (n_places_across - 1);
-      const std::array<double, 4> N = {{(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t}};
-      dealii::Point<3>            x;
-      for (unsigned int k = 0; k < N.size(); ++k)
-        x += N[k] * dealii::Tensor<1, 3>(face.node(k));
-      return x;
+      const double s = double(i % n_places_across) / (n_places_across - 1);
+      const double t = double(i / n_places_across) / (n_places_across - 1);
+      return face.n_nodes == 3 ? face.point({s * (1 - t), t}) : face.point({s, t});
     }
 
-    constexpr unsigned int n_places_on(const mechanics::SurfaceFace &)
+    constexpr unsigned int n_places_on(const mechanics::SurfaceFacet &)
     {
       return n_places_across * n_places_across;
     }
@@ -397,7 +393,7 @@ namespace slipstick::interface
     return found;
   }
 
-  // With obstacles: meshes of bodies in contact match.
+  // With obstacles: between bodies nothing is looked for.
   template <>
   Penetrations penetrations(const scene::Scene<3>              &scene,
                             const mesh::Mesh<3>                &mesh,
@@ -411,7 +407,7 @@ namespace slipstick::interface
     if (scene.contacts.empty())
       return found;
     const auto moves = moves_of_outlines(mesh, spaces, u);
-    const auto all   = mechanics::surfaces(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
+    const auto all   = mechanics::outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
     for (unsigned int k = 0; k < scene.contacts.size(); ++k)
       if (const auto &pair = scene.contacts[k]; is_watched(pair) && !pair.master)
         {

@@ -21,20 +21,6 @@ namespace slipstick::interface
       return both;
     }
 
-    bool face_each_other(const Parts<2> &a, const Parts<2> &b)
-    {
-      return facing_distance(a, b).has_value();
-    }
-
-    bool face_each_other(const Parts<3> &a, const Parts<3> &b)
-    {
-      return std::any_of(a.begin(), a.end(), [&b](const auto &face) {
-        return std::any_of(b.begin(), b.end(), [&face](const auto &other) {
-          return face.normal() * other.normal() < facing_cosine;
-        });
-      });
-    }
-
     template <int dim>
     struct Sides
     {
@@ -84,7 +70,7 @@ namespace slipstick::interface
         {
           const auto slave  = common(a.slave, is_crossed ? b.master : b.slave);
           const auto master = common(a.master, is_crossed ? b.slave : b.master);
-          if (!slave.empty() && !master.empty() && face_each_other(slave, master))
+          if (!slave.empty() && !master.empty() && facing_distance(slave, master))
             refuse<dim>(scene, first, second, slave.front());
         }
     }
@@ -104,7 +90,7 @@ namespace slipstick::interface
         if (pair.master)
           wanted[pair.master->body] = true;
       }
-    const auto              all = mechanics::boundary_parts(mesh, spaces, wanted);
+    const auto              all = mechanics::outlines(mesh, spaces, wanted);
     std::vector<Sides<dim>> sides;
     for (const auto &pair : scene.contacts)
       sides.push_back({mechanics::parts_on(mesh, all, pair.slave),

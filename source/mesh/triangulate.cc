@@ -34,7 +34,8 @@ namespace slipstick::mesh
         if (face->at_boundary())
           {
             typename MeshPiece<dim>::Face key;
-            for (unsigned int v = 0; v < key.size(); ++v)
+            key.fill(MeshPiece<dim>::no_vertex);
+            for (const unsigned int v : face->vertex_indices())
               key[v] = face->vertex_index(v);
             std::sort(key.begin(), key.end());
             const auto found = boundary.find(key);

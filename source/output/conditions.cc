@@ -1,5 +1,5 @@
 #include <slipstick/mechanics/points.h>
-#include <slipstick/mechanics/surface_face.h>
+#include <slipstick/mechanics/surface_facet.h>
 #include <slipstick/output/conditions.h>
 #include <slipstick/output/csv.h>
 
@@ -76,7 +76,7 @@ namespace slipstick::output
     std::vector<bool> wanted(scene.bodies.size());
     for (const auto &boundary : boundaries)
       wanted[boundary.where.body] = true;
-    const auto             parts  = mechanics::boundary_parts(mesh, spaces, wanted);
+    const auto             parts  = mechanics::outlines(mesh, spaces, wanted);
     constexpr unsigned int n_ends = dim == 2 ? 2 : 4;
 
     const auto                         named = points_of(scene);

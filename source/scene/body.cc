@@ -27,7 +27,8 @@ namespace slipstick::scene
                                               {"ball", Shape::ball},
                                               {"half ball", Shape::half_ball},
                                               {"cylinder", Shape::cylinder},
-                                              {"tube", Shape::tube}};
+                                              {"tube", Shape::tube},
+                                              {"mesh", Shape::mesh}};
       return dim == 3 ? of_space : of_plane;
     }
 
@@ -65,6 +66,9 @@ namespace slipstick::scene
           {"Length", {Shape::cylinder, Shape::tube}},
           {"Cells around", {Shape::ball, Shape::half_ball, Shape::cylinder, Shape::tube}},
           {"Cells along axis", {Shape::cylinder, Shape::tube}},
+          {"File", {Shape::mesh}},
+          {"Part", {Shape::mesh}},
+          {"Scale", {Shape::mesh}},
         };
       return dim == 3 ? of_space : of_plane;
     }
@@ -124,6 +128,26 @@ namespace slipstick::scene
     rotation_axis[dim - 1] = 1;
   }
 
+  template <int dim>
+  void BodySection<dim>::declare_file(dealii::ParameterHandler &prm)
+  {
+    add_text(prm,
+             "File",
+             body.file,
+             "",
+             dim == 3 ? "a file: .msh (Gmsh 2.2, 4.1)"
+                      : "a file: .msh (Gmsh 2.2, 4.1), .inp (Abaqus), .ucd, .unv, .vtk",
+             "mesh: relative to the directory of the .prm, then to the working directory; must be set");
+    add_text(prm,
+             "Part",
+             body.part,
+             "",
+             dim == 3 ? "a physical name of volumes in the file, or its number"
+                      : "a physical name of surfaces in the file, or its number",
+             "mesh: which cells make the body; empty: all");
+    add_number(prm, "Scale", body.scale, "-", Interval::above(0), "mesh: factor on its coordinates, 1000 for metres");
+  }
+
   template <>
   void BodySection<2>::declare_geometry(dealii::ParameterHandler &prm)
   {
@@ -153,19 +177,7 @@ namespace slipstick::scene
       4,
       max_cells,
       "disc: edges on the whole circle, a multiple of 4 and at least 8; half disc: on its half, quarter disc: on its quarter, an even number");
-    add_text(prm,
-             "File",
-             body.file,
-             "",
-             "a file: .msh (Gmsh 2.2, 4.1), .inp (Abaqus), .ucd, .unv, .vtk",
-             "mesh: relative to the directory of the .prm, then to the working directory; must be set");
-    add_text(prm,
-             "Part",
-             body.part,
-             "",
-             "a physical name of surfaces in the file, or its number",
-             "mesh: which cells make the body; empty: all");
-    add_number(prm, "Scale", body.scale, "-", Interval::above(0), "mesh: factor on its coordinates, 1000 for metres");
+    declare_file(prm);
     add_choice(prm,
                "Outline",
                body.has_smooth_outline,
@@ -190,7 +202,7 @@ namespace slipstick::scene
                shapes<3>(),
                "geometry and names of the boundaries: cuboid: left, right (x), bottom, top (y), back, front (z); ball: "
                "surface; half ball (below its centre): surface, flat; cylinder (along z): side, back, front; tube: "
-               "inner, outer, back, front; * is the whole surface of any body");
+               "inner, outer, back, front; mesh: the physical names in the file; * is the whole surface of any body");
     add_point(prm, "Origin", body.origin, "mm", Interval(), "cuboid: left, bottom, back corner");
     add_point(prm, "Size", body.size, "mm", Interval::above(0), "cuboid: edge lengths; must be set");
     add_counts_or_auto<3>(prm,
@@ -218,6 +230,7 @@ namespace slipstick::scene
                       body.cells_along_axis,
                       max_cells,
                       "cylinder, tube; auto: as long as those around");
+    declare_file(prm);
   }
 
   template <int dim>
@@ -375,6 +388,10 @@ namespace slipstick::scene
                              "no boundary is named in Refine towards",
                              "name one, for example: set Refine towards = " +
                                (boundaries.empty() ? std::string("contact") : boundaries.front()));
+    if (dim == 3 && body.shape == Shape::mesh && body.refinements + scene.discretization.refinements > 0)
+      throw parameters.error(section + "/File",
+                             "is not refined in space (Dimension = 3) yet",
+                             "set Refinements of the body and of Discretization to 0, and mesh it finer");
     if (body.shape == Shape::mesh)
       {
         const auto found = parameters.find_file(body.file);

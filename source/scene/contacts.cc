@@ -117,8 +117,7 @@ namespace slipstick::scene
              master,
              "",
              "BODY/BOUNDARY, or a name from Obstacles",
-             std::string("boundary of a body or rigid obstacle that it may touch; must be set") +
-               (dim == 3 ? "; the meshes of two bodies must match where they face each other" : ""));
+             "boundary of a body or rigid obstacle that it may touch; must be set");
     law.declare(prm);
     add_text(prm,
              "Gap",

@@ -198,7 +198,7 @@ class LoadsAndSupports(Solids):
 
 
 class TwoBodies(Solids):
-    """Node to node on matching meshes."""
+    """Matching meshes, node to node, and others."""
 
     LOW = {'Size': '4, 2, 3', 'Cells': '4, 2, 3', 'Material': 'elastic'}
     HIGH = {'Size': '4, 2, 2', 'Cells': '4, 3, 2', 'Origin': '1, 2, 0', 'Material': 'elastic'}
@@ -258,12 +258,15 @@ class TwoBodies(Solids):
         pair = a.summary['results']['contact'][0]
         self.near(pair['force'], [0, 12, 4 * (9 / 2 - 3)], 1e-8)
 
-    def test_meshes_that_do_not_match_are_refused(self):
-        finer = {**self.HIGH, 'Cells': '8, 3, 4'}
-        for high, words in ((finer, 'do not match at ('), ({**self.HIGH, 'Origin': '1.3, 2, 0'}, 'do not match at ('),
-                            ({**self.HIGH, 'Origin': '1, 40, 0'}, 'out of reach'),
-                            ({**self.HIGH, 'Origin': '9, 2, 0'}, 'do not face each other')):
-            result = solve(self.stack(high=high))
+    def test_meshes_that_do_not_match_are_coupled_by_mortar(self):
+        finer = {**self.HIGH, 'Cells': '6, 3, 5'}
+        result = converged(self.stack(high=finer), ranks=2)
+        pair = result.summary['results']['contact'][0]
+        self.near(pair['force'], [-1.2 * 8, 80, -0.9 * 8], 1e-6)
+        case = self.stack(high=finer, law={'Law': 'frictionless', 'Discretization': 'node to node'})
+        for case, words in ((case, 'the meshes do not match'), (self.stack(high={**self.HIGH, 'Origin': '1, 40, 0'}), 'out of reach'),
+                            (self.stack(high={**self.HIGH, 'Origin': '30, 2, 0'}), 'do not')):
+            result = solve(case)
             self.assertEqual(result.status, 2, result)
             self.assertIn(words, result.stderr)
 
@@ -339,12 +342,11 @@ class Refused(Solids):
                 ('Error bars', 'true', "Error bars = 'true'", 'the plane'), ('Goal', 'strain_energy', 'Goal', 'the plane'),
                 ('Adaptivity/Max meshes', 3, 'Adaptivity/Max meshes', 'the plane'),
                 ('Contact search/Mode', 'automatic', 'Contact search/Mode', 'the plane'),
-                ('Contact sphere/Discretization', 'mortar', 'Contact sphere/Discretization', 'the plane'),
                 ('Contact sphere/Master', 'cube/top', 'Contact sphere: cube/bottom and cube/top'),
                 ('Body cube/Shape', 'disc', "Shape = 'disc'", 'cuboid'), ('Body cube/Size', '10, 10', "Size = '10, 10'"),
                 ('Body cube/Thickness', 2, 'Thickness', 'the plane'), ('Body cube/Outline', 'polygon', 'Outline', 'the plane'),
                 ('Body cube/Refine towards', 'bottom', 'Refine towards', 'the plane'),
-                ('Body cube/File', 'a.msh', 'Body cube/File', 'the plane'),
+                ('Body cube/File', 'a.msh', 'Body cube/File', 'has no meaning for Shape = cuboid'),
                 ('Body cube/Rotation axis', '0, 0, 0', "Rotation axis = '0, 0, 0'", 'no length'),
                 ('Body cube/Radius', 3, 'Radius', 'has no meaning for Shape = cuboid'),
                 ('Obstacle sphere/Shape', 'polyline', "Shape = 'polyline'", 'half space'),

@@ -5,7 +5,6 @@
 #include <slipstick/contact/result.h>
 #include <slipstick/output/directory.h>
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -27,7 +26,7 @@ namespace slipstick::output
     std::vector<contact::ContactNode> nodes;
 
     /// In space: the faces between nodes, by their numbers in `nodes`, which are then in the order of output.
-    std::vector<std::array<std::int64_t, 4>> faces = {};
+    std::vector<std::vector<std::int64_t>> faces = {};
   };
 
   /// Writes contact.csv from rank 0, whose arguments count: one row a node, steps in the given order, in a step by pair

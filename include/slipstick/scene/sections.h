@@ -91,6 +91,7 @@ namespace slipstick::scene
 
   private:
     void declare_geometry(dealii::ParameterHandler &prm);
+    void declare_file(dealii::ParameterHandler &prm);
     void declare_refinement(dealii::ParameterHandler &prm);
     void check_parameters_fit(const Parameters &parameters) const;
 
