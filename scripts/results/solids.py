@@ -1,6 +1,7 @@
 """Pictures of solids: fields on their surface, seen from the front, right and above; tractions on contact surfaces."""
 
 import math
+import xml.etree.ElementTree
 
 import matplotlib
 matplotlib.use("Agg")
@@ -9,7 +10,7 @@ import matplotlib.pyplot as plt
 import matplotlib.tri
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
 from . import bands, fields
 
@@ -17,7 +18,9 @@ DRAWN_DISPLACEMENT = 0.04  # of the size of the scene
 VIEW = (0.55, 0.45, 1.0)  # from where it is seen: x to the right, y upwards, z to the front
 DPI = 150
 EDGE_ANGLE = 30  # degrees between faces: their common edge is drawn
-FACES = np.array([[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]])  # outwards, of VTK's hexahedron
+# Outwards, of VTK's hexahedron and tetrahedron: a triangle has its last corner twice.
+FACES = {8: np.array([[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]]),
+         4: np.array([[0, 2, 1, 1], [0, 1, 3, 3], [1, 2, 3, 3], [2, 0, 3, 3]])}
 STATUS_COLOURS = {"open": "0.8", "stick": "tab:blue", "slip": "tab:red"}
 MOST_ARROWS = 24  # along a side
 
@@ -30,20 +33,34 @@ def axes_of_view():
     return right, np.cross(towards, right), towards
 
 
+def pieces(files):
+    """The subdomains of .pvtu files: their cells are of one kind."""
+    found = []
+    for file in files:
+        if file.suffix == ".pvtu":
+            found += [file.parent / piece.get("Source") for piece in xml.etree.ElementTree.parse(file).getroot().iter("Piece")]
+        else:
+            found.append(file)
+    return found
+
+
 class SolidGrid:
-    """Hexahedra and fields of one step. Points are repeated from subdomain to subdomain."""
+    """Hexahedra, tetrahedra and fields of one step. Points are repeated from subdomain to subdomain."""
 
     def __init__(self, files):
         grids = [self.read(file) for file in files]
         offsets = np.cumsum([0] + [len(grid[0]) for grid in grids])
         self.points = np.concatenate([grid[0] for grid in grids])
-        self.cells = np.concatenate([grid[1] + offset for grid, offset in zip(grids, offsets)])
+        self.cells = np.concatenate([grid[1][:, :4] + offset for grid, offset in zip(grids, offsets)])
+        self.faces = np.concatenate([grid[1][:, FACES[grid[1].shape[1]]].reshape(-1, 4) + offset
+                                     for grid, offset in zip(grids, offsets)])
         self.point_fields = {name: np.concatenate([grid[2][name] for grid in grids]) for name in grids[0][2]}
         self.cell_fields = {name: np.concatenate([grid[3][name] for grid in grids]) for name in grids[0][3]}
 
     @staticmethod
     def read(file):
-        reader = vtkXMLPUnstructuredGridReader() if file.suffix == ".pvtu" else vtkXMLUnstructuredGridReader()
+        """Of one subdomain."""
+        reader = vtkXMLUnstructuredGridReader()
         reader.SetFileName(str(file))
         reader.Update()
         grid = reader.GetOutput()
@@ -53,7 +70,8 @@ class SolidGrid:
         def named(data):
             return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
 
-        cells = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 8)
+        corners = len(vtk_to_numpy(grid.GetCells().GetConnectivityArray())) // grid.GetNumberOfCells()
+        cells = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, corners)  # one kind a subdomain
         return (vtk_to_numpy(grid.GetPoints().GetData()).astype(float), cells, named(grid.GetPointData()),
                 named(grid.GetCellData()))
 
@@ -66,11 +84,10 @@ class SolidGrid:
         low, size = self.points.min(axis=0), max(np.ptp(self.points, axis=0))
         rounded = np.floor((self.points - low) / size * 2**20 + 0.3).astype(np.int64)
         names = np.unique(rounded, axis=0, return_inverse=True)[1].reshape(-1)
-        faces = self.cells[:, FACES].reshape(-1, 4)
-        keys = np.sort(names[faces], axis=1)
+        keys = np.sort(names[self.faces], axis=1)
         _, first, n = np.unique(keys, axis=0, return_index=True, return_counts=True)
         self.names = names
-        return faces[first[n == 1]]
+        return self.faces[first[n == 1]]
 
 
 class SolidPainter:
@@ -179,7 +196,10 @@ class ContactSurfacePainter:
         surface = reader.GetOutput()
         if surface.GetNumberOfPoints() != n or surface.GetNumberOfPolys() == 0:
             return np.zeros((0, 4), int)
-        return vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 4)
+        connectivity = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
+        first = vtk_to_numpy(surface.GetPolys().GetOffsetsArray())
+        corners = np.minimum(np.arange(4)[None, :], np.diff(first)[:, None] - 1)  # the last one of a triangle twice
+        return connectivity[first[:-1, None] + corners]
 
     def draw(self, step):
         rows = [row for row in self.run.contact if int(row["step"]) == step]

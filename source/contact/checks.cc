@@ -316,7 +316,8 @@ namespace slipstick::contact
     }
 
     /// One node of a bonded pair: it sticks whatever the tractions; a row that others imply carries none.
-    ContactNode bonded_node(const tfeti::ContactPoint &point,
+    ContactNode bonded_node(const tfeti::DualProblem  &dual,
+                            const tfeti::ContactPoint &point,
                             const DistributedVector   &multipliers,
                             const DistributedVector   &jumps)
     {
@@ -337,6 +338,8 @@ namespace slipstick::contact
           node.tangential_traction = -tangential / node.area;
           node.slip                = jumps.local_element(point.tangential_row);
         }
+      if (is_in_space(point))
+        complete_in_space(dual, point, multipliers, jumps, node);
       node.moment_mismatch = moment_mismatch(point, node, node.pressure * node.area, tangential);
       return node;
     }
@@ -492,7 +495,7 @@ namespace slipstick::contact
       }
     for (const auto &point : constraints.bonded_points)
       {
-        result.nodes.push_back(bonded_node(point, multipliers, jumps));
+        result.nodes.push_back(bonded_node(dual, point, multipliers, jumps));
         result.keys.push_back(point.key);
       }
     MPI_Allreduce(MPI_IN_PLACE, energies.data(), energies.size(), MPI_DOUBLE, MPI_SUM, comm);

@@ -66,14 +66,13 @@ namespace slipstick::interface
             refuse<dim>(scene, first, second, slave.front());
           return;
         }
-      if constexpr (dim == 2)
-        for (const bool is_crossed : {false, true})
-          {
-            const auto slave  = common(a.slave, is_crossed ? b.master : b.slave);
-            const auto master = common(a.master, is_crossed ? b.slave : b.master);
-            if (!slave.empty() && !master.empty() && facing_distance(slave, master))
-              refuse<dim>(scene, first, second, slave.front());
-          }
+      for (const bool is_crossed : {false, true})
+        {
+          const auto slave  = common(a.slave, is_crossed ? b.master : b.slave);
+          const auto master = common(a.master, is_crossed ? b.slave : b.master);
+          if (!slave.empty() && !master.empty() && facing_distance(slave, master))
+            refuse<dim>(scene, first, second, slave.front());
+        }
     }
   } // namespace
 

@@ -60,13 +60,22 @@ namespace slipstick::mesh
           if constexpr (dim == 2)
             middle += 0.5 * (mesh.piece.vertices[face.vertices[1]] - middle);
           else
-            middle +=
-              (mesh.piece.vertices[face.vertices[1]] + dealii::Tensor<1, dim>(mesh.piece.vertices[face.vertices[2]]) +
-               dealii::Tensor<1, dim>(mesh.piece.vertices[face.vertices[3]]) - 3. * middle) /
-              4.;
+            {
+              dealii::Tensor<1, dim> sum;
+              unsigned int           n = 0;
+              for (const unsigned int v : face.vertices)
+                if (v != MeshPiece<dim>::no_vertex)
+                  {
+                    sum += mesh.piece.vertices[v];
+                    ++n;
+                  }
+              middle = dealii::Point<dim>(sum / n);
+            }
           const auto holds = [&](const dealii::Point<dim> &x) { return condition.value(x, 0.) != 0; };
           const bool takes = holds(middle);
           if (std::any_of(face.vertices.begin(), face.vertices.end(), [&](const unsigned int v) {
+                if (v == MeshPiece<dim>::no_vertex)
+                  return false;
                 const auto &x = mesh.piece.vertices[v];
                 return takes != holds(x + 2 * end_of_edge * (middle - x));
               }))

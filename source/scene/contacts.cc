@@ -116,9 +116,8 @@ namespace slipstick::scene
              "Master",
              master,
              "",
-             dim == 3 ? "a name from Obstacles" : "BODY/BOUNDARY, or a name from Obstacles",
-             dim == 3 ? "rigid obstacle that it may touch; must be set"
-                      : "boundary of a body or rigid obstacle that it may touch; must be set");
+             "BODY/BOUNDARY, or a name from Obstacles",
+             "boundary of a body or rigid obstacle that it may touch; must be set");
     law.declare(prm);
     add_text(prm,
              "Gap",
@@ -154,9 +153,7 @@ namespace slipstick::scene
     std::vector<std::string> obstacles;
     for (const Obstacle<dim> &obstacle : scene.obstacles)
       obstacles.push_back(obstacle.name);
-    parameters.require(path,
-                       std::string("set ") + (dim == 3 ? "" : "BODY/BOUNDARY, or ") + "a name from Obstacles (" +
-                         join_names(obstacles) + ")");
+    parameters.require(path, "set BODY/BOUNDARY, or a name from Obstacles (" + join_names(obstacles) + ")");
     if (master.find('/') == std::string::npos)
       {
         pair.obstacle = std::find(obstacles.begin(), obstacles.end(), master) - obstacles.begin();

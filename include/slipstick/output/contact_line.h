@@ -5,7 +5,6 @@
 #include <slipstick/contact/result.h>
 #include <slipstick/output/directory.h>
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
