@@ -20,9 +20,9 @@
 //   `hold(free, gaps, well) const`   the free entries and as many others, with small gaps, as make the face regular if that
 //       can be; or, if that is asked for, far from singular
 // It may have `has_loose_bodies() const` and
-//     `balance_bodies(stiffness, set, moved) const`, which moves bodies that nothing but entries with bounds holds,
-//       moved -= stiffness times their jumps, so that proj(moved) balances their loads: the least of the potential of the
-//       projected forces. So sets are predicted that can bear the loads.
+//     `balance_bodies(stiffness, set, tolerated, moved) const`, which moves bodies that nothing but entries with bounds holds,
+//       moved -= stiffness times their jumps, so that proj(moved) balances their loads, up to the part `tolerated` of all
+//       forces: the least of the potential of the projected forces. So sets are predicted that can bear the loads.
 #pragma once
 
 #include <slipstick/qp/active_set.h>
@@ -368,6 +368,7 @@ namespace slipstick::qp
         if (!(merit < merits.back()))
           set.soften();
         merits.push_back(merit);
+        set.approach(merit / goal.reference);
         std::swap(x, y);
         std::swap(Fx, Fy);
         std::swap(g, gy);
