@@ -141,12 +141,13 @@ namespace slipstick::interface
     }
 
     /// Slave nodes that have no row within the Reach of the pair, but one without it.
-    void find_beyond_reach(const scene::ContactPair<2> &pair,
-                           const Edges                 &slave,
-                           const Edges                 &master,
-                           const Moves<2>              &moves,
-                           const double                 t,
-                           std::optional<Penetration>  &deepest)
+    template <int dim>
+    void find_beyond_reach(const scene::ContactPair<dim> &pair,
+                           const Parts<dim>              &slave,
+                           const Parts<dim>              &master,
+                           const Moves<dim>              &moves,
+                           const double                   t,
+                           std::optional<Penetration>    &deepest)
     {
       auto both = slave;
       both.insert(both.end(), master.begin(), master.end());
@@ -159,13 +160,13 @@ namespace slipstick::interface
       for (const auto &row : rows_within(extent(both)))
         if (paired.count({row.slave, row.side}) == 0)
           {
-            Tensor closing;
+            dealii::Tensor<1, dim> closing;
             for (const auto &[key, weight] : row.slave_weights)
               closing += weight * moves.at(key);
             for (const auto &[key, weight] : row.master_weights)
               closing -= weight * moves.at(key);
             const double gap = row.gap + pair.offset.value(row.position, t);
-            take(deepest, closing * row.normal - gap, row.position, row.full_length, gap);
+            take(deepest, closing * row.normal - gap, row.position, std::pow(row.full_length, 1. / (dim - 1)), gap);
           }
     }
 
@@ -372,7 +373,12 @@ namespace slipstick::interface
           continue;
         const auto slave = mechanics::edges_on(mesh, all, pair.slave);
         if (pair.master && pair.reach)
-          find_beyond_reach(pair, slave, mechanics::edges_on(mesh, all, *pair.master), moves, t, found.beyond_reach[k]);
+          find_beyond_reach<2>(pair,
+                               slave,
+                               mechanics::edges_on(mesh, all, *pair.master),
+                               moves,
+                               t,
+                               found.beyond_reach[k]);
         if (!pair.master && pair.reach)
           find_beyond_reach<2>(scene.obstacles[pair.obstacle], pair, slave, moves, t, found.beyond_reach[k]);
         if (!pair.master)
@@ -393,7 +399,7 @@ namespace slipstick::interface
     return found;
   }
 
-  // With obstacles: between bodies nothing is looked for.
+  // Bodies that no pair joins are not looked at.
   template <>
   Penetrations penetrations(const scene::Scene<3>              &scene,
                             const mesh::Mesh<3>                &mesh,
@@ -409,12 +415,20 @@ namespace slipstick::interface
     const auto moves = moves_of_outlines(mesh, spaces, u);
     const auto all   = mechanics::outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
     for (unsigned int k = 0; k < scene.contacts.size(); ++k)
-      if (const auto &pair = scene.contacts[k]; is_watched(pair) && !pair.master)
+      if (const auto &pair = scene.contacts[k]; is_watched(pair))
         {
           const auto slave = mechanics::parts_on(mesh, all, pair.slave);
-          if (pair.reach)
+          if (pair.reach && pair.master)
+            find_beyond_reach<3>(pair,
+                                 slave,
+                                 mechanics::parts_on(mesh, all, *pair.master),
+                                 moves,
+                                 t,
+                                 found.beyond_reach[k]);
+          else if (pair.reach)
             find_beyond_reach<3>(scene.obstacles[pair.obstacle], pair, slave, moves, t, found.beyond_reach[k]);
-          find_in_obstacle<3>(scene, pair, slave, moved<3>(slave, moves), t, found.in_obstacle[k]);
+          if (!pair.master)
+            find_in_obstacle<3>(scene, pair, slave, moved<3>(slave, moves), t, found.in_obstacle[k]);
         }
     return found;
   }

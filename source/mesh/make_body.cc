@@ -253,6 +253,8 @@ namespace slipstick::mesh
             auto &of_file = files[body.file].remarks; // once
             mesh.remarks.insert(mesh.remarks.begin(), of_file.begin(), of_file.end());
             of_file.clear();
+            for (unsigned int k = 0; k < body.refinements + scene.discretization.refinements; ++k)
+              mesh.piece = mesh::refined(mesh.piece);
           }
         else
           mesh = body_from_shape(scene, body);

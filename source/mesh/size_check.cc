@@ -36,13 +36,13 @@ namespace slipstick::mesh
       double cells = 0, outline = 0; // before refinements towards boundaries
     };
 
-    Count count_of_file(const std::string &path)
+    Count count_of_file(const std::string &path, const unsigned int dim)
     {
       const MeshFile                                                file = read_mesh_file(path);
       std::map<std::pair<unsigned int, unsigned int>, unsigned int> n_cells;
       Count                                                         count;
       for (const auto &cell : file.elements)
-        if (cell.dim == 2)
+        if (cell.dim == dim)
           {
             ++count.cells;
             for (unsigned int k = 0; k < cell.n; ++k)
@@ -114,7 +114,7 @@ namespace slipstick::mesh
             {
               std::error_code error;
               if (refined > 1 || body.boundary_refinements > 0)
-                count = count_of_file(body.file);
+                count = count_of_file(body.file, dim);
               else
                 count.cells = std::filesystem::file_size(body.file, error) / bytes_of_a_cell;
               const double n = bodies_in_file(scene, body);
