@@ -51,22 +51,15 @@ namespace slipstick::output
 
     constexpr std::uint8_t vtk_triangle = 5, vtk_quadrilateral = 9, vtk_tetrahedron = 10, vtk_hexahedron = 12;
 
-    template <int dim>
-    constexpr std::uint8_t type_of(const std::size_t n_nodes)
-    {
-      if (dim == 2)
-        return n_nodes == 3 ? vtk_triangle : vtk_quadrilateral;
-      return n_nodes == 4 ? vtk_tetrahedron : vtk_hexahedron;
-    }
-
     /// Nodes of the linear cells that a cell is drawn as, counterclockwise; degree 2: four, with the nodes on its
     /// edges.
     template <int dim>
     std::vector<std::vector<unsigned int>> parts_of_cell(const bool is_simplex, const unsigned int degree)
     {
-      if (dim == 3) // of hexahedra the back face, then the front face
-        return is_simplex ? std::vector<std::vector<unsigned int>>{{0, 1, 2, 3}}
-                          : std::vector<std::vector<unsigned int>>{{0, 1, 3, 2, 4, 5, 7, 6}};
+      if (dim == 3 && is_simplex)
+        return {{0, 1, 2, 3}};
+      if (dim == 3) // its back face, then its front face
+        return {{0, 1, 3, 2, 4, 5, 7, 6}};
       if (is_simplex)
         return degree == 1 ? std::vector<std::vector<unsigned int>>{{0, 1, 2}}
                            : std::vector<std::vector<unsigned int>>{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
@@ -108,7 +101,8 @@ namespace slipstick::output
               for (const unsigned int i : part)
                 grid.connectivity.push_back(nodes[i]);
               grid.offsets.push_back(grid.connectivity.size());
-              grid.types.push_back(type_of<dim>(part.size()));
+              grid.types.push_back(dim == 3 ? (part.size() == 4 ? vtk_tetrahedron : vtk_hexahedron)
+                                            : (part.size() == 3 ? vtk_triangle : vtk_quadrilateral));
               error.push_back(stress.error[cell->active_cell_index()]);
             }
         }

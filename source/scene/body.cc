@@ -142,8 +142,7 @@ namespace slipstick::scene
              "Part",
              body.part,
              "",
-             dim == 3 ? "a physical name of volumes in the file, or its number"
-                      : "a physical name of surfaces in the file, or its number",
+             std::string("a physical name of ") + (dim == 3 ? "volumes" : "surfaces") + " in the file, or its number",
              "mesh: which cells make the body; empty: all");
     add_number(prm, "Scale", body.scale, "-", Interval::above(0), "mesh: factor on its coordinates, 1000 for metres");
   }
@@ -388,10 +387,6 @@ namespace slipstick::scene
                              "no boundary is named in Refine towards",
                              "name one, for example: set Refine towards = " +
                                (boundaries.empty() ? std::string("contact") : boundaries.front()));
-    if (dim == 3 && body.shape == Shape::mesh && body.refinements + scene.discretization.refinements > 0)
-      throw parameters.error(section + "/File",
-                             "is not refined in space (Dimension = 3) yet",
-                             "set Refinements of the body and of Discretization to 0, and mesh it finer");
     if (body.shape == Shape::mesh)
       {
         const auto found = parameters.find_file(body.file);

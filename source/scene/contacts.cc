@@ -132,15 +132,13 @@ namespace slipstick::scene
              "auto, or a number > 0",
              "nodes farther apart along the normal are not paired; auto: two bodies from distance and mesh, obstacles "
              "without limit");
-    if (dim == 2)
-      add_choice(
-        prm,
-        "Discretization",
-        discretization,
-        Choices<ContactDiscretization>{{"auto", ContactDiscretization::automatic},
-                                       {"node to node", ContactDiscretization::node_to_node},
-                                       {"mortar", ContactDiscretization::mortar}},
-        "two bodies: auto is node to node where every slave node has a master node opposite, otherwise mortar");
+    add_choice(prm,
+               "Discretization",
+               discretization,
+               Choices<ContactDiscretization>{{"auto", ContactDiscretization::automatic},
+                                              {"node to node", ContactDiscretization::node_to_node},
+                                              {"mortar", ContactDiscretization::mortar}},
+               "two bodies: auto is node to node where every slave node has a master node opposite, otherwise mortar");
     prm.leave_subsection();
   }
 
