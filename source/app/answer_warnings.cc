@@ -1,6 +1,7 @@
 #include <slipstick/app/answer_warnings.h>
 #include <slipstick/app/curve_warnings.h>
 #include <slipstick/base/log.h>
+#include <slipstick/base/text.h>
 #include <slipstick/mechanics/deformation.h>
 
 #include <deal.II/base/mpi.h>
@@ -30,60 +31,61 @@ namespace slipstick::app
     // Overlap and slip over the length of an edge.
     constexpr double largest_step = 1;
 
-    /// Of one contact pair: the largest value, where it is, and the length of the longest edge.
+    /// A largest value and where it is.
+    struct Largest
+    {
+      double                value = 0;
+      std::array<double, 3> at{{0, 0, 0}};
+
+      void take(const double other, const double *x)
+      {
+        if (!(other > value))
+          return;
+        value = other;
+        std::copy_n(x, at.size(), at.begin());
+      }
+    };
+
+    /// Of one contact pair, with the length of the longest edge.
     struct OfPair
     {
-      double overlap = 0, overlap_x = 0, overlap_y = 0;
-      double slip = 0, slip_x = 0, slip_y = 0;
-      double pressure = 0, pressure_x = 0, pressure_y = 0;
-      double edge = 0;
+      Largest overlap, slip, pressure;
+      double  edge = 0;
+
+      std::array<Largest *, 3> values()
+      {
+        return {{&overlap, &slip, &pressure}};
+      }
     };
-    constexpr unsigned int n_numbers = 10;
 
-    using Triple = std::array<double OfPair::*, 3>;
-    const Triple overlap_of{{&OfPair::overlap, &OfPair::overlap_x, &OfPair::overlap_y}};
-    const Triple slip_of{{&OfPair::slip, &OfPair::slip_x, &OfPair::slip_y}};
-    const Triple pressure_of{{&OfPair::pressure, &OfPair::pressure_x, &OfPair::pressure_y}};
-
-    void take(OfPair &pair, const Triple &member, const double value, const double x, const double y)
-    {
-      if (value > pair.*member[0])
-        {
-          pair.*member[0] = value;
-          pair.*member[1] = x;
-          pair.*member[2] = y;
-        }
-    }
-
-    std::vector<OfPair> over_all_ranks(const std::vector<OfPair> &own, const MPI_Comm comm)
+    std::vector<OfPair> over_all_ranks(std::vector<OfPair> own, const MPI_Comm comm)
     {
       std::vector<double> numbers;
-      for (const auto &o : own)
-        numbers.insert(numbers.end(),
-                       {o.overlap,
-                        o.overlap_x,
-                        o.overlap_y,
-                        o.slip,
-                        o.slip_x,
-                        o.slip_y,
-                        o.pressure,
-                        o.pressure_x,
-                        o.pressure_y,
-                        o.edge});
+      for (auto &o : own)
+        {
+          for (const Largest *one : o.values())
+            numbers.insert(numbers.end(), {one->value, one->at[0], one->at[1], one->at[2]});
+          numbers.push_back(o.edge);
+        }
       std::vector<OfPair> all(own.size());
       for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
-        for (unsigned int k = 0; k < own.size(); ++k)
-          {
-            const double *n = of_rank.data() + n_numbers * k;
-            take(all[k], overlap_of, n[0], n[1], n[2]);
-            take(all[k], slip_of, n[3], n[4], n[5]);
-            take(all[k], pressure_of, n[6], n[7], n[8]);
-            all[k].edge = std::max(all[k].edge, n[9]);
-          }
+        {
+          const double *n = of_rank.data();
+          for (auto &pair : all)
+            {
+              for (Largest *one : pair.values())
+                {
+                  one->take(n[0], n + 1);
+                  n += 1 + one->at.size();
+                }
+              pair.edge = std::max(pair.edge, *n++);
+            }
+        }
       return all;
     }
 
-    std::vector<OfPair> peaks_of_pairs(const scene::Scene<2>                   &scene,
+    template <int dim>
+    std::vector<OfPair> peaks_of_pairs(const scene::Scene<dim>                 &scene,
                                        const tfeti::Constraints                &constraints,
                                        const std::vector<contact::ContactNode> &nodes,
                                        const MPI_Comm                           comm)
@@ -91,20 +93,21 @@ namespace slipstick::app
       std::vector<OfPair> own(scene.contacts.size());
       for (unsigned int i = 0; i < constraints.contact_points.size(); ++i)
         {
-          const auto  &point = constraints.contact_points[i];
-          const auto  &node  = nodes[i];
-          auto        &pair  = own[point.pair];
-          const double x = point.position[0], y = point.position[1];
-          take(pair, overlap_of, -point.gap, x, y);
-          take(pair, pressure_of, node.pressure, x, y);
+          const auto &point = constraints.contact_points[i];
+          const auto &node  = nodes[i];
+          auto       &pair  = own[point.pair];
+          const auto *x     = point.position.data();
+          pair.overlap.take(-point.gap, x);
+          pair.pressure.take(node.pressure, x);
           if (point.has_master && node.is_closed)
-            take(pair, slip_of, std::abs(node.slip), x, y);
-          pair.edge = std::max(pair.edge, point.traction_length);
+            pair.slip.take(std::abs(node.slip), x);
+          pair.edge = std::max(pair.edge, dim == 2 ? point.traction_length : std::sqrt(point.traction_length));
         }
       return over_all_ranks(own, comm);
     }
 
-    double modulus(const scene::Scene<2> &scene, const scene::ContactPair<2> &pair)
+    template <int dim>
+    double modulus(const scene::Scene<dim> &scene, const scene::ContactPair<dim> &pair)
     {
       const auto of = [&](const unsigned int body) {
         return scene.materials[scene.bodies[body].material].young_modulus;
@@ -114,58 +117,57 @@ namespace slipstick::app
 
     /// Pairs between which forces can be exchanged without effect, and the first place; empty if there are none.
     /// Collective.
-    std::string split_warning(const scene::Scene<2>    &scene,
+    template <int dim>
+    std::string split_warning(const scene::Scene<dim>  &scene,
                               const tfeti::DualProblem &dual,
                               const std::vector<bool>  &free)
     {
-      const auto                          ambiguous = dual.ambiguous(free);
-      std::set<unsigned int>              pairs;
-      std::set<std::pair<double, double>> places;
+      const auto                      ambiguous = dual.ambiguous(free);
+      std::set<unsigned int>          pairs;
+      std::set<std::array<double, 3>> places;
       for (const auto *points : {&dual.constraints().contact_points, &dual.constraints().bonded_points})
         for (const auto &point : *points)
-          for (const unsigned int row : {point.normal_row, point.tangential_row})
+          for (const unsigned int row : {point.normal_row, point.tangential_row, point.second_row})
             if (row != tfeti::invalid_row && ambiguous[row])
               {
                 pairs.insert(point.pair);
-                places.insert({point.position[0], point.position[1]});
+                places.insert(point.position);
               }
       for (const auto &of_rank :
            dealii::Utilities::MPI::all_gather(dual.communicator(),
                                               std::vector<unsigned int>(pairs.begin(), pairs.end())))
         pairs.insert(of_rank.begin(), of_rank.end());
       std::vector<double> own;
-      for (const auto &[x, y] : places)
-        own.insert(own.end(), {x, y});
+      for (const auto &x : places)
+        own.insert(own.end(), x.begin(), x.end());
       for (const auto &of_rank : dealii::Utilities::MPI::all_gather(dual.communicator(), own))
-        for (unsigned int i = 0; i < of_rank.size(); i += 2)
-          places.insert({of_rank[i], of_rank[i + 1]});
+        for (unsigned int i = 0; i < of_rank.size(); i += 3)
+          places.insert(std::array<double, 3>{{of_rank[i], of_rank[i + 1], of_rank[i + 2]}});
       if (pairs.empty())
         return "";
       std::string names;
       for (const unsigned int pair : pairs)
         names += (names.empty() ? "" : ", ") + scene.contacts[pair].name;
       return format(
-        "Contact %s: at %zu points, the first at (%.6g, %.6g), the bodies that stick together there hold each other in more "
+        "Contact %s: at %zu points, the first at %s, the bodies that stick together there hold each other in more "
         "than one way, so that only the sums of the forces are determined, not their distribution over these "
         "pairs and supports; leave out one of the pairs or nodes, or use the sums only",
         names.c_str(),
         places.size(),
-        places.begin()->first,
-        places.begin()->second);
+        point_text(*places.begin(), dim).c_str());
     }
 
-    std::string place(const scene::Scene<2> &scene, const mechanics::Peak<2> &peak)
+    template <int dim>
+    std::string place(const scene::Scene<dim> &scene, const mechanics::Peak<dim> &peak)
     {
-      return format("of body %s at (%.6g, %.6g)",
-                    scene.bodies[peak.body].name.c_str(),
-                    peak.position[0],
-                    peak.position[1]);
+      return "of body " + scene.bodies[peak.body].name + " at " + point_text(peak.position, dim);
     }
   } // namespace
 
-  std::map<std::string, std::string> answer_warnings(const scene::Scene<2>                   &scene,
-                                                     const mesh::Mesh<2>                     &mesh,
-                                                     const mechanics::Spaces<2>              &spaces,
+  template <int dim>
+  std::map<std::string, std::string> answer_warnings(const scene::Scene<dim>                 &scene,
+                                                     const mesh::Mesh<dim>                   &mesh,
+                                                     const mechanics::Spaces<dim>            &spaces,
                                                      const tfeti::DualProblem                &dual,
                                                      const std::vector<bool>                 &free,
                                                      const std::vector<contact::ContactNode> &nodes,
@@ -175,37 +177,35 @@ namespace slipstick::app
     const auto                         pairs = peaks_of_pairs(scene, dual.constraints(), nodes, mesh.comm);
     if (const std::string text = split_warning(scene, dual, free); !text.empty())
       texts["split"] = text;
-    texts.merge(curve_warnings(scene, mesh, spaces, dual.constraints().contact_points, nodes));
+    if constexpr (dim == 2)
+      texts.merge(curve_warnings(scene, mesh, spaces, dual.constraints().contact_points, nodes));
     for (unsigned int k = 0; k < pairs.size(); ++k)
       {
         const auto        &pair = pairs[k];
         const std::string &name = scene.contacts[k].name;
-        if (pair.overlap > largest_step * pair.edge)
+        if (pair.overlap.value > largest_step * pair.edge)
           texts["overlap " + name] =
-            format("Contact %s: its sides overlap by %.4g mm at (%.6g, %.6g), more than an edge of %.4g mm; check the "
+            format("Contact %s: its sides overlap by %.4g mm at %s, more than an edge of %.4g mm; check the "
                    "positions of the bodies, Offset and Gap",
                    name.c_str(),
-                   pair.overlap,
-                   pair.overlap_x,
-                   pair.overlap_y,
+                   pair.overlap.value,
+                   point_text(pair.overlap.at, dim).c_str(),
                    pair.edge);
-        if (pair.slip > largest_step * pair.edge)
-          texts["slip " + name] = format(
-            "Contact %s: its sides slide by %.4g mm at (%.6g, %.6g), more than an edge of %.4g mm, but contact is "
-            "found in the undeformed positions; check loads and supports",
-            name.c_str(),
-            pair.slip,
-            pair.slip_x,
-            pair.slip_y,
-            pair.edge);
-        if (pair.pressure > largest_pressure * modulus(scene, scene.contacts[k]))
+        if (pair.slip.value > largest_step * pair.edge)
+          texts["slip " + name] =
+            format("Contact %s: its sides slide by %.4g mm at %s, more than an edge of %.4g mm, but contact is "
+                   "found in the undeformed positions; check loads and supports",
+                   name.c_str(),
+                   pair.slip.value,
+                   point_text(pair.slip.at, dim).c_str(),
+                   pair.edge);
+        if (pair.pressure.value > largest_pressure * modulus(scene, scene.contacts[k]))
           texts["pressure " + name] =
-            format("Contact %s: the pressure of %.4g MPa at (%.6g, %.6g) is above the Young modulus of %.4g MPa; check "
+            format("Contact %s: the pressure of %.4g MPa at %s is above the Young modulus of %.4g MPa; check "
                    "the units of loads, overlaps and moduli",
                    name.c_str(),
-                   pair.pressure,
-                   pair.pressure_x,
-                   pair.pressure_y,
+                   pair.pressure.value,
+                   point_text(pair.pressure.at, dim).c_str(),
                    modulus(scene, scene.contacts[k]));
       }
     const auto        large = mechanics::largest_deformation(scene, mesh, spaces, u);
@@ -234,4 +234,19 @@ namespace slipstick::app
         least_modulus);
     return texts;
   }
+
+  template std::map<std::string, std::string> answer_warnings(const scene::Scene<2> &,
+                                                              const mesh::Mesh<2> &,
+                                                              const mechanics::Spaces<2> &,
+                                                              const tfeti::DualProblem &,
+                                                              const std::vector<bool> &,
+                                                              const std::vector<contact::ContactNode> &,
+                                                              const std::vector<Eigen::VectorXd> &);
+  template std::map<std::string, std::string> answer_warnings(const scene::Scene<3> &,
+                                                              const mesh::Mesh<3> &,
+                                                              const mechanics::Spaces<3> &,
+                                                              const tfeti::DualProblem &,
+                                                              const std::vector<bool> &,
+                                                              const std::vector<contact::ContactNode> &,
+                                                              const std::vector<Eigen::VectorXd> &);
 } // namespace slipstick::app

@@ -23,13 +23,17 @@ namespace slipstick::app
     // Reserve of the Reach that is proposed.
     constexpr double reserve = 1.1;
 
+    template <int dim>
     std::string place(const interface::Penetration &deepest)
     {
-      return format("(%.6g, %.6g)", deepest.at[0], deepest.at[1]);
+      return point_text(deepest.at, dim);
     }
   } // namespace
 
-  GeometryFindings judge(const scene::Scene<2> &scene, const interface::Penetrations &found, const double largest)
+  template <int dim>
+  GeometryFindings geometry_findings(const scene::Scene<dim>       &scene,
+                                     const interface::Penetrations &found,
+                                     const double                   largest)
   {
     GeometryFindings                                findings;
     std::set<std::pair<unsigned int, unsigned int>> joined;
@@ -46,7 +50,7 @@ namespace slipstick::app
                    "%g mm penetrates by %.3g mm; the results are not a solution\n"
                    "  remedy: set Contact %s/Reach to %g mm or more, or to auto",
                    pair.name.c_str(),
-                   place(*deepest).c_str(),
+                   place<dim>(*deepest).c_str(),
                    *pair.reach,
                    deepest->depth,
                    pair.name.c_str(),
@@ -54,17 +58,19 @@ namespace slipstick::app
         if (const auto &deepest = found.in_obstacle[k];
             deepest && deepest->depth >
                          std::max(allowed_between_nodes * std::min(largest, deepest->edge), rounding * deepest->edge))
-          findings.warnings["edge " + pair.name] = format(
-            "Contact %s: obstacle %s is %.3g mm inside body %s at %s, on an edge of %.3g mm: contact acts at nodes, "
-            "and the obstacle enters between them; refine %s there (Refine towards, Refinements) until edges are "
-            "smaller than what touches them",
-            pair.name.c_str(),
-            scene.obstacles[pair.obstacle].name.c_str(),
-            deepest->depth,
-            scene.bodies[pair.slave.body].name.c_str(),
-            place(*deepest).c_str(),
-            deepest->edge,
-            scene.bodies[pair.slave.body].name.c_str());
+          findings.warnings["edge " + pair.name] =
+            format("Contact %s: obstacle %s is %.3g mm inside body %s at %s, on %s of %.3g mm: contact acts at nodes, "
+                   "and the obstacle enters between them; refine %s there (%sRefinements) until edges are "
+                   "smaller than what touches them",
+                   pair.name.c_str(),
+                   scene.obstacles[pair.obstacle].name.c_str(),
+                   deepest->depth,
+                   scene.bodies[pair.slave.body].name.c_str(),
+                   place<dim>(*deepest).c_str(),
+                   dim == 2 ? "an edge" : "a face",
+                   deepest->edge,
+                   scene.bodies[pair.slave.body].name.c_str(),
+                   dim == 2 ? "Refine towards, " : "");
       }
     for (const auto &[bodies, deepest] : found.of_bodies)
       {
@@ -78,11 +84,14 @@ namespace slipstick::app
                    a.c_str(),
                    deepest.depth,
                    b.c_str(),
-                   place(deepest).c_str(),
+                   place<dim>(deepest).c_str(),
                    has_contact ? "their contact pairs do not cover this place; extend the boundaries of the pairs to "
                                  "it, or refine them"
                                : "no contact pair joins the two; declare one (Contacts), or move them apart");
       }
     return findings;
   }
+
+  template GeometryFindings geometry_findings(const scene::Scene<2> &, const interface::Penetrations &, const double);
+  template GeometryFindings geometry_findings(const scene::Scene<3> &, const interface::Penetrations &, const double);
 } // namespace slipstick::app

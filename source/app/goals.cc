@@ -11,7 +11,7 @@ namespace slipstick::app
 {
   namespace
   {
-    constexpr int dim = StepSolver::dim;
+    constexpr int dim = 2;
 
     // Components of directions below this are rounding.
     constexpr double along_axis = 1e-9;
@@ -35,7 +35,7 @@ namespace slipstick::app
     class Functionals
     {
     public:
-      Functionals(const StepSolver &solver_, const mechanics::Probes<dim> &probes_, const StepSolver::Answer &answer_)
+      Functionals(const StepSolver<2> &solver_, const mechanics::Probes<dim> &probes_, const StepAnswer &answer_)
         : solver(solver_)
         , probes(probes_)
         , answer(answer_)
@@ -207,9 +207,9 @@ namespace slipstick::app
         return goal;
       }
 
-      const StepSolver               &solver;
+      const StepSolver<2>            &solver;
       const mechanics::Probes<dim>   &probes;
-      const StepSolver::Answer       &answer;
+      const StepAnswer               &answer;
       const tfeti::Constraints       &rows;
       const tfeti::DistributedVector &x;
       const MPI_Comm                  comm;
@@ -220,7 +220,7 @@ namespace slipstick::app
     class ErrorProducts
     {
     public:
-      ErrorProducts(const StepSolver &solver_, const StepSolver::Answer &answer_, const double t_)
+      ErrorProducts(const StepSolver<2> &solver_, const StepAnswer &answer_, const double t_)
         : solver(solver_)
         , answer(answer_)
         , t(t_)
@@ -283,13 +283,13 @@ namespace slipstick::app
                                          t);
       }
 
-      const StepSolver         &solver;
-      const StepSolver::Answer &answer;
-      const double              t;
+      const StepSolver<2> &solver;
+      const StepAnswer    &answer;
+      const double         t;
     };
 
     /// From the displacement @p z that belongs to the figure.
-    void complete(const StepSolver::Answer &answer, const ErrorProducts &products, const Fields &z, GoalError &goal)
+    void complete(const StepAnswer &answer, const ErrorProducts &products, const Fields &z, GoalError &goal)
     {
       if (products.is_missing(z))
         {
@@ -305,8 +305,8 @@ namespace slipstick::app
     }
 
     /// With w, the displacement that the gaps force on bodies without loads: |e|^2 / 2 - a(e, w).
-    GoalError energy_error(const StepSolver          &solver,
-                           const StepSolver::Answer  &answer,
+    GoalError energy_error(const StepSolver<2>       &solver,
+                           const StepAnswer          &answer,
                            const std::vector<double> &gaps,
                            const ErrorProducts       &products,
                            contact::Adjoint          &adjoint)
@@ -347,9 +347,9 @@ namespace slipstick::app
     }
   } // namespace
 
-  std::vector<GoalError> goal_errors(StepSolver                     &solver,
+  std::vector<GoalError> goal_errors(StepSolver<2>                  &solver,
                                      const mechanics::Probes<2>     &probes,
-                                     const StepSolver::Answer       &answer,
+                                     const StepAnswer               &answer,
                                      const double                    t,
                                      const std::vector<std::string> &quantities)
   {

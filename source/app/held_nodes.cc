@@ -15,7 +15,8 @@ namespace slipstick::app
     constexpr double part_that_counts = 0.05;
   } // namespace
 
-  void add_held_nodes(const scene::Scene<2>              &scene,
+  template <int dim>
+  void add_held_nodes(const scene::Scene<dim>            &scene,
                       const tfeti::DualProblem           &dual,
                       const tfeti::HeldContacts          &held,
                       const tfeti::DistributedVector     &multipliers,
@@ -36,7 +37,8 @@ namespace slipstick::app
     contact::add_held_nodes(dual, held, multipliers, gaps, touches, sticks, contact);
   }
 
-  std::map<std::string, std::string> held_node_warnings(const scene::Scene<2>         &scene,
+  template <int dim>
+  std::map<std::string, std::string> held_node_warnings(const scene::Scene<dim>       &scene,
                                                         const tfeti::HeldContacts     &held,
                                                         const contact::CheckedContact &contact,
                                                         const MPI_Comm                 comm)
@@ -46,7 +48,9 @@ namespace slipstick::app
       all[node.pair] += std::abs(node.pressure) * node.area;
     for (unsigned int i = 0; i < held.points.size(); ++i)
       if (!held.points[i].is_bonded)
-        forces[held.points[i].contact.pair] += std::hypot(contact.held_forces[i][0], contact.held_forces[i][1]);
+        forces[held.points[i].contact.pair] +=
+          dim == 2 ? std::hypot(contact.held_forces[i][0], contact.held_forces[i][1])
+                   : std::hypot(contact.held_forces[i][0], contact.held_forces[i][1], contact.held_forces[i][2]);
     std::map<std::string, std::string> texts;
     for (unsigned int k = 0; k < scene.contacts.size(); ++k)
       if (const double force = dealii::Utilities::MPI::sum(forces[k], comm);
@@ -59,4 +63,25 @@ namespace slipstick::app
           force);
     return texts;
   }
+
+  template void                               add_held_nodes(const scene::Scene<2> &,
+                                                             const tfeti::DualProblem &,
+                                                             const tfeti::HeldContacts &,
+                                                             const tfeti::DistributedVector &,
+                                                             const std::vector<Eigen::VectorXd> &,
+                                                             contact::CheckedContact &);
+  template std::map<std::string, std::string> held_node_warnings(const scene::Scene<2> &,
+                                                                 const tfeti::HeldContacts &,
+                                                                 const contact::CheckedContact &,
+                                                                 const MPI_Comm);
+  template void                               add_held_nodes(const scene::Scene<3> &,
+                                                             const tfeti::DualProblem &,
+                                                             const tfeti::HeldContacts &,
+                                                             const tfeti::DistributedVector &,
+                                                             const std::vector<Eigen::VectorXd> &,
+                                                             contact::CheckedContact &);
+  template std::map<std::string, std::string> held_node_warnings(const scene::Scene<3> &,
+                                                                 const tfeti::HeldContacts &,
+                                                                 const contact::CheckedContact &,
+                                                                 const MPI_Comm);
 } // namespace slipstick::app

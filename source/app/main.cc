@@ -9,6 +9,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
 #include <csignal>
 #include <iostream>
 #include <vector>
@@ -56,6 +57,34 @@ namespace
     dgemm_("N", "N", &n, &n, &n, &one, a.data(), &n, a.data(), &n, &one, c.data(), &n);
   }
 
+  template <int dim>
+  ExitStatus run_scene(const app::CommandLine &command_line, const MPI_Comm comm)
+  {
+    scene::AdaptivityOptions adaptivity;
+    const auto scene = scene::read_scene<dim>(command_line.case_file, command_line.overrides, &adaptivity);
+    const Log  log(comm,
+                  command_line.quiet                           ? Verbosity::quiet
+                   : command_line.verbose || command_line.check ? Verbosity::verbose
+                                                                : Verbosity::normal);
+    mesh::check_size(scene, command_line.force, comm);
+    if (command_line.check)
+      {
+        app::check_scene(scene, command_line.picture, log, comm);
+        return ExitStatus::converged;
+      }
+    return app::run(scene, adaptivity, command_line.output_directory, command_line.resume, log, comm);
+  }
+
+  /// With the option --set Dimension=3 those of space.
+  void list_parameters(const app::CommandLine &command_line)
+  {
+    const auto &set = command_line.overrides;
+    if (std::find(set.begin(), set.end(), "Dimension=3") == set.end())
+      scene::list_parameters<2>(std::cout, *command_line.list_parameters);
+    else
+      scene::list_parameters<3>(std::cout, *command_line.list_parameters);
+  }
+
   int run_program(int argc, char **argv, const MPI_Comm comm)
   {
     const bool prints = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
@@ -74,7 +103,7 @@ namespace
             if (prints && command_line.message)
               std::cout << *command_line.message << std::flush;
             else if (prints)
-              scene::list_parameters(std::cout, *command_line.list_parameters);
+              list_parameters(command_line);
             if (prints && !std::cout.flush())
               throw InputError("the text could not be written to standard output",
                                "check where it is redirected to and whether there is space");
@@ -91,20 +120,9 @@ namespace
               std::cout << told << std::flush;
             return static_cast<int>(ExitStatus::converged);
           }
-        scene::AdaptivityOptions adaptivity;
-        const auto               scene = scene::read_scene(command_line.case_file, command_line.overrides, &adaptivity);
-        const Log                log(comm,
-                      command_line.quiet                           ? Verbosity::quiet
-                                     : command_line.verbose || command_line.check ? Verbosity::verbose
-                                                                                  : Verbosity::normal);
-        mesh::check_size(scene, command_line.force, comm);
-        if (command_line.check)
-          {
-            app::check_scene(scene, command_line.picture, log, comm);
-            return static_cast<int>(ExitStatus::converged);
-          }
-        return static_cast<int>(
-          app::run(scene, adaptivity, command_line.output_directory, command_line.resume, log, comm));
+        return static_cast<int>(scene::read_dimension(command_line.case_file, command_line.overrides) == 3
+                                  ? run_scene<3>(command_line, comm)
+                                  : run_scene<2>(command_line, comm));
       }
     catch (const InputError &error)
       {

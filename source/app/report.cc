@@ -29,12 +29,12 @@ namespace slipstick::app
     }
 
     /// " at (1, 2) of body box, contact joint"
-    std::string place(const scene::Scene<2> &scene, const contact::Place &place)
+    template <int dim>
+    std::string place(const scene::Scene<dim> &scene, const contact::Place &place)
     {
       if (!place.is_known)
         return "";
-      std::string text =
-        place.is_point ? format(" at (%.6g, %.6g) of", place.position[0], place.position[1]) : std::string(" of");
+      std::string text = place.is_point ? " at " + point_text(place.position, dim) + " of" : std::string(" of");
       text += " body " + scene.bodies[place.body].name;
       return text + (place.in_pair ? ", contact " + scene.contacts[place.pair].name : "");
     }
@@ -116,7 +116,8 @@ namespace slipstick::app
     return "";
   }
 
-  void print_header(const Log &log, const scene::Scene<2> &scene, const MPI_Comm comm)
+  template <int dim>
+  void print_header(const Log &log, const scene::Scene<dim> &scene, const MPI_Comm comm)
   {
     log.line(format("slipstick %s (deal.II %s, Trilinos %s), MPI ranks: %u",
                     SLIPSTICK_VERSION,
@@ -139,10 +140,11 @@ namespace slipstick::app
              "x is the radius, y the axis, zz the hoop direction; all forces are those over the whole circumference"));
   }
 
-  void print_mesh(const Log                  &log,
-                  const scene::Scene<2>      &scene,
-                  const mesh::Mesh<2>        &mesh,
-                  const mechanics::Spaces<2> &spaces)
+  template <int dim>
+  void print_mesh(const Log                    &log,
+                  const scene::Scene<dim>      &scene,
+                  const mesh::Mesh<dim>        &mesh,
+                  const mechanics::Spaces<dim> &spaces)
   {
     log.line(line("mesh",
                   format("bodies: %zu, cells: %llu of degree %u, subdomains: %u (%s), unknowns: %llu",
@@ -165,7 +167,8 @@ namespace slipstick::app
       }
   }
 
-  std::vector<std::string> warnings_before(const scene::Scene<2> &scene, const mesh::Mesh<2> &mesh)
+  template <int dim>
+  std::vector<std::string> warnings_before(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh)
   {
     const std::string        mark = "warning: ";
     std::vector<std::string> texts;
@@ -245,8 +248,9 @@ namespace slipstick::app
     }
   } // namespace
 
+  template <int dim>
   void print_failure(const Log                   &log,
-                     const scene::Scene<2>       &scene,
+                     const scene::Scene<dim>     &scene,
                      const contact::DualSolution &solution,
                      const contact::Checks       &checks,
                      const double                 tolerance)
@@ -324,50 +328,61 @@ namespace slipstick::app
 
   namespace
   {
+    template <int dim>
     std::string row(const std::string &what, const Resultant &sum, const bool is_revolution)
     {
-      if (is_revolution)
-        return format("             %-30s %14.6g %14.6g", what.c_str(), sum.force[0], sum.force[1]);
-      return format("             %-30s %14.6g %14.6g %16.6g", what.c_str(), sum.force[0], sum.force[1], sum.moment);
+      std::string text = format("             %-30s", what.c_str());
+      for (unsigned int d = 0; d < dim; ++d)
+        text += format(" %14.6g", sum.force[d]);
+      for (unsigned int d = dim == 2 ? 2 : 0; d < 3 && !is_revolution; ++d)
+        text += format(" %16.6g", sum.moment[d]);
+      return text;
     }
   } // namespace
 
-  void print_forces(const Log &log, const scene::Scene<2> &scene, const output::ResultSummary &results)
+  template <int dim>
+  void print_forces(const Log &log, const scene::Scene<dim> &scene, const output::ResultSummary &results)
   {
     const bool is_revolution = scene.plane_state == scene::PlaneState::axisymmetric;
     Resultant  left;
     if (is_revolution)
       log.line(format("forces       %-30s %14s %14s", "on the whole circumference", "radial [N]", "axial [N]"));
-    else
+    else if (dim == 2)
       log.line(format("forces       %-30s %14s %14s %16s", "on the bodies", "Fx [N]", "Fy [N]", "moment [N mm]"));
-    const auto count = [&left](const Resultant &sum) {
-      for (unsigned int d = 0; d < 2; ++d)
-        left.force[d] += sum.force[d];
-      left.moment += sum.moment;
-    };
+    else
+      log.line(format("forces       %-30s %14s %14s %14s %16s %16s %16s",
+                      "on the bodies",
+                      "Fx [N]",
+                      "Fy [N]",
+                      "Fz [N]",
+                      "Mx [N mm]",
+                      "My [N mm]",
+                      "Mz [N mm]"));
+    const auto count = [&left](const Resultant &sum) { left += sum; };
     for (const auto *list : {&results.forces.loads, &results.forces.supports, &results.forces.foundations})
       for (const auto &one : *list)
         {
-          log.line(row(one.kind + " " + one.name, one.sum, is_revolution));
+          log.line(row<dim>(one.kind + " " + one.name, one.sum, is_revolution));
           count(one.sum);
         }
     for (unsigned int k = 0; k < results.contact.size(); ++k)
       {
         const auto &pair = scene.contacts[k];
-        log.line(row("contact " + pair.name + (pair.master ? " on " + scene.bodies[pair.slave.body].name : ""),
-                     results.contact[k].on_slave,
-                     is_revolution));
+        log.line(row<dim>("contact " + pair.name + (pair.master ? " on " + scene.bodies[pair.slave.body].name : ""),
+                          results.contact[k].on_slave,
+                          is_revolution));
         if (!pair.master)
           count(results.contact[k].on_slave);
       }
     if (is_revolution) // radial forces balance around the circumference
       log.line(format("             %-30s %14s %14.6g", "sum of all from outside", "", left.force[1]));
     else
-      log.line(row("sum of all from outside", left, is_revolution));
+      log.line(row<dim>("sum of all from outside", left, is_revolution));
   }
 
   void print_result(const Log &log, const output::Summary &summary, const std::string &pvd)
   {
+    const unsigned int dim = summary.problem.dimension;
     log.line("");
     for (const auto &pair : summary.results.contact)
       log.line(format(
@@ -392,28 +407,23 @@ namespace slipstick::app
       if (probe.is_point)
         {
           const auto &found = probe.points.front();
-          log.line(format("probe %s at (%.6g, %.6g): displacement (%.6g, %.6g) mm, von Mises stress %.6g MPa",
+          log.line(format("probe %s at %s: displacement %s mm, von Mises stress %.6g MPa",
                           probe.name.c_str(),
-                          found.position[0],
-                          found.position[1],
-                          found.displacement[0],
-                          found.displacement[1],
+                          point_text(found.position, dim).c_str(),
+                          point_text(found.displacement, dim).c_str(),
                           found.von_mises));
         }
     const auto &peak = summary.results.max_von_mises_at, &error = summary.error.largest_at;
-    log.line(format(
-      "von Mises stress is largest in body %s at (%.6g, %.6g)%s; the cell with the largest error, %.2g %% of the "
-      "square of all, is at (%.6g, %.6g) of body %s",
-      peak.body.c_str(),
-      peak.position[0],
-      peak.position[1],
-      summary.results.singular.empty()
-        ? ""
-        : (", " + summary.results.singular + ", where it grows without limit under refinement").c_str(),
-      100 * summary.error.largest_part,
-      error.position[0],
-      error.position[1],
-      error.body.c_str()));
+    log.line(format("von Mises stress is largest in body %s at %s%s; the cell with the largest error, %.2g %% of the "
+                    "square of all, is at %s of body %s",
+                    peak.body.c_str(),
+                    point_text(peak.position, dim).c_str(),
+                    summary.results.singular.empty()
+                      ? ""
+                      : (", " + summary.results.singular + ", where it grows without limit under refinement").c_str(),
+                    100 * summary.error.largest_part,
+                    point_text(error.position, dim).c_str(),
+                    error.body.c_str()));
     log.line(format("%s after %llu F-multiplications in %u outer steps; equilibrium error %.1e; %.2f s, %.0f MB",
                     output::to_string(summary.status).c_str(),
                     static_cast<unsigned long long>(summary.solver.hessian_multiplications),
@@ -426,13 +436,15 @@ namespace slipstick::app
     log.line("open " + pvd);
   }
 
-  output::Summary empty_summary(const scene::Scene<2> &scene, const MPI_Comm comm)
+  template <int dim>
+  output::Summary empty_summary(const scene::Scene<dim> &scene, const MPI_Comm comm)
   {
     output::Summary s;
-    s.case_name      = scene.name;
-    s.version        = SLIPSTICK_VERSION;
-    s.ranks          = dealii::Utilities::MPI::n_mpi_processes(comm);
-    s.problem.bodies = scene.bodies.size();
+    s.case_name         = scene.name;
+    s.version           = SLIPSTICK_VERSION;
+    s.ranks             = dealii::Utilities::MPI::n_mpi_processes(comm);
+    s.problem.bodies    = scene.bodies.size();
+    s.problem.dimension = dim;
     return s;
   }
 
@@ -472,20 +484,22 @@ namespace slipstick::app
       summary.residuals.*residual = std::max(summary.residuals.*residual, so_far.residuals.*residual);
   }
 
-  void drop_moments(const scene::Scene<2> &scene, output::ResultSummary &results)
+  template <int dim>
+  void drop_moments(const scene::Scene<dim> &scene, output::ResultSummary &results)
   {
     if (scene.plane_state != scene::PlaneState::axisymmetric)
       return;
     for (auto *list : {&results.forces.loads, &results.forces.supports, &results.forces.foundations})
       for (auto &one : *list)
-        one.sum.moment = 0;
+        one.sum.moment = {{0, 0, 0}};
     for (auto &pair : results.contact)
-      pair.on_slave.moment = pair.moment_mismatch = 0;
+      pair.on_slave.moment = pair.moment_mismatch = {{0, 0, 0}};
   }
 
-  output::Summary make_summary(const scene::Scene<2>         &scene,
-                               const mesh::Mesh<2>           &mesh,
-                               const mechanics::Spaces<2>    &spaces,
+  template <int dim>
+  output::Summary make_summary(const scene::Scene<dim>       &scene,
+                               const mesh::Mesh<dim>         &mesh,
+                               const mechanics::Spaces<dim>  &spaces,
                                const tfeti::DualProblem      &dual,
                                const contact::DualSolution   &solution,
                                const contact::Checks         &checks,
@@ -496,8 +510,7 @@ namespace slipstick::app
     output::Summary s         = empty_summary(scene, mesh.comm);
     s.status = passes(solution, checks, tolerance) ? output::RunStatus::converged : output::RunStatus::not_converged;
 
-    s.problem.dimension          = 2;
-    s.problem.plane_state        = name_of(scene.plane_state);
+    s.problem.plane_state        = dim == 3 ? "solid" : name_of(scene.plane_state);
     s.problem.bodies             = scene.bodies.size();
     s.problem.subdomains         = mesh.n_subdomains();
     s.problem.primal_dofs        = spaces.n_dofs;
@@ -543,4 +556,41 @@ namespace slipstick::app
       s.results.hoop_stress = std::array<double, 2>{{stress.min_hoop_stress, stress.max_hoop_stress}};
     return s;
   }
+
+  template void print_header(const Log &, const scene::Scene<2> &, const MPI_Comm);
+  template void print_mesh(const Log &, const scene::Scene<2> &, const mesh::Mesh<2> &, const mechanics::Spaces<2> &);
+  template std::vector<std::string> warnings_before(const scene::Scene<2> &, const mesh::Mesh<2> &);
+  template void                     print_failure(const Log &,
+                                                  const scene::Scene<2> &,
+                                                  const contact::DualSolution &,
+                                                  const contact::Checks &,
+                                                  const double);
+  template void                     print_forces(const Log &, const scene::Scene<2> &, const output::ResultSummary &);
+  template output::Summary          empty_summary(const scene::Scene<2> &, const MPI_Comm);
+  template void                     drop_moments(const scene::Scene<2> &, output::ResultSummary &);
+  template output::Summary          make_summary(const scene::Scene<2> &,
+                                                 const mesh::Mesh<2> &,
+                                                 const mechanics::Spaces<2> &,
+                                                 const tfeti::DualProblem &,
+                                                 const contact::DualSolution &,
+                                                 const contact::Checks &,
+                                                 const mechanics::StressResult &);
+  template void                     print_header(const Log &, const scene::Scene<3> &, const MPI_Comm);
+  template void print_mesh(const Log &, const scene::Scene<3> &, const mesh::Mesh<3> &, const mechanics::Spaces<3> &);
+  template std::vector<std::string> warnings_before(const scene::Scene<3> &, const mesh::Mesh<3> &);
+  template void                     print_failure(const Log &,
+                                                  const scene::Scene<3> &,
+                                                  const contact::DualSolution &,
+                                                  const contact::Checks &,
+                                                  const double);
+  template void                     print_forces(const Log &, const scene::Scene<3> &, const output::ResultSummary &);
+  template output::Summary          empty_summary(const scene::Scene<3> &, const MPI_Comm);
+  template void                     drop_moments(const scene::Scene<3> &, output::ResultSummary &);
+  template output::Summary          make_summary(const scene::Scene<3> &,
+                                                 const mesh::Mesh<3> &,
+                                                 const mechanics::Spaces<3> &,
+                                                 const tfeti::DualProblem &,
+                                                 const contact::DualSolution &,
+                                                 const contact::Checks &,
+                                                 const mechanics::StressResult &);
 } // namespace slipstick::app

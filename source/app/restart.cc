@@ -57,7 +57,7 @@ namespace slipstick
     template <class Archive>
     void serialize(Archive &a, ContactStep &x, const unsigned int)
     {
-      a &x.step &x.nodes;
+      a &x.step &x.nodes &x.faces;
     }
     template <class Archive>
     void serialize(Archive &a, ProbeValues &x, const unsigned int)
@@ -161,7 +161,7 @@ namespace slipstick::app
   {
     const std::string head_name = "restart.bin";
     // Format of the files: another layout gets another number.
-    constexpr unsigned int format_number = 1;
+    constexpr unsigned int format_number = 2;
 
     /// Content of restart.bin: to which run the files belong.
     struct Head
@@ -195,7 +195,8 @@ namespace slipstick::app
     }
 
     /// Rank 0.
-    Head head_of(const scene::Scene<2> &scene, const unsigned int steps, const unsigned int ranks)
+    template <int dim>
+    Head head_of(const scene::Scene<dim> &scene, const unsigned int steps, const unsigned int ranks)
     {
       static const std::regex factors("\n *set Factors *=[^\n]*");
       Head                    head;
@@ -300,8 +301,9 @@ namespace slipstick::app
     }
   } // namespace
 
+  template <int dim>
   void write_restart(const output::OutputDirectory &directory,
-                     const scene::Scene<2>         &scene,
+                     const scene::Scene<dim>       &scene,
                      const RunState                &state,
                      const MPI_Comm                 comm)
   {
@@ -316,7 +318,8 @@ namespace slipstick::app
     });
   }
 
-  RunState read_restart(const output::OutputDirectory &directory, const scene::Scene<2> &scene, const MPI_Comm comm)
+  template <int dim>
+  RunState read_restart(const output::OutputDirectory &directory, const scene::Scene<dim> &scene, const MPI_Comm comm)
   {
     const unsigned int rank  = dealii::Utilities::MPI::this_mpi_process(comm);
     unsigned int       steps = 0;
@@ -346,4 +349,15 @@ namespace slipstick::app
       remove_files(directory, {});
     });
   }
+
+  template void     write_restart(const output::OutputDirectory &,
+                                  const scene::Scene<2> &,
+                                  const RunState &,
+                                  const MPI_Comm);
+  template RunState read_restart(const output::OutputDirectory &, const scene::Scene<2> &, const MPI_Comm);
+  template void     write_restart(const output::OutputDirectory &,
+                                  const scene::Scene<3> &,
+                                  const RunState &,
+                                  const MPI_Comm);
+  template RunState read_restart(const output::OutputDirectory &, const scene::Scene<3> &, const MPI_Comm);
 } // namespace slipstick::app

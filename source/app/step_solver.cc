@@ -53,7 +53,8 @@ namespace slipstick::app
     // orthogonal, so that it adds at most 4.4 % to the total error, and less because it is estimated from above.
     constexpr double allowed_part = 0.3;
 
-    std::vector<std::string> names_of(const std::vector<scene::Body<StepSolver::dim>> &bodies)
+    template <int dim>
+    std::vector<std::string> names_of(const std::vector<scene::Body<dim>> &bodies)
     {
       std::vector<std::string> names;
       for (const auto &body : bodies)
@@ -124,12 +125,13 @@ namespace slipstick::app
     }
   } // namespace
 
-  StepSolver::StepSolver(const scene::Scene<dim> &scene_,
-                         const Log               &log_,
-                         StageClock              &clock_,
-                         const MPI_Comm           comm_,
-                         const bool               solves_adjoints,
-                         mesh::Refinement        *refinement)
+  template <int dim>
+  StepSolver<dim>::StepSolver(const scene::Scene<dim> &scene_,
+                              const Log               &log_,
+                              StageClock              &clock_,
+                              const MPI_Comm           comm_,
+                              const bool               solves_adjoints,
+                              mesh::Refinement        *refinement)
     : scene(scene_)
     , log(log_)
     , clock(clock_)
@@ -158,14 +160,16 @@ namespace slipstick::app
     interface::check_shared_sides(scene, *the_mesh, *the_spaces);
   }
 
-  void StepSolver::build()
+  template <int dim>
+  void StepSolver<dim>::build()
   {
     const double t = scene.load_factors.front();
     build_dual(t);
     contact::SlipLaw(scene, *the_dual, t); // refuses bounds
   }
 
-  StepState StepSolver::state() const
+  template <int dim>
+  StepState StepSolver<dim>::state() const
   {
     StepState state;
     state.kept_part          = kept_part;
@@ -188,7 +192,8 @@ namespace slipstick::app
     return state;
   }
 
-  void StepSolver::resume(const unsigned int step, const StepState &state)
+  template <int dim>
+  void StepSolver<dim>::resume(const unsigned int step, const StepState &state)
   {
     kept_part    = state.kept_part;
     largest_load = state.largest_load;
@@ -217,8 +222,9 @@ namespace slipstick::app
       the_solution.directions->push(vector_of(p, *the_dual), vector_of(Fp, *the_dual), the_dual->reduction());
   }
 
-  std::unique_ptr<StepSolver::Answer> StepSolver::solve(const unsigned int  step,
-                                                        const std::uint64_t multiplications_before)
+  template <int dim>
+  std::unique_ptr<StepAnswer> StepSolver<dim>::solve(const unsigned int  step,
+                                                     const std::uint64_t multiplications_before)
   {
     options.tolerance = scene.solver.tolerance;
     auto answer       = tighten(step,
@@ -231,7 +237,8 @@ namespace slipstick::app
     return answer;
   }
 
-  void StepSolver::build_dual(const double t)
+  template <int dim>
+  void StepSolver<dim>::build_dual(const double t)
   {
     if (options.prune_contact && kept_part < infinity)
       try
@@ -250,7 +257,8 @@ namespace slipstick::app
   }
 
   // A load history that returns to zero leaves rounding errors of its formulas.
-  void StepSolver::drop_rounding(std::vector<Eigen::VectorXd> &loads)
+  template <int dim>
+  void StepSolver<dim>::drop_rounding(std::vector<Eigen::VectorXd> &loads)
   {
     constexpr double rounding = 1e-12; // of the largest load so far
     double           square   = 0;
@@ -264,7 +272,8 @@ namespace slipstick::app
   }
 
   // Again for every step if something is not held: the loads of the step may drive it.
-  void StepSolver::make_dual(const double t)
+  template <int dim>
+  void StepSolver<dim>::make_dual(const double t)
   {
     scene.supports.erase(scene.supports.begin() + n_given, scene.supports.end());
     try
@@ -285,7 +294,8 @@ namespace slipstick::app
       }
   }
 
-  void StepSolver::make_dual_as_it_is(const double t)
+  template <int dim>
+  void StepSolver<dim>::make_dual_as_it_is(const double t)
   {
     clock.enter("assembly");
     if (subdomains)
@@ -320,14 +330,15 @@ namespace slipstick::app
     print_dual(log, *the_dual);
   }
 
-  interface::ContactRows StepSolver::contact_rows(const double t)
-  {
+  template <int dim>
+  interface::ContactRows StepSolver<dim>::contact_rows(const double t) {
     if (!contacts)
       contacts = interface::pair_bodies(scene, *the_mesh, *the_spaces);
     return interface::contact_rows(scene, *the_mesh, *the_spaces, *contacts, t, kept_part);
   }
 
-  bool StepSolver::advance(const double t)
+  template <int dim>
+  bool StepSolver<dim>::advance(const double t)
   {
     clock.enter("assembly");
     auto loads = mechanics::assemble_loads(scene, *the_mesh, *the_spaces, t);
@@ -350,7 +361,8 @@ namespace slipstick::app
     return is_same;
   }
 
-  void StepSolver::start_slip_from_here()
+  template <int dim>
+  void StepSolver<dim>::start_slip_from_here()
   {
     auto       c     = the_dual->constraints().c;
     const auto jumps = the_dual->jumps(u);
@@ -360,7 +372,8 @@ namespace slipstick::app
     the_dual->set_right_hand_side(std::move(c));
   }
 
-  void StepSolver::evaluate(Answer &answer, const contact::DualSolution &from, const double t) const
+  template <int dim>
+  void StepSolver<dim>::evaluate(Answer &answer, const contact::DualSolution &from, const double t) const
   {
     const contact::SlipLaw law(scene, *the_dual, t);
     const auto            &x = answer.recovery.multipliers;
@@ -376,7 +389,8 @@ namespace slipstick::app
     answer.stress = mechanics::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), u, t);
   }
 
-  bool StepSolver::is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t)
+  template <int dim>
+  bool StepSolver<dim>::is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t)
   {
     if (residual_energy > allowed_part * discretization_error)
       return false;
@@ -402,9 +416,10 @@ namespace slipstick::app
       }
   }
 
-  std::unique_ptr<StepSolver::Answer> StepSolver::solve_step(const unsigned int  step,
-                                                             const std::uint64_t multiplications_before,
-                                                             const bool          goes_on)
+  template <int dim>
+  std::unique_ptr<StepAnswer> StepSolver<dim>::solve_step(const unsigned int  step,
+                                                          const std::uint64_t multiplications_before,
+                                                          const bool          goes_on)
   {
     const double t         = scene.load_factors[step];
     bool         is_warm   = goes_on || (step > 0 && advance(t));
@@ -464,7 +479,8 @@ namespace slipstick::app
 
   // If the solution did not converge, work of the loads along a free motion proves nothing; all rows then count as
   // holding.
-  tfeti::DualProblem::Recovery StepSolver::recovered() const
+  template <int dim>
+  tfeti::DualProblem::Recovery StepSolver<dim>::recovered() const
   {
     try
       {
@@ -483,16 +499,18 @@ namespace slipstick::app
       }
   }
 
-  std::unique_ptr<StepSolver::Answer> StepSolver::checked(std::unique_ptr<Answer> answer, const double t) const
+  template <int dim>
+  std::unique_ptr<StepAnswer> StepSolver<dim>::checked(std::unique_ptr<Answer> answer, const double t) const
   {
     if (!answer->stress)
       evaluate(*answer, the_solution, t);
     return answer;
   }
 
-  std::unique_ptr<StepSolver::Answer> StepSolver::tighten(const unsigned int      step,
-                                                          const std::uint64_t     multiplications_before,
-                                                          std::unique_ptr<Answer> answer)
+  template <int dim>
+  std::unique_ptr<StepAnswer> StepSolver<dim>::tighten(const unsigned int      step,
+                                                       const std::uint64_t     multiplications_before,
+                                                       std::unique_ptr<Answer> answer)
   {
     const double limit = check_limit(tolerance_of(scene.solver, the_solution));
     for (unsigned int n = 0; n < max_tightenings && the_solution.status == qp::Status::converged; ++n)
@@ -532,7 +550,8 @@ namespace slipstick::app
     return answer;
   }
 
-  bool StepSolver::close_gaps(Answer &answer, const unsigned int step, const double limit)
+  template <int dim>
+  bool StepSolver<dim>::close_gaps(Answer &answer, const unsigned int step, const double limit)
   {
     double worst = answer.contact->checks.worst().second;
     for (unsigned int n = 0; n < max_closings && worst > limit; ++n)
@@ -555,4 +574,7 @@ namespace slipstick::app
       }
     return worst <= limit;
   }
+
+  template class StepSolver<2>;
+  template class StepSolver<3>;
 } // namespace slipstick::app

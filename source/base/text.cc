@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <sstream>
 
@@ -63,6 +64,12 @@ namespace slipstick
     std::array<char, 32> buffer; // the shortest text of a double has at most 24 characters
     const auto           result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
     return std::string(buffer.data(), result.ptr);
+  }
+
+  std::string short_text(const double value)
+  {
+    std::array<char, 32> text;
+    return std::string(text.data(), std::snprintf(text.data(), text.size(), "%.6g", value));
   }
 
   double rounded_up(const double value)

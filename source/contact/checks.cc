@@ -232,15 +232,34 @@ namespace slipstick::contact
       return result;
     }
 
+    /// Has it tangents of its own?
+    bool is_in_space(const tfeti::ContactPoint &point)
+    {
+      const auto &t = point.tangents[0];
+      return t[0] != 0 || t[1] != 0 || t[2] != 0;
+    }
+
     /// Moment of the forces on both sides: force on the slave body at its node, the opposite one at the mean of the
-    /// master nodes; two dimensions.
-    /// @param N compressive force, @param T minus the tangential force on the slave body.
-    double moment_mismatch(const tfeti::ContactPoint &point, const double N, const double T)
+    /// master nodes.
+    /// @param N compressive force, @param T minus the tangential force on the slave body, in the plane.
+    std::array<double, 3> moment_mismatch(const tfeti::ContactPoint &point,
+                                          const ContactNode         &node,
+                                          const double               N,
+                                          const double               T)
     {
       if (!point.has_master)
-        return 0;
-      const double fx = -(N * point.normal[0] - T * point.normal[1]), fy = -(N * point.normal[1] + T * point.normal[0]);
-      return (point.position[0] - point.master_position[0]) * fy - (point.position[1] - point.master_position[1]) * fx;
+        return {{0, 0, 0}};
+      std::array<double, 3> force{
+        {-(N * point.normal[0] - T * point.normal[1]), -(N * point.normal[1] + T * point.normal[0]), 0}};
+      if (is_in_space(point))
+        for (unsigned int d = 0; d < 3; ++d)
+          force[d] = node.traction[d] * node.area - N * point.normal[d];
+      std::array<double, 3> apart;
+      for (unsigned int d = 0; d < 3; ++d)
+        apart[d] = point.position[d] - point.master_position[d];
+      Resultant mismatch;
+      mismatch.add<3>(force, apart);
+      return mismatch.moment;
     }
 
     /// Vectors and lengths of tangential traction and slip.
@@ -253,6 +272,8 @@ namespace slipstick::contact
       for (const unsigned int k : {0, 1})
         {
           const unsigned int row = k == 0 ? point.tangential_row : point.second_row;
+          if (row == tfeti::invalid_row) // a support holds the node there
+            continue;
           for (unsigned int d = 0; d < 3; ++d)
             {
               node.traction[d] -= multipliers.local_element(row) / node.area * point.tangents[k][d];
@@ -288,14 +309,15 @@ namespace slipstick::contact
           node.slip_bound = slip_bound[point.tangential_row] / node.area;
           node.status     = status_of(node.is_closed, node.slip_bound, free[point.tangential_row]);
         }
-      if (point.second_row != tfeti::invalid_row)
+      if (is_in_space(point))
         complete_in_space(dual, point, multipliers, jumps, node);
-      node.moment_mismatch = moment_mismatch(point, node.pressure * node.area, tangential);
+      node.moment_mismatch = moment_mismatch(point, node, node.pressure * node.area, tangential);
       return node;
     }
 
     /// One node of a bonded pair: it sticks whatever the tractions; a row that others imply carries none.
-    ContactNode bonded_node(const tfeti::ContactPoint &point,
+    ContactNode bonded_node(const tfeti::DualProblem  &dual,
+                            const tfeti::ContactPoint &point,
                             const DistributedVector   &multipliers,
                             const DistributedVector   &jumps)
     {
@@ -316,7 +338,9 @@ namespace slipstick::contact
           node.tangential_traction = -tangential / node.area;
           node.slip                = jumps.local_element(point.tangential_row);
         }
-      node.moment_mismatch = moment_mismatch(point, node.pressure * node.area, tangential);
+      if (is_in_space(point))
+        complete_in_space(dual, point, multipliers, jumps, node);
+      node.moment_mismatch = moment_mismatch(point, node, node.pressure * node.area, tangential);
       return node;
     }
   } // namespace
@@ -460,11 +484,10 @@ namespace slipstick::contact
             // a bound far above all forces would turn rounding at sticking nodes into work
             const double capped = std::max(std::abs(T), std::min(bound, bounds_that_count * largest_contact));
             all_bounds += capped;
-            const double friction_work =
-              point.second_row == tfeti::invalid_row
-                ? T * node.slip
-                : node.area * (node.traction[0] * node.slip_vector[0] + node.traction[1] * node.slip_vector[1] +
-                               node.traction[2] * node.slip_vector[2]);
+            const double friction_work = !is_in_space(point) ? T * node.slip
+                                                             : node.area * (node.traction[0] * node.slip_vector[0] +
+                                                                            node.traction[1] * node.slip_vector[1] +
+                                                                            node.traction[2] * node.slip_vector[2]);
             work += missing_friction_work(capped, friction_work, node.slip);
           }
         checks.complementarity += work;
@@ -472,7 +495,7 @@ namespace slipstick::contact
       }
     for (const auto &point : constraints.bonded_points)
       {
-        result.nodes.push_back(bonded_node(point, multipliers, jumps));
+        result.nodes.push_back(bonded_node(dual, point, multipliers, jumps));
         result.keys.push_back(point.key);
       }
     MPI_Allreduce(MPI_IN_PLACE, energies.data(), energies.size(), MPI_DOUBLE, MPI_SUM, comm);
@@ -537,7 +560,8 @@ namespace slipstick::contact
   }
 
   std::vector<PairResult> pair_results(const std::vector<ContactNode> &nodes,
-                                       const std::vector<std::string> &pair_names)
+                                       const std::vector<std::string> &pair_names,
+                                       const unsigned int              dim)
   {
     std::vector<PairResult> results(pair_names.size());
     for (unsigned int k = 0; k < pair_names.size(); ++k)
@@ -547,11 +571,16 @@ namespace slipstick::contact
         PairResult &result = results[node.pair];
         result.normal_force += node.pressure * node.area;
         result.tangential_force += node.tangential_traction * node.area;
-        result.moment_mismatch += node.moment_mismatch;
-        const double N = node.pressure * node.area, T = node.tangential_traction * node.area;
-        result.on_slave.add(-N * node.normal[0] - T * node.normal[1],
-                            -N * node.normal[1] + T * node.normal[0],
-                            node.position);
+        const double          N = node.pressure * node.area, T = node.tangential_traction * node.area;
+        std::array<double, 3> force{
+          {-N * node.normal[0] - T * node.normal[1], -N * node.normal[1] + T * node.normal[0], 0}};
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            result.moment_mismatch[d] += node.moment_mismatch[d];
+            if (dim == 3)
+              force[d] = node.traction[d] * node.area - N * node.normal[d];
+          }
+        result.on_slave.add<3>(force, node.position);
         result.max_pressure = std::max(result.max_pressure, node.pressure);
         result.contact_length += node.is_closed ? node.length : 0.;
         result.contact_nodes += node.is_closed;

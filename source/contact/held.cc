@@ -1,6 +1,7 @@
 #include <slipstick/contact/held.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -66,6 +67,8 @@ namespace slipstick::contact
                       const std::vector<bool>        &sticks,
                       CheckedContact                 &contact)
   {
+    constexpr unsigned int motions_in_space = 6;
+    const bool is_in_space = !dual.subdomains().empty() && dual.subdomains()[0]->kernel().cols() == motions_in_space;
     for (unsigned int i = 0; i < held.points.size(); ++i)
       {
         const auto  &point     = held.points[i];
@@ -78,7 +81,13 @@ namespace slipstick::contact
         if (point.is_bonded)
           {
             node.tangential_traction = product(force, {{-node.normal[1], node.normal[0], 0}}) / node.area;
-            node.slip_bound          = std::numeric_limits<double>::infinity();
+            if (is_in_space)
+              {
+                for (unsigned int d = 0; d < 3; ++d)
+                  node.traction[d] = force[d] / node.area + node.pressure * node.normal[d];
+                node.tangential_traction = std::sqrt(product(node.traction, node.traction));
+              }
+            node.slip_bound = std::numeric_limits<double>::infinity();
           }
         if (!has_place)
           node.status = !touches[i] ? ContactStatus::open : sticks[i] ? ContactStatus::stick : ContactStatus::slip;

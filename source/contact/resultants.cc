@@ -13,15 +13,17 @@ namespace slipstick::contact
                                    const unsigned int                        n_holders)
   {
     std::vector<Resultant> own(n_holders);
-    const auto             add = [&](const unsigned int holder, const double fx, const double fy, const auto &at) {
+    const auto             add = [&](const unsigned int holder, const std::array<double, 3> &force, const auto &at) {
       if (holder < n_holders) // else a bond to an obstacle, whose nodes are among those of the pairs
-        own[holder].add(fx, fy, at);
+        own[holder].add<3>(force, at);
     };
     for (const auto &reaction : dual.constraints().reactions)
       {
         const double part = -multipliers.local_element(reaction.row) / reaction.holders.size();
         for (const unsigned int h : reaction.holders)
-          add(h, part * reaction.direction[0], part * reaction.direction[1], reaction.position);
+          add(h,
+              {{part * reaction.direction[0], part * reaction.direction[1], part * reaction.direction[2]}},
+              reaction.position);
       }
     for (unsigned int i = 0; i < held.points.size(); ++i)
       if (const auto &point = held.points[i]; !point.is_bonded)
@@ -31,15 +33,22 @@ namespace slipstick::contact
             holders.insert(dual.constraints().reactions[r].holders.begin(),
                            dual.constraints().reactions[r].holders.end());
           for (const unsigned int h : holders)
-            add(h, -held_forces[i][0] / holders.size(), -held_forces[i][1] / holders.size(), point.contact.position);
+            add(h,
+                {{-held_forces[i][0] / holders.size(),
+                  -held_forces[i][1] / holders.size(),
+                  -held_forces[i][2] / holders.size()}},
+                point.contact.position);
         }
     std::vector<double> numbers;
     for (const auto &resultant : own)
-      numbers.insert(numbers.end(), {resultant.force[0], resultant.force[1], resultant.moment});
+      {
+        const auto some = resultant.numbers();
+        numbers.insert(numbers.end(), some.begin(), some.end());
+      }
     if (!numbers.empty())
       MPI_Allreduce(MPI_IN_PLACE, numbers.data(), numbers.size(), MPI_DOUBLE, MPI_SUM, dual.communicator());
     for (unsigned int h = 0; h < n_holders; ++h)
-      own[h] = {{{numbers[3 * h], numbers[3 * h + 1]}}, numbers[3 * h + 2]};
+      own[h] = Resultant::of(numbers.data() + Resultant::n_numbers * h);
     return own;
   }
 } // namespace slipstick::contact

@@ -8,49 +8,44 @@ namespace slipstick::interface
 {
   namespace
   {
-    template <int dim>
-    double mean_chord(const std::vector<mechanics::SurfaceEdge<dim>> &edges)
+    template <class Part>
+    double mean_size(const std::vector<Part> &parts)
     {
       double sum = 0;
-      for (const auto &edge : edges)
-        sum += edge.chord();
-      return sum / edges.size();
+      for (const auto &part : parts)
+        sum += part.chord();
+      return sum / parts.size();
     }
 
-    template <int dim>
-    double automatic_reach(const std::vector<mechanics::SurfaceEdge<dim>> &slave,
-                           const std::vector<mechanics::SurfaceEdge<dim>> &master,
-                           const double                                    distance)
+    template <class Part>
+    double automatic_reach(const std::vector<Part> &slave, const std::vector<Part> &master, const double distance)
     {
-      return distance + std::max(2 * std::max(mean_chord(slave), mean_chord(master)),
-                                 0.1 * std::min(extent(slave), extent(master)));
+      return distance +
+             std::max(2 * std::max(mean_size(slave), mean_size(master)), 0.1 * std::min(extent(slave), extent(master)));
     }
 
-    template <int dim>
-    double widest_reach(const std::vector<mechanics::SurfaceEdge<dim>> &slave,
-                        const std::vector<mechanics::SurfaceEdge<dim>> &master,
-                        const double                                    distance)
+    template <class Part>
+    double widest_reach(const std::vector<Part> &slave, const std::vector<Part> &master, const double distance)
     {
       return distance + 0.5 * std::min(extent(slave), extent(master));
     }
 
-    template <int dim>
-    std::vector<mechanics::SurfaceEdge<dim>> outline_of(const std::vector<mechanics::SurfaceEdge<dim>> &all,
-                                                        const unsigned int                              body)
+    template <class Part>
+    std::vector<Part> outline_of(const std::vector<Part> &all, const unsigned int body)
     {
-      std::vector<mechanics::SurfaceEdge<dim>> outline;
+      std::vector<Part> outline;
       std::copy_if(all.begin(), all.end(), std::back_inserter(outline), [&](const auto &e) { return e.body == body; });
       return outline;
     }
 
     template <int dim>
-    std::vector<MortarRow<dim>> rows_of(const scene::Scene<dim>                        &scene,
-                                        const mesh::Mesh<dim>                          &mesh,
-                                        const scene::ContactPair<dim>                  &pair,
-                                        const std::vector<mechanics::SurfaceEdge<dim>> &all)
+    std::vector<MortarRow<dim>> rows_of(const scene::Scene<dim>                         &scene,
+                                        const mesh::Mesh<dim>                           &mesh,
+                                        const scene::ContactPair<dim>                   &pair,
+                                        const std::vector<mechanics::BoundaryPart<dim>> &all)
     {
-      const PairSides<dim> sides{mechanics::edges_on(mesh, all, pair.slave),
-                                 mechanics::edges_on(mesh, all, *pair.master),
+      const PairSides<dim> sides{mechanics::parts_on(mesh, all, pair.slave),
+                                 mechanics::parts_on(mesh, all, *pair.master),
                                  outline_of(all, pair.slave.body),
                                  outline_of(all, pair.master->body)};
       const auto           distance = facing_distance(sides.slave, sides.master);
@@ -139,17 +134,6 @@ namespace slipstick::interface
     return contacts;
   }
 
-  template <>
-  BodyContacts<3> pair_bodies(const scene::Scene<3> &scene, const mesh::Mesh<3> &, const mechanics::Spaces<3> &)
-  {
-    for (const auto &pair : scene.contacts)
-      if (pair.master)
-        throw InputError("Contact " + pair.name + ": contact between bodies is not possible in space yet",
-                         "give an obstacle as Master");
-    BodyContacts<3> contacts;
-    contacts.rows.resize(scene.contacts.size());
-    return contacts;
-  }
-
   template BodyContacts<2> pair_bodies(const scene::Scene<2> &, const mesh::Mesh<2> &, const mechanics::Spaces<2> &);
+  template BodyContacts<3> pair_bodies(const scene::Scene<3> &, const mesh::Mesh<3> &, const mechanics::Spaces<3> &);
 } // namespace slipstick::interface

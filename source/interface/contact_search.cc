@@ -151,4 +151,17 @@ namespace slipstick::interface
         if (a != b && declared.count(std::minmax(a, b)) == 0)
           check_pair(scene, a, by_body[a], b, by_body[b]);
   }
+
+  // The scene knows no search in space.
+  template <>
+  std::vector<scene::ContactPair<3>> find_contacts(const scene::Scene<3> &,
+                                                   const mesh::Mesh<3> &,
+                                                   const mechanics::Spaces<3> &)
+  {
+    return {};
+  }
+
+  template <>
+  void check_overlap(const scene::Scene<3> &, const mesh::Mesh<3> &, const mechanics::Spaces<3> &)
+  {}
 } // namespace slipstick::interface

@@ -211,12 +211,8 @@ namespace slipstick::interface
     for (const double s : {0., 0.25, 0.5, 0.75, 1.})
       for (const double way : {-reach.behind, reach.ahead})
         around.push_back(slave[e].point(s) + way * field(e, s) / field(e, s).norm());
-    auto box = EdgeTree::box_around(around);
     // a little larger: the field of normals turns, and exact touching is on the border
-    const double more = 0.05 * slave[e].chord();
-    box.min_corner()  = {box.min_corner().get<0>() - more, box.min_corner().get<1>() - more};
-    box.max_corner()  = {box.max_corner().get<0>() + more, box.max_corner().get<1>() + more};
-    return tree.near(box);
+    return tree.near(EdgeTree::widened(EdgeTree::box_around(around), 0.05 * slave[e].chord()));
   }
 
   std::vector<CurvePairing::Segment> CurvePairing::segments(const unsigned int e) const

@@ -1,6 +1,7 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
+#include <slipstick/base/text.h>
 #include <slipstick/interface/held_contact.h>
 
 #include <deal.II/base/mpi.h>
@@ -39,23 +40,24 @@ namespace slipstick::interface
                                          const tfeti::HeldContacts::Point &point,
                                          const double                      depth)
     {
-      const auto       &pair  = scene.contacts[point.contact.pair];
+      const auto &pair = scene.contacts[point.contact.pair];
+      std::string direction; // no -0
+      for (unsigned int d = 0; d < dim; ++d)
+        direction += format("%s%.3g", d == 0 ? "(" : ", ", point.contact.normal[d] + 0.);
+      direction += ")";
       const std::string other = pair.master ? "body " + scene.bodies[pair.master->body].name
                                             : "obstacle " + scene.obstacles[pair.obstacle].name;
       return NoEquilibrium(
-        format("%s and Contact %s contradict each other: at (%.6g, %.6g) body %s is held %.6g mm inside %s, which no "
+        format("%s and Contact %s contradict each other: at %s body %s is held %.6g mm inside %s, which no "
                "force can change",
                names_of(scene, point.holders).c_str(),
                pair.name.c_str(),
-               point.contact.position[0],
-               point.contact.position[1],
+               point_text(point.contact.position, dim).c_str(),
                scene.bodies[pair.slave.body].name.c_str(),
                depth,
                other.c_str()),
-        format("prescribe no more than the gap there, free the displacement along (%.3g, %.3g), leave the supported "
-               "boundary out of the contact, or change its Offset or Gap",
-               point.contact.normal[0] + 0., // no -0
-               point.contact.normal[1] + 0.));
+        "prescribe no more than the gap there, free the displacement along " + direction +
+          ", leave the supported boundary out of the contact, or change its Offset or Gap");
     }
 
     /// Refuses the deepest point, that of the first rank with it. Collective.
@@ -122,6 +124,12 @@ namespace slipstick::interface
 
   template void refuse_held_penetration(const scene::Scene<2> &, const tfeti::HeldContacts &, const MPI_Comm);
   template void refuse_held_penetration(const scene::Scene<2> &,
+                                        const tfeti::HeldContacts &,
+                                        const std::vector<double> &,
+                                        const double,
+                                        const MPI_Comm);
+  template void refuse_held_penetration(const scene::Scene<3> &, const tfeti::HeldContacts &, const MPI_Comm);
+  template void refuse_held_penetration(const scene::Scene<3> &,
                                         const tfeti::HeldContacts &,
                                         const std::vector<double> &,
                                         const double,

@@ -1,6 +1,4 @@
-#include <slipstick/base/exceptions.h>
-#include <slipstick/base/log.h>
-#include <slipstick/interface/mortar.h>
+#include <slipstick/interface/node_matching.h>
 
 #include <deal.II/base/quadrature_lib.h>
 
@@ -19,11 +17,8 @@ namespace slipstick::interface
     // Nodes lie on their curve when they are off by no more than this part of the edge.
     constexpr double on_curve = 1e-12;
     // Weights below this are rounding.
-    constexpr double smallest_weight = 1e-11;
-    // Master nodes lie across slave nodes when they are off by no more than this part of the tributary length ...
-    constexpr double       across_automatic = 1e-6; // ... to be taken for matching meshes
-    constexpr double       across_asked_for = 0.1;  // ... when node to node is asked for
-    constexpr unsigned int n_gauss          = 5; // per segment; exact between straight parallel edges of both degrees
+    constexpr double       smallest_weight = 1e-11;
+    constexpr unsigned int n_gauss         = 5; // per segment; exact between straight parallel edges of both degrees
 
     /// The integrals of all slave edges, by node.
     class MortarIntegrals
@@ -49,9 +44,9 @@ namespace slipstick::interface
               places[edge.keys[i]] = {&edge, Edge::node_coordinate(i)};
         for (const auto &edge : master)
           for (unsigned int i = 0; i < edge.n_nodes; ++i)
-            master_positions[edge.keys[i]] = edge.node(i);
+            nodes.master[edge.keys[i]] = edge.node(i);
         for (const auto &node : pairing.nodes())
-          slave_positions[node.key] = node.position;
+          nodes.slave[node.key] = node.position;
         for (unsigned int e = 0; e < slave.size(); ++e)
           integrate(e, pairing.segments(e));
       }
@@ -154,23 +149,6 @@ namespace slipstick::interface
           }
       }
 
-      /// Weights over their sum, without what is rounding; the largest makes the sum 1 exactly.
-      static Weights normalised(const std::map<mechanics::NodeKey, double> &raw, const double sum)
-      {
-        Weights weights;
-        for (const auto &[key, value] : raw)
-          if (std::abs(value) > smallest_weight * sum)
-            weights.emplace_back(key, value / sum);
-        const auto by_size = [](const auto &a, const auto &b) { return std::abs(a.second) < std::abs(b.second); };
-        const auto largest = std::max_element(weights.begin(), weights.end(), by_size);
-        double     others  = 0;
-        for (auto w = weights.begin(); w != weights.end(); ++w)
-          if (w != largest)
-            others += w->second;
-        largest->second = 1 - others;
-        return weights;
-      }
-
       MortarRow<2> row_of(const CurvePairing::Node &node, const Sums &sum) const
       {
         MortarRow<2> row;
@@ -185,24 +163,12 @@ namespace slipstick::interface
         row.slave_weights  = normalised(sum.slave, sum.measure);
         row.master_weights = normalised(sum.master, sum.measure);
         row.left_out       = sum.left_out;
-        measure(row);
+        nodes.measure(row);
         row.gap += row.normal * sum.rise / sum.measure;
         return row;
       }
 
     public:
-      /// Gap and mean master position from the weights.
-      void measure(MortarRow<2> &row) const
-      {
-        dealii::Point<2> x;
-        row.master_position = {};
-        for (const auto &[key, weight] : row.slave_weights)
-          x += weight * Tensor(slave_positions.at(key));
-        for (const auto &[key, weight] : row.master_weights)
-          row.master_position += weight * Tensor(master_positions.at(key));
-        row.gap = row.normal * (row.master_position - x);
-      }
-
       /// How far the curve is above the edges at a node, along the normal of a row: nothing but for midside nodes of
       /// straight edges and nodes of edges that could not be bent.
       double rise(const MortarRow<2> &row, const mechanics::NodeKey &key) const
@@ -212,26 +178,18 @@ namespace slipstick::interface
         return std::abs(distance) > on_curve * edge->chord() ? distance : 0.;
       }
 
-      /// The master node across a slave node, and how far off it is to the side.
-      std::pair<mechanics::NodeKey, double> across(const MortarRow<2> &row) const
+      const NodePlaces<2> &places_of_nodes() const
       {
-        std::pair<mechanics::NodeKey, double> best{{{0, 0}}, std::numeric_limits<double>::max()};
-        for (const auto &[key, weight] : row.master_weights)
-          {
-            const double off = std::abs(mechanics::cross(row.normal, master_positions.at(key) - row.position));
-            if (off < best.second)
-              best = {key, off};
-          }
-        return best;
+        return nodes;
       }
 
     private:
-      const mesh::Kinematics<2>                      kinematics;
-      const CurvePairing                             pairing;
-      const std::vector<Edge>                       &slave, &master;
-      const dealii::QGauss<1>                        gauss;
-      std::vector<Sums>                              sums; // by node of the pairing
-      std::map<mechanics::NodeKey, dealii::Point<2>> slave_positions, master_positions;
+      const mesh::Kinematics<2> kinematics;
+      const CurvePairing        pairing;
+      const std::vector<Edge>  &slave, &master;
+      const dealii::QGauss<1>   gauss;
+      std::vector<Sums>         sums; // by node of the pairing
+      NodePlaces<2>             nodes;
 
       std::map<mechanics::NodeKey, std::pair<const Edge *, double>>
         places; // an edge of every node, and where it is there
@@ -267,6 +225,22 @@ namespace slipstick::interface
     }
   } // namespace
 
+  Weights normalised(const std::map<mechanics::NodeKey, double> &raw, const double sum)
+  {
+    Weights weights;
+    for (const auto &[key, value] : raw)
+      if (std::abs(value) > smallest_weight * sum)
+        weights.emplace_back(key, value / sum);
+    const auto by_size = [](const auto &a, const auto &b) { return std::abs(a.second) < std::abs(b.second); };
+    const auto largest = std::max_element(weights.begin(), weights.end(), by_size);
+    double     others  = 0;
+    for (auto w = weights.begin(); w != weights.end(); ++w)
+      if (w != largest)
+        others += w->second;
+    largest->second = 1 - others;
+    return weights;
+  }
+
   template <>
   std::vector<MortarRow<2>> mortar_rows(const std::vector<mechanics::SurfaceEdge<2>> &slave,
                                         const std::vector<mechanics::SurfaceEdge<2>> &master,
@@ -276,34 +250,11 @@ namespace slipstick::interface
                                         const mesh::Kinematics<2>                    &kinematics)
   {
     const MortarIntegrals integrals(slave, master, reach, kinematics);
-    auto                  rows = integrals.rows();
-    if (discretization == scene::ContactDiscretization::mortar)
-      return rows;
-    const bool   is_asked_for = discretization == scene::ContactDiscretization::node_to_node;
-    const double tolerance    = is_asked_for ? across_asked_for : across_automatic;
-    auto         to_nodes     = rows;
-    for (auto &row : to_nodes)
-      {
-        const auto [key, off] = integrals.across(row);
-        if (off > tolerance * row.length)
-          {
-            if (!is_asked_for)
-              return rows;
-            throw InputError(
-              format("Contact %s: Discretization = node to node, but the meshes do not match: the master "
-                     "node nearest to the slave node at (%g, %g) is %g mm off to the side",
-                     name.c_str(),
-                     row.position[0],
-                     row.position[1],
-                     off),
-              "set Discretization = auto or mortar, or give both boundaries the same nodes");
-          }
-        row.slave_weights  = {{row.slave, 1.}};
-        row.master_weights = {{key, 1.}};
-        integrals.measure(row);
-        row.gap += integrals.rise(row, key) - integrals.rise(row, row.slave);
-      }
-    return to_nodes;
+    return matched(integrals.rows(),
+                   integrals.places_of_nodes(),
+                   discretization,
+                   name,
+                   [&](const MortarRow<2> &row, const mechanics::NodeKey &key) { return integrals.rise(row, key); });
   }
 
   template <>

@@ -26,7 +26,7 @@ namespace slipstick::interface
       if (!(distance > 0))
         throw InputError("a contact node lies at the centre of obstacle " + obstacle.name + ", where it has no normal",
                          "move the obstacle, or give the contact another slave boundary");
-      if (obstacle.shape == scene::ObstacleShape::hole)
+      if (obstacle.shape == scene::ObstacleShape::hole || obstacle.shape == scene::ObstacleShape::bore)
         return {-ray / distance, obstacle.radius - distance};
       return {ray / distance, distance - obstacle.radius};
     }
@@ -93,6 +93,40 @@ namespace slipstick::interface
         }
       return onto_tangent(x[0]);
     }
+
+    /// The same in space: y = h(x, z).
+    ObstacleContact<3> with_function(const scene::Field<3> &height, const dealii::Point<3> &x, const double t)
+    {
+      using Vector            = dealii::Tensor<1, 3>; // in the plane of x and z
+      const auto h            = [&](const Vector &at) { return height.value(dealii::Point<3>(at[0], x[1], at[2]), t); };
+      const auto onto_tangent = [&](const Vector &at) {
+        Vector normal;
+        for (const unsigned int d : {0, 2})
+          {
+            const double step = 1e-5 * std::max(1., std::abs(at[d])); // error of the slope about 1e-10
+            Vector       way;
+            way[d]    = step;
+            normal[d] = (h(at + way) - h(at - way)) / (2 * step);
+          }
+        normal[1] = -1;
+        normal /= normal.norm();
+        return ObstacleContact<3>{normal, (dealii::Point<3>(at[0], h(at), at[2]) - x) * normal};
+      };
+      Vector above = x;
+      above[1]     = 0;
+      Vector foot  = above;
+      for (unsigned int i = 0; i < 100; ++i)
+        {
+          const auto contact = onto_tangent(foot);
+          Vector     next    = x + contact.gap * contact.normal; // nearest point of the tangential plane
+          next[1]            = 0;
+          const double step  = (next - foot).norm();
+          foot               = next;
+          if (step <= 1e-10 * std::max(1., foot.norm()))
+            return onto_tangent(foot);
+        }
+      return onto_tangent(above);
+    }
   } // namespace
 
   template <>
@@ -109,7 +143,8 @@ namespace slipstick::interface
           return with_polyline(obstacle.points, x);
         case scene::ObstacleShape::function:
           return with_function(obstacle.height, x, t);
-        case scene::ObstacleShape::cylinder: // refused by the scene
+        case scene::ObstacleShape::cylinder: // not offered in the plane
+        case scene::ObstacleShape::bore:
           break;
       }
     AssertThrow(false, dealii::ExcInternalError());
@@ -117,7 +152,7 @@ namespace slipstick::interface
   }
 
   template <>
-  ObstacleContact<3> contact_with(const scene::Obstacle<3> &obstacle, const dealii::Point<3> &x, const double)
+  ObstacleContact<3> contact_with(const scene::Obstacle<3> &obstacle, const dealii::Point<3> &x, const double t)
   {
     const dealii::Tensor<1, 3> ray = obstacle.center - x;
     switch (obstacle.shape)
@@ -128,12 +163,14 @@ namespace slipstick::interface
         case scene::ObstacleShape::half_plane:
           return {-obstacle.normal, -ray * obstacle.normal};
         case scene::ObstacleShape::cylinder:
+        case scene::ObstacleShape::bore:
           return with_circle<3>(obstacle, ray - (ray * obstacle.normal) * obstacle.normal);
-        case scene::ObstacleShape::polyline:
         case scene::ObstacleShape::function:
+          return with_function(obstacle.height, x, t);
+        case scene::ObstacleShape::polyline: // not offered in space
           break;
       }
-    throw InputError("Obstacle " + obstacle.name + ": its shape is not available in space",
-                     "set Shape to ball, cylinder or half space");
+    AssertThrow(false, dealii::ExcInternalError());
+    return {};
   }
 } // namespace slipstick::interface

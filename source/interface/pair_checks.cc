@@ -3,6 +3,7 @@
 #include <slipstick/interface/edge_tree.h>
 #include <slipstick/interface/obstacle.h>
 #include <slipstick/interface/pair_checks.h>
+#include <slipstick/interface/surface_pairing.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,24 +11,10 @@
 
 namespace slipstick::interface
 {
-  template <>
-  std::string describe(const scene::Scene<2> &scene, const scene::BoundaryName &where)
+  template <int dim>
+  std::string describe(const scene::Scene<dim> &scene, const scene::BoundaryName &where)
   {
     return scene.bodies[where.body].name + "/" + where.boundary;
-  }
-
-  template <>
-  double extent(const std::vector<mechanics::SurfaceEdge<2>> &edges)
-  {
-    dealii::Point<2> low = edges[0].node(0), high = low;
-    for (const auto &edge : edges)
-      for (unsigned int i = 0; i < edge.n_nodes; ++i)
-        for (unsigned int d = 0; d < 2; ++d)
-          {
-            low[d]  = std::min(low[d], edge.at[i][d]);
-            high[d] = std::max(high[d], edge.at[i][d]);
-          }
-    return low.distance(high);
   }
 
   namespace
@@ -40,34 +27,41 @@ namespace slipstick::interface
     constexpr unsigned int n_compared = 500;
     constexpr double       infinity   = std::numeric_limits<double>::infinity();
 
-    using Edges = std::vector<mechanics::SurfaceEdge<2>>;
+    /// Edges or faces.
+    template <int dim>
+    using Parts = std::vector<mechanics::BoundaryPart<dim>>;
 
     double degrees(const double cosine)
     {
       return std::acos(std::min(1., std::max(-1., cosine))) * 180 / dealii::numbers::PI;
     }
 
-    bool any_inside(const Edges &side, const ClosedOutline &body)
+    /// Is any point of a side inside the body with the outline?
+    template <class Part>
+    bool any_inside(const std::vector<Part> &side, const std::vector<Part> &outline)
     {
-      for (const auto &edge : side)
-        for (const double s : {0.05, 0.25, 0.5, 0.75, 0.95})
-          if (body.contains(edge.point(s)))
+      const ClosedSurface<Part> body(outline);
+      for (const auto &part : side)
+        for (const auto &x : mechanics::inner_points(part))
+          if (body.contains(x))
             return true;
       return false;
     }
 
     /// Largest angle between outward normals of two sides [degrees].
-    double largest_angle(const Edges &a, const Edges &b)
+    template <class Part>
+    double largest_angle(const std::vector<Part> &a, const std::vector<Part> &b)
     {
       const unsigned int step_a = a.size() / n_compared + 1, step_b = b.size() / n_compared + 1;
       double             least = 1;
       for (unsigned int i = 0; i < a.size(); i += step_a)
         for (unsigned int j = 0; j < b.size(); j += step_b)
-          least = std::min(least, a[i].normal(0.5) * b[j].normal(0.5));
+          least = std::min(least, mechanics::middle_normal(a[i]) * mechanics::middle_normal(b[j]));
       return degrees(least);
     }
 
-    double least_gap(const std::vector<MortarRow<2>> &rows)
+    template <int dim>
+    double least_gap(const std::vector<MortarRow<dim>> &rows)
     {
       double least = infinity;
       for (const auto &row : rows)
@@ -75,14 +69,16 @@ namespace slipstick::interface
       return least;
     }
 
-    std::string between(const scene::Scene<2> &scene, const scene::ContactPair<2> &pair)
+    template <int dim>
+    std::string between(const scene::Scene<dim> &scene, const scene::ContactPair<dim> &pair)
     {
       return "Contact " + pair.name + ": " + describe(scene, pair.slave) + " and " + describe(scene, *pair.master);
     }
 
-    [[noreturn]] void refuse_facing_away(const scene::Scene<2>           &scene,
-                                         const scene::ContactPair<2>     &pair,
-                                         const std::vector<MortarRow<2>> &rows)
+    template <int dim>
+    [[noreturn]] void refuse_facing_away(const scene::Scene<dim>           &scene,
+                                         const scene::ContactPair<dim>     &pair,
+                                         const std::vector<MortarRow<dim>> &rows)
     {
       throw InputError(
         between(scene, pair) +
@@ -94,14 +90,15 @@ namespace slipstick::interface
     }
 
     /// Largest displacement that a support prescribes at any load factor [mm].
-    double largest_prescribed(const scene::Scene<2> &scene, const mesh::Mesh<2> &mesh, const Edges &all)
+    template <int dim>
+    double largest_prescribed(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh, const Parts<dim> &all)
     {
       double largest = 0;
       for (const auto &support : scene.supports)
         {
-          std::vector<dealii::Point<2>> places;
+          std::vector<dealii::Point<dim>> places;
           if (!support.point)
-            for (const auto &edge : mechanics::edges_on(mesh, all, support.where))
+            for (const auto &edge : mechanics::parts_on(mesh, all, support.where))
               for (unsigned int i = 0; i < edge.n_nodes; ++i)
                 places.push_back(edge.node(i));
           else if (support.point->coordinates)
@@ -124,17 +121,18 @@ namespace slipstick::interface
     }
 
     /// @param size of the sides, @param gap the smallest one of all load steps.
-    void check_automatic_reach(const scene::Scene<2>       &scene,
-                               const mesh::Mesh<2>         &mesh,
-                               const scene::ContactPair<2> &pair,
-                               const Edges                 &all,
-                               const std::string           &names,
-                               const double                 size,
-                               const double                 gap)
+    template <int dim>
+    void check_automatic_reach(const scene::Scene<dim>       &scene,
+                               const mesh::Mesh<dim>         &mesh,
+                               const scene::ContactPair<dim> &pair,
+                               const Parts<dim>              &all,
+                               const std::string             &names,
+                               const double                   size,
+                               const double                   gap)
     {
       if (gap <= size) // the common case, without a look at the supports
         return;
-      const double prescribed = largest_prescribed(scene, mesh, all);
+      const double prescribed = largest_prescribed<dim>(scene, mesh, all);
       if (gap > size + prescribed)
         throw InputError(names +
                            format(" are out of reach of each other: the smallest gap is %g mm, the automatic reach "
@@ -153,9 +151,10 @@ namespace slipstick::interface
       double gap    = infinity;
     };
 
-    AgainstObstacle against_obstacle(const scene::Scene<2>       &scene,
-                                     const scene::ContactPair<2> &pair,
-                                     const Edges                 &slave)
+    template <int dim>
+    AgainstObstacle against_obstacle(const scene::Scene<dim>       &scene,
+                                     const scene::ContactPair<dim> &pair,
+                                     const Parts<dim>              &slave)
     {
       AgainstObstacle result;
       for (const double t : scene.load_factors)
@@ -165,21 +164,22 @@ namespace slipstick::interface
               const auto   x       = edge.node(i);
               const auto   contact = contact_with(scene.obstacles[pair.obstacle], x, t);
               const double gap     = pair.gap ? pair.gap->value(x, t) : contact.gap;
-              result.cosine        = std::max(result.cosine, contact.normal * edge.normal(edge.node_coordinate(i)));
+              result.cosine        = std::max(result.cosine, contact.normal * edge.normal_at(i));
               result.gap           = std::min(result.gap, gap + pair.offset.value(x, t));
             }
       return result;
     }
 
-    void check_obstacle_pair(const scene::Scene<2>       &scene,
-                             const mesh::Mesh<2>         &mesh,
-                             const scene::ContactPair<2> &pair,
-                             const Edges                 &all)
+    template <int dim>
+    void check_obstacle_pair(const scene::Scene<dim>       &scene,
+                             const mesh::Mesh<dim>         &mesh,
+                             const scene::ContactPair<dim> &pair,
+                             const Parts<dim>              &all)
     {
-      const auto  slave    = mechanics::edges_on(mesh, all, pair.slave);
+      const auto  slave    = mechanics::parts_on(mesh, all, pair.slave);
       const auto &obstacle = scene.obstacles[pair.obstacle];
       const auto names = "Contact " + pair.name + ": " + describe(scene, pair.slave) + " and obstacle " + obstacle.name;
-      const auto found = against_obstacle(scene, pair, slave);
+      const auto found = against_obstacle<dim>(scene, pair, slave);
       if (found.cosine <= -facing_cosine)
         throw InputError(names +
                            format(" face away from each other: the outward normals of the slave are %g degrees or "
@@ -193,20 +193,21 @@ namespace slipstick::interface
                                         *pair.reach),
                          "move the body or the obstacle, or set Contact " + pair.name + "/Reach to more than that gap");
       const bool is_round =
-        obstacle.shape == scene::ObstacleShape::circle || obstacle.shape == scene::ObstacleShape::hole;
+        obstacle.shape == scene::ObstacleShape::circle || obstacle.shape == scene::ObstacleShape::hole ||
+        obstacle.shape == scene::ObstacleShape::cylinder || obstacle.shape == scene::ObstacleShape::bore;
       if (!pair.reach && !pair.gap)
-        check_automatic_reach(scene,
-                              mesh,
-                              pair,
-                              all,
-                              names,
-                              std::max(extent(slave), is_round ? 2 * obstacle.radius : 0.),
-                              found.gap);
+        check_automatic_reach<dim>(scene,
+                                   mesh,
+                                   pair,
+                                   all,
+                                   names,
+                                   std::max(extent(slave), is_round ? 2 * obstacle.radius : 0.),
+                                   found.gap);
     }
   } // namespace
 
-  template <>
-  bool lies_behind(const PairSides<2> &sides, const std::vector<MortarRow<2>> &rows)
+  template <int dim>
+  bool lies_behind(const PairSides<dim> &sides, const std::vector<MortarRow<dim>> &rows)
   {
     double chords = 0;
     for (const auto &edge : sides.slave)
@@ -216,15 +217,15 @@ namespace slipstick::interface
         return false;
     if (!rows.empty() && sides.slave.front().body == sides.master.front().body)
       return true; // their outline is one: all points of both are on it
-    return !rows.empty() && !any_inside(sides.slave, ClosedOutline(sides.master_outline)) &&
-           !any_inside(sides.master, ClosedOutline(sides.slave_outline));
+    return !rows.empty() && !any_inside(sides.slave, sides.master_outline) &&
+           !any_inside(sides.master, sides.slave_outline);
   }
 
-  template <>
-  void refuse_pair(const scene::Scene<2>       &scene,
-                   const scene::ContactPair<2> &pair,
-                   const PairSides<2>          &sides,
-                   const double                 reach)
+  template <int dim>
+  void refuse_pair(const scene::Scene<dim>       &scene,
+                   const scene::ContactPair<dim> &pair,
+                   const PairSides<dim>          &sides,
+                   const double                   reach)
   {
     const std::string normals_remedy = "choose boundaries whose outward normals oppose each other, or move the bodies";
     if (sides.slave.empty() || sides.master.empty())
@@ -256,13 +257,13 @@ namespace slipstick::interface
                      "raise Contact " + pair.name + "/Reach, move the bodies, or exchange slave and master");
   }
 
-  template <>
-  void check_sides(const scene::Scene<2>           &scene,
-                   const mesh::Mesh<2>             &mesh,
-                   const scene::ContactPair<2>     &pair,
-                   const PairSides<2>              &sides,
-                   const Edges                     &all,
-                   const std::vector<MortarRow<2>> &rows)
+  template <int dim>
+  void check_sides(const scene::Scene<dim>           &scene,
+                   const mesh::Mesh<dim>             &mesh,
+                   const scene::ContactPair<dim>     &pair,
+                   const PairSides<dim>              &sides,
+                   const Parts<dim>                  &all,
+                   const std::vector<MortarRow<dim>> &rows)
   {
     if (lies_behind(sides, rows))
       refuse_facing_away(scene, pair, rows);
@@ -281,8 +282,10 @@ namespace slipstick::interface
                           gap);
   }
 
-  template <>
-  void check_obstacle_pairs(const scene::Scene<2> &scene, const mesh::Mesh<2> &mesh, const mechanics::Spaces<2> &spaces)
+  template <int dim>
+  void check_obstacle_pairs(const scene::Scene<dim>      &scene,
+                            const mesh::Mesh<dim>        &mesh,
+                            const mechanics::Spaces<dim> &spaces)
   {
     const auto        is_checked = [](const auto &pair) { return !pair.master && !pair.law.is_bonded; };
     std::vector<bool> wanted(scene.bodies.size(), false);
@@ -294,6 +297,27 @@ namespace slipstick::interface
     const auto all = mechanics::outlines(mesh, spaces, wanted);
     for (const auto &pair : scene.contacts)
       if (is_checked(pair))
-        check_obstacle_pair(scene, mesh, pair, all);
+        check_obstacle_pair<dim>(scene, mesh, pair, all);
   }
+
+  template std::string describe(const scene::Scene<2> &, const scene::BoundaryName &);
+  template std::string describe(const scene::Scene<3> &, const scene::BoundaryName &);
+  template bool        lies_behind(const PairSides<2> &, const std::vector<MortarRow<2>> &);
+  template bool        lies_behind(const PairSides<3> &, const std::vector<MortarRow<3>> &);
+  template void refuse_pair(const scene::Scene<2> &, const scene::ContactPair<2> &, const PairSides<2> &, const double);
+  template void refuse_pair(const scene::Scene<3> &, const scene::ContactPair<3> &, const PairSides<3> &, const double);
+  template void check_sides(const scene::Scene<2> &,
+                            const mesh::Mesh<2> &,
+                            const scene::ContactPair<2> &,
+                            const PairSides<2> &,
+                            const Parts<2> &,
+                            const std::vector<MortarRow<2>> &);
+  template void check_sides(const scene::Scene<3> &,
+                            const mesh::Mesh<3> &,
+                            const scene::ContactPair<3> &,
+                            const PairSides<3> &,
+                            const Parts<3> &,
+                            const std::vector<MortarRow<3>> &);
+  template void check_obstacle_pairs(const scene::Scene<2> &, const mesh::Mesh<2> &, const mechanics::Spaces<2> &);
+  template void check_obstacle_pairs(const scene::Scene<3> &, const mesh::Mesh<3> &, const mechanics::Spaces<3> &);
 } // namespace slipstick::interface

@@ -20,16 +20,26 @@ namespace slipstick::interface
     using Edges  = std::vector<Edge>;
     using Point  = dealii::Point<2>;
     using Tensor = dealii::Tensor<1, 2>;
-    using Moves  = std::map<mechanics::NodeKey, Tensor>; // displacements of nodes
+
+    /// Displacements of nodes.
+    template <int dim>
+    using Moves = std::map<mechanics::NodeKey, dealii::Tensor<1, dim>>;
+
+    /// Edges or faces.
+    template <int dim>
+    using Parts = std::vector<mechanics::BoundaryPart<dim>>;
 
     // Places on an edge where obstacles are looked for, ends included; narrower features may hide between them (corners
     // of polylines are found at any size).
     constexpr unsigned int n_places = 33;
+    // The same along each direction of a face.
+    constexpr unsigned int n_places_across = 9;
 
+    template <int dim>
     struct Move
     {
-      mechanics::NodeKey    key{};
-      std::array<double, 2> u{};
+      mechanics::NodeKey      key{};
+      std::array<double, dim> u{};
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)
@@ -38,38 +48,42 @@ namespace slipstick::interface
       }
     };
 
-    Moves moves_of_outlines(const mesh::Mesh<2>                &mesh,
-                            const mechanics::Spaces<2>         &spaces,
-                            const std::vector<Eigen::VectorXd> &u)
+    template <int dim>
+    Moves<dim> moves_of_outlines(const mesh::Mesh<dim>              &mesh,
+                                 const mechanics::Spaces<dim>       &spaces,
+                                 const std::vector<Eigen::VectorXd> &u)
     {
-      std::vector<Move> own;
+      std::vector<Move<dim>> own;
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
         for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
           for (const unsigned int f : cell->face_indices())
             if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != mesh::cut_id)
               spaces.for_each_face_node(*mesh.subdomains[p],
                                         cell->face(f),
-                                        [&](const unsigned int node, const mechanics::NodeKey &key, const Point &) {
-                                          own.push_back({key, {{u[p][2 * node], u[p][2 * node + 1]}}});
+                                        [&](const unsigned int        node,
+                                            const mechanics::NodeKey &key,
+                                            const dealii::Point<dim> &) {
+                                          own.emplace_back();
+                                          own.back().key = key;
+                                          for (unsigned int d = 0; d < dim; ++d)
+                                            own.back().u[d] = u[p][dim * node + d];
                                         });
-      Moves all;
+      Moves<dim> all;
       for (const auto &list : dealii::Utilities::MPI::all_gather(mesh.comm, own))
         for (const auto &move : list)
-          {
-            Tensor &to = all[move.key];
-            to[0]      = move.u[0];
-            to[1]      = move.u[1];
-          }
+          for (unsigned int d = 0; d < dim; ++d)
+            all[move.key][d] = move.u[d];
       return all;
     }
 
-    Edges moved(Edges edges, const Moves &moves)
+    template <int dim, class List>
+    List moved(List parts, const Moves<dim> &moves)
     {
-      for (auto &edge : edges)
-        for (unsigned int i = 0; i < edge.n_nodes; ++i)
-          for (unsigned int d = 0; d < 2; ++d)
-            edge.at[i][d] += moves.at(edge.keys[i])[d];
-      return edges;
+      for (auto &part : parts)
+        for (unsigned int i = 0; i < part.n_nodes; ++i)
+          for (unsigned int d = 0; d < dim; ++d)
+            part.at[i][d] += moves.at(part.keys[i])[d];
+      return parts;
     }
 
     /// By the shape functions, straight or with three nodes.
@@ -82,28 +96,58 @@ namespace slipstick::interface
       return x;
     }
 
+    /// Places on an edge, by number.
+    Point at_place(const Edge &edge, const unsigned int i)
+    {
+      return at(edge, double(i) / (n_places - 1));
+    }
+
+    constexpr unsigned int n_places_on(const Edge &)
+    {
+      return n_places;
+    }
+
+    /// On a face, bilinear.
+    dealii::Point<3> at_place(const mechanics::SurfaceFacet &face, const unsigned int i)
+    {
+      const double s = double(i % n_places_across) / (n_places_across - 1);
+      const double t = double(i / n_places_across) / (n_places_across - 1);
+      return face.n_nodes == 3 ? face.point({s * (1 - t), t}) : face.point({s, t});
+    }
+
+    constexpr unsigned int n_places_on(const mechanics::SurfaceFacet &)
+    {
+      return n_places_across * n_places_across;
+    }
+
+    template <int dim>
     void take(std::optional<Penetration> &deepest,
               const double                depth,
-              const Point                &x,
+              const dealii::Point<dim>   &x,
               const double                edge,
               const double                gap)
     {
-      if (depth > 0 && (!deepest || depth > deepest->depth))
-        deepest = Penetration{depth, {{x[0], x[1]}}, edge, gap};
+      if (!(depth > 0 && (!deepest || depth > deepest->depth)))
+        return;
+      deepest = Penetration{depth, {}, edge, gap};
+      for (unsigned int d = 0; d < dim; ++d)
+        deepest->at[d] = x[d];
     }
 
-    bool is_watched(const scene::ContactPair<2> &pair)
+    template <int dim>
+    bool is_watched(const scene::ContactPair<dim> &pair)
     {
       return !pair.law.is_bonded && !pair.gap;
     }
 
     /// Slave nodes that have no row within the Reach of the pair, but one without it.
-    void find_beyond_reach(const scene::ContactPair<2> &pair,
-                           const Edges                 &slave,
-                           const Edges                 &master,
-                           const Moves                 &moves,
-                           const double                 t,
-                           std::optional<Penetration>  &deepest)
+    template <int dim>
+    void find_beyond_reach(const scene::ContactPair<dim> &pair,
+                           const Parts<dim>              &slave,
+                           const Parts<dim>              &master,
+                           const Moves<dim>              &moves,
+                           const double                   t,
+                           std::optional<Penetration>    &deepest)
     {
       auto both = slave;
       both.insert(both.end(), master.begin(), master.end());
@@ -116,22 +160,23 @@ namespace slipstick::interface
       for (const auto &row : rows_within(extent(both)))
         if (paired.count({row.slave, row.side}) == 0)
           {
-            Tensor closing;
+            dealii::Tensor<1, dim> closing;
             for (const auto &[key, weight] : row.slave_weights)
               closing += weight * moves.at(key);
             for (const auto &[key, weight] : row.master_weights)
               closing -= weight * moves.at(key);
             const double gap = row.gap + pair.offset.value(row.position, t);
-            take(deepest, closing * row.normal - gap, row.position, row.full_length, gap);
+            take(deepest, closing * row.normal - gap, row.position, std::pow(row.full_length, 1. / (dim - 1)), gap);
           }
     }
 
-    void find_beyond_reach(const scene::Obstacle<2>    &obstacle,
-                           const scene::ContactPair<2> &pair,
-                           const Edges                 &slave,
-                           const Moves                 &moves,
-                           const double                 t,
-                           std::optional<Penetration>  &deepest)
+    template <int dim>
+    void find_beyond_reach(const scene::Obstacle<dim>    &obstacle,
+                           const scene::ContactPair<dim> &pair,
+                           const Parts<dim>              &slave,
+                           const Moves<dim>              &moves,
+                           const double                   t,
+                           std::optional<Penetration>    &deepest)
     {
       for (const auto &edge : slave)
         for (unsigned int i = 0; i < edge.n_nodes; ++i)
@@ -146,7 +191,8 @@ namespace slipstick::interface
 
     /// For a height function, the height decides what is inside: the foot found on a narrow bump may be on its far
     /// side.
-    std::optional<double> gap_at(const scene::Obstacle<2> &obstacle, const Point &x, const double t)
+    template <int dim>
+    std::optional<double> gap_at(const scene::Obstacle<dim> &obstacle, const dealii::Point<dim> &x, const double t)
     {
       try
         {
@@ -187,24 +233,33 @@ namespace slipstick::interface
     }
 
     /// @param now the slave boundary after loading, @param slave before.
-    void find_in_obstacle(const scene::Scene<2>       &scene,
-                          const mesh::Mesh<2>         &mesh,
-                          const scene::ContactPair<2> &pair,
-                          const Edges                 &slave,
-                          const Edges                 &now,
-                          const ClosedOutline         &body,
-                          const double                 t,
-                          std::optional<Penetration>  &deepest)
+    template <int dim>
+    void find_in_obstacle(const scene::Scene<dim>       &scene,
+                          const scene::ContactPair<dim> &pair,
+                          const Parts<dim>              &slave,
+                          const Parts<dim>              &now,
+                          const double                   t,
+                          std::optional<Penetration>    &deepest)
     {
       const auto &obstacle = scene.obstacles[pair.obstacle];
       for (unsigned int e = 0; e < slave.size(); ++e)
-        for (unsigned int i = 0; i < n_places; ++i)
+        for (unsigned int i = 0; i < n_places_on(slave[e]); ++i)
           {
-            const double s = double(i) / (n_places - 1);
-            const Point  x = at(slave[e], s);
-            if (const auto gap = gap_at(obstacle, at(now[e], s), t))
+            const auto x = at_place(slave[e], i);
+            if (const auto gap = gap_at(obstacle, at_place(now[e], i), t))
               take(deepest, -(*gap + pair.offset.value(x, t)), x, slave[e].chord(), 0.);
           }
+    }
+
+    /// Corners of a polyline, found at any size.
+    void find_corners_of_obstacle(const scene::Scene<2>       &scene,
+                                  const mesh::Mesh<2>         &mesh,
+                                  const scene::ContactPair<2> &pair,
+                                  const ClosedOutline         &body,
+                                  const double                 t,
+                                  std::optional<Penetration>  &deepest)
+    {
+      const auto &obstacle = scene.obstacles[pair.obstacle];
       if (obstacle.shape == scene::ObstacleShape::polyline)
         for (const auto &corner : obstacle.points)
           if (body.contains(corner))
@@ -219,9 +274,9 @@ namespace slipstick::interface
     /// One body before and after loading.
     struct Body
     {
-      explicit Body(Edges before_, const Moves &moves)
+      explicit Body(Edges before_, const Moves<2> &moves)
         : before(std::move(before_))
-        , now(moved(before, moves))
+        , now(moved<2>(before, moves))
         , outline_before(before)
         , outline_now(now)
         , low(now[0].node(0))
@@ -318,18 +373,19 @@ namespace slipstick::interface
           continue;
         const auto slave = mechanics::edges_on(mesh, all, pair.slave);
         if (pair.master && pair.reach)
-          find_beyond_reach(pair, slave, mechanics::edges_on(mesh, all, *pair.master), moves, t, found.beyond_reach[k]);
+          find_beyond_reach<2>(pair,
+                               slave,
+                               mechanics::edges_on(mesh, all, *pair.master),
+                               moves,
+                               t,
+                               found.beyond_reach[k]);
         if (!pair.master && pair.reach)
-          find_beyond_reach(scene.obstacles[pair.obstacle], pair, slave, moves, t, found.beyond_reach[k]);
+          find_beyond_reach<2>(scene.obstacles[pair.obstacle], pair, slave, moves, t, found.beyond_reach[k]);
         if (!pair.master)
-          find_in_obstacle(scene,
-                           mesh,
-                           pair,
-                           slave,
-                           moved(slave, moves),
-                           bodies[pair.slave.body]->outline_now,
-                           t,
-                           found.in_obstacle[k]);
+          {
+            find_in_obstacle<2>(scene, pair, slave, moved<2>(slave, moves), t, found.in_obstacle[k]);
+            find_corners_of_obstacle(scene, mesh, pair, bodies[pair.slave.body]->outline_now, t, found.in_obstacle[k]);
+          }
       }
     for (unsigned int a = 0; a < bodies.size(); ++a)
       for (unsigned int b = 0; b < bodies.size(); ++b)
@@ -340,6 +396,40 @@ namespace slipstick::interface
             if (deepest)
               found.of_bodies[{a, b}] = *deepest;
           }
+    return found;
+  }
+
+  // Bodies that no pair joins are not looked at.
+  template <>
+  Penetrations penetrations(const scene::Scene<3>              &scene,
+                            const mesh::Mesh<3>                &mesh,
+                            const mechanics::Spaces<3>         &spaces,
+                            const std::vector<Eigen::VectorXd> &u,
+                            const double                        t)
+  {
+    Penetrations found;
+    found.beyond_reach.resize(scene.contacts.size());
+    found.in_obstacle.resize(scene.contacts.size());
+    if (scene.contacts.empty())
+      return found;
+    const auto moves = moves_of_outlines(mesh, spaces, u);
+    const auto all   = mechanics::outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
+    for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+      if (const auto &pair = scene.contacts[k]; is_watched(pair))
+        {
+          const auto slave = mechanics::parts_on(mesh, all, pair.slave);
+          if (pair.reach && pair.master)
+            find_beyond_reach<3>(pair,
+                                 slave,
+                                 mechanics::parts_on(mesh, all, *pair.master),
+                                 moves,
+                                 t,
+                                 found.beyond_reach[k]);
+          else if (pair.reach)
+            find_beyond_reach<3>(scene.obstacles[pair.obstacle], pair, slave, moves, t, found.beyond_reach[k]);
+          if (!pair.master)
+            find_in_obstacle<3>(scene, pair, slave, moved<3>(slave, moves), t, found.in_obstacle[k]);
+        }
     return found;
   }
 } // namespace slipstick::interface

@@ -362,6 +362,10 @@ namespace slipstick::interface
         touch.point.position[d] = nodes[i].position[d];
         touch.point.normal[d]   = touch.normal[d];
       }
+    if constexpr (dim == 3)
+      for (unsigned int k = 0; k + 1 < dim; ++k)
+        for (unsigned int d = 0; d < dim; ++d)
+          touch.point.tangents[k][d] = tangents_of<dim>(touch.normal)[k][d];
   }
 
   template <int dim>

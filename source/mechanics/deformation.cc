@@ -5,6 +5,7 @@
 #include <slipstick/mesh/kinematics.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/symmetric_tensor.h>
 
 #include <boost/serialization/vector.hpp>
 
@@ -45,6 +46,25 @@ namespace slipstick::mechanics
       return std::abs(mean) + std::hypot((gradient[0][0] - gradient[1][1]) / 2, (gradient[0][1] + gradient[1][0]) / 2);
     }
 
+    double principal_strain(const dealii::Tensor<2, 3> &gradient)
+    {
+      const auto strains = dealii::eigenvalues(dealii::symmetrize(gradient));
+      return std::max(std::abs(strains[0]), std::abs(strains[2]));
+    }
+
+    /// Of the antisymmetric part [rad].
+    template <int dim>
+    double rotation_of(const dealii::Tensor<2, dim> &gradient)
+    {
+      if constexpr (dim == 2)
+        return std::abs(gradient[1][0] - gradient[0][1]) / 2;
+      else
+        return std::hypot(gradient[1][0] - gradient[0][1],
+                          gradient[2][1] - gradient[1][2],
+                          gradient[0][2] - gradient[2][0]) /
+               2;
+    }
+
     template <int dim>
     void add_cells(const Element<dim>            &element,
                    const dealii::DoFHandler<dim> &dof_handler,
@@ -53,7 +73,6 @@ namespace slipstick::mechanics
                    const Eigen::VectorXd         &u,
                    Deformation<dim>              &largest)
     {
-      static_assert(dim == 2, "one rotation");
       CellValues<dim>                              values(*element.mapping,
                              *element.scalar,
                              element.cell_quadrature(1),
@@ -73,9 +92,8 @@ namespace slipstick::mechanics
           if (kinematics.is_revolution())
             for (unsigned int i = 0; i < nodes.size(); ++i)
               u_x += u[dim * nodes[i]] * (*values).shape_value(i, 0);
-          const double hoop     = kinematics.is_revolution() ? kinematics.hoop_strain(u_x, values.point(0)) : 0.;
-          const double strain   = std::max(principal_strain(gradient), std::abs(hoop)),
-                       rotation = std::abs(gradient[1][0] - gradient[0][1]) / 2;
+          const double hoop   = kinematics.is_revolution() ? kinematics.hoop_strain(u_x, values.point(0)) : 0.;
+          const double strain = std::max(principal_strain(gradient), std::abs(hoop)), rotation = rotation_of(gradient);
           if (strain > largest.strain.value)
             largest.strain = {strain, body, cell->center()};
           if (rotation > largest.rotation.value)
@@ -126,5 +144,9 @@ namespace slipstick::mechanics
   template Deformation<2> largest_deformation(const scene::Scene<2> &,
                                               const mesh::Mesh<2> &,
                                               const Spaces<2> &,
+                                              const std::vector<Eigen::VectorXd> &);
+  template Deformation<3> largest_deformation(const scene::Scene<3> &,
+                                              const mesh::Mesh<3> &,
+                                              const Spaces<3> &,
                                               const std::vector<Eigen::VectorXd> &);
 } // namespace slipstick::mechanics

@@ -25,7 +25,7 @@ namespace slipstick::mechanics
     out_of_plane_change  = is_strain ? -material.young_modulus * expansion : 0;
   }
 
-  double ElasticLaw::energy(const Eigen::Array4d &s) const
+  double ElasticLaw::energy(const Stress<2> &s) const
   {
     if (is_revolution)
       {
@@ -36,6 +36,14 @@ namespace slipstick::mechanics
       }
     const double mean = lame.lambda / (2 * (lame.lambda + lame.mu)) * (s[0] + s[1]);
     return (s[0] * (s[0] - mean) + s[1] * (s[1] - mean) + 2 * s[2] * s[2]) / (2 * lame.mu);
+  }
+
+  double ElasticLaw::energy(const Stress<3> &s) const
+  {
+    const double trace = s[0] + s[1] + s[3];
+    return (s[0] * s[0] + s[1] * s[1] + s[3] * s[3] + 2 * (s[2] * s[2] + s[4] * s[4] + s[5] * s[5]) -
+            lame.lambda / (3 * lame.lambda + 2 * lame.mu) * trace * trace) /
+           (2 * lame.mu);
   }
 
   template <int dim>
@@ -56,9 +64,10 @@ namespace slipstick::mechanics
     return sum;
   }
 
-  double von_mises(const double xx, const double yy, const double xy, const double zz)
+  double von_mises(const double xx, const double yy, const double xy, const double zz, const double xz, const double yz)
   {
-    return std::sqrt(((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 2 + 3 * xy * xy);
+    return std::sqrt(((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 2 + 3 * xy * xy +
+                     3 * (xz * xz + yz * yz));
   }
 
   template class TemperatureOfBody<2>;

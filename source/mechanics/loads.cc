@@ -23,6 +23,15 @@ namespace slipstick::mechanics
     // ... and by how much the sum over the cells may differ, part of the force.
     constexpr double allowed_misfit = 0.01;
 
+    template <int dim>
+    std::array<double, 3> in_space(const dealii::Point<dim> &x)
+    {
+      std::array<double, 3> all{{0, 0, 0}};
+      for (unsigned int d = 0; d < dim; ++d)
+        all[d] = x[d];
+      return all;
+    }
+
     /// One subdomain and its load at load factor t.
     template <int dim>
     class SubdomainLoad
@@ -61,7 +70,7 @@ namespace slipstick::mechanics
       {
         double                size = 0, difference = 0; // sums of magnitudes over the cells [N]
         double                largest = -1;             // difference in a cell
-        std::array<double, 2> at{{0, 0}};               // that cell
+        std::array<double, 3> at{{0, 0, 0}};            // that cell
       };
 
       std::vector<Misfit> misfits_of_body_forces()
@@ -98,7 +107,7 @@ namespace slipstick::mechanics
                   if ((a - b).norm() > misfit.largest)
                     {
                       misfit.largest = (a - b).norm();
-                      misfit.at      = {{cell->center()[0], cell->center()[1]}};
+                      misfit.at      = in_space(cell->center());
                     }
                 }
           }
@@ -213,10 +222,10 @@ namespace slipstick::mechanics
                                     for (unsigned int c = 0; c < dim; ++c)
                                       force[c] = forces.integral[2 * i + c];
                                     add(node, force);
-                                    sum.sum.add(force[0], force[1], x);
+                                    sum.sum.template add<dim>(force, x);
                                   });
         if (!forces.is_resolved && !sum.unresolved)
-          sum.unresolved = std::array<double, 2>{{edge.point(0.5)[0], edge.point(0.5)[1]}};
+          sum.unresolved = in_space(edge.point(0.5));
       }
 
       void add_traction(const scene::Traction<dim>      &traction,
@@ -229,7 +238,7 @@ namespace slipstick::mechanics
             const Vector force =
               (vector(traction.components, x) - traction.pressure.value(x, t) * values.normal_vector(q)) *
               values.JxW(q) * weight(x);
-            sum.sum.add(force[0], force[1], x);
+            sum.sum.template add<dim>(force, x);
             for (unsigned int i = 0; i < nodes.size(); ++i)
               add(nodes[i], force * values.shape_value(i, q));
           }
@@ -240,8 +249,8 @@ namespace slipstick::mechanics
       {
         const double density = scene.materials[body.material].density;
         const double omega   = load.angular_velocity.value(x, t);
-        return vector(load.force, x) +
-               density * (vector(load.acceleration, x) + omega * omega * kinematics.arm(x, load.axis));
+        return vector(load.force, x) + density * (vector(load.acceleration, x) +
+                                                  omega * omega * kinematics.arm(x, load.axis, load.axis_direction));
       }
 
       void add_body_forces()
@@ -267,7 +276,7 @@ namespace slipstick::mechanics
                 for (const unsigned int k : body_forces)
                   {
                     const Vector one = body_force(scene.body_forces[k], x) * (*values).JxW(q) * weight(x);
-                    sums[scene.tractions.size() + k].sum.add(one[0], one[1], x);
+                    sums[scene.tractions.size() + k].sum.template add<dim>(one, x);
                     force += one;
                   }
                 for (unsigned int i = 0; i < nodes.size(); ++i)
@@ -365,23 +374,22 @@ namespace slipstick::mechanics
     {
       std::vector<double> numbers;
       for (const auto &load : own)
-        numbers.insert(numbers.end(),
-                       {load.sum.force[0],
-                        load.sum.force[1],
-                        load.sum.moment,
-                        load.unresolved ? 1. : 0.,
-                        load.unresolved ? (*load.unresolved)[0] : 0.,
-                        load.unresolved ? (*load.unresolved)[1] : 0.});
+        {
+          const auto sum   = load.sum.numbers();
+          const auto place = load.unresolved.value_or(std::array<double, 3>());
+          numbers.insert(numbers.end(), sum.begin(), sum.end());
+          numbers.push_back(load.unresolved ? 1. : 0.);
+          numbers.insert(numbers.end(), place.begin(), place.end());
+        }
       std::vector<LoadResultant> all(own.size());
       for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
         for (unsigned int k = 0; k < all.size(); ++k)
           {
-            const double *n = of_rank.data() + 6 * k;
-            for (unsigned int d = 0; d < 2; ++d)
-              all[k].sum.force[d] += n[d];
-            all[k].sum.moment += n[2];
-            if (n[3] > 0 && !all[k].unresolved)
-              all[k].unresolved = std::array<double, 2>{{n[4], n[5]}};
+            const double *n = of_rank.data() + (Resultant::n_numbers + 4) * k;
+            all[k].sum += Resultant::of(n);
+            n += Resultant::n_numbers;
+            if (n[0] > 0 && !all[k].unresolved)
+              all[k].unresolved = std::array<double, 3>{{n[1], n[2], n[3]}};
           }
       return all;
     }
@@ -434,9 +442,7 @@ namespace slipstick::mechanics
           for (unsigned int k = 0; k < n_spread; ++k)
             {
               const auto &own = load.resultants()[k];
-              for (unsigned int d = 0; d < 2; ++d)
-                sums[k].sum.force[d] += own.sum.force[d];
-              sums[k].sum.moment += own.sum.moment;
+              sums[k].sum += own.sum;
               if (!sums[k].unresolved)
                 sums[k].unresolved = own.unresolved;
             }
@@ -454,7 +460,10 @@ namespace slipstick::mechanics
     for_each_point_load(scene, mesh, spaces, [&](const unsigned int k, const PointNode<dim> &at) {
       const auto &force = scene.point_loads[k].force;
       sums.emplace_back();
-      sums.back().sum.add(force[0].value(at.position, t), force[1].value(at.position, t), at.position);
+      dealii::Tensor<1, dim> at_point;
+      for (unsigned int c = 0; c < dim; ++c)
+        at_point[c] = force[c].value(at.position, t);
+      sums.back().sum.template add<dim>(at_point, at.position);
     });
     return sums;
   }
@@ -462,6 +471,11 @@ namespace slipstick::mechanics
   template std::vector<LoadResultant> load_resultants(const scene::Scene<2> &,
                                                       const mesh::Mesh<2> &,
                                                       const Spaces<2> &,
+                                                      const double);
+
+  template std::vector<LoadResultant> load_resultants(const scene::Scene<3> &,
+                                                      const mesh::Mesh<3> &,
+                                                      const Spaces<3> &,
                                                       const double);
 
   template std::vector<Eigen::VectorXd> assemble_loads(const scene::Scene<2> &,

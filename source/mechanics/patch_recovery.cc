@@ -11,13 +11,18 @@ namespace slipstick::mechanics
     // Normal equations, scaled to a unit diagonal, count as singular when a pivot falls below this.
     constexpr double least_pivot = 1e-8;
 
-    /// Monomials of degree 2 in the distance from a vertex.
+    /// Monomials of degree 2 in the distance from a vertex: 1, x, y, xx, xy, yy.
     template <int dim>
     Eigen::Matrix<double, PatchRecovery<dim>::n_monomials, 1> monomials(const dealii::Tensor<1, dim> &x)
     {
-      static_assert(dim == 2, "1, x, y, xx, xy, yy");
       Eigen::Matrix<double, PatchRecovery<dim>::n_monomials, 1> result;
-      result << 1, x[0], x[1], x[0] * x[0], x[0] * x[1], x[1] * x[1];
+      unsigned int                                              next = 0;
+      result[next++]                                                 = 1;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[next++] = x[d];
+      for (unsigned int d = 0; d < dim; ++d)
+        for (unsigned int e = d; e < dim; ++e)
+          result[next++] = x[d] * x[e];
       return result;
     }
 
@@ -115,4 +120,5 @@ namespace slipstick::mechanics
   }
 
   template class PatchRecovery<2>;
+  template class PatchRecovery<3>;
 } // namespace slipstick::mechanics

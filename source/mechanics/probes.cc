@@ -1,5 +1,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
+#include <slipstick/base/text.h>
 #include <slipstick/mechanics/probes.h>
 
 #include <deal.II/base/mpi.h>
@@ -105,10 +106,9 @@ namespace slipstick::mechanics
         const auto [k, i]   = which[j];
         places[k][i].is_own = nearest == rank;
         if (!(of_ranks[nearest][j] <= reach_of_probe * all_diameters[j]))
-          throw InputError(format("Probe %s: the point (%g, %g) is not on body '%s'",
+          throw InputError(format("Probe %s: the point %s is not on body '%s'",
                                   scene.probes[k].name.c_str(),
-                                  points[k][i].position[0],
-                                  points[k][i].position[1],
+                                  point_text(points[k][i].position, dim).c_str(),
                                   scene.bodies[scene.probes[k].body].name.c_str()),
                            "give coordinates in or on the body, before loading, or name the body that they belong to");
       }
@@ -150,7 +150,7 @@ namespace slipstick::mechanics
   std::vector<std::vector<ProbePoint<dim>>> Probes<dim>::values(const std::vector<Eigen::VectorXd> &u,
                                                                 const StressResult                 &stress) const
   {
-    constexpr unsigned int                       n_stress = 4, n = dim + n_stress;
+    constexpr unsigned int                       n_stress = 2 * dim, n = dim + n_stress;
     std::vector<double>                          own;
     std::vector<dealii::types::global_dof_index> dofs;
     std::vector<unsigned int>                    nodes;
@@ -206,4 +206,5 @@ namespace slipstick::mechanics
   }
 
   template class Probes<2>;
+  template class Probes<3>;
 } // namespace slipstick::mechanics

@@ -107,6 +107,31 @@ namespace slipstick::mechanics
         return result;
       }
     };
+
+    /// Corners of outlines, and ends of supports along them.
+    template <int dim>
+    void add_corners(const scene::Scene<dim>         &scene,
+                     const mesh::Mesh<dim>           &mesh,
+                     const Spaces<dim>               &spaces,
+                     const unsigned int               n_supports,
+                     std::vector<SingularPoint<dim>> &result)
+    {
+      const auto edges = outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
+      std::map<std::pair<unsigned int, NodeKey>, unsigned int> from;
+      for (unsigned int e = 0; e < edges.size(); ++e)
+        from.emplace(std::make_pair(edges[e].body, edges[e].keys[0]), e);
+      for (const auto &in : edges)
+        if (const auto found = from.find({in.body, in.keys[1]}); found != from.end())
+          {
+            const auto       &out  = edges[found->second];
+            const std::string what = what_is_between(in,
+                                                     out,
+                                                     held_along(scene, mesh, n_supports, in),
+                                                     held_along(scene, mesh, n_supports, out));
+            if (!what.empty())
+              result.push_back({in.body, in.node(1), what});
+          }
+    }
   } // namespace
 
   template <int dim>
@@ -133,19 +158,8 @@ namespace slipstick::mechanics
     for (unsigned int k = 0; k < points.size(); ++k)
       result.push_back({points[k].body, nodes[k].position, names[k]});
 
-    const auto edges = outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
-    std::map<std::pair<unsigned int, NodeKey>, unsigned int> from;
-    for (unsigned int e = 0; e < edges.size(); ++e)
-      from.emplace(std::make_pair(edges[e].body, edges[e].keys[0]), e);
-    for (const auto &in : edges)
-      if (const auto found = from.find({in.body, in.keys[1]}); found != from.end())
-        {
-          const auto       &out = edges[found->second];
-          const std::string what =
-            what_is_between(in, out, held_along(scene, mesh, n_supports, in), held_along(scene, mesh, n_supports, out));
-          if (!what.empty())
-            result.push_back({in.body, in.node(1), what});
-        }
+    if constexpr (dim == 2) // edges of solids are not looked at
+      add_corners(scene, mesh, spaces, n_supports, result);
     return result;
   }
 
@@ -169,7 +183,7 @@ namespace slipstick::mechanics
             for (unsigned int i = 0; i < nodes.size(); ++i)
               {
                 const auto   s     = stress.subdomains[p].nodal.row(nodes[i]);
-                const double value = von_mises(s[0], s[1], s[2], s[3]);
+                const double value = von_mises<dim>(s);
                 if (value >= spots[0].value * (1 - same_value))
                   spots[0].take(
                     value,
@@ -194,4 +208,10 @@ namespace slipstick::mechanics
                                                          const Spaces<2> &,
                                                          const unsigned int);
   template StressPlaces<2>               stress_places(const mesh::Mesh<2> &, const Spaces<2> &, const StressResult &);
+  template struct SingularPoint<3>;
+  template std::vector<SingularPoint<3>> singular_points(const scene::Scene<3> &,
+                                                         const mesh::Mesh<3> &,
+                                                         const Spaces<3> &,
+                                                         const unsigned int);
+  template StressPlaces<3>               stress_places(const mesh::Mesh<3> &, const Spaces<3> &, const StressResult &);
 } // namespace slipstick::mechanics

@@ -13,7 +13,7 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    /// Mapping of triangles of degree 1 or 2 whose edges follow their own manifolds. deal.II 9.4's MappingFE uses only
+    /// Mapping of simplices of degree 1 or 2 whose edges follow their own manifolds. deal.II 9.4's MappingFE uses only
     /// the manifold of the cell, which leaves curved boundaries straight, and asserts that the edges have no other.
     template <int dim>
     class SimplexMapping : public dealii::MappingFE<dim>
@@ -94,6 +94,9 @@ namespace slipstick::mechanics
   template <int dim>
   dealii::Quadrature<dim - 1> Element<dim>::face_quadrature(const unsigned int n) const
   {
+    if constexpr (dim == 3)
+      if (cell.is_simplex())
+        return dealii::QGaussSimplex<dim - 1>(n);
     return dealii::QGauss<dim - 1>(n);
   }
 

@@ -40,16 +40,25 @@ namespace slipstick::mechanics
     };
 
     /// Displacement component of a place of a body under every motion.
+    template <int dim>
     Eigen::VectorXd displacements(const std::vector<Eigen::VectorXd>  &motions,
                                   const std::vector<tfeti::BodyFrame> &frames,
-                                  const Candidate<2>                  &at)
+                                  const Candidate<dim>                &at)
     {
-      constexpr unsigned int k     = 3; // amplitudes a body
+      constexpr unsigned int k     = dim * (dim + 1) / 2; // amplitudes a body
       const auto            &frame = frames[at.body];
-      const double    turn = at.component == 0 ? frame.center[1] - at.position[1] : at.position[0] - frame.center[0];
-      Eigen::VectorXd values(motions.size());
+      Eigen::VectorXd        values(motions.size());
       for (unsigned int m = 0; m < motions.size(); ++m)
-        values[m] = motions[m][at.body * k + at.component] + motions[m][at.body * k + k - 1] * turn / frame.length;
+        values[m] = motions[m][at.body * k + at.component];
+      for (unsigned int r = 0; r + dim < k; ++r) // rotations from axis a to axis b
+        {
+          const unsigned int a = dim == 2 ? 0 : (r + 1) % dim, b = dim == 2 ? 1 : (r + 2) % dim;
+          if (at.component != a && at.component != b)
+            continue;
+          const double turn = at.component == a ? frame.center[b] - at.position[b] : at.position[a] - frame.center[a];
+          for (unsigned int m = 0; m < motions.size(); ++m)
+            values[m] += motions[m][at.body * k + dim + r] * turn / frame.length;
+        }
       return values;
     }
 
@@ -97,7 +106,6 @@ namespace slipstick::mechanics
                                                                const std::vector<Eigen::VectorXd>  &motions,
                                                                const std::vector<tfeti::BodyFrame> &frames)
   {
-    static_assert(dim == 2, "rotations in the plane");
     auto                                            nodes = nodes_of(mesh, spaces);
     Eigen::MatrixXd                                 left  = Eigen::MatrixXd::Identity(motions.size(), motions.size());
     std::vector<scene::PrescribedDisplacement<dim>> supports;
@@ -122,7 +130,9 @@ namespace slipstick::mechanics
         support.where.body = chosen.body;
         support.point.emplace();
         support.point->body = chosen.body;
-        support.point->coordinates.emplace(chosen.position[0], chosen.position[1]);
+        support.point->coordinates.emplace();
+        for (unsigned int d = 0; d < dim; ++d)
+          (*support.point->coordinates)[d] = chosen.position[d];
         support.components[chosen.component].emplace();
         supports.push_back(support);
 
@@ -136,6 +146,10 @@ namespace slipstick::mechanics
 
   template std::vector<scene::PrescribedDisplacement<2>> still_points(const mesh::Mesh<2> &,
                                                                       const Spaces<2> &,
+                                                                      const std::vector<Eigen::VectorXd> &,
+                                                                      const std::vector<tfeti::BodyFrame> &);
+  template std::vector<scene::PrescribedDisplacement<3>> still_points(const mesh::Mesh<3> &,
+                                                                      const Spaces<3> &,
                                                                       const std::vector<Eigen::VectorXd> &,
                                                                       const std::vector<tfeti::BodyFrame> &);
 } // namespace slipstick::mechanics

@@ -29,7 +29,7 @@ namespace slipstick::mechanics
         , dof_handler(*spaces.dof_handlers[p])
         , thickness(scene.bodies[mesh.subdomains[p]->body].thickness)
         , kinematics(scene.plane_state)
-        , law(scene.materials[scene.bodies[mesh.subdomains[p]->body].material], scene.plane_state)
+        , law(scene.materials[scene.bodies[mesh.subdomains[p]->body].material], state_of(scene))
         , temperature(scene, mesh.subdomains[p]->body, t)
         , project(scene.discretization.element == scene::ElementKind::nearly_incompressible)
         , n_components(kinematics.n_stress_components())
@@ -42,7 +42,7 @@ namespace slipstick::mechanics
       ElasticLaw                     law;
       TemperatureOfBody<dim>         temperature;
       bool                           project;      // the dilatation
-      unsigned int                   n_components; // xx, yy, xy, of bodies of revolution hoop
+      unsigned int                   n_components; // xx, yy, xy, of bodies of revolution hoop; in space all six
     };
 
     /// Stresses of the displacement at the points of a rule, one cell after the other.
@@ -173,7 +173,9 @@ namespace slipstick::mechanics
       const auto     &points = element.stress;
       Eigen::MatrixXd at_points(points.size(), points.size()), at_nodes(element.n_nodes(), points.size());
       const auto      monomials = [&](const dealii::Point<dim> &x, auto &&row) {
-        const std::array<double, 4> values{{1, x[0], x[1], x[0] * x[1]}}; // constant; linear; bilinear
+        std::array<double, 8> values{{1, x[0], x[1], x[0] * x[1]}}; // constant; linear; bilinear; trilinear
+        for (unsigned int k = 0; k < 4 && dim == 3; ++k)
+          values[4 + k] = values[k] * x[dim - 1];
         for (unsigned int k = 0; k < points.size(); ++k)
           row[k] = values[k];
       };
@@ -221,14 +223,13 @@ namespace slipstick::mechanics
       return sums;
     }
 
-    /// Adds the sums of all copies of shared nodes, two columns in one exchange (an interface node has dim unknowns).
+    /// Adds the sums of all copies of shared nodes, dim columns in one exchange (as many unknowns an interface node has).
     /// Subdomains without sums have none.
     template <int dim>
     void add_copies(const tfeti::Constraints             &constraints,
                     const std::vector<Eigen::MatrixXd *> &sums,
                     const unsigned int                    n_columns)
     {
-      static_assert(dim == 2, "columns travel in pairs");
       for (unsigned int first = 0; first < n_columns; first += dim)
         {
           tfeti::DistributedVector shared(constraints.interface_dofs);
@@ -277,7 +278,7 @@ namespace slipstick::mechanics
           double      error     = 0;
           for (unsigned int q = 0; q < points.size(); ++q)
             {
-              Eigen::Array4d at_point = Eigen::Array4d::Zero(), difference = Eigen::Array4d::Zero();
+              Stress<dim> at_point = Stress<dim>::Zero(), difference = Stress<dim>::Zero();
               at_point.head(on.n_components)   = at_points.row(q).transpose().array();
               difference.head(on.n_components) = -at_points.row(q).transpose().array();
               for (unsigned int i = 0; i < nodes.size(); ++i)
@@ -301,12 +302,12 @@ namespace slipstick::mechanics
                                  const PatchRecovery<dim> *patches)
     {
       const unsigned int n_components = on.n_components;
-      Eigen::MatrixXd    nodal(sums.rows(), 4);
+      Eigen::MatrixXd    nodal(sums.rows(), 2 * dim);
       nodal.leftCols(n_components) = sums.leftCols(n_components).array().colwise() / sums.col(n_components).array();
       if (patches)
         patches->recover(nodal);
-      if (on.kinematics.is_revolution())
-        return nodal; // the last component is that across the plane
+      if (on.kinematics.is_revolution() || dim == 3)
+        return nodal; // the component across the plane is one of them
       std::vector<dealii::Point<dim>> positions;
       if (!on.temperature.is_zero())
         {
@@ -365,7 +366,7 @@ namespace slipstick::mechanics
           for (unsigned int i = 0; i < stress.nodal.rows(); ++i)
             {
               const auto s         = stress.nodal.row(i);
-              result.max_von_mises = std::max(result.max_von_mises, von_mises(s[0], s[1], s[2], s[3]));
+              result.max_von_mises = std::max(result.max_von_mises, von_mises<dim>(s));
               min_zz               = std::min(min_zz, s[3]);
               max_zz               = std::max(max_zz, s[3]);
             }
@@ -389,6 +390,12 @@ namespace slipstick::mechanics
   template StressResult recover_stress(const scene::Scene<2> &,
                                        const mesh::Mesh<2> &,
                                        const Spaces<2> &,
+                                       const tfeti::Constraints &,
+                                       const std::vector<Eigen::VectorXd> &,
+                                       const double);
+  template StressResult recover_stress(const scene::Scene<3> &,
+                                       const mesh::Mesh<3> &,
+                                       const Spaces<3> &,
                                        const tfeti::Constraints &,
                                        const std::vector<Eigen::VectorXd> &,
                                        const double);

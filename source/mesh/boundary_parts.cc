@@ -1,5 +1,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
+#include <slipstick/base/text.h>
 #include <slipstick/mesh/boundary_parts.h>
 #include <slipstick/scene/boundary_part.h>
 
@@ -9,8 +10,8 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Distance from its ends, relative to its length, at which a condition is tried on an edge: nodes on a limit belong
-    // to both sides.
+    // Distance from its ends, relative to its length, at which a condition is tried on an edge (a face: from its
+    // corners towards its middle): nodes on a limit belong to both sides.
     constexpr double end_of_edge = 1e-6;
 
     /// Is a face with this id on the boundary of that name?
@@ -55,13 +56,32 @@ namespace slipstick::mesh
         {
           if (!is_on(mesh, part.name, face.id))
             continue;
-          const dealii::Point<dim> a = mesh.piece.vertices[face.vertices[0]], b = mesh.piece.vertices[face.vertices[1]];
-          const auto               holds = [&](const double at) { return condition.value(a + at * (b - a), 0.) != 0; };
-          const bool               takes = holds(0.5);
-          if (takes != holds(end_of_edge) || takes != holds(1 - end_of_edge))
+          dealii::Point<dim> middle = mesh.piece.vertices[face.vertices[0]];
+          if constexpr (dim == 2)
+            middle += 0.5 * (mesh.piece.vertices[face.vertices[1]] - middle);
+          else
+            {
+              dealii::Tensor<1, dim> sum;
+              unsigned int           n = 0;
+              for (const unsigned int v : face.vertices)
+                if (v != MeshPiece<dim>::no_vertex)
+                  {
+                    sum += mesh.piece.vertices[v];
+                    ++n;
+                  }
+              middle = dealii::Point<dim>(sum / n);
+            }
+          const auto holds = [&](const dealii::Point<dim> &x) { return condition.value(x, 0.) != 0; };
+          const bool takes = holds(middle);
+          if (std::any_of(face.vertices.begin(), face.vertices.end(), [&](const unsigned int v) {
+                if (v == MeshPiece<dim>::no_vertex)
+                  return false;
+                const auto &x = mesh.piece.vertices[v];
+                return takes != holds(x + 2 * end_of_edge * (middle - x));
+              }))
             {
               ++n_cut;
-              cut = a + 0.5 * (b - a);
+              cut = middle;
             }
           if (!takes)
             continue;
@@ -76,22 +96,25 @@ namespace slipstick::mesh
             }
           face.id = to->second;
         }
-      const std::string name = "boundary '" + part.name + "' of body '" + body + "'";
+      const char *const face_name = dim == 2 ? "edge" : "face";
+      const std::string name      = "boundary '" + part.name + "' of body '" + body + "'";
       if (n_taken == 0)
-        throw InputError(
-          user + ": no edge of " + name + " fulfils '" + part.condition + "'",
-          "give a condition in x and y, as placed and before loading, that holds in the middle of some edges");
+        throw InputError(user + ": no " + face_name + " of " + name + " fulfils '" + part.condition + "'",
+                         std::string("give a condition in ") + (dim == 2 ? "x and y" : "x, y and z") +
+                           ", as placed and before loading, that holds in the middle of some " + face_name + "s");
       if (n_cut > 0)
         mesh.remarks.push_back(
-          format("warning: %s: '%s' changes within %u edge%s of %s, such as that around (%.6g, %.6g); an "
-                 "edge belongs to the part as a whole if its middle does: put a node of the mesh there",
+          format("warning: %s: '%s' changes within %u %s%s of %s, such as that around %s; %s "
+                 "%s belongs to the part as a whole if its middle does: put a node of the mesh there",
                  user.c_str(),
                  part.condition.c_str(),
                  n_cut,
+                 face_name,
                  n_cut == 1 ? "" : "s",
                  name.c_str(),
-                 cut[0],
-                 cut[1]));
+                 point_text(cut, dim).c_str(),
+                 dim == 2 ? "an" : "a",
+                 face_name));
       mesh.boundary_ids[to_string(part)] = own;
     }
   } // namespace
@@ -109,4 +132,5 @@ namespace slipstick::mesh
   }
 
   template void add_boundary_parts(const scene::Scene<2> &, const unsigned int, BodyMesh<2> &);
+  template void add_boundary_parts(const scene::Scene<3> &, const unsigned int, BodyMesh<3> &);
 } // namespace slipstick::mesh

@@ -51,11 +51,11 @@ namespace slipstick::mesh
       return first;
     }
 
-    /// Cost of a cell compared with a quadrilateral.
+    /// Nodes that come with a cell, compared with a quadrilateral or hexahedron.
     template <int dim>
     double cost_of(const MeshPiece<dim> &piece)
     {
-      return piece.cells.size() * (is_simplex<dim>(piece.cells[0]) ? .5 : 1.);
+      return piece.cells.size() * (is_simplex<dim>(piece.cells[0]) ? (dim == 2 ? .5 : 1. / 6) : 1.);
     }
 
     /// Whether every rank can make its own blocks.

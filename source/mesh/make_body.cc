@@ -209,13 +209,13 @@ namespace slipstick::mesh
       {
         std::map<std::string, unsigned int> cells; // by names
         for (const auto &element : file.elements)
-          if (element.dim == 2 && std::none_of(scene.bodies.begin(), scene.bodies.end(), [&](const auto &body) {
+          if (element.dim == dim && std::none_of(scene.bodies.begin(), scene.bodies.end(), [&](const auto &body) {
                 return body.file == path && file.is_in(element, body.part);
               }))
             {
               std::string names;
               for (const int physical : file.groups[element.group])
-                names += (names.empty() ? "'" : ", '") + file.name_of(2, physical) + "'";
+                names += (names.empty() ? "'" : ", '") + file.name_of(dim, physical) + "'";
               ++cells[names.empty() ? "no name" : names];
             }
         std::string all;
@@ -245,10 +245,23 @@ namespace slipstick::mesh
     BodyMesh<dim>           mesh;
     if constexpr (dim == 3)
       {
-        mesh = body_from_shape(scene, body);
+        if (body.shape == scene::Shape::mesh)
+          {
+            if (files.count(body.file) == 0)
+              files[body.file] = read_mesh_file(body.file);
+            mesh          = body_from_file(body, files[body.file]);
+            auto &of_file = files[body.file].remarks; // once
+            mesh.remarks.insert(mesh.remarks.begin(), of_file.begin(), of_file.end());
+            of_file.clear();
+            for (unsigned int k = 0; k < body.refinements + scene.discretization.refinements; ++k)
+              mesh.piece = mesh::refined(mesh.piece);
+          }
+        else
+          mesh = body_from_shape(scene, body);
         check_names(scene, b, mesh);
         mesh.piece.body = b;
         place_in_scene(scene, b, mesh.piece);
+        add_boundary_parts(scene, b, mesh);
         return mesh;
       }
     else

@@ -59,7 +59,8 @@ namespace slipstick::mesh
         }
       for (auto &face : piece.boundary_faces)
         for (unsigned int &v : face.vertices)
-          v = local.at(v);
+          if (v != MeshPiece<dim>::no_vertex)
+            v = local.at(v);
       return piece;
     }
   } // namespace
@@ -212,7 +213,7 @@ namespace slipstick::mesh
         {
           if (dim == 2)
             std::swap(cell[1], cell[2]); // of a quadrilateral in lexicographic order, and of a triangle
-          for (unsigned int v = 0; dim == 3 && v < cell.size(); v += 2)
+          for (unsigned int v = 0; dim == 3 && v < (is_simplex<dim>(cell) ? 2 : cell.size()); v += 2)
             std::swap(cell[v], cell[v + 1]);
         }
   }

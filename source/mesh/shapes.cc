@@ -1,4 +1,3 @@
-#include <slipstick/base/exceptions.h>
 #include <slipstick/mesh/shapes.h>
 
 #include <cmath>
@@ -284,11 +283,11 @@ namespace slipstick::mesh
 
   std::map<std::string, dealii::types::boundary_id> shape_boundary_ids(const scene::Shape shape, const unsigned int dim)
   {
-    if (dim == 3)
-      return {{"left", 0}, {"right", 1}, {"bottom", 2}, {"top", 3}, {"back", 4}, {"front", 5}};
     switch (shape)
       {
         case scene::Shape::rectangle:
+          if (dim == 3)
+            return {{"left", 0}, {"right", 1}, {"bottom", 2}, {"top", 3}, {"back", 4}, {"front", 5}};
           return {{"left", 0}, {"right", 1}, {"bottom", 2}, {"top", 3}};
         case scene::Shape::disc:
           return {{"arc", 0}};
@@ -300,6 +299,14 @@ namespace slipstick::mesh
           return {{"inner", 0}, {"outer", 1}};
         case scene::Shape::quarter_ring:
           return {{"inner", 0}, {"outer", 1}, {"start", 2}, {"end", 3}};
+        case scene::Shape::ball:
+          return {{"surface", 0}};
+        case scene::Shape::half_ball:
+          return {{"surface", 0}, {"flat", 1}};
+        case scene::Shape::cylinder:
+          return {{"side", 0}, {"back", 1}, {"front", 2}};
+        case scene::Shape::tube:
+          return {{"inner", 0}, {"outer", 1}, {"back", 2}, {"front", 3}};
         case scene::Shape::mesh:
           return {};
       }
@@ -328,21 +335,14 @@ namespace slipstick::mesh
         case scene::Shape::quarter_ring:
           mesh.piece = ring(body, refinements);
           break;
+        case scene::Shape::ball: // shapes of space, and none
+        case scene::Shape::half_ball:
+        case scene::Shape::cylinder:
+        case scene::Shape::tube:
         case scene::Shape::mesh:
           Assert(false, dealii::ExcInternalError());
       }
     number_vertices(mesh.piece);
-    return mesh;
-  }
-
-  template <>
-  BodyMesh<3> body_from_shape(const scene::Scene<3> &scene, const scene::Body<3> &body)
-  {
-    if (body.shape != scene::Shape::rectangle)
-      throw InputError("Body " + body.name + ": its shape is none of space", "set Shape = cuboid");
-    BodyMesh<3> mesh;
-    mesh.boundary_ids = shape_boundary_ids(body.shape, 3);
-    mesh.piece        = rectangle_piece<3>(body, rectangle_cells(scene, body), {{1, 1, 1}}, {{0, 0, 0}});
     return mesh;
   }
 

@@ -19,13 +19,16 @@ namespace slipstick::mesh
     // Bytes an unknown: mesh, stiffness and output, and the factor, whose entries grow with the logarithm of the
     // subdomain's size. Measured: 1.33 million unknowns in 256 subdomains take 1 GB (README.md).
     constexpr double bytes_per_unknown = 300, bytes_per_unknown_and_doubling = 32;
-    constexpr double cells_per_subdomain = 10000; // target of auto, see decomposition.cc
-    constexpr double most_cells          = 1e9;   // beyond this counters of 32 bits may overflow
-    constexpr double bytes_per_subdomain = 100e3; // its mesh and lists, however few its cells
-    constexpr double many_subdomains     = 1e4;   // beyond this the message names them
-    constexpr double bytes_of_a_cell     = 40;    // in a mesh file
-    constexpr double around_an_edge      = 13;    // cells that come with an edge refined by 3, all levels together
-    constexpr double usable              = 0.9;   // of the memory that is free
+    constexpr double cells_per_subdomain          = 10000; // target of auto, see decomposition.cc ...
+    constexpr double cells_per_subdomain_in_space = 1000;
+    // Measured in space: 1.1 million unknowns in 512 subdomains of 8^3 cells take 5 GB.
+    constexpr double bytes_per_unknown_in_space = 5000;
+    constexpr double most_cells                 = 1e9;   // beyond this counters of 32 bits may overflow
+    constexpr double bytes_per_subdomain        = 100e3; // its mesh and lists, however few its cells
+    constexpr double many_subdomains            = 1e4;   // beyond this the message names them
+    constexpr double bytes_of_a_cell            = 40;    // in a mesh file
+    constexpr double around_an_edge             = 13;  // cells that come with an edge refined by 3, all levels together
+    constexpr double usable                     = 0.9; // of the memory that is free
     constexpr double finest = 1e-8; // edges of cells over their distance from the origin: 8 digits are left
 
     struct Count
@@ -33,13 +36,13 @@ namespace slipstick::mesh
       double cells = 0, outline = 0; // before refinements towards boundaries
     };
 
-    Count count_of_file(const std::string &path)
+    Count count_of_file(const std::string &path, const unsigned int dim)
     {
       const MeshFile                                                file = read_mesh_file(path);
       std::map<std::pair<unsigned int, unsigned int>, unsigned int> n_cells;
       Count                                                         count;
       for (const auto &cell : file.elements)
-        if (cell.dim == 2)
+        if (cell.dim == dim)
           {
             ++count.cells;
             for (unsigned int k = 0; k < cell.n; ++k)
@@ -98,11 +101,20 @@ namespace slipstick::mesh
               count = {around * across, 2 * (around + across)};
               break;
             }
+          case scene::Shape::ball: // a cube of a quarter of the edges a side, and twice as many around it
+          case scene::Shape::half_ball:
+          case scene::Shape::cylinder:
+          case scene::Shape::tube:
+            {
+              const double n = body.cells_along_arc;
+              count          = {n * n * n / 16 * refined, 2 * n * n * refined};
+              break;
+            }
           case scene::Shape::mesh:
             {
               std::error_code error;
               if (refined > 1 || body.boundary_refinements > 0)
-                count = count_of_file(body.file);
+                count = count_of_file(body.file, dim);
               else
                 count.cells = std::filesystem::file_size(body.file, error) / bytes_of_a_cell;
               const double n = bodies_in_file(scene, body);
@@ -140,18 +152,22 @@ namespace slipstick::mesh
                            (towards > count.cells ? ", most of them by Refine levels" : "");
           }
       }
-    size.unknowns       = size.cells * dim * scene.discretization.degree * scene.discretization.degree;
-    double n_subdomains = std::max<double>(scene.bodies.size(), size.unknowns / (dim * cells_per_subdomain));
+    size.unknowns = size.cells * dim * std::pow(scene.discretization.degree, dim);
+    double n_subdomains =
+      std::max<double>(scene.bodies.size(),
+                       size.unknowns / (dim * (dim == 2 ? cells_per_subdomain : cells_per_subdomain_in_space)));
     if (scene.decomposition.method == scene::DecompositionMethod::blocks)
-      n_subdomains = double(scene.bodies.size()) * scene.decomposition.blocks * scene.decomposition.blocks;
+      n_subdomains = double(scene.bodies.size()) * std::pow(scene.decomposition.blocks, dim);
     else if (scene.decomposition.method == scene::DecompositionMethod::none)
       n_subdomains = scene.bodies.size();
     else if (scene.decomposition.subdomains > 0)
       n_subdomains = std::min<double>(scene.decomposition.subdomains, size.cells); // more are refused for themselves
     const double of_one = std::max(2., size.unknowns / n_subdomains);
-    size.memory_mb      = (n_subdomains * bytes_per_subdomain +
-                      size.unknowns * (bytes_per_unknown + bytes_per_unknown_and_doubling * std::log2(of_one))) /
-                     1048576;
+    size.memory_mb =
+      (n_subdomains * bytes_per_subdomain +
+       size.unknowns * (dim == 3 ? bytes_per_unknown_in_space
+                                 : bytes_per_unknown + bytes_per_unknown_and_doubling * std::log2(of_one))) /
+      1048576;
     if (n_subdomains > many_subdomains)
       size.largest += ", in " + rounded(n_subdomains) + " subdomains";
     return size;
@@ -201,6 +217,8 @@ namespace slipstick::mesh
 
   template SizeEstimate estimate_size(const scene::Scene<2> &);
   template void         check_size(const scene::Scene<2> &, const bool, const MPI_Comm);
+  template SizeEstimate estimate_size(const scene::Scene<3> &);
+  template void         check_size(const scene::Scene<3> &, const bool, const MPI_Comm);
   template void         check_positions(const scene::Scene<2> &, const Mesh<2> &);
   template void         check_positions(const scene::Scene<3> &, const Mesh<3> &);
 } // namespace slipstick::mesh

@@ -15,7 +15,7 @@ namespace slipstick::mesh
                dealii::ExcMessage("cells of one subdomain are of one kind"));
         cells[c].vertices.assign(piece.cells[c].begin(), piece.cells[c].begin() + n_corners<dim>(piece.cells[c]));
       }
-    if (!piece.ordered && !is_simplex<dim>(piece.cells[0]))
+    if (dim == 2 && !piece.ordered && !is_simplex<dim>(piece.cells[0]))
       dealii::GridTools::consistently_order_cells(cells);
 
     auto mesh             = std::make_unique<SubdomainMesh<dim>>();
@@ -34,7 +34,8 @@ namespace slipstick::mesh
         if (face->at_boundary())
           {
             typename MeshPiece<dim>::Face key;
-            for (unsigned int v = 0; v < key.size(); ++v)
+            key.fill(MeshPiece<dim>::no_vertex);
+            for (const unsigned int v : face->vertex_indices())
               key[v] = face->vertex_index(v);
             std::sort(key.begin(), key.end());
             const auto found = boundary.find(key);

@@ -1,5 +1,5 @@
 #include <slipstick/mechanics/points.h>
-#include <slipstick/mechanics/surface.h>
+#include <slipstick/mechanics/surface_facet.h>
 #include <slipstick/output/conditions.h>
 #include <slipstick/output/csv.h>
 
@@ -76,7 +76,8 @@ namespace slipstick::output
     std::vector<bool> wanted(scene.bodies.size());
     for (const auto &boundary : boundaries)
       wanted[boundary.where.body] = true;
-    const auto outlines = mechanics::outlines(mesh, spaces, wanted);
+    const auto             parts  = mechanics::outlines(mesh, spaces, wanted);
+    constexpr unsigned int n_ends = dim == 2 ? 2 : 4;
 
     const auto                         named = points_of(scene);
     std::vector<scene::PointName<dim>> points;
@@ -93,17 +94,22 @@ namespace slipstick::output
         [&](const std::string &kind, const std::string &name, const std::string &side, const unsigned int body) {
           out << csv_field(kind) << ',' << csv_field(name) << ',' << side << ',' << csv_field(scene.bodies[body].name);
         };
-      out << "kind,name,side,body,x1,y1,x2,y2\n";
+      out << (dim == 2 ? "kind,name,side,body,x1,y1,x2,y2\n"
+                       : "kind,name,side,body,x1,y1,z1,x2,y2,z2,x3,y3,z3,x4,y4,z4\n");
       for (const auto &boundary : boundaries)
-        for (const auto &edge : mechanics::edges_on(mesh, outlines, boundary.where))
+        for (const auto &part : mechanics::parts_on(mesh, parts, boundary.where))
           {
             row(boundary.kind, boundary.name, boundary.side, boundary.where.body);
-            out << at(edge.node(0)) << at(edge.node(1)) << '\n';
+            for (unsigned int i = 0; i < n_ends; ++i)
+              out << at(part.node(i));
+            out << '\n';
           }
       for (unsigned int k = 0; k < named.size(); ++k)
         {
           row(named[k].kind, named[k].name, "", named[k].where.body);
-          out << at(nodes[k].position) << at(nodes[k].position) << '\n';
+          for (unsigned int i = 0; i < n_ends; ++i)
+            out << at(nodes[k].position);
+          out << '\n';
         }
     });
   }
@@ -112,4 +118,8 @@ namespace slipstick::output
                                     const scene::Scene<2> &,
                                     const mesh::Mesh<2> &,
                                     const mechanics::Spaces<2> &);
+  template void write_conditions<3>(const OutputDirectory &,
+                                    const scene::Scene<3> &,
+                                    const mesh::Mesh<3> &,
+                                    const mechanics::Spaces<3> &);
 } // namespace slipstick::output

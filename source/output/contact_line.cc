@@ -39,7 +39,15 @@ namespace slipstick::output
                                  node.slip})
         out << ',' << to_text(value);
       out << ',' << contact::to_string(node.status) << ',' << step << ',' << to_text(node.slip_bound) << ','
-          << to_text(node.total_slip) << '\n';
+          << to_text(node.total_slip);
+      if (names.dimension == 3)
+        {
+          out << ',' << to_text(node.position[2]) << ',' << to_text(node.area);
+          for (const auto *vector : {&node.normal, &node.traction, &node.slip_vector})
+            for (const double value : *vector)
+              out << ',' << to_text(value);
+        }
+      out << '\n';
     }
 
     bool is_little_endian()
@@ -96,7 +104,7 @@ namespace slipstick::output
       return values;
     }
 
-    void write_point_data(std::ostream &out, const std::vector<ContactNode> &nodes)
+    void write_point_data(std::ostream &out, const std::vector<ContactNode> &nodes, const unsigned int dim)
     {
       out << "<PointData Scalars=\"pressure\">\n";
       write_scalar(out, "pair", nodes, [](const ContactNode &node) { return std::int64_t(node.pair); });
@@ -112,6 +120,11 @@ namespace slipstick::output
         return static_cast<std::int64_t>(node.status);
       });
       write_array(out, "normal", components(nodes, &ContactNode::normal), 3);
+      if (dim == 3)
+        {
+          write_array(out, "tangential_traction_vector", components(nodes, &ContactNode::traction), 3);
+          write_array(out, "slip_vector", components(nodes, &ContactNode::slip_vector), 3);
+        }
       out << "</PointData>\n";
     }
 
@@ -132,9 +145,9 @@ namespace slipstick::output
       out << "</" << kind << ">\n";
     }
 
-    void write_polydata(std::ostream &out, const std::vector<ContactNode> &nodes)
+    /// Along the arc of every pair; a vertex for a pair of one node.
+    void add_lines(const std::vector<ContactNode> &nodes, Cells &lines, Cells &vertices)
     {
-      Cells lines, vertices;
       for (auto first = nodes.begin(); first != nodes.end();)
         {
           const auto last =
@@ -145,16 +158,49 @@ namespace slipstick::output
           cells.offsets.push_back(cells.connectivity.size());
           first = last;
         }
+    }
+
+    /// A vertex for every node without a face.
+    void add_faces(const ContactStep &step, Cells &polygons, Cells &vertices)
+    {
+      std::vector<bool> is_on_face(step.nodes.size());
+      for (const auto &face : step.faces)
+        {
+          for (const std::int64_t i : face)
+            {
+              polygons.connectivity.push_back(i);
+              is_on_face[i] = true;
+            }
+          polygons.offsets.push_back(polygons.connectivity.size());
+        }
+      for (std::size_t i = 0; i < is_on_face.size(); ++i)
+        if (!is_on_face[i])
+          {
+            vertices.connectivity.push_back(i);
+            vertices.offsets.push_back(vertices.connectivity.size());
+          }
+    }
+
+    void write_polydata(std::ostream &out, const ContactStep &step, const unsigned int dim)
+    {
+      const auto nodes = dim == 2 ? along_the_arc(step.nodes) : step.nodes;
+      Cells      lines, vertices, polygons;
+      if (dim == 2)
+        add_lines(nodes, lines, vertices);
+      else
+        add_faces(step, polygons, vertices);
       out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\""
           << (is_little_endian() ? "LittleEndian" : "BigEndian") << "\" header_type=\"UInt64\">\n<PolyData>\n"
           << "<Piece NumberOfPoints=\"" << nodes.size() << "\" NumberOfVerts=\"" << vertices.offsets.size()
-          << "\" NumberOfLines=\"" << lines.offsets.size() << "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
-      write_point_data(out, nodes);
+          << "\" NumberOfLines=\"" << lines.offsets.size() << "\" NumberOfStrips=\"0\" NumberOfPolys=\""
+          << polygons.offsets.size() << "\">\n";
+      write_point_data(out, nodes, dim);
       out << "<Points>\n";
       write_array(out, "Points", components(nodes, &ContactNode::position), 3);
       out << "</Points>\n";
       write_cells(out, "Verts", vertices);
       write_cells(out, "Lines", lines);
+      write_cells(out, "Polys", polygons);
       out << "</Piece>\n</PolyData>\n</VTKFile>\n";
     }
   } // namespace
@@ -164,16 +210,20 @@ namespace slipstick::output
                          const std::vector<ContactStep> &steps)
   {
     directory.write_from_root("contact.csv", [&](std::ostream &out) {
-      out << "pair,slave body,x,y,s,gap,pressure,tangential_traction,slip,status,step,slip_bound,total_slip\n";
+      out << "pair,slave body,x,y,s,gap,pressure,tangential_traction,slip,status,step,slip_bound,total_slip"
+          << (names.dimension == 3
+                ? ",z,area,normal_x,normal_y,normal_z,traction_x,traction_y,traction_z,slip_x,slip_y,slip_z"
+                : "")
+          << '\n';
       for (const ContactStep &step : steps)
         for (const ContactNode &node : along_the_arc(step.nodes))
           write_row(out, names, step.step, node);
     });
   }
 
-  void write_contact_vtp(const OutputDirectory &directory, const ContactStep &step)
+  void write_contact_vtp(const OutputDirectory &directory, const ContactStep &step, const unsigned int dim)
   {
     const std::string name = "contact_" + dealii::Utilities::int_to_string(step.step, 3) + ".vtp";
-    directory.write_from_root(name, [&](std::ostream &out) { write_polydata(out, along_the_arc(step.nodes)); });
+    directory.write_from_root(name, [&](std::ostream &out) { write_polydata(out, step, dim); });
   }
 } // namespace slipstick::output

@@ -5,6 +5,7 @@
 
 #include <deal.II/base/data_out_base.h>
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe.h>
 #include <deal.II/fe/fe_system.h>
@@ -48,12 +49,24 @@ namespace slipstick::output
       std::vector<Field>        nodal, of_cells;
     };
 
-    constexpr std::uint8_t vtk_triangle = 5, vtk_quadrilateral = 9;
+    constexpr std::uint8_t vtk_triangle = 5, vtk_quadrilateral = 9, vtk_tetrahedron = 10, vtk_hexahedron = 12;
+
+    template <int dim>
+    constexpr std::uint8_t type_of(const std::size_t n_nodes)
+    {
+      if (dim == 2)
+        return n_nodes == 3 ? vtk_triangle : vtk_quadrilateral;
+      return n_nodes == 4 ? vtk_tetrahedron : vtk_hexahedron;
+    }
 
     /// Nodes of the linear cells that a cell is drawn as, counterclockwise; degree 2: four, with the nodes on its
     /// edges.
+    template <int dim>
     std::vector<std::vector<unsigned int>> parts_of_cell(const bool is_simplex, const unsigned int degree)
     {
+      if (dim == 3) // of hexahedra the back face, then the front face
+        return is_simplex ? std::vector<std::vector<unsigned int>>{{0, 1, 2, 3}}
+                          : std::vector<std::vector<unsigned int>>{{0, 1, 3, 2, 4, 5, 7, 6}};
       if (is_simplex)
         return degree == 1 ? std::vector<std::vector<unsigned int>>{{0, 1, 2}}
                            : std::vector<std::vector<unsigned int>>{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
@@ -69,11 +82,10 @@ namespace slipstick::output
                  const unsigned int                p,
                  const mechanics::SubdomainStress &stress)
     {
-      static_assert(dim == 2, "cell types of the plane");
-      const auto                                  &subdomain   = *mesh.subdomains[p];
-      const auto                                  &dof_handler = *spaces.dof_handlers[p];
-      const auto                                  &element     = spaces.of(p);
-      const auto                                   parts = parts_of_cell(element.cell.is_simplex(), element.degree);
+      const auto &subdomain   = *mesh.subdomains[p];
+      const auto &dof_handler = *spaces.dof_handlers[p];
+      const auto &element     = spaces.of(p);
+      const auto  parts       = parts_of_cell<dim>(element.cell.is_simplex(), element.degree);
       std::vector<dealii::types::global_dof_index> dofs;
       std::vector<unsigned int>                    nodes;
       std::vector<float>                           error;
@@ -96,7 +108,7 @@ namespace slipstick::output
               for (const unsigned int i : part)
                 grid.connectivity.push_back(nodes[i]);
               grid.offsets.push_back(grid.connectivity.size());
-              grid.types.push_back(part.size() == 3 ? vtk_triangle : vtk_quadrilateral);
+              grid.types.push_back(type_of<dim>(part.size()));
               error.push_back(stress.error[cell->active_cell_index()]);
             }
         }
@@ -112,7 +124,8 @@ namespace slipstick::output
 
     /// Computes the fields for users from displacement and stress components.
     /// @param stress nodes x 4: xx, yy, xy, zz [MPa]; of bodies of revolution zz is the hoop stress, and part of the
-    /// tensor.
+    /// tensor. In space x 6: xz, yz besides.
+    template <int dim>
     std::vector<Field> nodal_fields(const Eigen::VectorXd &u, const Eigen::MatrixXd &stress, const bool has_hoop_stress)
     {
       std::vector<Field> fields = {{"displacement", 3, {}},
@@ -123,6 +136,8 @@ namespace slipstick::output
                                    {"principal_stress_2", 1, {}}};
       if (has_hoop_stress)
         fields.push_back({"hoop_stress", 1, {}});
+      if (dim == 3)
+        fields.push_back({"principal_stress_3", 1, {}});
       for (Field &field : fields)
         field.values.reserve(field.n_components * stress.rows());
       const auto add = [&fields](const unsigned int field, const std::initializer_list<double> values) {
@@ -132,6 +147,21 @@ namespace slipstick::output
       for (unsigned int node = 0; node < stress.rows(); ++node)
         {
           const double xx = stress(node, 0), yy = stress(node, 1), xy = stress(node, 2), zz = stress(node, 3);
+          if constexpr (dim == 3)
+            {
+              const double                    xz = stress(node, 4), yz = stress(node, 5);
+              dealii::SymmetricTensor<2, dim> tensor;
+              tensor[0][0] = xx, tensor[1][1] = yy, tensor[2][2] = zz;
+              tensor[0][1] = xy, tensor[0][2] = xz, tensor[1][2] = yz;
+              const auto principal = dealii::eigenvalues(tensor); // the largest first
+              add(0, {u[3 * node], u[3 * node + 1], u[3 * node + 2]});
+              add(1, {xx, xy, xz, xy, yy, yz, xz, yz, zz});
+              add(2, {zz});
+              add(3, {mechanics::von_mises(xx, yy, xy, zz, xz, yz)});
+              for (unsigned int k = 0; k < dim; ++k)
+                add(4 + k, {principal[k]});
+              continue;
+            }
           const double mean = (xx + yy) / 2, radius = std::hypot((xx - yy) / 2, xy);
           add(0, {u[2 * node], u[2 * node + 1], 0.});
           add(1, {xx, xy, 0., xy, yy, 0., 0., 0., has_hoop_stress ? zz : 0.}); // of the plane
@@ -282,7 +312,7 @@ namespace slipstick::output
     {
       const unsigned int subdomain = mesh.subdomains[p]->subdomain;
       Grid               grid      = grid_of(mesh, spaces, p, stress);
-      grid.nodal                   = nodal_fields(u, stress.nodal, has_hoop_stress);
+      grid.nodal                   = nodal_fields<dim>(u, stress.nodal, has_hoop_stress);
       directory.write(vtu_name(step, subdomain), [&](std::ostream &out) { write_vtu(out, grid); });
       if (subdomain == 0)
         directory.write(pvtu_name(step), [&](std::ostream &out) {
@@ -321,6 +351,12 @@ namespace slipstick::output
   template void write_fields(const OutputDirectory &,
                              const mesh::Mesh<2> &,
                              const mechanics::Spaces<2> &,
+                             const std::vector<Eigen::VectorXd> &,
+                             const mechanics::StressResult &,
+                             const unsigned int);
+  template void write_fields(const OutputDirectory &,
+                             const mesh::Mesh<3> &,
+                             const mechanics::Spaces<3> &,
                              const std::vector<Eigen::VectorXd> &,
                              const mechanics::StressResult &,
                              const unsigned int);

@@ -18,30 +18,36 @@ namespace slipstick::output
     }
   } // namespace
 
-  void write_history(const OutputDirectory &directory, const std::vector<StepSummary> &steps)
+  void write_history(const OutputDirectory &directory, const std::vector<StepSummary> &steps, const unsigned int dim)
   {
     directory.write_from_root("history.csv", [&](std::ostream &out) {
       out << "step,t";
       if (!steps.empty())
         for (const auto &one : all_of(steps.front()))
-          for (const std::string column : {" Fx", " Fy", " moment"})
+          for (const std::string &column : dim == 2
+                                             ? std::vector<std::string>{" Fx", " Fy", " moment"}
+                                             : std::vector<std::string>{" Fx", " Fy", " Fz", " Mx", " My", " Mz"})
             out << ',' << csv_field(one.kind + " " + one.name + column);
       if (!steps.empty())
         for (const auto &probe : steps.front().probes)
           if (probe.is_point)
-            for (const std::string column : {" ux", " uy"})
-              out << ',' << csv_field("probe " + probe.name + column);
+            for (unsigned int d = 0; d < dim; ++d)
+              out << ',' << csv_field("probe " + probe.name + " u" + "xyz"[d]);
       out << '\n';
       for (unsigned int k = 0; k < steps.size(); ++k)
         {
           out << k << ',' << to_text(steps[k].load_factor);
           for (const auto &one : all_of(steps[k]))
-            out << ',' << to_text(one.sum.force[0]) << ',' << to_text(one.sum.force[1]) << ','
-                << to_text(one.sum.moment);
+            {
+              for (unsigned int d = 0; d < dim; ++d)
+                out << ',' << to_text(one.sum.force[d]);
+              for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
+                out << ',' << to_text(one.sum.moment[d]);
+            }
           for (const auto &probe : steps[k].probes)
             if (probe.is_point)
-              for (const double component : probe.points.front().displacement)
-                out << ',' << to_text(component);
+              for (unsigned int d = 0; d < dim; ++d)
+                out << ',' << to_text(probe.points.front().displacement[d]);
           out << '\n';
         }
     });

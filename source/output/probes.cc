@@ -5,29 +5,28 @@
 
 namespace slipstick::output
 {
-  void write_probes(const OutputDirectory &directory, const std::vector<StepSummary> &steps)
+  void write_probes(const OutputDirectory &directory, const std::vector<StepSummary> &steps, const unsigned int dim)
   {
     if (steps.empty() || steps.front().probes.empty())
       return;
     directory.write_from_root("probes.csv", [&](std::ostream &out) {
-      out << "step,t,probe,s,x,y,u_x,u_y,stress_xx,stress_yy,stress_xy,stress_zz,von_mises\n";
+      out
+        << (dim == 2
+              ? "step,t,probe,s,x,y,u_x,u_y,stress_xx,stress_yy,stress_xy,stress_zz,von_mises\n"
+              : "step,t,probe,s,x,y,z,u_x,u_y,u_z,stress_xx,stress_yy,stress_xy,stress_zz,stress_xz,stress_yz,von_mises\n");
       for (unsigned int k = 0; k < steps.size(); ++k)
         for (const auto &probe : steps[k].probes)
           for (const auto &point : probe.points)
             {
               out << k << ',' << to_text(steps[k].load_factor) << ',' << csv_field(probe.name);
-              for (const double value : {point.distance,
-                                         point.position[0],
-                                         point.position[1],
-                                         point.displacement[0],
-                                         point.displacement[1],
-                                         point.stress[0],
-                                         point.stress[1],
-                                         point.stress[2],
-                                         point.stress[3],
-                                         point.von_mises})
-                out << ',' << to_text(value);
-              out << '\n';
+              out << ',' << to_text(point.distance);
+              for (unsigned int d = 0; d < dim; ++d)
+                out << ',' << to_text(point.position[d]);
+              for (unsigned int d = 0; d < dim; ++d)
+                out << ',' << to_text(point.displacement[d]);
+              for (unsigned int c = 0; c < 2 * dim; ++c)
+                out << ',' << to_text(point.stress[c]);
+              out << ',' << to_text(point.von_mises) << '\n';
             }
     });
   }

@@ -62,8 +62,21 @@ namespace slipstick::output
               {"nodal_equilibrium", residuals.nodal_equilibrium}};
     }
 
+    /// As many components as the dimension has.
+    template <std::size_t n>
+    Json components(const std::array<double, n> &vector, const unsigned int count)
+    {
+      return std::vector<double>(vector.begin(), vector.begin() + count);
+    }
+
+    /// In the plane a number: about z.
+    Json moment(const std::array<double, 3> &m, const unsigned int dim)
+    {
+      return dim == 2 ? Json(m[2]) : Json(m);
+    }
+
     /// @param noun key of the name.
-    Json json(const std::vector<NamedResultant> &list, const char *noun)
+    Json json(const std::vector<NamedResultant> &list, const char *noun, const unsigned int dim)
     {
       Json all = Json::array();
       for (const auto &one : list)
@@ -71,34 +84,34 @@ namespace slipstick::output
           Json entry = {{noun, one.name}};
           if (noun != one.kind)
             entry["kind"] = one.kind;
-          entry["force"]  = one.sum.force;
-          entry["moment"] = one.sum.moment;
+          entry["force"]  = components(one.sum.force, dim);
+          entry["moment"] = moment(one.sum.moment, dim);
           all.push_back(std::move(entry));
         }
       return all;
     }
 
     /// Adds the lists of loads, supports and foundations.
-    Json with(Json entry, const ForceSummary &forces)
+    Json with(Json entry, const ForceSummary &forces, const unsigned int dim)
     {
-      entry["loads"]       = json(forces.loads, "load");
-      entry["supports"]    = json(forces.supports, "support");
-      entry["foundations"] = json(forces.foundations, "foundation");
+      entry["loads"]       = json(forces.loads, "load", dim);
+      entry["supports"]    = json(forces.supports, "support", dim);
+      entry["foundations"] = json(forces.foundations, "foundation", dim);
       return entry;
     }
 
-    Json json(const std::vector<contact::PairResult> &contact)
+    Json json(const std::vector<contact::PairResult> &contact, const unsigned int dim)
     {
       Json pairs = Json::array();
       for (const contact::PairResult &pair : contact)
         pairs.push_back({{"pair", pair.pair},
                          {"normal_force", pair.normal_force},
                          {"tangential_force", pair.tangential_force},
-                         {"force", pair.on_slave.force},
-                         {"moment", pair.on_slave.moment},
-                         {"moment_mismatch", pair.moment_mismatch},
+                         {"force", components(pair.on_slave.force, dim)},
+                         {"moment", moment(pair.on_slave.moment, dim)},
+                         {"moment_mismatch", moment(pair.moment_mismatch, dim)},
                          {"max_pressure", pair.max_pressure},
-                         {"contact_length", pair.contact_length},
+                         {dim == 2 ? "contact_length" : "contact_area", pair.contact_length},
                          {"contact_nodes", pair.contact_nodes},
                          {"open_nodes", pair.open_nodes},
                          {"stick_nodes", pair.stick_nodes},
@@ -107,25 +120,25 @@ namespace slipstick::output
     }
 
     /// Single points only; results along lines are in probes.csv.
-    Json json(const std::vector<ProbeResult> &probes)
+    Json json(const std::vector<ProbeResult> &probes, const unsigned int dim)
     {
       Json list = Json::array();
       for (const ProbeResult &probe : probes)
         if (probe.is_point)
           list.push_back({{"probe", probe.name},
-                          {"position", probe.points.front().position},
-                          {"displacement", probe.points.front().displacement},
-                          {"stress", probe.points.front().stress},
+                          {"position", components(probe.points.front().position, dim)},
+                          {"displacement", components(probe.points.front().displacement, dim)},
+                          {"stress", components(probe.points.front().stress, 2 * dim)},
                           {"von_mises", probe.points.front().von_mises}});
       return list;
     }
 
-    Json json(const Place &place)
+    Json json(const Place &place, const unsigned int dim)
     {
-      return {{"body", place.body}, {"position", place.position}};
+      return {{"body", place.body}, {"position", components(place.position, dim)}};
     }
 
-    Json json(const std::vector<StepSummary> &steps)
+    Json json(const std::vector<StepSummary> &steps, const unsigned int dim)
     {
       Json list = Json::array();
       for (const StepSummary &step : steps)
@@ -135,22 +148,24 @@ namespace slipstick::output
                              {"coulomb_iterations", step.coulomb_iterations},
                              {"max_displacement", step.max_displacement},
                              {"strain_energy", step.strain_energy},
-                             {"contact", json(step.contact)},
-                             {"probes", json(step.probes)}},
-                            step.forces));
+                             {"contact", json(step.contact, dim)},
+                             {"probes", json(step.probes, dim)}},
+                            step.forces,
+                            dim));
       return list;
     }
 
-    Json json(const ResultSummary &results)
+    Json json(const ResultSummary &results, const unsigned int dim)
     {
       Json all = with({{"max_displacement", results.max_displacement},
                        {"max_von_mises", results.max_von_mises},
-                       {"max_von_mises_at", json(results.max_von_mises_at)},
+                       {"max_von_mises_at", json(results.max_von_mises_at, dim)},
                        {"singular", results.singular.empty() ? Json() : Json(results.singular)},
                        {"strain_energy", results.strain_energy},
-                       {"contact", json(results.contact)},
-                       {"probes", json(results.probes)}},
-                      results.forces);
+                       {"contact", json(results.contact, dim)},
+                       {"probes", json(results.probes, dim)}},
+                      results.forces,
+                      dim);
       if (results.hoop_stress)
         {
           all["min_hoop_stress"] = (*results.hoop_stress)[0];
@@ -220,25 +235,26 @@ namespace slipstick::output
 
   std::string to_json(const Summary &summary)
   {
-    Json text = {{"case", summary.case_name},
-                 {"version", summary.version},
-                 {"ranks", summary.ranks},
-                 {"status", to_string(summary.status)},
-                 {"converged", summary.status == RunStatus::converged},
-                 {"warnings", summary.warnings},
-                 {"problem", json(summary.problem)},
-                 {"solver", json(summary.solver)},
-                 {"residuals", json(summary.residuals)},
-                 {"error",
-                  {{"estimate_energy_relative", summary.error.estimate_energy_relative},
-                   {"algebraic_relative", summary.error.algebraic_relative},
-                   {"largest_at", json(summary.error.largest_at)},
-                   {"largest_part", summary.error.largest_part}}},
-                 {"results", json(summary.results)},
-                 {"steps", json(summary.steps)},
-                 {"time_s", json(summary.time_s)},
-                 {"memory_mb",
-                  {{"peak_rank_max", summary.memory_mb.peak_rank_max}, {"peak_total", summary.memory_mb.peak_total}}}};
+    const unsigned int dim  = summary.problem.dimension;
+    Json               text = {{"case", summary.case_name},
+                               {"version", summary.version},
+                               {"ranks", summary.ranks},
+                               {"status", to_string(summary.status)},
+                               {"converged", summary.status == RunStatus::converged},
+                               {"warnings", summary.warnings},
+                               {"problem", json(summary.problem)},
+                               {"solver", json(summary.solver)},
+                               {"residuals", json(summary.residuals)},
+                               {"error",
+                                {{"estimate_energy_relative", summary.error.estimate_energy_relative},
+                                 {"algebraic_relative", summary.error.algebraic_relative},
+                                 {"largest_at", json(summary.error.largest_at, dim)},
+                                 {"largest_part", summary.error.largest_part}}},
+                               {"results", json(summary.results, dim)},
+                               {"steps", json(summary.steps, dim)},
+                               {"time_s", json(summary.time_s)},
+                               {"memory_mb",
+                                {{"peak_rank_max", summary.memory_mb.peak_rank_max}, {"peak_total", summary.memory_mb.peak_total}}}};
     if (!summary.error_bars.empty())
       text["error_bars"] = json(summary.error_bars);
     if (!summary.meshes.empty())

@@ -11,7 +11,7 @@ namespace slipstick::scene
   {
     using Knobs = std::vector<std::pair<std::string, std::string>>;
 
-    const std::string name = "Accuracy";
+    const std::string name = "Accuracy", degree = "Discretization/Degree";
 
     // The accuracy of each on cases with known answers is measured in doc/accuracy.md. `engineering` is the default of every
     // setting. The precision of the preconditioner is not among them, since no answer depends on it.
@@ -20,26 +20,26 @@ namespace slipstick::scene
                                                                   {"Solver/Operator precision", "single"},
                                                                   {"Solver/Prune contact", "true"},
                                                                   {"Friction/Tolerance", "1e-3"},
-                                                                  {"Discretization/Degree", "1"}}},
+                                                                  {degree, "1"}}},
                                                                 {"engineering",
                                                                  {{"Solver/Tolerance", "0.0001"},
                                                                   {"Solver/Operator precision", "double"},
                                                                   {"Solver/Prune contact", "true"},
                                                                   {"Friction/Tolerance", "1e-06"},
-                                                                  {"Discretization/Degree", "1"}}},
+                                                                  {degree, "1"}}},
                                                                 {"reference",
                                                                  {{"Solver/Tolerance", "1e-8"},
                                                                   {"Solver/Operator precision", "double"},
                                                                   {"Solver/Prune contact", "false"},
                                                                   {"Friction/Tolerance", "1e-8"},
-                                                                  {"Discretization/Degree", "2"}}}};
+                                                                  {degree, "2"}}}};
 
     // Of a percentage: the algebraic error must not show in differences between meshes.
     const Knobs of_percentage = {{"Solver/Tolerance", "1e-06"},
                                  {"Solver/Operator precision", "double"},
                                  {"Solver/Prune contact", "true"},
                                  {"Friction/Tolerance", "1e-06"},
-                                 {"Discretization/Degree", "1"}};
+                                 {degree, "1"}};
   } // namespace
 
   std::vector<std::string> accuracy_names()
@@ -58,11 +58,11 @@ namespace slipstick::scene
     return accuracy_of(preset) > 0 ? of_percentage : Knobs();
   }
 
-  void apply_accuracy(const Parameters &parameters, dealii::ParameterHandler &prm)
+  void apply_accuracy(const Parameters &parameters, dealii::ParameterHandler &prm, const unsigned int max_degree)
   {
     const auto preset = parameters.value(name);
     if (preset) // a word that is not a preset is refused by apply()
       for (const auto &[path, value] : knobs_of_accuracy(*preset))
-        set_value(prm, path, value);
+        set_value(prm, path, path == degree ? std::min(value, std::to_string(max_degree)) : value);
   }
 } // namespace slipstick::scene

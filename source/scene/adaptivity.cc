@@ -17,16 +17,17 @@ namespace slipstick::scene
       for (const char *what : {"normal_force", "tangential_force", "max_pressure"})
         names.push_back(pair.name + "." + what);
     for (const auto &support : scene.supports)
-      for (const char *what : {"force_x", "force_y"})
-        names.push_back(support.name + "." + what);
+      for (unsigned int d = 0; d < dim; ++d)
+        names.push_back(support.name + ".force_" + "xyz"[d]);
     for (const auto &probe : scene.probes)
       if (probe.ends.size() == 1)
-        for (const char *what : {"u_x", "u_y"})
-          names.push_back(probe.name + "." + what);
+        for (unsigned int d = 0; d < dim; ++d)
+          names.push_back(probe.name + ".u_" + "xyz"[d]);
     return names;
   }
 
   template std::vector<std::string> quantity_names(const Scene<2> &);
+  template std::vector<std::string> quantity_names(const Scene<3> &);
 
   double accuracy_of(const std::string &text)
   {

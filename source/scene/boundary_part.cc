@@ -34,7 +34,8 @@ namespace slipstick::scene
     if (std::regex_search(part.condition, load_factor))
       throw InputError(path + ": the condition '" + part.condition + "' of boundary '" + part.name +
                          "' has the load factor t, and boundaries are the same in all load steps",
-                       "write a condition in x and y; a load may be a formula of t");
+                       std::string("write a condition in x") + (dim == 3 ? ", y and z" : " and y") +
+                         "; a load may be a formula of t");
     Field<dim>(part.condition, path);
   }
 

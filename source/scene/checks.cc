@@ -121,6 +121,20 @@ namespace slipstick::scene
                                "set it to auto, or Solver/Algorithm to semismooth newton");
     }
 
+    /// SMALBE-M knows bounds on single multipliers, and friction in space bounds two of them together.
+    template <int dim>
+    void check_discs(const Scene<dim> &scene, const Parameters &parameters)
+    {
+      if (dim == 2 || scene.solver.algorithm != Algorithm::smalbe)
+        return;
+      for (const auto &contact : scene.contacts)
+        if (contact.law.has_friction)
+          throw parameters.error("Solver/Algorithm",
+                                 "knows no friction in space (Dimension = 3) yet, but Contact " + contact.name +
+                                   " has Law = " + contact.law.name,
+                                 "set it to auto or semismooth newton");
+    }
+
     // Poisson's ratio above which standard elements in plane strain or of revolution are much too stiff (bulk over shear modulus 100).
     constexpr double locking_poisson_ratio = 0.495;
 
@@ -162,6 +176,7 @@ namespace slipstick::scene
     check_boundaries_used_once(scene, parameters);
     check_decomposition(scene, parameters);
     check_algorithm(scene, parameters);
+    check_discs(scene, parameters);
     check_element(scene, parameters);
     check_revolution(scene, parameters);
   }
@@ -173,14 +188,17 @@ namespace slipstick::scene
     if (scene.plane_state != PlaneState::plane_stress && scene.discretization.element == ElementKind::standard)
       for (const Material &material : scene.materials)
         if (material.poisson_ratio > locking_poisson_ratio)
-          texts.push_back(
-            std::string("warning: standard elements lock ") +
-            (scene.plane_state == PlaneState::plane_strain ? "in plane strain" : "in bodies of revolution") +
-            " with Poisson ratio " + number_text(material.poisson_ratio) + " (Material " + material.name +
-            "): displacements will be too small; set Discretization/Element = nearly incompressible");
+          texts.push_back(std::string("warning: standard elements lock ") +
+                          (dim == 3                                        ? "in solids"
+                           : scene.plane_state == PlaneState::plane_strain ? "in plane strain"
+                                                                           : "in bodies of revolution") +
+                          " with Poisson ratio " + number_text(material.poisson_ratio) + " (Material " + material.name +
+                          "): displacements will be too small; set Discretization/Element = nearly incompressible");
     return texts;
   }
 
   template void                     check_scene(const Scene<2> &, const Parameters &);
+  template void                     check_scene(const Scene<3> &, const Parameters &);
   template std::vector<std::string> warnings(const Scene<2> &);
+  template std::vector<std::string> warnings(const Scene<3> &);
 } // namespace slipstick::scene

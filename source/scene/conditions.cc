@@ -13,7 +13,6 @@ namespace slipstick::scene
     const std::array<std::string, 3> axes = {{"x", "y", "z"}};
 
     const std::string boundary_format = "BODY/BOUNDARY, such as box/left, or a part of it, such as box/top where x < 5";
-    const std::string field_format    = "a number or a formula of x, y, t";
   } // namespace
 
   template <int dim>
@@ -42,7 +41,7 @@ namespace slipstick::scene
           names.push_back(candidate.name);
         throw parameters.error(path, "there is no body '" + name + "'", suggest_name(name, names));
       }
-    const auto boundaries = boundary_names(body->shape);
+    const auto boundaries = boundary_names(body->shape, dim);
     if (boundary != "*" && body->shape != Shape::mesh &&
         std::find(boundaries.begin(), boundaries.end(), boundary) == boundaries.end())
       throw parameters.error(path,
@@ -70,20 +69,25 @@ namespace slipstick::scene
              boundary_format,
              "boundary that is held; this or Body and Point must be set");
     add_text(prm, "Body", body, "", "a name from Bodies", "body of which a point is held");
-    add_text(prm, "Point", point, "mm", "x, y, or the name of a point in the mesh file", "point that is held");
+    add_text(prm,
+             "Point",
+             point,
+             "mm",
+             std::string("x, y, ") + (dim == 3 ? "z, " : "") + "or the name of a point in the mesh file",
+             "point that is held");
     for (unsigned int d = 0; d < dim; ++d)
       add_text(prm,
                "Displacement " + axes[d],
                components[d],
                "mm",
-               "free, " + field_format,
+               "free, " + field_format<dim>(),
                "prescribed displacement along " + axes[d]);
     add_text(
       prm,
       "Displacement normal",
       normal,
       "mm",
-      "free, " + field_format,
+      "free, " + field_format<dim>(),
       "prescribed displacement along the outward normal of the boundary, which then slides freely along it; 0 is a "
       "roller or a plane of symmetry");
     prm.leave_subsection();
@@ -136,14 +140,16 @@ namespace slipstick::scene
         if (support.point)
           throw parameters.error(section + "/Displacement normal",
                                  "needs a boundary, but this support is at a point",
-                                 "set Displacement x or y, or a Boundary");
+                                 dim == 3 ? "set Displacement x, y or z, or a Boundary"
+                                          : "set Displacement x or y, or a Boundary");
         support.normal = Field<dim>(normal, parameters.locate(section + "/Displacement normal"));
         holds          = true;
       }
     if (!holds)
       throw parameters.error(section,
                              "holds nothing: every component is free",
-                             "set Displacement x, y or normal to a number or formula, or take '" + name +
+                             std::string("set Displacement x, y") + (dim == 3 ? ", z" : "") +
+                               " or normal to a number or formula, or take '" + name +
                                "' out of the list Supports and remove its subsection");
     return support;
   }
@@ -195,4 +201,10 @@ namespace slipstick::scene
                                       const std::vector<Body<2>> &);
   template struct SupportSection<2>;
   template struct FoundationSection<2>;
+  template BoundaryName read_boundary(const std::string &,
+                                      const std::string &,
+                                      const Parameters &,
+                                      const std::vector<Body<3>> &);
+  template struct SupportSection<3>;
+  template struct FoundationSection<3>;
 } // namespace slipstick::scene

@@ -10,7 +10,6 @@ namespace slipstick::scene
   namespace
   {
     const std::string boundary_format = "BODY/BOUNDARY, such as box/left";
-    const std::string field_format    = "a number or a formula of x, y, t";
 
     /// A formula whose value, where it is a number, is not negative.
     template <int dim>
@@ -59,7 +58,8 @@ namespace slipstick::scene
                  parameter.name,
                  text,
                  parameter.unit,
-                 (parameter.default_text.empty() ? "" : parameter.default_text + ", or ") + field_format + ", >= 0",
+                 (parameter.default_text.empty() ? "" : parameter.default_text + ", or ") + field_format<dim>() +
+                   ", >= 0",
                  parameter.meaning);
       }
     add_choice(prm,
@@ -67,7 +67,12 @@ namespace slipstick::scene
                only_closed,
                Choices<bool>{{"boundary", false}, {"contact", true}},
                "Tresca: on the whole slave boundary, open nodes included, or where it is in contact");
-    add_text(prm, "Offset", offset, "mm", field_format, "added to the gap; negative: interference of a press fit");
+    add_text(prm,
+             "Offset",
+             offset,
+             "mm",
+             field_format<dim>(),
+             "added to the gap; negative: interference of a press fit");
   }
 
   template <int dim>
@@ -118,7 +123,7 @@ namespace slipstick::scene
              "Gap",
              gap,
              "mm",
-             "geometry, " + field_format,
+             "geometry, " + field_format<dim>(),
              "initial distance along the normal: that of the geometry, or a given one instead");
     add_text(prm,
              "Reach",
@@ -127,13 +132,15 @@ namespace slipstick::scene
              "auto, or a number > 0",
              "nodes farther apart along the normal are not paired; auto: two bodies from distance and mesh, obstacles "
              "without limit");
-    add_choice(prm,
-               "Discretization",
-               discretization,
-               Choices<ContactDiscretization>{{"auto", ContactDiscretization::automatic},
-                                              {"node to node", ContactDiscretization::node_to_node},
-                                              {"mortar", ContactDiscretization::mortar}},
-               "two bodies: auto is node to node where every slave node has a master node opposite, otherwise mortar");
+    if (dim == 2)
+      add_choice(
+        prm,
+        "Discretization",
+        discretization,
+        Choices<ContactDiscretization>{{"auto", ContactDiscretization::automatic},
+                                       {"node to node", ContactDiscretization::node_to_node},
+                                       {"mortar", ContactDiscretization::mortar}},
+        "two bodies: auto is node to node where every slave node has a master node opposite, otherwise mortar");
     prm.leave_subsection();
   }
 
@@ -218,4 +225,7 @@ namespace slipstick::scene
   template struct ContactLawSection<2>;
   template struct ContactSection<2>;
   template struct ContactSearchSection<2>;
+  template struct ContactLawSection<3>;
+  template struct ContactSection<3>;
+  template struct ContactSearchSection<3>;
 } // namespace slipstick::scene

@@ -305,4 +305,15 @@ namespace slipstick::scene
                                       std::optional<std::array<unsigned int, 2>> &,
                                       const unsigned int,
                                       const std::string &);
+  template void add_point(dealii::ParameterHandler &,
+                          const std::string &,
+                          dealii::Point<3> &,
+                          const std::string &,
+                          const Interval &,
+                          const std::string &);
+  template void add_counts_or_auto<3>(dealii::ParameterHandler &,
+                                      const std::string &,
+                                      std::optional<std::array<unsigned int, 3>> &,
+                                      const unsigned int,
+                                      const std::string &);
 } // namespace slipstick::scene

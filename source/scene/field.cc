@@ -18,10 +18,12 @@ namespace slipstick::scene
   {
     const std::array<std::string, 3> coordinate_names = {{"x", "y", "z"}};
 
+    template <int dim>
     InputError formula_error(const std::string &where, const std::string &formula, const std::string &reason)
     {
       return InputError(where + " = '" + formula + "': " + reason,
-                        "give a finite number or a formula of x, y, t and pi such as -250*sin(pi*x/10)*t");
+                        std::string("give a finite number or a formula of x, y, ") + (dim == 3 ? "z, " : "") +
+                          "t and pi such as -250*sin(pi*x/10)*t");
     }
 
     /// muParser's "=" assigns: x=3 would overwrite the variable.
@@ -77,7 +79,7 @@ namespace slipstick::scene
     : where(path)
   {
     if (has_assignment(formula))
-      throw formula_error(where, formula, "'=' assigns; compare with '=='");
+      throw formula_error<dim>(where, formula, "'=' assigns; compare with '=='");
     std::vector<std::string> names;
     try
       {
@@ -92,16 +94,16 @@ namespace slipstick::scene
         parser.SetExpr(formula);
         parser.Eval();
         if (parser.GetNumResults() != 1)
-          throw formula_error(where,
-                              formula,
-                              "more than one value (the decimal separator is the point, not the comma)");
+          throw formula_error<dim>(where,
+                                   formula,
+                                   "more than one value (the decimal separator is the point, not the comma)");
       }
     catch (const mu::Parser::exception_type &error)
       {
-        throw formula_error(where, formula, explain(error, parser, names));
+        throw formula_error<dim>(where, formula, explain(error, parser, names));
       }
     if (parser.GetUsedVar().empty() && !is_usable(parser.Eval()))
-      throw formula_error(where, formula, "not a finite number, or beyond " + number_text(largest_number));
+      throw formula_error<dim>(where, formula, "not a finite number, or beyond " + number_text(largest_number));
   }
 
   template <int dim>
@@ -116,9 +118,9 @@ namespace slipstick::scene
         std::string at;
         for (unsigned int d = 0; d < dim; ++d)
           at += coordinate_names[d] + " = " + number_text(x[d]) + ", ";
-        throw formula_error(where,
-                            trim(parser.GetExpr()), // muParser appends a blank
-                            number_text(result) + " at " + at + "t = " + number_text(t));
+        throw formula_error<dim>(where,
+                                 trim(parser.GetExpr()), // muParser appends a blank
+                                 number_text(result) + " at " + at + "t = " + number_text(t));
       }
     return result;
   }
@@ -131,14 +133,14 @@ namespace slipstick::scene
     : text(trim(formula))
   {
     if (text.empty())
-      throw formula_error(where, text, "empty");
+      throw formula_error<dim>(where, text, "empty");
     const auto number = parse_number(text);
     if (!number)
       parsed = std::make_shared<Formula>(text, where);
     else if (is_usable(*number))
       constant = *number;
     else
-      throw formula_error(where, text, "not a finite number, or beyond " + number_text(largest_number));
+      throw formula_error<dim>(where, text, "not a finite number, or beyond " + number_text(largest_number));
   }
 
   template <int dim>

@@ -15,8 +15,13 @@ namespace slipstick::scene
 
     const std::string boundary_format = "BODY/BOUNDARY, such as box/left";
     const std::string bodies_format   = "all, or names from Bodies separated by commas";
-    const std::string point_format    = "coordinates such as 2.5, 10 or the name of a point in the mesh file";
-    const std::string field_format    = "a number or a formula of x, y, t";
+
+    template <int dim>
+    std::string point_format()
+    {
+      return std::string("coordinates such as 2.5, 10") + (dim == 3 ? ", 0" : "") +
+             " or the name of a point in the mesh file";
+    }
 
     /// One field a component, "NAME x", "NAME y".
     template <int dim>
@@ -27,7 +32,7 @@ namespace slipstick::scene
                         const std::string            &meaning)
     {
       for (unsigned int d = 0; d < dim; ++d)
-        add_text(prm, name + " " + axes[d], components[d], unit, field_format, meaning + " along " + axes[d]);
+        add_text(prm, name + " " + axes[d], components[d], unit, field_format<dim>(), meaning + " along " + axes[d]);
     }
 
     template <int dim>
@@ -127,7 +132,7 @@ namespace slipstick::scene
                             const unsigned int body,
                             const Body<dim>   &of)
   {
-    parameters.require(path, "set " + point_format);
+    parameters.require(path, "set " + point_format<dim>());
     PointName<dim>     point;
     dealii::Point<dim> x;
     const auto         parts     = split_list(text);
@@ -149,7 +154,7 @@ namespace slipstick::scene
                              "body '" + of.name + "' is not from a mesh file and has no named points",
                              "give coordinates: " + std::to_string(dim) + " numbers separated by a comma");
     else
-      throw parameters.error(path, "is no point", "set " + point_format);
+      throw parameters.error(path, "is no point", "set " + point_format<dim>());
     return point;
   }
 
@@ -170,7 +175,7 @@ namespace slipstick::scene
              "Pressure",
              pressure,
              "MPa",
-             field_format,
+             field_format<dim>(),
              "against the outward normal of the undeformed boundary; positive presses on the body");
     prm.leave_subsection();
   }
@@ -193,6 +198,7 @@ namespace slipstick::scene
   {
     force.fill("0");
     acceleration.fill("0");
+    axis_direction[dim - 1] = 1;
   }
 
   template <int dim>
@@ -206,13 +212,28 @@ namespace slipstick::scene
                         acceleration,
                         "mm/s^2",
                         "the density of the material times this is a force per volume (gravity: 9810 downwards),");
-    add_text(prm,
-             "Angular velocity",
-             angular_velocity,
-             "1/s",
-             field_format,
-             "omega of the centrifugal force, density omega^2 (x - axis); axisymmetric: about the axis of revolution");
-    add_point(prm, "Axis", axis, "mm", Interval(), "centre of the rotation");
+    add_text(
+      prm,
+      "Angular velocity",
+      angular_velocity,
+      "1/s",
+      field_format<dim>(),
+      dim == 3
+        ? "omega of the centrifugal force, density omega^2 times the distance from the axis"
+        : "omega of the centrifugal force, density omega^2 (x - axis); axisymmetric: about the axis of revolution");
+    add_point(prm,
+              "Axis",
+              axis,
+              "mm",
+              Interval(),
+              dim == 3 ? "a point of the axis of rotation" : "centre of the rotation");
+    if constexpr (dim == 3)
+      add_point(prm,
+                "Axis direction",
+                axis_direction,
+                "",
+                Interval(),
+                "direction of the axis of rotation, of any length");
     prm.leave_subsection();
   }
 
@@ -234,6 +255,14 @@ namespace slipstick::scene
     load.acceleration     = read_components<dim>(acceleration, section + "/Acceleration", parameters);
     load.angular_velocity = read_field<dim>(angular_velocity, section + "/Angular velocity", parameters);
     load.axis             = axis;
+    if constexpr (dim == 3)
+      {
+        if (!(axis_direction.norm() > 0))
+          throw parameters.error(section + "/Axis direction",
+                                 "has no length",
+                                 "give a direction, for example: 0, 0, 1");
+        load.axis_direction = axis_direction;
+      }
     if (inertia)
       for (const unsigned int body : load.bodies)
         {
@@ -263,9 +292,13 @@ namespace slipstick::scene
              "Point",
              point,
              "mm",
-             point_format,
+             point_format<dim>(),
              "where: the mesh node nearest to it, at most half a cell away; must be set");
-    add_components<dim>(prm, "Force", force, "N", "force, over the whole thickness or circumference,");
+    add_components<dim>(prm,
+                        "Force",
+                        force,
+                        "N",
+                        dim == 3 ? "force" : "force, over the whole thickness or circumference,");
     prm.leave_subsection();
   }
 
@@ -273,7 +306,12 @@ namespace slipstick::scene
   PointLoad<dim> PointLoadSection<dim>::read(const Parameters &parameters, const Scene<dim> &scene) const
   {
     const std::string section = "Point load " + name;
-    require_load(all_zero(force), section, "Force x or Force y", "Point loads", name, parameters);
+    require_load(all_zero(force),
+                 section,
+                 dim == 3 ? "Force x, y or z" : "Force x or Force y",
+                 "Point loads",
+                 name,
+                 parameters);
     PointLoad<dim> load;
     load.name                = name;
     const unsigned int where = read_body(body, section + "/Body", parameters, scene.bodies);
@@ -292,7 +330,7 @@ namespace slipstick::scene
   {
     prm.enter_subsection("Temperature " + name);
     add_text(prm, "Bodies", bodies, "", bodies_format, "bodies whose temperature changes");
-    add_text(prm, "Change", change, "K", field_format, "change from the stress-free state; must be set");
+    add_text(prm, "Change", change, "K", field_format<dim>(), "change from the stress-free state; must be set");
     prm.leave_subsection();
   }
 
@@ -332,4 +370,21 @@ namespace slipstick::scene
   template struct BodyForceSection<2>;
   template struct PointLoadSection<2>;
   template struct TemperatureSection<2>;
+  template unsigned int              read_body(const std::string &,
+                                               const std::string &,
+                                               const Parameters &,
+                                               const std::vector<Body<3>> &);
+  template std::vector<unsigned int> read_bodies(const std::string &,
+                                                 const std::string &,
+                                                 const Parameters &,
+                                                 const std::vector<Body<3>> &);
+  template PointName<3>              read_point(const std::string &,
+                                                const std::string &,
+                                                const Parameters &,
+                                                const unsigned int,
+                                                const Body<3> &);
+  template struct TractionSection<3>;
+  template struct BodyForceSection<3>;
+  template struct PointLoadSection<3>;
+  template struct TemperatureSection<3>;
 } // namespace slipstick::scene

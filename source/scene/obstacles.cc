@@ -55,7 +55,12 @@ namespace slipstick::scene
       return {};
     }
 
-    const std::vector<std::string> geometry = {"Center", "Radius", "Point", "Normal", "Points", "Height"};
+    /// The parameters that belong to some shapes only.
+    template <int dim>
+    std::vector<std::string> geometry()
+    {
+      return {"Center", "Radius", "Point", "Normal", dim == 3 ? "Axis" : "Points", "Height"};
+    }
 
     /// "x y; x y; ..." @throws InputError naming @p path.
     std::vector<dealii::Point<2>> read_points(const std::string &text,
@@ -97,13 +102,13 @@ namespace slipstick::scene
   ObstacleSection<dim>::ObstacleSection(const std::string &own_name)
     : name(own_name)
   {
-    normal[dim - 1] = 1;
+    normal[1]     = 1;
+    axis[dim - 1] = 1;
   }
 
-  template <int dim>
-  void ObstacleSection<dim>::declare(dealii::ParameterHandler &prm)
+  template <>
+  void ObstacleSection<2>::declare_geometry(dealii::ParameterHandler &prm)
   {
-    prm.enter_subsection("Obstacle " + name);
     add_choice(prm,
                "Shape",
                obstacle.shape,
@@ -136,7 +141,51 @@ namespace slipstick::scene
              "mm",
              "a number or a formula of x, t",
              "function: the obstacle is below y = height; must be set");
-    for (const std::string &parameter : geometry)
+  }
+
+  template <>
+  void ObstacleSection<3>::declare_geometry(dealii::ParameterHandler &prm)
+  {
+    add_choice(prm,
+               "Shape",
+               obstacle.shape,
+               Choices<ObstacleShape>{{"ball", ObstacleShape::circle},
+                                      {"hollow ball", ObstacleShape::hole},
+                                      {"half space", ObstacleShape::half_plane},
+                                      {"cylinder", ObstacleShape::cylinder},
+                                      {"bore", ObstacleShape::bore},
+                                      {"function", ObstacleShape::function}},
+               "geometry; bodies are outside a ball or an infinite cylinder, inside a hollow ball or a bore, above a "
+               "function, and where the normal of a half space points");
+    add_point(prm,
+              "Center",
+              obstacle.center,
+              "mm",
+              Interval(),
+              "ball, hollow ball: centre; cylinder, bore: a point of the axis; must be set");
+    add_number(prm, "Radius", obstacle.radius, "mm", Interval::above(0), "balls, cylinder, bore: radius; must be set");
+    add_point(prm, "Axis", axis, "", Interval(), "cylinder, bore: direction of the axis, of any length");
+    add_point(prm, "Point", point, "mm", Interval(), "half space: a point of its border; must be set");
+    add_point(prm,
+              "Normal",
+              normal,
+              "",
+              Interval(),
+              "half space: normal of its border, towards the bodies, of any length");
+    add_text(prm,
+             "Height",
+             height,
+             "mm",
+             "a number or a formula of x, z, t",
+             "function: the obstacle is below y = height; must be set");
+  }
+
+  template <int dim>
+  void ObstacleSection<dim>::declare(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Obstacle " + name);
+    declare_geometry(prm);
+    for (const std::string &parameter : geometry<dim>())
       defaults[parameter] = prm.get(parameter);
     prm.leave_subsection();
   }
@@ -144,32 +193,41 @@ namespace slipstick::scene
   template <int dim>
   Obstacle<dim> ObstacleSection<dim>::read(const Parameters &parameters) const
   {
-    static_assert(dim == 2, "obstacles are curves");
+    const std::string zero    = dim == 3 ? ", 0" : "";
     const std::string section = "Obstacle " + name;
     Obstacle<dim>     result  = obstacle;
     result.name               = name;
     std::vector<std::string> fitting;
     switch (obstacle.shape)
       {
+        case ObstacleShape::cylinder:
+        case ObstacleShape::bore:
+          if (!(axis.norm() > 0))
+            throw parameters.error(section + "/Axis", "has no length", "give a direction, for example: 0, 0, 1");
+          result.normal = axis / axis.norm();
+          fitting.push_back("Axis");
+          [[fallthrough]];
         case ObstacleShape::circle:
         case ObstacleShape::hole:
-          parameters.require(section + "/Center", "set it in mm, for example: set Center = 5, -20");
+          parameters.require(section + "/Center", "set it in mm, for example: set Center = 5, -20" + zero);
           parameters.require(section + "/Radius", "set it in mm, for example: set Radius = 20");
           fitting.insert(fitting.end(), {"Center", "Radius"});
           break;
         case ObstacleShape::half_plane:
-          parameters.require(section + "/Point", "set a point of its border in mm, for example: set Point = 0, 0");
+          parameters.require(section + "/Point",
+                             "set a point of its border in mm, for example: set Point = 0, 0" + zero);
           if (!(normal.norm() > 0))
             throw parameters.error(section + "/Normal",
                                    "has no length",
-                                   "give a direction, for example: set Normal = 0, 1");
+                                   "give a direction, for example: set Normal = 0, 1" + zero);
           result.normal = normal / normal.norm();
           result.center = point;
           fitting.insert(fitting.end(), {"Point", "Normal"});
           break;
         case ObstacleShape::polyline:
           parameters.require(section + "/Points", "set its points in mm, for example: set Points = 0 0; 1 0; 2 1");
-          result.points = read_points(points, section + "/Points", parameters);
+          if constexpr (dim == 2)
+            result.points = read_points(points, section + "/Points", parameters);
           fitting.push_back("Points");
           break;
         case ObstacleShape::function:
@@ -177,10 +235,8 @@ namespace slipstick::scene
           result.height = Field<dim>(height, parameters.locate(section + "/Height"));
           fitting.push_back("Height");
           break;
-        case ObstacleShape::cylinder: // not offered in the plane
-          break;
       }
-    for (const std::string &other : geometry)
+    for (const std::string &other : geometry<dim>())
       // the default is harmless, and a .prm that the program printed sets everything
       if (const auto value = parameters.value(section + "/" + other);
           value && trim(*value) != defaults.at(other) &&
@@ -190,4 +246,5 @@ namespace slipstick::scene
   }
 
   template struct ObstacleSection<2>;
+  template struct ObstacleSection<3>;
 } // namespace slipstick::scene

@@ -173,17 +173,17 @@ namespace slipstick::scene
     prm.leave_subsection();
   }
 
-  void declare(dealii::ParameterHandler &prm, Discretization &discretization)
+  void declare(dealii::ParameterHandler &prm, Discretization &discretization, const unsigned int max_degree)
   {
     prm.enter_subsection("Discretization");
-    add_count(prm, "Degree", discretization.degree, 1, 2, "polynomial degree of the elements");
+    add_count(prm, "Degree", discretization.degree, 1, max_degree, "polynomial degree of the elements");
     add_choice(
       prm,
       "Element",
       discretization.element,
       Choices<ElementKind>{{"standard", ElementKind::standard},
                            {"nearly incompressible", ElementKind::nearly_incompressible}},
-      "nearly incompressible: for plane strain with nu near 0.5, where standard elements lock; its dilatation is "
+      "nearly incompressible: for plane strain and solids with nu near 0.5, where standard elements lock; its dilatation is "
       "projected on polynomials of one degree less");
     add_count(prm, "Refinements", discretization.refinements, 0, 10, "extra uniform refinements of the mesh");
     prm.leave_subsection();

@@ -161,6 +161,20 @@ namespace slipstick::scene
     return found == settings.rend() ? nullptr : &*found;
   }
 
+  void Parameters::refuse_foreign(const dealii::ParameterHandler &here,
+                                  const dealii::ParameterHandler &there,
+                                  const std::string              &where_it_is) const
+  {
+    std::set<std::string> own, foreign;
+    for (const DeclaredParameter &parameter : declared_parameters(here))
+      own.insert(parameter.path);
+    for (const DeclaredParameter &parameter : declared_parameters(there))
+      foreign.insert(parameter.path);
+    for (const Setting &setting : settings)
+      if (!setting.is_section && own.count(setting.path) == 0 && foreign.count(setting.path) > 0)
+        throw error(setting.path, "is available in " + where_it_is + " only", "remove it, or set Dimension");
+  }
+
   bool Parameters::is_set(const std::string &path) const
   {
     const Setting *setting = find(path);

@@ -5,7 +5,12 @@ namespace slipstick::scene
 {
   namespace
   {
-    const std::string format = "x, y, or the name of a point in the mesh file";
+    template <int dim>
+    std::string format()
+    {
+      return std::string("x, y, ") + (dim == 3 ? "z, " : "") + "or the name of a point in the mesh file";
+    }
+
     // More points than a picture of a line shows.
     constexpr unsigned int most_points = 100000;
   } // namespace
@@ -20,9 +25,9 @@ namespace slipstick::scene
   {
     prm.enter_subsection("Probe " + name);
     add_text(prm, "Body", body, "", "a name from Bodies", "body that is looked at; must be set");
-    add_text(prm, "Point", point, "mm", format, "a point of it; this or From and To must be set");
-    add_text(prm, "From", from, "mm", format, "beginning of a straight line");
-    add_text(prm, "To", to, "mm", format, "its end");
+    add_text(prm, "Point", point, "mm", format<dim>(), "a point of it; this or From and To must be set");
+    add_text(prm, "From", from, "mm", format<dim>(), "beginning of a straight line");
+    add_text(prm, "To", to, "mm", format<dim>(), "its end");
     add_count(prm, "Number of points", n_points, 2, most_points, "points on the line, its ends among them");
     prm.leave_subsection();
   }
@@ -55,4 +60,5 @@ namespace slipstick::scene
   }
 
   template struct ProbeSection<2>;
+  template struct ProbeSection<3>;
 } // namespace slipstick::scene

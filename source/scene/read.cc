@@ -18,6 +18,12 @@ namespace slipstick::scene
   namespace
   {
     // The top level lists and the subsections whose names they declare.
+    // Of the elements.
+    template <int dim>
+    constexpr unsigned int max_degree = dim == 3 ? 1 : 2;
+
+    const std::string dimension_name = "Dimension";
+
     const NamedKind material_kind    = {"Material", "Materials", library_names()};
     const NamedKind body_kind        = {"Body", "Bodies"};
     const NamedKind obstacle_kind    = {"Obstacle", "Obstacles"};
@@ -93,6 +99,8 @@ namespace slipstick::scene
       , probes(names.at(probe_kind.list).begin(), names.at(probe_kind.list).end())
     {
       options.decomposition.method = DecompositionMethod::automatic;
+      if (dim == 3) // its coefficients are those of solids
+        options.plane_state = PlaneState::plane_strain;
       declare_top_level(names);
       const auto declare_all = [this](auto &sections) {
         for (auto &section : sections)
@@ -109,19 +117,27 @@ namespace slipstick::scene
       declare_all(temperatures);
       declare_all(contacts);
       declare_all(probes);
-      contact_search.declare(prm);
-      declare(prm, options.discretization);
+      if (dim == 2)
+        contact_search.declare(prm);
+      declare(prm, options.discretization, max_degree<dim>);
       declare(prm, options.decomposition);
       declare_load_steps(prm, options.load_factors);
       declare(prm, options.friction);
       declare(prm, options.solver);
       declare(prm, options.output);
-      declare(prm, adaptivity);
+      if (dim == 2)
+        declare(prm, adaptivity);
     }
 
     template <int dim>
     void SceneParameters<dim>::declare_top_level(const Names &names)
     {
+      add_word(prm,
+               dimension_name,
+               dim == 3 ? "3" : "2",
+               {"2", "3"},
+               "2: bodies in the plane or of revolution; 3: solids",
+               [](const std::string &) {});
       add_text(prm, "Title", options.title, "", "one line of text", "what the scene shows");
       add_text(prm,
                "Variables",
@@ -129,15 +145,16 @@ namespace slipstick::scene
                "",
                "NAME = NUMBER; NAME = NUMBER; ...",
                "numbers that other values use as {NAME} or {10 - NAME/2}; later ones may use earlier ones");
-      add_choice(
-        prm,
-        "Plane state",
-        options.plane_state,
-        Choices<PlaneState>{{"plane stress", PlaneState::plane_stress},
-                            {"plane strain", PlaneState::plane_strain},
-                            {"axisymmetric", PlaneState::axisymmetric}},
-        "what the section stands for, of all bodies; axisymmetric: half a section of bodies of revolution, x the "
-        "radius, y the axis, all forces over the whole circumference");
+      if (dim == 2)
+        add_choice(
+          prm,
+          "Plane state",
+          options.plane_state,
+          Choices<PlaneState>{{"plane stress", PlaneState::plane_stress},
+                              {"plane strain", PlaneState::plane_strain},
+                              {"axisymmetric", PlaneState::axisymmetric}},
+          "what the section stands for, of all bodies; axisymmetric: half a section of bodies of revolution, x the "
+          "radius, y the axis, all forces over the whole circumference");
       const auto presets = std::vector<std::pair<std::string, Accuracy>>{{"draft", Accuracy::draft},
                                                                          {"engineering", Accuracy::engineering},
                                                                          {"reference", Accuracy::reference}};
@@ -149,9 +166,10 @@ namespace slipstick::scene
         "preset of Tolerance, Operator precision and Prune contact of the solver, Friction/Tolerance and "
         "Discretization/Degree (values that the scene sets take precedence); or the relative error to reach by refining "
         "meshes, in the energy norm or that of Goal",
-        choice_prefix + "draft, engineering, reference, or a percentage such as 1 %",
+        choice_prefix + "draft, engineering, reference" + (dim == 2 ? ", or a percentage such as 1 %" : ""),
         [presets](const std::string &text) {
-          return accuracy_of(text) > 0 || std::any_of(presets.begin(), presets.end(), [&text](const auto &preset) {
+          return (dim == 2 && accuracy_of(text) > 0) ||
+                 std::any_of(presets.begin(), presets.end(), [&text](const auto &preset) {
                    return preset.first == text;
                  });
         },
@@ -162,7 +180,8 @@ namespace slipstick::scene
             if (word == text)
               options.accuracy = accuracy;
         });
-      declare_goals(prm, adaptivity);
+      if (dim == 2)
+        declare_goals(prm, adaptivity);
       for (const NamedKind &kind : named_kinds)
         add_entry(
           prm,
@@ -212,7 +231,8 @@ namespace slipstick::scene
         scene.temperatures.push_back(section.read(parameters, scene));
       for (const auto &section : contacts)
         scene.contacts.push_back(section.read(parameters, scene));
-      scene.contact_search = contact_search.read(parameters);
+      if (dim == 2)
+        scene.contact_search = contact_search.read(parameters);
       for (const auto &section : probes)
         scene.probes.push_back(section.read(parameters, scene));
       if (scene.decomposition.method == DecompositionMethod::automatic)
@@ -241,19 +261,34 @@ namespace slipstick::scene
     }
   } // namespace
 
-  Scene<2> read_scene(const std::string &file, const std::vector<std::string> &overrides, AdaptivityOptions *adaptivity)
+  template <int dim>
+  Scene<dim> read_scene(const std::string              &file,
+                        const std::vector<std::string> &overrides,
+                        AdaptivityOptions              *adaptivity)
   {
     const Parameters parameters(file, overrides, named_kinds);
     Names            names;
     for (const NamedKind &kind : named_kinds)
       names[kind.list] = parameters.names(kind);
 
-    SceneParameters<2> declared(names);
-    apply_accuracy(parameters, declared.prm);
+    SceneParameters<dim> declared(names);
+    apply_accuracy(parameters, declared.prm, max_degree<dim>);
     apply_library(parameters, names.at(material_kind.list), declared.prm);
-    parameters.apply(declared.prm);
-    Scene<2> scene = declared.read(parameters);
-    scene.name     = std::filesystem::path(file).stem().string();
+    try
+      {
+        parameters.apply(declared.prm);
+      }
+    catch (const InputError &)
+      {
+        constexpr int          other = dim == 2 ? 3 : 2;
+        SceneParameters<other> there(names);
+        parameters.refuse_foreign(declared.prm,
+                                  there.prm,
+                                  dim == 2 ? "space (Dimension = 3)" : "the plane (Dimension = 2)");
+        throw;
+      }
+    Scene<dim> scene = declared.read(parameters);
+    scene.name       = std::filesystem::path(file).stem().string();
     check_scene(scene, parameters);
     check_goals(declared.adaptivity, scene, parameters);
     if (adaptivity)
@@ -261,9 +296,24 @@ namespace slipstick::scene
     return scene;
   }
 
+  unsigned int read_dimension(const std::string &file, const std::vector<std::string> &overrides)
+  {
+    const Parameters parameters(file, overrides, named_kinds);
+    const auto       text = parameters.value(dimension_name);
+    if (!text || *text == "2")
+      return 2;
+    if (*text != "3")
+      throw parameters.error(dimension_name,
+                             "is not available; available: 2 (plane), 3 (space)",
+                             "choose one of these");
+    return 3;
+  }
+
+  template <int dim>
   void list_parameters(std::ostream &out, const ListFormat format)
   {
-    SceneParameters<2>                                     example({{material_kind.list, {"elastic"}},
+    const std::string                                      z = dim == 3 ? ", 0" : "";
+    SceneParameters<dim>                                   example({{material_kind.list, {"elastic"}},
                                                                     {body_kind.list, {"box"}},
                                                                     {obstacle_kind.list, {"disc"}},
                                                                     {support_kind.list, {"held"}},
@@ -275,9 +325,9 @@ namespace slipstick::scene
                                                                     {contact_kind.list, {"circle"}},
                                                                     {probe_kind.list, {"tip"}}});
     const std::vector<std::pair<std::string, std::string>> must_be_set = {
-      {"Body box/Size", "10, 10"},
+      {"Body box/Size", dim == 3 ? "10, 10, 10" : "10, 10"},
       {"Body box/Material", "elastic"},
-      {"Obstacle disc/Center", "5, -20"},
+      {"Obstacle disc/Center", "5, -20" + z},
       {"Obstacle disc/Radius", "20"},
       {"Support held/Boundary", "box/left"},
       {"Support held/Displacement x", "0"},
@@ -288,7 +338,7 @@ namespace slipstick::scene
       {"Traction pressed/Traction y", "-250"},
       {"Body force gravity/Acceleration y", "-9810"},
       {"Point load pull/Body", "box"},
-      {"Point load pull/Point", "10, 10"},
+      {"Point load pull/Point", "10, 10" + z},
       {"Point load pull/Force x", "100"},
       {"Temperature warm/Change", "50"},
       {"Material elastic/Density", "7.85e-9"},
@@ -296,9 +346,17 @@ namespace slipstick::scene
       {"Contact circle/Slave", "box/bottom"},
       {"Contact circle/Master", "disc"},
       {"Probe tip/Body", "box"},
-      {"Probe tip/Point", "10, 10"}};
+      {"Probe tip/Point", "10, 10" + z}};
     for (const auto &[path, value] : must_be_set)
       set_value(example.prm, path, value);
+    if (dim == 3) // 200^3 cells by default would be too many
+      for (const auto &[path, value] : {std::pair("Decomposition/Blocks", "2"), {"Decomposition/Cells per block", "4"}})
+        set_value(example.prm, path, value);
     write_parameters(out, example.prm, format);
   }
+
+  template Scene<2> read_scene(const std::string &, const std::vector<std::string> &, AdaptivityOptions *);
+  template Scene<3> read_scene(const std::string &, const std::vector<std::string> &, AdaptivityOptions *);
+  template void     list_parameters<2>(std::ostream &, const ListFormat);
+  template void     list_parameters<3>(std::ostream &, const ListFormat);
 } // namespace slipstick::scene

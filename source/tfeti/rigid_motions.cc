@@ -292,6 +292,32 @@ namespace slipstick::tfeti
     return {sum.normalized(), 0., frames_of_bodies(subdomains, n_bodies, comm)};
   }
 
+  namespace
+  {
+    constexpr unsigned int motions_in_space = 6;
+
+    std::string direction(const Eigen::Vector3d &v)
+    {
+      const Eigen::Vector3d unit = (v.array().abs() < named_part * v.norm()).select(0., v.normalized());
+      return format("(%.3g, %.3g, %.3g)", unit[0], unit[1], unit[2]);
+    }
+
+    /// Of one body: t + w x (x - centre) / length, w along the axis of a rotation.
+    std::string in_space(const Eigen::VectorXd &part, const BodyFrame &frame)
+    {
+      const Eigen::Vector3d t = part.head<3>(), w = part.tail<3>();
+      if (w.norm() < turning_part * t.norm())
+        return "translation along " + direction(t);
+      const Eigen::Vector3d at_axis = frame.length / w.squaredNorm() * w.cross(t); // from the centre
+      std::string           point;
+      for (unsigned int d = 0; d < 3; ++d)
+        point += (d == 0 ? "" : ", ") + number(frame.center[d] + at_axis[d], frame.length);
+      const bool is_screw = std::abs(t.dot(w)) > turning_part * w.squaredNorm();
+      return "rotation about the axis along " + direction(w) + " through (" + point + ")" +
+             (is_screw ? " with a translation along it" : "");
+    }
+  } // namespace
+
   std::string describe(const RigidMotion &motion, const std::vector<std::string> &body_names)
   {
     const unsigned int k       = motion.amplitudes.size() / body_names.size();
@@ -307,6 +333,11 @@ namespace slipstick::tfeti
         if (k == 1)
           {
             text += "translation along the axis";
+            continue;
+          }
+        if (k == motions_in_space)
+          {
+            text += in_space(part, motion.frames[b]);
             continue;
           }
         const Eigen::VectorXd translation = part.head(n_translations(k));

@@ -32,11 +32,11 @@ namespace
       return solver.dual().constraints().counts.normal;
     }
 
-    Log                                                   log;
-    StageClock                                            clock;
-    app::StepSolver                                       solver;
-    unsigned long long                                    rows_at_first = 0;
-    std::vector<std::unique_ptr<app::StepSolver::Answer>> answers;
+    Log                                           log;
+    StageClock                                    clock;
+    app::StepSolver<2>                            solver;
+    unsigned long long                            rows_at_first = 0;
+    std::vector<std::unique_ptr<app::StepAnswer>> answers;
   };
 
   void expect_same(const Steps &a, const Steps &b, const double tolerance)

@@ -9,11 +9,12 @@ using namespace slipstick::test;
 
 namespace
 {
-  std::vector<std::string> shipped_scenes()
+  /// Those of a dimension.
+  std::vector<std::string> shipped_scenes(const unsigned int dim = 2)
   {
     std::vector<std::string> files;
     for (const auto &entry : std::filesystem::directory_iterator(std::string(SLIPSTICK_SOURCE_DIR) + "/prm"))
-      if (entry.path().extension() == ".prm")
+      if (entry.path().extension() == ".prm" && read_dimension(entry.path().string()) == dim)
         files.push_back(entry.path().string());
     std::sort(files.begin(), files.end());
     return files;
@@ -85,6 +86,9 @@ TEST(shipped_scenes, every_prm_reads)
   EXPECT_GE(shipped_scenes().size(), 4u);
   for (const std::string &file : shipped_scenes())
     EXPECT_NO_THROW(read_scene(file)) << file;
+  EXPECT_GE(shipped_scenes(3).size(), 1u);
+  for (const std::string &file : shipped_scenes(3))
+    EXPECT_NO_THROW(read_scene<3>(file)) << file;
 }
 
 TEST(shipped_scenes, box_on_circle_is_the_paper_s)
@@ -123,6 +127,18 @@ TEST(round_trip, parameters_of_every_scene_read_back_as_the_same_scene)
       const auto again = read_scene(directory.write("parameters.prm", first.parameters));
       EXPECT_EQ(describe(first), describe(again)) << file;
       EXPECT_EQ(first.parameters, again.parameters) << file;
+    }
+}
+
+TEST(round_trip, parameters_of_solids_read_back)
+{
+  TemporaryDirectory directory;
+  for (const std::string &file : shipped_scenes(3))
+    {
+      const auto first = read_scene<3>(file);
+      EXPECT_EQ(read_scene<3>(directory.write("parameters.prm", first.parameters)).parameters, first.parameters)
+        << file;
+      EXPECT_EQ(read_dimension((directory.path / "parameters.prm").string()), 3u);
     }
 }
 

@@ -14,9 +14,10 @@ namespace slipstick::app
   /// Collective.
   /// @param free owned rows whose multiplier is strictly inside its bounds.
   /// @param nodes contact nodes of this rank with the points that they belong to at the front of Constraints.
-  std::map<std::string, std::string> answer_warnings(const scene::Scene<2>                   &scene,
-                                                     const mesh::Mesh<2>                     &mesh,
-                                                     const mechanics::Spaces<2>              &spaces,
+  template <int dim>
+  std::map<std::string, std::string> answer_warnings(const scene::Scene<dim>                 &scene,
+                                                     const mesh::Mesh<dim>                   &mesh,
+                                                     const mechanics::Spaces<dim>            &spaces,
                                                      const tfeti::DualProblem                &dual,
                                                      const std::vector<bool>                 &free,
                                                      const std::vector<contact::ContactNode> &nodes,

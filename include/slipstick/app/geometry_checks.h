@@ -17,5 +17,8 @@ namespace slipstick::app
   };
 
   /// @param largest displacement [mm], to compare with.
-  GeometryFindings judge(const scene::Scene<2> &scene, const interface::Penetrations &found, const double largest);
+  template <int dim>
+  GeometryFindings geometry_findings(const scene::Scene<dim>       &scene,
+                                     const interface::Penetrations &found,
+                                     const double                   largest);
 } // namespace slipstick::app

@@ -29,9 +29,9 @@ namespace slipstick::app
   /// pressure.
   /// @param quantities of which errors are wanted; empty: all.
   /// The dual problem of @p solver is changed: for the last load step. Collective.
-  std::vector<GoalError> goal_errors(StepSolver                     &solver,
+  std::vector<GoalError> goal_errors(StepSolver<2>                  &solver,
                                      const mechanics::Probes<2>     &probes,
-                                     const StepSolver::Answer       &answer,
+                                     const StepAnswer               &answer,
                                      const double                    t,
                                      const std::vector<std::string> &quantities);
 } // namespace slipstick::app

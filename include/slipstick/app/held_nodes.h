@@ -7,7 +7,8 @@
 namespace slipstick::app
 {
   /// Adds them to the nodes of an answer. Collective.
-  void add_held_nodes(const scene::Scene<2>              &scene,
+  template <int dim>
+  void add_held_nodes(const scene::Scene<dim>            &scene,
                       const tfeti::DualProblem           &dual,
                       const tfeti::HeldContacts          &held,
                       const tfeti::DistributedVector     &multipliers,
@@ -16,7 +17,8 @@ namespace slipstick::app
 
   /// A warning for every pair with nodes on which an obstacle and a support push in the same direction, so that only
   /// the sum of both forces is determined; keys are "held" and the name of the pair. Collective.
-  std::map<std::string, std::string> held_node_warnings(const scene::Scene<2>         &scene,
+  template <int dim>
+  std::map<std::string, std::string> held_node_warnings(const scene::Scene<dim>       &scene,
                                                         const tfeti::HeldContacts     &held,
                                                         const contact::CheckedContact &contact,
                                                         const MPI_Comm                 comm);

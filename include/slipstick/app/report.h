@@ -10,19 +10,22 @@
 namespace slipstick::app
 {
   /// Greeting: program, libraries, ranks, case.
-  void print_header(const Log &log, const scene::Scene<2> &scene, const MPI_Comm comm);
+  template <int dim>
+  void print_header(const Log &log, const scene::Scene<dim> &scene, const MPI_Comm comm);
 
   /// As in the .prm.
   std::string name_of(const scene::Algorithm algorithm);
   std::string name_of(const tfeti::Preconditioner preconditioner);
 
   /// Sizes of the problem, one line a stage.
-  void print_mesh(const Log                  &log,
-                  const scene::Scene<2>      &scene,
-                  const mesh::Mesh<2>        &mesh,
-                  const mechanics::Spaces<2> &spaces);
+  template <int dim>
+  void print_mesh(const Log                    &log,
+                  const scene::Scene<dim>      &scene,
+                  const mesh::Mesh<dim>        &mesh,
+                  const mechanics::Spaces<dim> &spaces);
   /// Texts of the warnings that this printed, without "warning: ".
-  std::vector<std::string> warnings_before(const scene::Scene<2> &scene, const mesh::Mesh<2> &mesh);
+  template <int dim>
+  std::vector<std::string> warnings_before(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh);
   void                     print_constraints(const Log &log, const tfeti::Constraints &constraints);
   void                     print_dual(const Log &log, const tfeti::DualProblem &dual);
 
@@ -37,31 +40,36 @@ namespace slipstick::app
   bool passes(const contact::DualSolution &solution, const contact::Checks &checks, const double tolerance);
 
   /// For an answer that does not pass: which test failed, by how much and where, and what to do.
+  template <int dim>
   void print_failure(const Log                   &log,
-                     const scene::Scene<2>       &scene,
+                     const scene::Scene<dim>     &scene,
                      const contact::DualSolution &solution,
                      const contact::Checks       &checks,
                      const double                 tolerance);
 
   /// Resultants of loads, supports, foundations and contact pairs, and the sum of those from outside.
-  void print_forces(const Log &log, const scene::Scene<2> &scene, const output::ResultSummary &results);
+  template <int dim>
+  void print_forces(const Log &log, const scene::Scene<dim> &scene, const output::ResultSummary &results);
 
   /// The figures that matter and the file to open.
   void print_result(const Log &log, const output::Summary &summary, const std::string &pvd);
 
   /// Case, version, ranks.
-  output::Summary empty_summary(const scene::Scene<2> &scene, const MPI_Comm comm);
+  template <int dim>
+  output::Summary empty_summary(const scene::Scene<dim> &scene, const MPI_Comm comm);
 
   /// Appends the step that @p summary describes to the previous ones: counts are summed, the worst residuals kept.
   void add_step(const output::Summary &so_far, const double load_factor, output::Summary &summary);
 
   /// Forces around a circumference have no moment: of bodies of revolution all moments become 0.
-  void drop_moments(const scene::Scene<2> &scene, output::ResultSummary &results);
+  template <int dim>
+  void drop_moments(const scene::Scene<dim> &scene, output::ResultSummary &results);
 
   /// Everything in summary.json but times and memory.
-  output::Summary make_summary(const scene::Scene<2>         &scene,
-                               const mesh::Mesh<2>           &mesh,
-                               const mechanics::Spaces<2>    &spaces,
+  template <int dim>
+  output::Summary make_summary(const scene::Scene<dim>       &scene,
+                               const mesh::Mesh<dim>         &mesh,
+                               const mechanics::Spaces<dim>  &spaces,
                                const tfeti::DualProblem      &dual,
                                const contact::DualSolution   &solution,
                                const contact::Checks         &checks,

@@ -12,8 +12,9 @@
 
 namespace slipstick::app
 {
-  /// Of contact nodes, by pair and node: the slip of all load steps so far [mm].
-  using TotalSlip = std::map<std::pair<unsigned int, mechanics::NodeKey>, double>;
+  /// Of contact nodes, by pair and node: the slip of all load steps so far, a vector in space, in the plane its first
+  /// component [mm].
+  using TotalSlip = std::map<std::pair<unsigned int, mechanics::NodeKey>, std::array<double, 3>>;
 
   /// What one rank knows after a load step.
   struct RunState
@@ -29,14 +30,16 @@ namespace slipstick::app
   /// Writes restart_NNN_RRRR.bin of every rank (NNN: finished steps) and then restart.bin, which names them; the
   /// previous files are removed last. Collective.
   /// @throws InputError if they cannot be written.
+  template <int dim>
   void write_restart(const output::OutputDirectory &directory,
-                     const scene::Scene<2>         &scene,
+                     const scene::Scene<dim>       &scene,
                      const RunState                &state,
                      const MPI_Comm                 comm);
 
   /// @throws InputError if there is nothing to resume, or if scene, mesh files, version or number of ranks differ from
   /// those of the run. Load factors may differ after the finished steps. Collective.
-  RunState read_restart(const output::OutputDirectory &directory, const scene::Scene<2> &scene, const MPI_Comm comm);
+  template <int dim>
+  RunState read_restart(const output::OutputDirectory &directory, const scene::Scene<dim> &scene, const MPI_Comm comm);
 
   /// Of a run that has ended. Collective.
   void remove_restart(const output::OutputDirectory &directory, const MPI_Comm comm);

@@ -8,8 +8,9 @@
 namespace slipstick::app
 {
   /// Builds and checks everything that the solver needs, prints the scene's table, solves nothing. Collective.
-  /// @param picture file for a drawing of the scene (SVG); empty: none.
-  void check_scene(const scene::Scene<2> &scene, const std::string &picture, const Log &log, const MPI_Comm comm);
+  /// @param picture file for a drawing of the scene (SVG); empty: none. Of scenes in the plane.
+  template <int dim>
+  void check_scene(const scene::Scene<dim> &scene, const std::string &picture, const Log &log, const MPI_Comm comm);
 
   /// Solves @p scene, on finer meshes where @p adaptivity asks for an accuracy, and writes the results to
   /// @p output_directory. Collective.
@@ -17,7 +18,8 @@ namespace slipstick::app
   /// uninterrupted run.
   /// @return converged or not_converged; outputs are written in both cases.
   /// @throws InputError, NoEquilibrium, NumericalError on all ranks alike.
-  ExitStatus run(const scene::Scene<2>          &scene,
+  template <int dim>
+  ExitStatus run(const scene::Scene<dim>        &scene,
                  const scene::AdaptivityOptions &adaptivity,
                  const std::string              &output_directory,
                  const bool                      resumes,

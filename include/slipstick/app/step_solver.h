@@ -18,19 +18,20 @@
 
 namespace slipstick::app
 {
+  /// A recovered displacement, and what was found from it.
+  struct StepAnswer
+  {
+    tfeti::DualProblem::Recovery           recovery;
+    std::optional<contact::CheckedContact> contact;
+    std::optional<mechanics::StressResult> stress;
+  };
+
   /// Mesh, dual problem and solver of a scene. Members are collective, except those that only return known values.
+  template <int dim>
   class StepSolver
   {
   public:
-    static constexpr int dim = 2;
-
-    /// A recovered displacement, and what was found from it.
-    struct Answer
-    {
-      tfeti::DualProblem::Recovery           recovery;
-      std::optional<contact::CheckedContact> contact;
-      std::optional<mechanics::StressResult> stress;
-    };
+    using Answer = StepAnswer;
 
     /// Makes the mesh, and finds the contact pairs that the scene leaves to a search.
     /// @param solves_adjoints are other problems to be solved with the same matrices afterwards?

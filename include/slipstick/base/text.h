@@ -19,8 +19,21 @@ namespace slipstick
   /// The number that the whole of @p text spells, with a decimal point in any locale; infinite when it overflows.
   std::optional<double> parse_number(const std::string &text);
 
+  /// @p value as %.6g prints it.
+  std::string short_text(const double value);
+
   /// The shortest text that reads back as @p value.
   std::string number_text(const double value);
+
+  /// "(1, 2)" or "(1, 2, 3)", with six digits.
+  template <class Point>
+  std::string point_text(const Point &x, const unsigned int dim)
+  {
+    std::string text;
+    for (unsigned int d = 0; d < dim; ++d)
+      text += (d == 0 ? "(" : ", ") + short_text(x[d]);
+    return text + ")";
+  }
 
   /// @p value, positive, rounded to two digits, never below it.
   double rounded_up(const double value);

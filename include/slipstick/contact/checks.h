@@ -99,5 +99,6 @@ namespace slipstick::contact
 
   /// Sums over the nodes of all pairs, from the nodes of all ranks.
   std::vector<PairResult> pair_results(const std::vector<ContactNode> &nodes,
-                                       const std::vector<std::string> &pair_names);
+                                       const std::vector<std::string> &pair_names,
+                                       const unsigned int              dim = 2);
 } // namespace slipstick::contact

@@ -34,18 +34,18 @@ namespace slipstick::contact
     std::array<double, 3> normal{{0, 0, 0}};
     double                arc_length          = 0; // along the slave boundary from its first node [mm]
     double                area                = 0; // that tractions are given for, see tfeti::ContactPoint [mm^2]
-    double                length              = 0; // tributary length [mm]
+    double                length              = 0; // tributary length; in space area [mm], [mm^2]
     double                gap                 = 0; // [mm]
     double                pressure            = 0; // [MPa]
     double                tangential_traction = 0; // [MPa]
     double                slip                = 0; // of the load step [mm]
     std::array<double, 3> traction{{0, 0, 0}};     // in space: the tangential one [MPa] ...
     std::array<double, 3> slip_vector{{0, 0, 0}};  // ... and the slip [mm]
-    double                total_slip      = 0;     // of all load steps so far [mm]
-    ContactStatus         status          = ContactStatus::open; // see is_closed
-    bool                  is_closed       = false;               // pressed on the other side
-    double                slip_bound      = 0;                   // [MPa], of the law: Tresca bound or mu times pressure
-    double                moment_mismatch = 0; // of the forces on the two sides [N mm], see PairResult
+    double                total_slip = 0;          // of all load steps so far [mm]
+    ContactStatus         status     = ContactStatus::open; // see is_closed
+    bool                  is_closed  = false;               // pressed on the other side
+    double                slip_bound = 0;                   // [MPa], of the law: Tresca bound or mu times pressure
+    std::array<double, 3> moment_mismatch{{0, 0, 0}};       // of the forces on the two sides [N mm], see PairResult
 
     /// For sending between ranks (Boost serialization, through deal.II's MPI utilities).
     template <class Archive>
@@ -58,14 +58,15 @@ namespace slipstick::contact
 
   struct PairResult
   {
-    std::string pair;
-    Resultant   on_slave;             // of the tractions, at the slave nodes
-    double      normal_force     = 0; // sum of pressure times area [N]
-    double      tangential_force = 0; // [N]
-    double      moment_mismatch  = 0; // sum of the moments on both sides [N mm]: the linearised gap leaves gap times
-                                      // force where a node and its mean on the other side are not on one normal
+    std::string           pair;
+    Resultant             on_slave;                   // of the tractions, at the slave nodes
+    double                normal_force     = 0;       // sum of pressure times area [N]
+    double                tangential_force = 0;       // [N]
+    std::array<double, 3> moment_mismatch{{0, 0, 0}}; // sum of the moments on both sides [N mm]: the linearised gap
+      // leaves gap times force where a node and its mean on the other side are not
+      // on one normal; in the plane about z
     double       max_pressure    = 0; // [MPa]
-    double       contact_length  = 0; // of the nodes that are not open [mm]
+    double       contact_length  = 0; // of the nodes that are not open; in space their area [mm], [mm^2]
     unsigned int contact_nodes   = 0; // closed
     unsigned int open_nodes      = 0; // not closed
     unsigned int stick_nodes     = 0; // closed and not slipping

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <slipstick/interface/curve_pairing.h>
+#include <slipstick/mechanics/surface_facet.h>
 
 namespace slipstick::interface
 {
@@ -54,10 +55,27 @@ namespace slipstick::interface
                                           const std::string                              &name,
                                           const mesh::Kinematics<dim>                    &kinematics = {});
 
+  /// The same in space, where areas take the place of lengths. Every slave facet is paired on the plane through its middle
+  /// across the mean normal of its nodes: both sides are projected there, the polygons in which they overlap are clipped and
+  /// integrated (Puso, Laursen 2004; Popp, Gitterle, Gee, Wall 2010). Of master facets one behind the other the nearest
+  /// counts. Where a facet is covered by so little that its biorthogonal functions would be all but dependent, phi_i are the
+  /// shape functions themselves.
+  std::vector<MortarRow<3>> mortar_rows(const std::vector<mechanics::SurfaceFacet> &slave,
+                                        const std::vector<mechanics::SurfaceFacet> &master,
+                                        const Reach                                &reach,
+                                        const scene::ContactDiscretization          discretization,
+                                        const std::string                          &name,
+                                        const mesh::Kinematics<3>                  &kinematics = {});
+
   /// Smallest distance of two curves where they face each other (nodes and middles of edges of one to the chords of the
   /// other) [mm]; empty when nothing faces or nothing is closer than @p bound.
   template <int dim>
   std::optional<double> facing_distance(const std::vector<mechanics::SurfaceEdge<dim>> &a,
                                         const std::vector<mechanics::SurfaceEdge<dim>> &b,
+                                        const double bound = std::numeric_limits<double>::max());
+
+  /// The same in space: of nodes and middles of facets to the facets of the other.
+  std::optional<double> facing_distance(const std::vector<mechanics::SurfaceFacet> &a,
+                                        const std::vector<mechanics::SurfaceFacet> &b,
                                         const double bound = std::numeric_limits<double>::max());
 } // namespace slipstick::interface

@@ -9,13 +9,24 @@ namespace slipstick::interface
   template <int dim>
   struct PairSides
   {
-    std::vector<mechanics::SurfaceEdge<dim>> slave, master;
-    std::vector<mechanics::SurfaceEdge<dim>> slave_outline, master_outline;
+    std::vector<mechanics::BoundaryPart<dim>> slave, master;
+    std::vector<mechanics::BoundaryPart<dim>> slave_outline, master_outline;
   };
 
-  /// Diagonal of the box around the nodes of some edges [mm].
-  template <int dim>
-  double extent(const std::vector<mechanics::SurfaceEdge<dim>> &edges);
+  /// Diagonal of the box around the nodes of some edges or facets [mm].
+  template <class Part>
+  double extent(const std::vector<Part> &parts)
+  {
+    auto low = parts[0].node(0), high = low;
+    for (const auto &part : parts)
+      for (unsigned int i = 0; i < part.n_nodes; ++i)
+        for (unsigned int d = 0; d < low.dimension; ++d)
+          {
+            low[d]  = std::min(low[d], part.at[i][d]);
+            high[d] = std::max(high[d], part.at[i][d]);
+          }
+    return low.distance(high);
+  }
 
   /// BODY/BOUNDARY
   template <int dim>
@@ -39,12 +50,12 @@ namespace slipstick::interface
   /// scene; a pair with a Reach or a Gap of its own may start at any distance within these. The same on all ranks.
   /// @throws InputError for sides that face away from each other (lies_behind) or are out of reach.
   template <int dim>
-  void check_sides(const scene::Scene<dim>                        &scene,
-                   const mesh::Mesh<dim>                          &mesh,
-                   const scene::ContactPair<dim>                  &pair,
-                   const PairSides<dim>                           &sides,
-                   const std::vector<mechanics::SurfaceEdge<dim>> &all,
-                   const std::vector<MortarRow<dim>>              &rows);
+  void check_sides(const scene::Scene<dim>                         &scene,
+                   const mesh::Mesh<dim>                           &mesh,
+                   const scene::ContactPair<dim>                   &pair,
+                   const PairSides<dim>                            &sides,
+                   const std::vector<mechanics::BoundaryPart<dim>> &all,
+                   const std::vector<MortarRow<dim>>               &rows);
 
   /// Checks the pairs with obstacles: some node must have an outward normal against the obstacle (facing_cosine) and a
   /// gap within the Reach; with an automatic one the rule is that of check_sides with the size of the slave boundary

@@ -11,10 +11,10 @@ namespace slipstick::interface
 {
   struct Penetration
   {
-    double                depth = 0;  // [mm]
-    std::array<double, 2> at{{0, 0}}; // reference configuration [mm]
-    double                edge = 0;   // length of the shorter of the edges there [mm]
-    double                gap  = 0;   // before loading, beyond_reach: of the node [mm]
+    double                depth = 0;     // [mm]
+    std::array<double, 3> at{{0, 0, 0}}; // reference configuration [mm]
+    double                edge = 0;      // length of the shorter of the edges there [mm]
+    double                gap  = 0;      // before loading, beyond_reach: of the node [mm]
   };
 
   struct Penetrations

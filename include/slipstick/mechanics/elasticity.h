@@ -1,4 +1,4 @@
-// Hooke's law in the plane and of bodies of revolution, with thermal strain.
+// Hooke's law in the plane, of bodies of revolution and in space, with thermal strain.
 #pragma once
 
 #include <slipstick/scene/scene.h>
@@ -16,6 +16,10 @@ namespace slipstick::mechanics
     double lambda, mu;
   };
   LameCoefficients lame_coefficients(const scene::Material &material, const scene::PlaneState state);
+
+  /// Stress components: xx, yy, xy, zz (hoop), in space also xz, yz.
+  template <int dim>
+  using Stress = Eigen::Array<double, 2 * dim, 1>;
 
   /// What Hooke's law goes by: solids have the coefficients of plane strain, in all directions.
   template <int dim>
@@ -38,20 +42,28 @@ namespace slipstick::mechanics
     double           out_of_plane;        // sigma_zz over xx + yy: nu in plane strain, 0 in plane stress
     double           out_of_plane_change; // and -E alpha T in plane strain [MPa/K]
 
-    /// xx, yy, xy and (of bodies of revolution) hoop stress [MPa] of a displacement gradient, a hoop strain, a
-    /// dilatation (trace and hoop strain, or a projection of it, less e_V T) and T [K].
+    /// xx, yy, xy and (of bodies of revolution) hoop stress, in space zz, xz, yz [MPa] of a displacement gradient, a hoop
+    /// strain, a dilatation (trace and hoop strain, or a projection of it, less e_V T) and T [K].
     template <int dim>
-    Eigen::Array4d stress(const dealii::Tensor<2, dim> &gradient,
-                          const double                  hoop,
-                          const double                  dilatation,
-                          const double                  temperature) const
+    Stress<dim> stress(const dealii::Tensor<2, dim> &gradient,
+                       const double                  hoop,
+                       const double                  dilatation,
+                       const double                  temperature) const
     {
-      static_assert(dim == 2, "components of the plane");
       const double mean = lame.lambda * dilatation - 2 * lame.mu * expansion * temperature;
-      return {mean + 2 * lame.mu * gradient[0][0],
-              mean + 2 * lame.mu * gradient[1][1],
-              lame.mu * (gradient[0][1] + gradient[1][0]),
-              mean + 2 * lame.mu * hoop};
+      Stress<dim>  s;
+      s[0] = mean + 2 * lame.mu * gradient[0][0];
+      s[1] = mean + 2 * lame.mu * gradient[1][1];
+      s[2] = lame.mu * (gradient[0][1] + gradient[1][0]);
+      if constexpr (dim == 2)
+        s[3] = mean + 2 * lame.mu * hoop;
+      else
+        {
+          s[3] = mean + 2 * lame.mu * gradient[2][2];
+          s[4] = lame.mu * (gradient[0][2] + gradient[2][0]);
+          s[5] = lame.mu * (gradient[1][2] + gradient[2][1]);
+        }
+      return s;
     }
 
     /// sigma_zz in the plane [MPa]
@@ -60,8 +72,9 @@ namespace slipstick::mechanics
       return out_of_plane * (xx + yy) + out_of_plane_change * temperature;
     }
 
-    /// sigma : C^-1 : sigma of xx, yy, xy, with C of the plane, or with the hoop stress [MPa].
-    double energy(const Eigen::Array4d &sigma) const;
+    /// sigma : C^-1 : sigma of xx, yy, xy, with C of the plane, or with the hoop stress, or of all six [MPa].
+    double energy(const Stress<2> &sigma) const;
+    double energy(const Stress<3> &sigma) const;
 
   private:
     bool is_revolution;
@@ -86,6 +99,21 @@ namespace slipstick::mechanics
     double                                 t;
   };
 
-  /// Von Mises stress of xx, yy, xy and zz [MPa].
-  double von_mises(const double xx, const double yy, const double xy, const double zz);
+  /// Von Mises stress [MPa].
+  double von_mises(const double xx,
+                   const double yy,
+                   const double xy,
+                   const double zz,
+                   const double xz = 0,
+                   const double yz = 0);
+
+  /// The same of components in the order of Stress<dim>.
+  template <int dim, class Components>
+  double von_mises(const Components &s)
+  {
+    if constexpr (dim == 2)
+      return von_mises(s[0], s[1], s[2], s[3]);
+    else
+      return von_mises(s[0], s[1], s[2], s[3], s[4], s[5]);
+  }
 } // namespace slipstick::mechanics

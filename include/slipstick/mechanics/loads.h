@@ -14,7 +14,7 @@ namespace slipstick::mechanics
   struct LoadResultant
   {
     Resultant                            sum;
-    std::optional<std::array<double, 2>> unresolved; // where its formula is too rough for the mesh or has no integral;
+    std::optional<std::array<double, 3>> unresolved; // where its formula is too rough for the mesh or has no integral;
                                                      // of body forces when two quadratures differ by one percent
   };
 

@@ -13,7 +13,7 @@ namespace slipstick::mechanics
     double                 distance = 0; // from the beginning of its line [mm]
     dealii::Point<dim>     position;     // reference configuration [mm]
     dealii::Tensor<1, dim> displacement; // [mm]
-    std::array<double, 4>  stress{};     // recovered: xx, yy, xy, zz [MPa]
+    std::array<double, 6>  stress{};     // recovered: xx, yy, xy, zz, in space xz, yz [MPa]
   };
 
   /// The probes of a scene: where their points lie in the mesh. Points need not be nodes.

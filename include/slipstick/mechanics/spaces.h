@@ -22,7 +22,7 @@ namespace slipstick::mechanics
   template <int dim>
   struct Element
   {
-    /// @p cell: quadrilateral or triangle, hexahedron; @p degree: 1 or 2, in space 1; @p is_curved: does the mesh have manifolds to
+    /// @p cell: quadrilateral or triangle, hexahedron or tetrahedron; @p degree: 1 or 2, in space 1; @p is_curved: does the mesh have manifolds to
     /// follow?
     Element(const dealii::ReferenceCell cell, const unsigned int degree, const bool is_curved = true);
 
@@ -81,9 +81,9 @@ namespace slipstick::mechanics
                             const typename dealii::DoFHandler<dim>::active_face_iterator &face,
                             const F                                                      &f) const
     {
-      constexpr unsigned int                     n_vertices = 2 * (dim - 1); // of edges and quadrilaterals
-      std::array<mesh::GlobalVertex, n_vertices> ends;
-      for (unsigned int v = 0; v < n_vertices; ++v)
+      constexpr unsigned int                        most_vertices = 2 * (dim - 1); // of edges and quadrilaterals
+      std::array<mesh::GlobalVertex, most_vertices> ends;
+      for (const unsigned int v : face->vertex_indices())
         {
           ends[v] = mesh.global_vertices[face->vertex_index(v)];
           f(face->vertex_dof_index(v, 0) / dim, NodeKey{{ends[v], ends[v]}}, face->vertex(v));

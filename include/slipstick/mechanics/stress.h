@@ -11,7 +11,8 @@ namespace slipstick::mechanics
   /// Recovered stress on one subdomain.
   struct SubdomainStress
   {
-    Eigen::MatrixXd nodal; // nodes x 4: xx, yy, xy, zz (of bodies of revolution the hoop stress) [MPa]
+    Eigen::MatrixXd nodal; // nodes x 4: xx, yy, xy, zz (of bodies of revolution the hoop stress); in space x 6: xz, yz
+                           // besides [MPa]
     Eigen::VectorXd error; // by active cell: energy norm of recovered minus computed stress [sqrt(N mm)]
   };
 

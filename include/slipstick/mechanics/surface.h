@@ -42,9 +42,19 @@ namespace slipstick::mechanics
     std::array<double, 3> shape(const double s) const;
     std::array<double, 3> shape_derivative(const double s) const;
 
-    dealii::Point<dim>     point(const double s) const;
+    dealii::Point<dim> point(const double s) const;
+    dealii::Point<dim> middle() const
+    {
+      return point(0.5);
+    }
     dealii::Tensor<1, dim> tangent(const double s) const; // d point / d s
     dealii::Tensor<1, dim> normal(const double s) const;  // outward, unit length
+
+    /// That at node i.
+    dealii::Tensor<1, dim> normal_at(const unsigned int i) const
+    {
+      return normal(node_coordinate(i));
+    }
 
     /// Outward unit normal of the curve.
     dealii::Tensor<1, dim> outline_normal(const double s) const;

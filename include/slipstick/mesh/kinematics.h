@@ -43,13 +43,16 @@ namespace slipstick::mesh
       return is_revolved ? u_x / x[0] : 0.;
     }
 
-    /// From the axis of a rotation to @p x [mm]; bodies of revolution spin about their own.
-    dealii::Tensor<1, dim> arm(const dealii::Point<dim> &x, const dealii::Point<dim> &axis) const;
+    /// From the axis of a rotation to @p x [mm]; bodies of revolution spin about their own. In space the axis goes through
+    /// @p axis along @p direction (none: z).
+    dealii::Tensor<1, dim> arm(const dealii::Point<dim>     &x,
+                               const dealii::Point<dim>     &axis,
+                               const dealii::Tensor<1, dim> &direction = dealii::Tensor<1, dim>()) const;
 
-    /// xx, yy, xy and, where it is not a function of them, hoop stress.
+    /// xx, yy, xy and, where it is not a function of them, hoop stress; in space all six.
     unsigned int n_stress_components() const
     {
-      return is_revolved ? 4 : 3;
+      return dim == 3 ? 6 : is_revolved ? 4 : 3;
     }
 
     /// Of a body: two translations and a rotation, or that along the axis: a radial motion strains every ring.

@@ -17,12 +17,14 @@ namespace slipstick::mesh
   {
     struct Element
     {
-      unsigned int                dim     = 0;     // 0 point, 1 line, 2 triangle or quadrilateral
-      unsigned int                n       = 0;     // number of corners
-      std::array<unsigned int, 4> corners = {};    // indices into nodes; counterclockwise or all clockwise
-      unsigned int                group   = 0;     // index into groups
-      unsigned long long          number  = 0;     // in the file, for messages
-      bool                        implied = false; // an edge between nodes of a set, which may lie inside of a body
+      unsigned int                dim = 0; // 0 point, 1 line, 2 triangle or quadrilateral, 3 solid
+      unsigned int                n   = 0; // number of corners
+      std::array<unsigned int, 8> corners =
+        {};                               // indices into nodes; counterclockwise or all clockwise; of hexahedra the
+                                          // bottom around, then the top
+      unsigned int       group   = 0;     // index into groups
+      unsigned long long number  = 0;     // in the file, for messages
+      bool               implied = false; // an edge between nodes of a set, which may lie inside of a body
     };
 
     std::string                                      file;
@@ -61,7 +63,7 @@ namespace slipstick::mesh
     void add_outline();
   };
 
-  /// Reads .msh (Gmsh 2.0 to 2.2 and 4.1, ASCII and binary), .inp (Abaqus), .ucd (and UCD's .inp), .vtk, whose
+  /// Solids are kept of Gmsh's and Abaqus' files. Reads .msh (Gmsh 2.0 to 2.2 and 4.1, ASCII and binary), .inp (Abaqus), .ucd (and UCD's .inp), .vtk, whose
   /// boundaries and parts have numbers in place of names, and .unv.
   /// @throws InputError that names the file, what is wrong with it and a remedy.
   MeshFile read_mesh_file(const std::string &file);

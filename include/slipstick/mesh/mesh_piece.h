@@ -25,10 +25,11 @@ namespace slipstick::mesh
     /// Stands behind the last vertex of a simplex.
     static constexpr unsigned int no_vertex = std::numeric_limits<unsigned int>::max();
 
-    /// Local vertices in deal.II's order: lexicographic for quadrilaterals and hexahedra, counterclockwise for triangles.
+    /// Local vertices in deal.II's order: lexicographic for quadrilaterals and hexahedra, counterclockwise for triangles, of a
+    /// tetrahedron a triangle and a fourth on the side that it is seen counterclockwise from.
     using Cell = std::array<unsigned int, vertices_per_cell>;
 
-    /// Local vertices of a face.
+    /// Local vertices of a face; behind those of a triangle in space stands no_vertex.
     using Face = std::array<unsigned int, vertices_per_face>;
 
     struct BoundaryFace
@@ -67,17 +68,17 @@ namespace slipstick::mesh
     return cell.back() == MeshPiece<dim>::no_vertex;
   }
 
-  /// Number of vertices, which in the plane is that of faces, too. In space cells are hexahedra.
+  /// Number of vertices, which in the plane is that of faces, too.
   template <int dim>
   unsigned int n_corners(const typename MeshPiece<dim>::Cell &cell)
   {
-    return dim == 3 ? MeshPiece<dim>::vertices_per_cell : is_simplex<dim>(cell) ? 3 : 4;
+    return is_simplex<dim>(cell) ? dim + 1 : MeshPiece<dim>::vertices_per_cell;
   }
 
   template <int dim>
   unsigned int n_faces(const typename MeshPiece<dim>::Cell &cell)
   {
-    return dim == 3 ? dealii::GeometryInfo<dim>::faces_per_cell : n_corners<dim>(cell);
+    return is_simplex<dim>(cell) ? dim + 1 : dealii::GeometryInfo<dim>::faces_per_cell;
   }
 
   /// Corner @p k of a cell, counted counterclockwise (and around again: 0 after the last).
@@ -106,13 +107,16 @@ namespace slipstick::mesh
     return {{a, b, d, c}};
   }
 
-  /// Face from corner @p f to the next, in space deal.II's face @p f, vertices in ascending order: the same from both sides.
+  /// Face from corner @p f to the next, in space of a tetrahedron that across from corner @p f, of a hexahedron deal.II's face
+  /// @p f; vertices in ascending order: the same from both sides.
   template <int dim>
   typename MeshPiece<dim>::Face face_of_cell(const typename MeshPiece<dim>::Cell &cell, const unsigned int f)
   {
     typename MeshPiece<dim>::Face face;
     if constexpr (dim == 2)
       face = {{corner<dim>(cell, f), corner<dim>(cell, f + 1)}};
+    else if (is_simplex<dim>(cell))
+      face = {{cell[(f + 1) % 4], cell[(f + 2) % 4], cell[(f + 3) % 4], MeshPiece<dim>::no_vertex}};
     else
       for (unsigned int v = 0; v < face.size(); ++v)
         face[v] = cell[dealii::GeometryInfo<dim>::face_to_cell_vertices(f, v)];

@@ -7,9 +7,11 @@
 
 namespace slipstick::mesh
 {
-  /// Divides every cell into four of its own kind. Existing vertices keep their numbers.
+  /// Divides every cell into four of its own kind, in space into eight. Existing vertices keep their numbers.
   template <int dim>
   MeshPiece<dim> refined(const MeshPiece<dim> &piece);
+  template <>
+  MeshPiece<3> refined(const MeshPiece<3> &piece);
 
   /// Divides every triangle into three quadrilaterals, every quadrilateral into four. Existing vertices keep their
   /// numbers.

@@ -9,7 +9,7 @@ namespace slipstick::mesh
   template <int dim>
   std::array<unsigned int, dim> rectangle_cells(const scene::Scene<dim> &scene, const scene::Body<dim> &body);
 
-  /// Boundary ids of a built-in shape, in the order of scene::boundary_names(); in space (@p dim = 3) those of a cuboid.
+  /// Boundary ids of a built-in shape, in the order of scene::boundary_names(); in space (@p dim = 3) rectangles are cuboids.
   std::map<std::string, dealii::types::boundary_id> shape_boundary_ids(const scene::Shape shape,
                                                                        const unsigned int dim = 2);
 } // namespace slipstick::mesh

@@ -5,6 +5,7 @@
 #include <slipstick/contact/result.h>
 #include <slipstick/output/directory.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace slipstick::output
   {
     std::vector<std::string> pairs;
     std::vector<std::string> slave_bodies;
+    unsigned int             dimension = 2;
   };
 
   /// All contact nodes after one load step.
@@ -22,15 +24,19 @@ namespace slipstick::output
   {
     unsigned int                      step = 0;
     std::vector<contact::ContactNode> nodes;
+
+    /// In space: the faces between nodes, by their numbers in `nodes`, which are then in the order of output.
+    std::vector<std::vector<std::int64_t>> faces = {};
   };
 
   /// Writes contact.csv from rank 0, whose arguments count: one row a node, steps in the given order, in a step by pair
-  /// and arc length. Collective.
+  /// and arc length; in space z, normal, area and the vectors of tangential traction and slip besides. Collective.
   void write_contact_csv(const OutputDirectory          &directory,
                          const ContactNames             &names,
                          const std::vector<ContactStep> &steps);
 
   /// Writes contact_NNN.vtp (NNN: the step) from rank 0, whose arguments count: one line a pair along the arc length (a
-  /// vertex for a pair of one node), the node values as point data, status 0 open, 1 stick, 2 slip. Collective.
-  void write_contact_vtp(const OutputDirectory &directory, const ContactStep &step);
+  /// vertex for a pair of one node), in space the faces and a vertex for every other node; the node values as point data,
+  /// status 0 open, 1 stick, 2 slip. Collective.
+  void write_contact_vtp(const OutputDirectory &directory, const ContactStep &step, const unsigned int dim = 2);
 } // namespace slipstick::output

@@ -6,6 +6,7 @@
 namespace slipstick::output
 {
   /// Writes history.csv from rank 0, whose @p steps count: step, t, then Fx, Fy, moment of every load, support,
-  /// foundation and contact pair (on its slave body); columns "KIND NAME Fx". Collective.
-  void write_history(const OutputDirectory &directory, const std::vector<StepSummary> &steps);
+  /// foundation and contact pair (on its slave body); columns "KIND NAME Fx"; in space
+  /// Fz and three moments besides. Collective.
+  void write_history(const OutputDirectory &directory, const std::vector<StepSummary> &steps, const unsigned int dim);
 } // namespace slipstick::output

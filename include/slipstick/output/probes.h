@@ -6,5 +6,5 @@
 namespace slipstick::output
 {
   /// Writes probes.csv, the points of every probe in every load step; nothing without probes. Collective.
-  void write_probes(const OutputDirectory &directory, const std::vector<StepSummary> &steps);
+  void write_probes(const OutputDirectory &directory, const std::vector<StepSummary> &steps, const unsigned int dim);
 } // namespace slipstick::output

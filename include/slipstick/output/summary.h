@@ -82,7 +82,7 @@ namespace slipstick::output
   struct Place
   {
     std::string           body;
-    std::array<double, 2> position{{0, 0}}; // reference configuration [mm]
+    std::array<double, 3> position{{0, 0, 0}}; // reference configuration [mm]
   };
 
   struct ErrorSummary
@@ -96,11 +96,11 @@ namespace slipstick::output
   /// Result at one point of a probe.
   struct ProbeValues
   {
-    double                distance = 0;         // from the beginning of the probe [mm]
-    std::array<double, 2> position{{0, 0}};     // reference configuration [mm]
-    std::array<double, 2> displacement{{0, 0}}; // [mm]
-    std::array<double, 4> stress{{0, 0, 0, 0}}; // xx, yy, xy, zz [MPa]
-    double                von_mises = 0;        // [MPa]
+    double                distance = 0;            // from the beginning of the probe [mm]
+    std::array<double, 3> position{{0, 0, 0}};     // reference configuration [mm]
+    std::array<double, 3> displacement{{0, 0, 0}}; // [mm]
+    std::array<double, 6> stress{};                // xx, yy, xy, zz, in space xz, yz [MPa]
+    double                von_mises = 0;           // [MPa]
   };
 
   struct ProbeResult

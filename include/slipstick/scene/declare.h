@@ -37,6 +37,13 @@ namespace slipstick::scene
     std::string text() const; // to follow "a number": " > 0", " in (0, 1)", or nothing
   };
 
+  /// What a FIELD may be, for messages: "a number or a formula of x, y, t".
+  template <int dim>
+  std::string field_format()
+  {
+    return std::string("a number or a formula of x, y, ") + (dim == 3 ? "z, t" : "t");
+  }
+
   /// One value of an enumeration with its spelling in the .prm.
   template <typename Enum>
   using Choices = std::vector<std::pair<std::string, Enum>>;

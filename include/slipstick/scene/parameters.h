@@ -41,6 +41,12 @@ namespace slipstick::scene
     /// @throws InputError for an unknown section or parameter and for a value that is not allowed.
     void apply(dealii::ParameterHandler &prm) const;
 
+    /// @throws InputError for the first parameter that is set and that @p there declares, but @p here does not.
+    /// @param where_it_is of what @p there declares: "the plane (Dimension = 2)".
+    void refuse_foreign(const dealii::ParameterHandler &here,
+                        const dealii::ParameterHandler &there,
+                        const std::string              &where_it_is) const;
+
     bool is_set(const std::string &path) const;
 
     /// Whether the file opens the subsection @p path, or anything in it is set.

@@ -34,12 +34,16 @@ namespace slipstick::scene
 
   enum class Shape
   {
-    rectangle,    // left, right, bottom, top; in space a cuboid, front and back (z) besides
+    rectangle,    // left, right, bottom, top; in space a cuboid, back and front (z) besides
     disc,         // arc
     half_disc,    // arc, flat; the half below its centre, flat side up
     quarter_disc, // arc, flat, side; the quarter below and to the right of its centre
     ring,         // inner, outer
     quarter_ring, // inner, outer, start (on the x axis), end (on the y axis)
+    ball,         // in space: surface
+    half_ball,    // in space: surface, flat; the half below its centre, flat side up
+    cylinder,     // in space, along z: side, back, front
+    tube,         // in space, along z: inner, outer, back, front
     mesh          // from a file; boundaries by the physical names there
   };
 
@@ -65,9 +69,11 @@ namespace slipstick::scene
     dealii::Point<dim>                           center;            // discs and rings [mm]
     double                                       radius       = 1;  // discs and rings: outer radius [mm], > 0
     double                                       inner_radius = .5; // rings [mm], 0 < inner < outer
+    double                                       length       = 1;  // cylinder, tube: along z from the centre [mm], > 0
     std::optional<std::array<unsigned int, dim>> cells;             // rectangle: empty: blocks x cells per block of
                                                                     // `Decomposition`; rings: around, across
-    unsigned int             cells_along_arc = 32;                  // discs: edges on the arc
+    unsigned int             cells_along_arc  = 32;                 // discs: edges on the arc; solids: around
+    unsigned int             cells_along_axis = 0;                  // cylinder, tube; 0: about cubes
     std::string              file;                                  // mesh: path as found
     std::string              part;                                  // mesh: physical name of the body; empty: all cells
     double                   scale              = 1;                // mesh: factor on coordinates, > 0 (1000: m to mm)
@@ -140,7 +146,8 @@ namespace slipstick::scene
     std::array<Field<dim>, dim> force;            // [N/mm^3]
     std::array<Field<dim>, dim> acceleration;     // [mm/s^2]; gravity is 0, -9810
     Field<dim>                  angular_velocity; // [1/s], about `axis`; axisymmetric: about the axis of revolution
-    dealii::Point<dim>          axis;             // [mm]
+    dealii::Point<dim>          axis;             // [mm], a point of it
+    dealii::Tensor<1, dim>      axis_direction;   // in space; none: z
   };
 
   template <int dim>
@@ -166,8 +173,9 @@ namespace slipstick::scene
     hole,       // circle with the bodies inside; in space a ball
     half_plane, // through `center`; bodies are where `normal` points; in space a half space
     cylinder,   // in space alone: about the line through `center` along `normal`; bodies are outside
+    bore,       // the same with the bodies inside
     polyline,   // bodies are to the left of the direction of travel
-    function    // bodies are above y = height(x)
+    function    // bodies are above y = height(x), in space y = height(x, z)
   };
 
   /// A rigid obstacle that needs no mesh.
@@ -177,10 +185,10 @@ namespace slipstick::scene
     std::string                     name;
     ObstacleShape                   shape = ObstacleShape::circle;
     dealii::Point<dim>              center;     // circle, hole; a point of the half plane [mm]
-    double                          radius = 1; // circle, hole [mm], > 0
+    double                          radius = 1; // circle, hole, cylinder [mm], > 0
     dealii::Tensor<1, dim>          normal;     // unit length; half plane: towards the bodies; cylinder: its axis
     std::vector<dealii::Point<dim>> points;     // polyline, at least two [mm]
-    Field<dim>                      height;     // function [mm], of x and t
+    Field<dim>                      height;     // function [mm], of x (and z) and t
   };
 
   /// A point or a straight line of a body where displacement and stress are reported.

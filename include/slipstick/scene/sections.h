@@ -15,7 +15,7 @@
 namespace slipstick::scene
 {
   /// Names of the sides of @p shape; none for a mesh, whose file names them.
-  std::vector<std::string> boundary_names(const Shape shape);
+  std::vector<std::string> boundary_names(const Shape shape, const unsigned int dim);
 
   /// The body and boundary that the parameter @p path, "BODY/BOUNDARY", names. `*` is the whole outline; of a body
   /// from a mesh file every name is accepted here and checked when the mesh is made.
@@ -82,12 +82,17 @@ namespace slipstick::scene
     Mirror      mirror = Mirror::none;
     Body<dim>   body;
 
+    dealii::Point<dim> rotation_axis; // in space
+
     void declare(dealii::ParameterHandler &prm);
 
     /// Also finds the mesh file, relative to the directory of the .prm or the working directory.
     Body<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
 
   private:
+    void declare_geometry(dealii::ParameterHandler &prm);
+    void declare_file(dealii::ParameterHandler &prm);
+    void declare_refinement(dealii::ParameterHandler &prm);
     void check_parameters_fit(const Parameters &parameters) const;
 
     std::map<std::string, std::string> defaults; // text of every parameter that nobody set
@@ -102,6 +107,7 @@ namespace slipstick::scene
     Obstacle<dim>      obstacle;
     dealii::Point<dim> point;  // of a half plane
     dealii::Point<dim> normal; // as given
+    dealii::Point<dim> axis;   // of a cylinder, as given
     std::string        points;
     std::string        height;
 
@@ -109,6 +115,8 @@ namespace slipstick::scene
     Obstacle<dim> read(const Parameters &parameters) const;
 
   private:
+    void declare_geometry(dealii::ParameterHandler &prm);
+
     std::map<std::string, std::string> defaults; // text of every parameter that nobody set
   };
 
@@ -169,6 +177,7 @@ namespace slipstick::scene
     std::array<std::string, dim> acceleration;
     std::string                  angular_velocity = "0";
     dealii::Point<dim>           axis;
+    dealii::Point<dim>           axis_direction; // in space
 
     void           declare(dealii::ParameterHandler &prm);
     BodyForce<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
@@ -265,7 +274,7 @@ namespace slipstick::scene
 
   // Concerns without names of their own; each declares its own subsection.
   void declare(dealii::ParameterHandler &prm, Decomposition &decomposition);
-  void declare(dealii::ParameterHandler &prm, Discretization &discretization);
+  void declare(dealii::ParameterHandler &prm, Discretization &discretization, const unsigned int max_degree);
   void declare(dealii::ParameterHandler &prm, SolverOptions &solver);
   void declare(dealii::ParameterHandler &prm, FrictionOptions &friction);
   void declare(dealii::ParameterHandler &prm, OutputOptions &output);

@@ -1,0 +1,43 @@
+// Convex polygons in a plane: clipping and integration.
+#pragma once
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/quadrature.h>
+
+#include <vector>
+
+namespace slipstick::interface
+{
+  /// Corners counter-clockwise.
+  using ConvexPolygon = std::vector<dealii::Point<2>>;
+
+  /// Negative for corners that run clockwise.
+  double area(const ConvexPolygon &polygon);
+
+  /// The middle of its area; of its corners when it has none.
+  dealii::Point<2> centroid(const ConvexPolygon &polygon);
+
+  /// Is x inside, or outside by no more than @p tolerance?
+  bool contains(const ConvexPolygon &polygon, const dealii::Point<2> &x, const double tolerance = 0);
+
+  /// What two polygons have in common (Sutherland, Hodgman 1974); empty or without area when they only touch.
+  ConvexPolygon intersection(const ConvexPolygon &a, const ConvexPolygon &b);
+
+  /// Calls f(point, weight) for the points of @p rule, one of the unit triangle, on every triangle from the centroid to an
+  /// edge; a triangle itself is not divided.
+  template <class F>
+  void integrate(const ConvexPolygon &polygon, const dealii::Quadrature<2> &rule, const F &f)
+  {
+    const auto on_triangle = [&](const auto &a, const auto &b, const auto &c) {
+      const auto   u = b - a, v = c - a;
+      const double twice = u[0] * v[1] - u[1] * v[0];
+      for (unsigned int q = 0; q < rule.size(); ++q)
+        f(a + rule.point(q)[0] * u + rule.point(q)[1] * v, rule.weight(q) * twice);
+    };
+    if (polygon.size() == 3)
+      return on_triangle(polygon[0], polygon[1], polygon[2]);
+    const auto middle = centroid(polygon);
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+      on_triangle(middle, polygon[i], polygon[(i + 1) % polygon.size()]);
+  }
+} // namespace slipstick::interface

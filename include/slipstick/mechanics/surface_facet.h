@@ -1,0 +1,137 @@
+// Boundary faces of solids as surfaces of their own: nodes, shape functions, normals.
+#pragma once
+
+#include <slipstick/mechanics/surface.h>
+
+#include <boost/serialization/array.hpp>
+
+#include <type_traits>
+
+namespace slipstick::mechanics
+{
+  /// A face on the surface of a solid: a triangle with local coordinates in the unit triangle, or a quadrilateral with
+  /// those in the unit square, of degree 1. Nodes run counter-clockwise as seen from outside, the one with the smallest
+  /// key first.
+  struct SurfaceFacet
+  {
+    static constexpr unsigned int max_nodes = 4;
+
+    using Place  = dealii::Point<2>; // local coordinates
+    using Shape  = std::array<double, max_nodes>;
+    using Tensor = dealii::Tensor<1, 3>;
+
+    unsigned int                                 body      = 0;
+    unsigned int                                 boundary  = 0; // boundary id
+    unsigned int                                 subdomain = 0;
+    unsigned int                                 n_nodes   = 4;
+    std::array<NodeKey, max_nodes>               keys{};
+    std::array<std::array<double, 3>, max_nodes> at{}; // [mm]
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &body &boundary &subdomain &n_nodes &keys &at;
+    }
+
+    dealii::Point<3> node(const unsigned int i) const
+    {
+      return dealii::Point<3>(at[i][0], at[i][1], at[i][2]);
+    }
+
+    /// Shape functions of the nodes; 0 for nodes that are none.
+    Shape shape(const Place &s) const;
+
+    dealii::Point<3> point(const Place &s) const;
+
+    /// Across the surface, outward, as long as the area for one of local coordinates [mm^2].
+    Tensor area_vector(const Place &s) const;
+
+    /// Outward, unit length.
+    Tensor normal(const Place &s) const
+    {
+      const Tensor a = area_vector(s);
+      return a / a.norm();
+    }
+
+    Tensor normal_at(const unsigned int i) const
+    {
+      return normal(node_coordinate(i));
+    }
+
+    Place node_coordinate(const unsigned int i) const;
+    Place middle_place() const;
+
+    dealii::Point<3> middle() const
+    {
+      return point(middle_place());
+    }
+
+    /// Mean length of the edges [mm].
+    double chord() const;
+
+    /// Integral of the shape function of every node over the facet [mm^2]: what lengths and measures are in space.
+    Shape tributary_areas() const;
+    Shape tributary_lengths() const
+    {
+      return tributary_areas();
+    }
+    Shape tributary_measures(const mesh::Kinematics<3> &) const
+    {
+      return tributary_areas();
+    }
+
+    /// Order of the facets of all bodies that does not depend on the decomposition.
+    bool operator<(const SurfaceFacet &other) const
+    {
+      return std::tie(body, keys) < std::tie(other.body, other.keys);
+    }
+  };
+
+  /// What the boundary of a body is made of.
+  template <int dim>
+  using BoundaryPart = std::conditional_t<dim == 2, SurfaceEdge<2>, SurfaceFacet>;
+
+  /// The part of the surface that face @p face of @p cell is.
+  inline SurfaceEdge<2> surface_part(const mesh::SubdomainMesh<2>                      &subdomain,
+                                     const Spaces<2>                                   &spaces,
+                                     const dealii::DoFHandler<2>::active_cell_iterator &cell,
+                                     const unsigned int                                 face)
+  {
+    return surface_edge(subdomain, spaces, cell, face);
+  }
+  SurfaceFacet surface_part(const mesh::SubdomainMesh<3>                      &subdomain,
+                            const Spaces<3>                                   &spaces,
+                            const dealii::DoFHandler<3>::active_cell_iterator &cell,
+                            const unsigned int                                 face);
+
+  /// Outward unit normals.
+  inline dealii::Tensor<1, 2> middle_normal(const SurfaceEdge<2> &edge)
+  {
+    return edge.normal(0.5);
+  }
+  inline dealii::Tensor<1, 3> middle_normal(const SurfaceFacet &facet)
+  {
+    return facet.normal(facet.middle_place());
+  }
+  /// Some points between the nodes.
+  std::vector<dealii::Point<2>> inner_points(const SurfaceEdge<2> &edge);
+  std::vector<dealii::Point<3>> inner_points(const SurfaceFacet &facet);
+
+  /// The facets of the surfaces of bodies (by index: wanted or not), known to every rank, sorted. Collective.
+  std::vector<SurfaceFacet> outlines(const mesh::Mesh<3>     &mesh,
+                                     const Spaces<3>         &spaces,
+                                     const std::vector<bool> &wanted);
+
+  /// Those parts that are on one boundary, in their order.
+  template <int dim, class Part>
+  std::vector<Part> parts_on(const mesh::Mesh<dim>     &mesh,
+                             const std::vector<Part>   &parts,
+                             const scene::BoundaryName &where)
+  {
+    std::vector<Part> found;
+    for (const auto &part : parts)
+      if (part.body == where.body && mesh.on_boundary(where, part.boundary))
+        found.push_back(part);
+    return found;
+  }
+} // namespace slipstick::mechanics

@@ -1,0 +1,143 @@
+#include <slipstick/app/refining_run.h>
+#include <slipstick/app/report.h>
+#include <slipstick/base/memory.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <cmath>
+
+namespace slipstick::app
+{
+  RefiningRun::RefiningRun(const scene::Scene<dim>        &scene_,
+                           const scene::AdaptivityOptions &options_,
+                           const output::OutputDirectory  &directory_,
+                           const Log                      &log_,
+                           const MPI_Comm                  comm_)
+    : scene(scene_)
+    , options(options_)
+    , directory(directory_)
+    , log(log_)
+    , quiet(comm_, Verbosity::quiet)
+    , comm(comm_)
+  {}
+
+  ExitStatus RefiningRun::run(std::optional<Run<dim>> &steps)
+  {
+    print_header(log, scene, comm);
+    log.line(format("accuracy     %g %% of %s is to be reached, with at most %u meshes and %u unknowns",
+                    100 * options.accuracy,
+                    what().c_str(),
+                    options.max_meshes,
+                    options.max_unknowns));
+    for (;;)
+      {
+        steps.reset();
+        std::optional<std::vector<std::string>> wanted;
+        if (!options.goals.empty())
+          wanted = options.goals;
+        steps.emplace(scene, directory, quiet, comm, wanted, &refinement);
+        const auto &summary = steps->solve_and_write(false);
+        const bool  solved  = summary.status == output::RunStatus::converged;
+        if (rows.empty() && options.goals.empty())
+          leave_out(steps->point_forces());
+        if (solved)
+          add(*steps, summary);
+        const std::string missed = solved ? why_to_stop(*steps, summary) : "a mesh was not solved";
+        if (!solved || reached || !missed.empty())
+          {
+            steps->finish(rows, notes, reached ? "" : missed);
+            steps->print_warnings(log);
+            steps->print(log);
+            if (!reached)
+              log.warning(missed);
+            return reached ? ExitStatus::converged : ExitStatus::not_converged;
+          }
+      }
+  }
+
+  std::string RefiningRun::what() const
+  {
+    std::string names;
+    for (const std::string &goal : options.goals)
+      names += (names.empty() ? "" : ", ") + goal;
+    return names.empty() ? "the energy norm" : names;
+  }
+
+  void RefiningRun::leave_out(std::vector<LeftOut> places)
+  {
+    left_out = std::move(places);
+    for (const auto &place : left_out)
+      {
+        notes.push_back(
+          format("the accuracy leaves out what is within %.3g mm of (%.6g, %.6g) of body %s, %s: the energy "
+                 "is infinite there; spread the force over an edge to have it estimated",
+                 place.radius,
+                 place.position[0],
+                 place.position[1],
+                 scene.bodies[place.body].name.c_str(),
+                 place.what.c_str()));
+        log.line("             warning: " + notes.back());
+      }
+  }
+
+  void RefiningRun::add(const Run<dim> &steps, const output::Summary &summary)
+  {
+    output::MeshRow row;
+    row.cells        = summary.problem.cells;
+    row.unknowns     = summary.problem.primal_dofs;
+    row.energy_error = summary.error.estimate_energy_relative;
+    const auto worst = options.goals.empty() ? std::optional<double>(std::sqrt(errors_of(steps).total))
+                                             : worst_error(summary.error_bars, options.goals);
+    is_known         = dealii::Utilities::MPI::broadcast(comm, worst.has_value());
+    row.error        = dealii::Utilities::MPI::broadcast(comm, worst.value_or(0.));
+    row.seconds      = summary.time_s.total;
+    rows.push_back(row);
+    if (rows.size() == 1)
+      log.line("              mesh      cells   unknowns  energy norm   error    time [s]");
+    reached = is_known && row.error <= options.accuracy && summary.status == output::RunStatus::converged;
+    log.line(format("             %5zu %10llu %10llu %10.2g %% %8s %10.2f",
+                    rows.size(),
+                    static_cast<unsigned long long>(row.cells),
+                    static_cast<unsigned long long>(row.unknowns),
+                    100 * row.energy_error,
+                    is_known ? format("%.2g %%", 100 * row.error).c_str() : "none",
+                    row.seconds));
+  }
+
+  std::string RefiningRun::why_to_stop(const Run<dim> &steps, const output::Summary &summary)
+  {
+    if (reached)
+      return "";
+    const std::string so_far =
+      format("the accuracy of %g %% of %s is not reached: ", 100 * options.accuracy, what().c_str()) +
+      (is_known ? format("the error is %.2g %% after %zu meshes", 100 * rows.back().error, rows.size())
+                : format("after %zu meshes there is no estimate", rows.size()));
+    if (rows.size() >= options.max_meshes)
+      return so_far + "; allow more of them (Adaptivity/Max meshes), or begin with a finer one";
+    auto cells =
+      options.goals.empty() || !is_known ? errors_of(steps) : errors_of_goals(steps.goals(), options.accuracy, comm);
+    const auto n_marked = mark(steps.mesh(), cells, refinement);
+    // nine cells for one, and templates around them
+    constexpr double cells_for_one = 12;
+    const double     growth        = 1 + cells_for_one * n_marked / summary.problem.cells;
+    if (n_marked == 0)
+      return so_far + "; no cell is left that refinement would help";
+    if (growth * rows.back().unknowns > options.max_unknowns)
+      return so_far + format("; the next mesh may have %.2g unknowns, allowed are %u (Adaptivity/Max unknowns)",
+                             growth * rows.back().unknowns,
+                             options.max_unknowns);
+    const double needed = dealii::Utilities::MPI::broadcast(comm, summary.memory_mb.peak_total * growth);
+    const double free =
+      dealii::Utilities::MPI::broadcast(comm,
+                                        free_memory_mb(dealii::Utilities::MPI::n_mpi_processes(comm)) +
+                                          summary.memory_mb.peak_total);
+    if (needed > free)
+      return so_far + format("; the next mesh may need %.0f MB of memory, and %.0f MB are free", needed, free);
+    return "";
+  }
+
+  CellErrors RefiningRun::errors_of(const Run<dim> &steps) const
+  {
+    return energy_errors(steps.mesh(), steps.stress(), left_out, options.goals.empty() ? options.accuracy : 0.);
+  }
+} // namespace slipstick::app

@@ -1,0 +1,272 @@
+#include <slipstick/app/step_results.h>
+#include <slipstick/base/text.h>
+#include <slipstick/contact/resultants.h>
+#include <slipstick/interface/arc_length.h>
+#include <slipstick/mechanics/elasticity.h>
+#include <slipstick/mechanics/loads.h>
+#include <slipstick/mechanics/singular_points.h>
+#include <slipstick/mechanics/surface_facet.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    // A singular point raises the stress as far as so many diameters of the cells around the node with the largest one:
+    // stresses at nodes are means over cells, and may be largest beside it.
+    constexpr double cells_of_singularity = 1.5;
+
+    // Forces on what holds motions that nothing resists are told of above this part of the largest force.
+    constexpr double negligible_held_force = 1e-6;
+
+    constexpr double rounding = 1e-12; // of displacements, relative
+
+    template <int dim>
+    std::array<double, 3> in_space(const dealii::Tensor<1, dim> &x)
+    {
+      std::array<double, 3> all{{0, 0, 0}};
+      for (unsigned int d = 0; d < dim; ++d)
+        all[d] = x[d];
+      return all;
+    }
+
+    /// No load acts along motions that nothing resists, but friction across a gap can: its two sides are at two places.
+    template <int dim>
+    void add_held_motions(const StepSolver<dim>        &solver,
+                          const StepAnswer             &answer,
+                          const std::vector<Resultant> &reactions,
+                          output::ForceSummary         &sums,
+                          Warnings                     &warnings)
+    {
+      if (solver.n_given_supports() == solver.discrete_scene().supports.size())
+        return;
+      const auto size = [](const Resultant &sum) {
+        return dim == 2 ? std::hypot(sum.force[0], sum.force[1]) : std::hypot(sum.force[0], sum.force[1], sum.force[2]);
+      };
+      Resultant held;
+      for (unsigned int h = solver.n_given_supports(); h < solver.discrete_scene().supports.size(); ++h)
+        held += reactions[h];
+      // the least force that can be told from none: rounding of the displacement, over the compliance |PFP|
+      double largest =
+        rounding * answer.contact->checks.max_displacement / solver.dual().norm() / negligible_held_force;
+      for (const auto &load : sums.loads)
+        largest = std::max(largest, size(load.sum));
+      for (const auto &reaction : reactions)
+        largest = std::max(largest, size(reaction));
+      if (size(held) <= negligible_held_force * largest)
+        return;
+      sums.supports.push_back({"held motions", "support", held});
+      warnings.emplace(
+        "held motions",
+        format("friction across gaps leaves %.3g N (%.2g %% of the largest force) along the motions that are set to "
+               "zero: it acts on the two sides at two places; add a support against these motions, or mesh the "
+               "sides without the gap",
+               size(held),
+               100 * size(held) / largest));
+    }
+
+    using NodeOfPair = TotalSlip::key_type;
+
+    /// The faces of slave boundaries all of whose vertices are among the nodes (@p number). Collective.
+    void add_faces(const StepSolver<3>                      &solver,
+                   const std::map<NodeOfPair, std::int64_t> &number,
+                   output::ContactStep                      &step)
+    {
+      const auto       &scene = solver.discrete_scene();
+      std::vector<bool> wanted(scene.bodies.size());
+      for (const auto &pair : scene.contacts)
+        wanted[pair.slave.body] = true;
+      const auto all = mechanics::outlines(solver.mesh(), solver.spaces(), wanted);
+      for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+        for (const auto &face : mechanics::parts_on(solver.mesh(), all, scene.contacts[k].slave))
+          {
+            std::vector<std::int64_t> nodes(face.n_nodes);
+            bool                      is_complete = true;
+            for (unsigned int v = 0; v < nodes.size(); ++v)
+              {
+                const auto found = number.find({k, face.keys[v]});
+                is_complete      = is_complete && found != number.end();
+                nodes[v]         = is_complete ? found->second : 0;
+              }
+            if (is_complete)
+              step.faces.push_back(nodes);
+          }
+    }
+  } // namespace
+
+  template <int dim>
+  void add_places(const StepSolver<dim> &solver, const mechanics::StressResult &stress, output::Summary &summary)
+  {
+    const auto &scene    = solver.discrete_scene();
+    const auto  places   = mechanics::stress_places(solver.mesh(), solver.spaces(), stress);
+    const auto  as_place = [&](const mechanics::Peak<dim> &peak) {
+      return output::Place{scene.bodies[peak.body].name, in_space(peak.position)};
+    };
+    summary.results.max_von_mises_at = as_place(places.von_mises);
+    summary.error.largest_at         = as_place(places.error);
+    if (stress.error_squared > 0)
+      summary.error.largest_part = places.error.value * places.error.value / stress.error_squared;
+    double nearest = cells_of_singularity * places.size;
+    for (const auto &point :
+         mechanics::singular_points(scene, solver.mesh(), solver.spaces(), solver.n_given_supports()))
+      if (point.body == places.von_mises.body && point.position.distance(places.von_mises.position) < nearest)
+        {
+          nearest                  = point.position.distance(places.von_mises.position);
+          summary.results.singular = point.what;
+        }
+  }
+
+  template <int dim>
+  std::vector<output::ProbeResult> probe_results(const scene::Scene<dim>            &scene,
+                                                 const mechanics::Probes<dim>       &probes,
+                                                 const std::vector<Eigen::VectorXd> &u,
+                                                 const mechanics::StressResult      &stress)
+  {
+    std::vector<output::ProbeResult> results;
+    for (const auto &points : probes.values(u, stress))
+      {
+        const auto         &probe = scene.probes[results.size()];
+        output::ProbeResult result;
+        result.name     = probe.name;
+        result.is_point = probe.ends.size() == 1;
+        for (const auto &point : points)
+          {
+            output::ProbeValues values;
+            values.distance     = point.distance;
+            values.position     = in_space(point.position);
+            values.displacement = in_space(point.displacement);
+            values.stress       = point.stress;
+            values.von_mises    = mechanics::von_mises<dim>(point.stress);
+            result.points.push_back(values);
+          }
+        results.push_back(std::move(result));
+      }
+    return results;
+  }
+
+  template <int dim>
+  output::ForceSummary forces(const StepSolver<dim> &solver,
+                              const StepAnswer      &answer,
+                              const double           t,
+                              Warnings              &warnings)
+  {
+    const auto          &scene = solver.discrete_scene();
+    output::ForceSummary sums;
+    const auto           loads = mechanics::load_resultants(scene, solver.mesh(), solver.spaces(), t);
+    unsigned int         next  = 0;
+    const auto           take  = [&](const auto &list, const std::string &kind) {
+      for (const auto &load : list)
+        {
+          const auto &sum = loads[next++];
+          sums.loads.push_back({load.name, kind, sum.sum});
+          if (sum.unresolved)
+            warnings.emplace("load " + kind + load.name,
+                             format("%s %s: its formula changes faster than can be integrated at %s, so that its "
+                                               "resultant may be off; smooth the formula, or refine the mesh there",
+                                    kind.c_str(),
+                                    load.name.c_str(),
+                                    point_text(*sum.unresolved, dim).c_str()));
+        }
+    };
+    take(scene.tractions, "traction");
+    take(scene.body_forces, "body force");
+    take(scene.point_loads, "point load");
+    const unsigned int n_supports = scene.supports.size(), n_holders = n_supports + scene.foundations.size();
+    const auto         reactions = contact::reactions(solver.dual(),
+                                              solver.held_contacts(),
+                                              answer.contact->held_forces,
+                                              answer.recovery.multipliers,
+                                              n_holders);
+    for (unsigned int h = 0; h < solver.n_given_supports(); ++h)
+      sums.supports.push_back({scene.supports[h].name, "support", reactions[h]});
+    add_held_motions(solver, answer, reactions, sums, warnings);
+    for (unsigned int h = n_supports; h < n_holders; ++h)
+      sums.foundations.push_back({scene.foundations[h - n_supports].name, "foundation", reactions[h]});
+    return sums;
+  }
+
+  template <int dim>
+  output::ContactStep gather_contact(const StepSolver<dim>         &solver,
+                                     const contact::CheckedContact &own,
+                                     TotalSlip                     &total_slip)
+  {
+    const auto &scene = solver.discrete_scene();
+    const auto  nodes = dealii::Utilities::MPI::gather(solver.mesh().comm, own.nodes);
+    const auto  keys  = dealii::Utilities::MPI::gather(solver.mesh().comm, own.keys);
+    std::vector<std::pair<contact::ContactNode, NodeOfPair>> all;
+    for (unsigned int rank = 0; rank < nodes.size(); ++rank)
+      for (unsigned int i = 0; i < nodes[rank].size(); ++i)
+        {
+          all.emplace_back(nodes[rank][i], NodeOfPair(nodes[rank][i].pair, keys[rank][i]));
+          auto &node  = all.back().first;
+          auto &total = total_slip[all.back().second];
+          if (dim == 2)
+            node.total_slip = total[0] += node.slip;
+          for (unsigned int d = 0; d < 3 && dim == 3; ++d)
+            total[d] += node.slip_vector[d];
+          if (dim == 3)
+            node.total_slip = std::hypot(total[0], total[1], total[2]);
+        }
+    output::ContactStep step;
+    if constexpr (dim == 2)
+      {
+        const auto lengths = interface::arc_lengths(scene, solver.mesh(), solver.spaces());
+        for (auto &[node, key] : all)
+          {
+            node.arc_length = lengths.at(key);
+            step.nodes.push_back(node);
+          }
+      }
+    else
+      {
+        std::sort(all.begin(), all.end(), [](const auto &a, const auto &b) {
+          return std::tie(a.first.pair, a.first.position) < std::tie(b.first.pair, b.first.position);
+        });
+        std::map<NodeOfPair, std::int64_t> number;
+        for (const auto &[node, key] : all)
+          {
+            number.emplace(key, step.nodes.size());
+            step.nodes.push_back(node);
+          }
+        add_faces(solver, number, step);
+      }
+    return step;
+  }
+
+  template <int dim>
+  output::ContactNames contact_names(const scene::Scene<dim> &scene)
+  {
+    output::ContactNames names;
+    for (const auto &pair : scene.contacts)
+      {
+        names.pairs.push_back(pair.name);
+        names.slave_bodies.push_back(scene.bodies[pair.slave.body].name);
+      }
+    names.dimension = dim;
+    return names;
+  }
+
+  template output::ForceSummary forces(const StepSolver<2> &, const StepAnswer &, const double, Warnings &);
+  template void                 add_places(const StepSolver<2> &, const mechanics::StressResult &, output::Summary &);
+  template std::vector<output::ProbeResult> probe_results(const scene::Scene<2> &,
+                                                          const mechanics::Probes<2> &,
+                                                          const std::vector<Eigen::VectorXd> &,
+                                                          const mechanics::StressResult &);
+  template output::ContactStep  gather_contact(const StepSolver<2> &, const contact::CheckedContact &, TotalSlip &);
+  template output::ContactNames contact_names(const scene::Scene<2> &);
+  template output::ForceSummary forces(const StepSolver<3> &, const StepAnswer &, const double, Warnings &);
+  template void                 add_places(const StepSolver<3> &, const mechanics::StressResult &, output::Summary &);
+  template std::vector<output::ProbeResult> probe_results(const scene::Scene<3> &,
+                                                          const mechanics::Probes<3> &,
+                                                          const std::vector<Eigen::VectorXd> &,
+                                                          const mechanics::StressResult &);
+  template output::ContactStep  gather_contact(const StepSolver<3> &, const contact::CheckedContact &, TotalSlip &);
+  template output::ContactNames contact_names(const scene::Scene<3> &);
+} // namespace slipstick::app

@@ -1,0 +1,69 @@
+#include <slipstick/interface/convex_polygon.h>
+
+namespace slipstick::interface
+{
+  namespace
+  {
+    double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
+    {
+      return a[0] * b[1] - a[1] * b[0];
+    }
+
+    const dealii::Point<2> &next(const ConvexPolygon &polygon, const std::size_t i)
+    {
+      return polygon[(i + 1) % polygon.size()];
+    }
+  } // namespace
+
+  double area(const ConvexPolygon &polygon)
+  {
+    double sum = 0;
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+      sum += cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]) / 2;
+    return sum;
+  }
+
+  dealii::Point<2> centroid(const ConvexPolygon &polygon)
+  {
+    dealii::Tensor<1, 2> moment, corners;
+    double               sum = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+      {
+        const auto   u = polygon[i] - polygon[0], v = next(polygon, i) - polygon[0];
+        const double part = cross(u, v) / 2;
+        sum += part;
+        moment += part / 3 * (u + v);
+        corners += u / double(polygon.size());
+      }
+    return polygon[0] + (sum > 0 ? moment / sum : corners);
+  }
+
+  bool contains(const ConvexPolygon &polygon, const dealii::Point<2> &x, const double tolerance)
+  {
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+      if (const auto along = next(polygon, i) - polygon[i]; cross(along, x - polygon[i]) < -tolerance * along.norm())
+        return false;
+    return !polygon.empty();
+  }
+
+  ConvexPolygon intersection(const ConvexPolygon &a, const ConvexPolygon &b)
+  {
+    ConvexPolygon left = a;
+    for (std::size_t i = 0; i < b.size() && !left.empty(); ++i)
+      {
+        const auto    along = next(b, i) - b[i];
+        ConvexPolygon kept;
+        for (std::size_t k = 0; k < left.size(); ++k)
+          {
+            const auto  &x = left[k], &y = next(left, k);
+            const double inside_x = cross(along, x - b[i]), inside_y = cross(along, y - b[i]);
+            if (inside_x >= 0)
+              kept.push_back(x);
+            if ((inside_x > 0 && inside_y < 0) || (inside_x < 0 && inside_y > 0))
+              kept.push_back(x + inside_x / (inside_x - inside_y) * (y - x));
+          }
+        left = std::move(kept);
+      }
+    return left;
+  }
+} // namespace slipstick::interface

@@ -1,0 +1,144 @@
+#include <slipstick/mesh/refinement.h>
+
+#include <numeric>
+
+namespace slipstick::mesh
+{
+  namespace
+  {
+    using Piece = MeshPiece<3>;
+
+    /// The cells of a piece divided by eight.
+    class SolidRefiner
+    {
+    public:
+      explicit SolidRefiner(const Piece &piece_)
+        : piece(piece_)
+        , boundary(boundary_by_vertices(piece_))
+      {
+        finer.subdomain = piece.subdomain;
+        finer.body      = piece.body;
+        finer.ordered   = piece.ordered;
+        finer.vertices  = piece.vertices;
+      }
+
+      Piece run()
+      {
+        for (const auto &cell : piece.cells)
+          is_simplex<3>(cell) ? divide_tetrahedron(cell) : divide_hexahedron(cell);
+        finer.global_vertices.resize(finer.vertices.size());
+        std::iota(finer.global_vertices.begin(), finer.global_vertices.end(), GlobalVertex(0));
+        return std::move(finer);
+      }
+
+    private:
+      /// The vertex in the middle of others.
+      unsigned int middle(std::vector<unsigned int> of)
+      {
+        if (of.size() == 1)
+          return of[0];
+        std::sort(of.begin(), of.end());
+        const auto [found, is_new] = middles.emplace(of, finer.vertices.size());
+        if (is_new)
+          {
+            dealii::Tensor<1, 3> sum;
+            for (const unsigned int v : of)
+              sum += piece.vertices[v] - piece.vertices[of[0]];
+            finer.vertices.push_back(piece.vertices[of[0]] + sum / double(of.size()));
+          }
+        return found->second;
+      }
+
+      /// Number @p i of a lattice of three vertices a direction: its corners, and what is between them.
+      unsigned int lattice_vertex(const Piece::Cell &cell, const std::array<unsigned int, 3> &i)
+      {
+        std::vector<unsigned int> of;
+        for (unsigned int v = 0; v < cell.size(); ++v)
+          {
+            bool is_near = true;
+            for (unsigned int d = 0; d < 3; ++d)
+              is_near = is_near && (i[d] == 1 || i[d] == 2 * (v >> d & 1));
+            if (is_near)
+              of.push_back(cell[v]);
+          }
+        return middle(std::move(of));
+      }
+
+      void divide_hexahedron(const Piece::Cell &cell)
+      {
+        for (unsigned int child = 0; child < 8; ++child)
+          {
+            Piece::Cell part;
+            for (unsigned int v = 0; v < 8; ++v)
+              part[v] = lattice_vertex(
+                cell,
+                {{(child & 1) + (v & 1), (child >> 1 & 1) + (v >> 1 & 1), (child >> 2 & 1) + (v >> 2 & 1)}});
+            for (unsigned int f = 0; f < 6; ++f)
+              if (const auto found = boundary.find(face_of_cell<3>(cell, f));
+                  found != boundary.end() && (child >> (f / 2) & 1) == f % 2)
+                finer.boundary_faces.push_back({face_of_cell<3>(part, f), found->second.id});
+            finer.cells.push_back(part);
+          }
+      }
+
+      void add_tetrahedron(unsigned int a, unsigned int b, const unsigned int c, const unsigned int d)
+      {
+        const auto &x = finer.vertices;
+        if (cross_product_3d(x[b] - x[a], x[c] - x[a]) * (x[d] - x[a]) < 0)
+          std::swap(a, b);
+        Piece::Cell cell;
+        cell.fill(Piece::no_vertex);
+        cell[0] = a;
+        cell[1] = b;
+        cell[2] = c;
+        cell[3] = d;
+        finer.cells.push_back(cell);
+      }
+
+      // Four at the corners, and an octahedron divided along its shortest diagonal.
+      void divide_tetrahedron(const Piece::Cell &cell)
+      {
+        const auto m = [&](const unsigned int i, const unsigned int j) { return middle({cell[i], cell[j]}); };
+        for (unsigned int i = 0; i < 4; ++i)
+          add_tetrahedron(cell[i], m(i, (i + 1) % 4), m(i, (i + 2) % 4), m(i, (i + 3) % 4));
+        const std::array<std::array<unsigned int, 2>, 3> across = {
+          {{{m(0, 1), m(2, 3)}}, {{m(0, 2), m(1, 3)}}, {{m(0, 3), m(1, 2)}}}};
+        const auto length = [&](const unsigned int k) {
+          return finer.vertices[across[k][0]].distance(finer.vertices[across[k][1]]);
+        };
+        unsigned int shortest = 0;
+        for (const unsigned int k : {1, 2})
+          if (length(k) < length(shortest))
+            shortest = k;
+        const auto &axis = across[shortest], &r = across[(shortest + 1) % 3], &s = across[(shortest + 2) % 3];
+        for (const unsigned int i : {0, 1})
+          for (const unsigned int j : {0, 1})
+            add_tetrahedron(axis[0], axis[1], r[i], s[j]);
+        for (unsigned int f = 0; f < 4; ++f)
+          if (const auto found = boundary.find(face_of_cell<3>(cell, f)); found != boundary.end())
+            {
+              const std::array<unsigned int, 3> at = {{(f + 1) % 4, (f + 2) % 4, (f + 3) % 4}};
+              const auto add = [&](const unsigned int a, const unsigned int b, const unsigned int c) {
+                Piece::Face face = {{a, b, c, Piece::no_vertex}};
+                std::sort(face.begin(), face.end());
+                finer.boundary_faces.push_back({face, found->second.id});
+              };
+              for (unsigned int k = 0; k < 3; ++k)
+                add(cell[at[k]], m(at[k], at[(k + 1) % 3]), m(at[k], at[(k + 2) % 3]));
+              add(m(at[0], at[1]), m(at[1], at[2]), m(at[2], at[0]));
+            }
+      }
+
+      const Piece                                      &piece;
+      const std::map<Piece::Face, Piece::BoundaryFace>  boundary;
+      Piece                                             finer;
+      std::map<std::vector<unsigned int>, unsigned int> middles; // by what they are between
+    };
+  } // namespace
+
+  template <>
+  MeshPiece<3> refined(const MeshPiece<3> &piece)
+  {
+    return SolidRefiner(piece).run();
+  }
+} // namespace slipstick::mesh

@@ -1,0 +1,274 @@
+// Hexahedra for the built-in shapes of solids.
+#include <slipstick/mesh/shapes.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace slipstick::mesh
+{
+  namespace
+  {
+    // Ball: a bent cube in the middle, layers of cells around it.
+    constexpr double core_radius  = 0.55; // of the corners of the cube, over the radius: cells of about equal size
+    constexpr double core_bending = 0.4;  // 0: plane sides, 1: parts of a sphere
+
+    /// Hexahedra between @p n_layers + 1 copies of a mesh of the plane, from @p start along z; its boundary ids stay, the two
+    /// ends get the next ones.
+    MeshPiece<3> extruded(const MeshPiece<2>              &section,
+                          const double                     start,
+                          const double                     length,
+                          const unsigned int               n_layers,
+                          const dealii::types::boundary_id back)
+    {
+      MeshPiece<3>       piece;
+      const unsigned int n = section.vertices.size();
+      for (unsigned int k = 0; k <= n_layers; ++k)
+        for (const auto &x : section.vertices)
+          piece.vertices.emplace_back(x[0], x[1], start + length * k / n_layers);
+      for (unsigned int k = 0; k < n_layers; ++k)
+        {
+          const auto at = [&](const unsigned int v, const unsigned int layer) { return v + (k + layer) * n; };
+          for (const auto &c : section.cells)
+            piece.cells.push_back({{at(c[0], 0),
+                                    at(c[1], 0),
+                                    at(c[2], 0),
+                                    at(c[3], 0),
+                                    at(c[0], 1),
+                                    at(c[1], 1),
+                                    at(c[2], 1),
+                                    at(c[3], 1)}});
+          for (const auto &edge : section.boundary_faces)
+            piece.boundary_faces.push_back(
+              {{{at(edge.vertices[0], 0), at(edge.vertices[1], 0), at(edge.vertices[0], 1), at(edge.vertices[1], 1)}},
+               edge.id});
+        }
+      for (const auto &c : section.cells)
+        for (const unsigned int end : {0u, 1u})
+          {
+            const unsigned int first = end * n_layers * n;
+            piece.boundary_faces.push_back({{{first + c[0], first + c[1], first + c[2], first + c[3]}}, back + end});
+          }
+      return piece;
+    }
+
+    /// A cylinder: side 0, back 1, front 2; or a tube: inner 0, outer 1, back 2, front 3.
+    MeshPiece<3> round_bar(const scene::Scene<3> &scene, const scene::Body<3> &body)
+    {
+      const bool      is_tube = body.shape == scene::Shape::tube;
+      const double    edge    = 2 * dealii::numbers::PI * body.radius / body.cells_along_arc;
+      scene::Scene<2> plane;
+      scene::Body<2>  section;
+      plane.discretization.refinements = scene.discretization.refinements;
+      section.refinements              = body.refinements;
+      section.shape                    = is_tube ? scene::Shape::ring : scene::Shape::disc;
+      section.center                   = dealii::Point<2>(body.center[0], body.center[1]);
+      section.radius                   = body.radius;
+      section.inner_radius             = body.inner_radius;
+      section.cells_along_arc          = body.cells_along_arc;
+      if (is_tube)
+        section.cells = std::array<unsigned int, 2>{
+          {body.cells_along_arc,
+           static_cast<unsigned int>(std::max(1., std::round((body.radius - body.inner_radius) / edge)))}};
+      const unsigned int n = body.cells_along_axis > 0
+                               ? body.cells_along_axis
+                               : static_cast<unsigned int>(std::max(1., std::round(body.length / edge)));
+      return extruded(body_from_shape<2>(plane, section).piece,
+                      body.center[2],
+                      body.length,
+                      n << (scene.discretization.refinements + body.refinements),
+                      is_tube ? 2 : 1);
+    }
+
+    /// A lattice whose outer vertices carry layers: a ball, or the half below its centre. Surface 0, flat 1.
+    class BallMesh
+    {
+    public:
+      BallMesh(const scene::Body<3> &body_, const unsigned int refinements)
+        : body(body_)
+        , n((body.cells_along_arc / 4) << refinements)
+        , n_up(body.shape == scene::Shape::ball ? n : n / 2)
+        , n_layers(static_cast<unsigned int>(std::max(1.,
+                                                      std::round((1 - core_radius) / (1 + core_radius) *
+                                                                 body.cells_along_arc / dealii::numbers::PI)))
+                   << refinements)
+        , outer((n + 1) * (n_up + 1) * (n + 1), MeshPiece<3>::no_vertex)
+      {
+        add_vertices();
+        add_core();
+        for (unsigned int d = 0; d < 3; ++d)
+          for (const unsigned int end : {0u, 1u})
+            add_side(d, end);
+      }
+
+      MeshPiece<3> piece;
+
+    private:
+      using Place = std::array<unsigned int, 3>;
+
+      unsigned int number(const Place &at) const
+      {
+        return (at[2] * (n_up + 1) + at[1]) * (n + 1) + at[0];
+      }
+
+      unsigned int size(const unsigned int d) const
+      {
+        return d == 1 ? n_up : n;
+      }
+
+      /// Is a side of the lattice inside the ball, where it is cut in half?
+      bool is_flat(const unsigned int d, const unsigned int end) const
+      {
+        return d == 1 && end == 1 && n_up < n;
+      }
+
+      /// Of the unit sphere and of the core; edges of about equal length.
+      std::pair<dealii::Tensor<1, 3>, dealii::Tensor<1, 3>> points(const Place &at) const
+      {
+        dealii::Tensor<1, 3> flat, bent;
+        double               largest = 0;
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            const double angle = dealii::numbers::PI / 4 * (2. * at[d] / n - 1);
+            flat[d]            = 2. * at[d] / n - 1;
+            bent[d]            = 2 * at[d] == n ? 0. : std::tan(angle);
+            largest            = std::max(largest, std::abs(flat[d]));
+          }
+        const double               length    = bent.norm();
+        const dealii::Tensor<1, 3> direction = length > 0 ? bent / length : bent;
+        return {direction,
+                core_radius * (core_bending * largest * direction + (1 - core_bending) / std::sqrt(3.) * flat)};
+      }
+
+      void add_vertices()
+      {
+        Place at;
+        for (at[2] = 0; at[2] <= n; ++at[2])
+          for (at[1] = 0; at[1] <= n_up; ++at[1])
+            for (at[0] = 0; at[0] <= n; ++at[0])
+              piece.vertices.push_back(body.center + body.radius * points(at).second);
+        for (at[2] = 0; at[2] <= n; ++at[2])
+          for (at[1] = 0; at[1] <= n_up; ++at[1])
+            for (at[0] = 0; at[0] <= n; ++at[0])
+              {
+                bool is_outer = false;
+                for (unsigned int d = 0; d < 3; ++d)
+                  is_outer = is_outer || at[d] == 0 || (at[d] == size(d) && !is_flat(d, 1));
+                if (!is_outer)
+                  continue;
+                outer[number(at)]         = piece.vertices.size();
+                const auto [sphere, core] = points(at);
+                for (unsigned int k = 1; k <= n_layers; ++k)
+                  {
+                    const double s = double(k) / n_layers;
+                    piece.vertices.push_back(body.center +
+                                             body.radius * (k == n_layers ? sphere : (1 - s) * core + s * sphere));
+                  }
+              }
+      }
+
+      /// Layer 0 is the lattice.
+      unsigned int vertex(const Place &at, const unsigned int layer) const
+      {
+        return layer == 0 ? number(at) : outer[number(at)] + layer - 1;
+      }
+
+      void add_core()
+      {
+        Place at;
+        for (at[2] = 0; at[2] < n; ++at[2])
+          for (at[1] = 0; at[1] < n_up; ++at[1])
+            for (at[0] = 0; at[0] < n; ++at[0])
+              {
+                MeshPiece<3>::Cell cell;
+                for (unsigned int v = 0; v < cell.size(); ++v)
+                  cell[v] = number({{at[0] + (v & 1), at[1] + (v >> 1 & 1), at[2] + (v >> 2)}});
+                piece.cells.push_back(cell);
+              }
+      }
+
+      /// The layers on one side of the lattice, or the boundary there.
+      void add_side(const unsigned int d, const unsigned int end)
+      {
+        const unsigned int a = (d + 1) % 3, b = (d + 2) % 3;
+        for (unsigned int j = 0; j < size(b); ++j)
+          for (unsigned int i = 0; i < size(a); ++i)
+            {
+              std::array<Place, 4> corners;
+              for (unsigned int v = 0; v < 4; ++v)
+                {
+                  // such that a, b and outwards are right-handed
+                  const unsigned int along_a = end == 1 ? v & 1 : v >> 1, along_b = end == 1 ? v >> 1 : v & 1;
+                  corners[v][a] = i + along_a;
+                  corners[v][b] = j + along_b;
+                  corners[v][d] = end * size(d);
+                }
+              const auto face = [&](const unsigned int layer) {
+                MeshPiece<3>::Face vertices;
+                for (unsigned int v = 0; v < 4; ++v)
+                  vertices[v] = vertex(corners[v], layer);
+                return vertices;
+              };
+              if (is_flat(d, end))
+                {
+                  piece.boundary_faces.push_back({face(0), 1});
+                  continue;
+                }
+              for (unsigned int k = 0; k < n_layers; ++k)
+                {
+                  const auto         inner = face(k), outside = face(k + 1);
+                  MeshPiece<3>::Cell cell;
+                  std::copy(inner.begin(), inner.end(), cell.begin());
+                  std::copy(outside.begin(), outside.end(), cell.begin() + 4);
+                  piece.cells.push_back(cell);
+                  for (const auto &[v, w] : {std::pair(0, 1), {2, 3}, {0, 2}, {1, 3}})
+                    add_rim(corners[v], corners[w], k);
+                }
+              piece.boundary_faces.push_back({face(n_layers), 0});
+            }
+      }
+
+      /// The face of a layer between two neighbouring corners, where both are on the flat side of a half ball.
+      void add_rim(const Place &p, const Place &q, const unsigned int layer)
+      {
+        if (n_up < n && p[1] == n_up && q[1] == n_up)
+          piece.boundary_faces.push_back(
+            {{{vertex(p, layer), vertex(q, layer), vertex(p, layer + 1), vertex(q, layer + 1)}}, 1});
+      }
+
+      const scene::Body<3>     &body;
+      const unsigned int        n, n_up, n_layers; // of the lattice across and up; around it
+      std::vector<unsigned int> outer;             // first vertex of the layers, by that of the lattice
+    };
+  } // namespace
+
+  template <>
+  BodyMesh<3> body_from_shape(const scene::Scene<3> &scene, const scene::Body<3> &body)
+  {
+    BodyMesh<3> mesh;
+    mesh.boundary_ids = shape_boundary_ids(body.shape, 3);
+    switch (body.shape)
+      {
+        case scene::Shape::rectangle:
+          mesh.piece = rectangle_piece<3>(body, rectangle_cells(scene, body), {{1, 1, 1}}, {{0, 0, 0}});
+          return mesh;
+        case scene::Shape::ball:
+        case scene::Shape::half_ball:
+          mesh.piece = BallMesh(body, scene.discretization.refinements + body.refinements).piece;
+          break;
+        case scene::Shape::cylinder:
+        case scene::Shape::tube:
+          mesh.piece = round_bar(scene, body);
+          break;
+        case scene::Shape::disc: // shapes of the plane, and none
+        case scene::Shape::half_disc:
+        case scene::Shape::quarter_disc:
+        case scene::Shape::ring:
+        case scene::Shape::quarter_ring:
+        case scene::Shape::mesh:
+          Assert(false, dealii::ExcInternalError());
+      }
+    mesh.piece.global_vertices.resize(mesh.piece.vertices.size());
+    std::iota(mesh.piece.global_vertices.begin(), mesh.piece.global_vertices.end(), GlobalVertex(0));
+    return mesh;
+  }
+} // namespace slipstick::mesh
