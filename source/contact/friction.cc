@@ -108,7 +108,7 @@ namespace slipstick::contact
                 solution.multipliers = from;
                 return finished();
               }
-            if (newton(from, true))
+            if (newton(from, true, !start))
               return finished();
             if (law.has_discs()) // SMALBE-M has bounds only
               return finished();
@@ -361,7 +361,8 @@ namespace slipstick::contact
       }
 
       /// Semismooth Newton, with bounds that follow the solution or (a Tresca problem) as they are. @return convergence.
-      bool newton(const Vector &from, const bool bounds_follow)
+      /// @param is_rough is the start far from the solution?
+      bool newton(const Vector &from, const bool bounds_follow, const bool is_rough = false)
       {
         Vector d = dual.d();
         d /= dual.norm();
@@ -372,7 +373,7 @@ namespace slipstick::contact
                                             1.,
                                             d,
                                             qp::AdmissibleSet<Vector>{box, std::move(followed)},
-                                            qp::NewtonStart<Vector>{from, gradient, solution.directions},
+                                            qp::NewtonStart<Vector>{from, gradient, solution.directions, is_rough},
                                             qp::Goal(options.tolerance, solution.weighted_reference),
                                             options.newton,
                                             counted(),
