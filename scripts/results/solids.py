@@ -17,6 +17,7 @@ from . import bands, fields
 DRAWN_DISPLACEMENT = 0.04  # of the size of the scene
 VIEW = (0.55, 0.45, 1.0)  # from where it is seen: x to the right, y upwards, z to the front
 DPI = 150
+DEPTH_TOLERANCE = 0.01  # of the size of the picture: what lies less in front of an edge does not hide it
 EDGE_ANGLE = 30  # degrees between faces: their common edge is drawn
 # Outwards, of VTK's hexahedron and tetrahedron: a triangle has its last corner twice.
 FACES = {8: np.array([[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]]),
@@ -31,6 +32,25 @@ def axes_of_view():
     right = np.cross([0, 1, 0], towards)
     right /= np.linalg.norm(right)
     return right, np.cross(towards, right), towards
+
+
+def hidden(places, depths, corners, depths_of_corners):
+    """Which places on the picture have a triangle in front of them?"""
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    near = DEPTH_TOLERANCE * max(np.ptp(corners.reshape(-1, 2), axis=0))
+    result = np.zeros(len(places), dtype=bool)
+    for k, (x, depth) in enumerate(zip(places, depths)):
+        around = np.flatnonzero(((low <= x) & (x <= high)).all(axis=1))
+        a, u, v = corners[around, 0], corners[around, 1] - corners[around, 0], corners[around, 2] - corners[around, 0]
+        area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+        proper = np.abs(area) > 0
+        around, a, u, v, area = around[proper], a[proper], u[proper], v[proper], area[proper]
+        s = ((x - a)[:, 0] * v[:, 1] - (x - a)[:, 1] * v[:, 0]) / area
+        t = (u[:, 0] * (x - a)[:, 1] - u[:, 1] * (x - a)[:, 0]) / area
+        z = depths_of_corners[around]
+        front = z[:, 0] + s * (z[:, 1] - z[:, 0]) + t * (z[:, 2] - z[:, 0])
+        result[k] = ((s >= 0) & (t >= 0) & (s + t <= 1) & (front > depth + near)).any()
+    return result
 
 
 def pieces(files):
@@ -84,7 +104,9 @@ class SolidGrid:
         low, size = self.points.min(axis=0), max(np.ptp(self.points, axis=0))
         rounded = np.floor((self.points - low) / size * 2**20 + 0.3).astype(np.int64)
         names = np.unique(rounded, axis=0, return_inverse=True)[1].reshape(-1)
-        keys = np.sort(names[self.faces], axis=1)
+        keys = names[self.faces]
+        keys[self.faces[:, 3] == self.faces[:, 2], 3] = -1  # of a triangle, whichever corner comes twice
+        keys = np.sort(keys, axis=1)
         _, first, n = np.unique(keys, axis=0, return_index=True, return_counts=True)
         self.names = names
         return self.faces[first[n == 1]]
@@ -131,10 +153,13 @@ class SolidPainter:
         image = axes.tripcolor(matplotlib.tri.Triangulation(flat[:, 0], flat[:, 1], triangles), values, shading="gouraud",
                                cmap="turbo" if self.limits[0] >= 0 else "coolwarm", vmin=self.limits[0], vmax=self.limits[1],
                                rasterized=True)
-        axes.add_collection(matplotlib.collections.PolyCollection(flat[faces], facecolors="none", edgecolors=(0, 0, 0, 0.18),
+        edges = self.sharp_edges(grid, visible, normal)
+        is_hidden = [hidden(flat[of].mean(axis=1), depth[of].mean(axis=1), flat[triangles], depth[triangles])
+                     for of in (faces, edges)]
+        axes.add_collection(matplotlib.collections.PolyCollection(flat[faces[~is_hidden[0]]], facecolors="none", edgecolors=(0, 0, 0, 0.18),
                                                                   linewidths=0.3))
-        axes.add_collection(matplotlib.collections.LineCollection(flat[self.sharp_edges(grid, visible, normal)], colors="black",
-                                                                  linewidths=1.0, capstyle="round"))
+        axes.add_collection(matplotlib.collections.LineCollection(flat[edges[~is_hidden[1]]], colors="black", linewidths=1.0,
+                                                                  capstyle="round"))
         axes.autoscale_view()
         self.draw_directions(axes, flat, right, up, max(span))
         figure.colorbar(image, ax=axes, label=f"{self.title} [{self.unit}]" if self.unit else self.title, shrink=0.8)
@@ -146,6 +171,8 @@ class SolidPainter:
         faces = self.faces[visible]
         edges = np.concatenate([faces[:, [i, (i + 1) % 4]] for i in range(4)])
         owner = np.tile(visible, 4)
+        real = edges[:, 0] != edges[:, 1]  # of triangles three
+        edges, owner = edges[real], owner[real]
         keys = np.sort(grid.names[edges], axis=1)
         order = np.lexsort((keys[:, 1], keys[:, 0]))
         same = (keys[order][1:] == keys[order][:-1]).all(axis=1)

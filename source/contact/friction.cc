@@ -9,6 +9,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace slipstick::contact
@@ -41,10 +42,22 @@ namespace slipstick::contact
     constexpr double negligible_force = 1e-6;
     // Loads below this part of those of earlier steps are what rounding leaves of none.
     constexpr double rounding_of_loads = 1e-12;
+    // Overlaps below this part of the first ones are what rounding leaves of none.
+    constexpr double negligible_overlap = 1e-10;
     // Multiplications after which Newton's method and its fallback give up.
     constexpr unsigned int longest_fallback = 5000;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
+
+    /// Bonded pairs alone leave a linear problem, whatever algorithm is asked for.
+    template <int dim>
+    bool has_bounds(const scene::Scene<dim> &scene)
+    {
+      return (scene.contact_search.automatic && !scene.contact_search.pair.law.is_bonded) ||
+             std::any_of(scene.contacts.begin(), scene.contacts.end(), [](const auto &pair) {
+               return !pair.law.is_bonded;
+             });
+    }
 
     [[noreturn]] void no_equilibrium(const tfeti::DualProblem &dual, const Vector &certificate)
     {
@@ -79,6 +92,11 @@ namespace slipstick::contact
         const auto feasible = feasible_start(start);
         solution.algorithm  = options.algorithm == scene::Algorithm::semismooth_newton ? "semismooth newton" : "smalbe";
         set_bounds(law.bounds(feasible));
+        if (bears_nothing(feasible))
+          {
+            solution.multipliers = dual.zero();
+            return finished();
+          }
         if (options.algorithm == scene::Algorithm::semismooth_newton)
           {
             solution.directions = start && start->directions
@@ -90,7 +108,7 @@ namespace slipstick::contact
                 solution.multipliers = from;
                 return finished();
               }
-            if (newton(from, true))
+            if (newton(from, true, !start))
               return finished();
             if (law.has_discs()) // SMALBE-M has bounds only
               return finished();
@@ -144,6 +162,45 @@ namespace slipstick::contact
                    overload->held,
                    tfeti::describe(overload->motion, dual.body_names()).c_str()),
             "raise the friction coefficient or the normal force, support the body against this motion, or lower the load");
+      }
+
+      /// Without loads and prescribed displacements: can bodies move to where nothing touches? Where nothing is nearly
+      /// true only, sets have no forces to be told by.
+      bool bears_nothing(const Vector &feasible) const
+      {
+        const auto &kind  = dual.constraints().kind;
+        double      loads = feasible.linfty_norm(), bounds = 0;
+        for (unsigned int r = 0; r < kind.size(); ++r)
+          {
+            if (is_equality(kind[r]))
+              loads = std::max(loads, std::abs(dual.d().local_element(r)));
+            bounds = std::max(bounds, solution.slip_bound[r]);
+          }
+        if (dealii::Utilities::MPI::max(std::max(loads, bounds), dual.communicator()) > 0)
+          return false;
+        std::vector<double> force(kind.size()), stiffness(kind.size(), 1 / dual.norm());
+        const auto         &weights = dual.residual_weights();
+        for (unsigned int r = 0; r < kind.size(); ++r)
+          {
+            stiffness[r] *= weights.empty() ? 1. : weights[r];
+            force[r] = kind[r] == tfeti::RowKind::normal ? stiffness[r] * dual.d().local_element(r) : 0.;
+          }
+        const double none = negligible_overlap * largest_of(force);
+        dual.balance_bodies(stiffness, qp::AdmissibleSet<Vector>{box, {}}, 0., force);
+        for (unsigned int r = 0; r < kind.size(); ++r)
+          if (kind[r] != tfeti::RowKind::normal)
+            force[r] = 0;
+          else
+            force[r] = std::max(force[r], 0.);
+        return largest_of(force) <= none;
+      }
+
+      double largest_of(const std::vector<double> &values) const
+      {
+        double largest = 0;
+        for (const double value : values)
+          largest = std::max(largest, std::abs(value));
+        return dealii::Utilities::MPI::max(largest, dual.communicator());
       }
 
       void set_bounds(std::vector<double> bounds)
@@ -304,7 +361,8 @@ namespace slipstick::contact
       }
 
       /// Semismooth Newton, with bounds that follow the solution or (a Tresca problem) as they are. @return convergence.
-      bool newton(const Vector &from, const bool bounds_follow)
+      /// @param is_rough is the start far from the solution?
+      bool newton(const Vector &from, const bool bounds_follow, const bool is_rough = false)
       {
         Vector d = dual.d();
         d /= dual.norm();
@@ -315,7 +373,7 @@ namespace slipstick::contact
                                             1.,
                                             d,
                                             qp::AdmissibleSet<Vector>{box, std::move(followed)},
-                                            qp::NewtonStart<Vector>{from, gradient, solution.directions},
+                                            qp::NewtonStart<Vector>{from, gradient, solution.directions, is_rough},
                                             qp::Goal(options.tolerance, solution.weighted_reference),
                                             options.newton,
                                             counted(),
@@ -547,7 +605,9 @@ namespace slipstick::contact
     auto                &preconditioner = options.dual.preconditioner;
     if (options.algorithm == scene::Algorithm::automatic)
       options.algorithm = scene.has_contact() ? scene::Algorithm::semismooth_newton : scene::Algorithm::pcg;
-    if (options.algorithm == scene::Algorithm::smalbe) // would change the bounds; but it tells energies of errors
+    if (options.algorithm == scene::Algorithm::smalbe && !has_bounds(scene))
+      preconditioner = tfeti::Preconditioner::dirichlet;
+    else if (options.algorithm == scene::Algorithm::smalbe) // would change the bounds; but it tells energies of errors
       preconditioner =
         options.stops_at_discretization_error ? tfeti::Preconditioner::dirichlet : tfeti::Preconditioner::none;
     else if (preconditioner == tfeti::Preconditioner::automatic)

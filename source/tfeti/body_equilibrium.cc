@@ -29,10 +29,6 @@ namespace slipstick::tfeti
     constexpr unsigned int max_rounds = 5;
     // Forces are out of balance by less than this part of all of them: rounding.
     constexpr double balanced = 1e-12;
-    // Forces out of balance by less than this part of all of them move no body: faces tell what is left, better than points on
-    // springs. Without it a body 1e6 times softer than its base cycles; with 0.1 the lap joint tightened by cooling takes 300
-    // multiplications in place of 70.
-    constexpr double tolerated = 0.01;
     // Motions that no row inside its bounds resists are resisted by this part of what all rows would.
     constexpr double regularization = 1e-10;
     // Jumps below this part of the largest are rounding of none.
@@ -354,13 +350,14 @@ namespace slipstick::tfeti
 
   std::vector<double> BodyEquilibrium::shift(const std::vector<double>                  &t,
                                              const std::vector<double>                  &k,
-                                             const qp::AdmissibleSet<DistributedVector> &bounds) const
+                                             const qp::AdmissibleSet<DistributedVector> &bounds,
+                                             const double                                tolerated) const
   {
     std::vector<Row>      rows = gathered(t, k, bounds);
     Eigen::VectorXd       a    = Eigen::VectorXd::Zero(all_loads.size());
     double                size;
     const Eigen::VectorXd r    = imbalance(all_loads, rows, a, size, nullptr);
-    const double          left = tolerated * size;
+    const double          left = std::max(tolerated, balanced) * size;
     if (r.norm() <= left)
       return std::vector<double>(t.size(), 0.);
     const Eigen::VectorXd loads = all_loads - left / r.norm() * r;

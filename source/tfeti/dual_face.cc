@@ -143,7 +143,7 @@ namespace slipstick::tfeti
         z.copy_locally_owned_data_from(r);
         return;
       }
-    if (turns.empty())
+    if (turns.empty() && problem.yielding.empty())
       problem.preconditioner->apply(*weights, r, z);
     else
       {
@@ -152,6 +152,9 @@ namespace slipstick::tfeti
         problem.preconditioner->apply(*weights, at, z);
         soften(z);
       }
+    for (std::size_t row = 0; row < problem.yielding.size(); ++row) // their own stiffness bears what is smooth, too
+      z.local_element(row) += (1 - problem.yielding[row] * problem.yielding[row]) * problem.metric[row] *
+                              problem.least_stiffness * r.local_element(row);
     z *= problem.norm();
   }
 
@@ -166,9 +169,11 @@ namespace slipstick::tfeti
     return *copy;
   }
 
-  // Half of what the compliance of turned rows does to M.
+  // Half of what the compliance of rows and of turned ones does to M.
   void DualProblem::Face::soften(DistributedVector &x) const
   {
+    for (std::size_t r = 0; r < problem.yielding.size(); ++r)
+      x.local_element(r) *= problem.yielding[r];
     qp::turn(turns, x);
     for (std::size_t k = 0; k < turns.size(); ++k)
       x.local_element(turns[k].second) *= std::sqrt(stiffness[k]);

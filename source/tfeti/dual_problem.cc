@@ -97,20 +97,7 @@ namespace slipstick::tfeti
                                                              options.preconditioner == Preconditioner::dirichlet
                                                                ? &parts->schur_complements
                                                                : nullptr);
-        metric         = preconditioner->weights().stiffnesses();
-        const double least =
-          dealii::Utilities::MPI::min(metric.empty() ? qp::infinity : *std::min_element(metric.begin(), metric.end()),
-                                      comm);
-        for (double &stiffness : metric)
-          stiffness /= least;
-        least_stiffness = least;
-        for (const auto &point : rows.contact_points) // both tangents of a node alike: discs stay round
-          if (point.tangential_row != invalid_row && point.second_row != invalid_row)
-            metric[point.tangential_row] = metric[point.second_row] =
-              std::sqrt(metric[point.tangential_row] * metric[point.second_row]);
-        projects_twice =
-          dealii::Utilities::MPI::max(metric.empty() ? 1. : *std::max_element(metric.begin(), metric.end()), comm) >
-          large_stiffness_ratio;
+        make_metric();
       }
     std::vector<bool> has_no_bounds;
     for (const RowKind kind : rows.kind)
@@ -121,6 +108,31 @@ namespace slipstick::tfeti
     set_dual_load();
     norm_PFP              = lanczos(options);
     setup_multiplications = F->n_applications();
+  }
+
+  // Stiffnesses of the rows, their own compliance included.
+  void DualProblem::make_metric()
+  {
+    metric = preconditioner->weights().stiffnesses();
+    if (dealii::Utilities::MPI::max(rows.compliance.empty() ? 0 : 1, comm) > 0)
+      yielding.assign(metric.size(), 1.);
+    for (unsigned int r = 0; r < rows.compliance.size(); ++r)
+      {
+        const double part = 1 / (1 + rows.compliance[r] * metric[r]);
+        metric[r] *= part;
+        yielding[r] = std::sqrt(part);
+      }
+    least_stiffness =
+      dealii::Utilities::MPI::min(metric.empty() ? qp::infinity : *std::min_element(metric.begin(), metric.end()),
+                                  comm);
+    for (double &stiffness : metric)
+      stiffness /= least_stiffness;
+    for (const auto &point : rows.contact_points) // both tangents of a node alike: discs stay round
+      if (point.tangential_row != invalid_row && point.second_row != invalid_row)
+        metric[point.tangential_row] = metric[point.second_row] =
+          std::sqrt(metric[point.tangential_row] * metric[point.second_row]);
+    projects_twice = dealii::Utilities::MPI::max(metric.empty() ? 1. : *std::max_element(metric.begin(), metric.end()),
+                                                 comm) > large_stiffness_ratio;
   }
 
   void DualProblem::set_step(std::vector<Eigen::VectorXd> loads, std::vector<double> c)

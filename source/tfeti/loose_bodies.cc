@@ -152,11 +152,12 @@ namespace slipstick::tfeti
 
   void DualProblem::balance_bodies(const std::vector<double>                  &stiffness,
                                    const qp::AdmissibleSet<DistributedVector> &bounds,
+                                   const double                                tolerated,
                                    std::vector<double>                        &moved) const
   {
     if (held_by_contact->empty())
       return;
-    const auto jumps = held_by_contact->shift(moved, stiffness, bounds);
+    const auto jumps = held_by_contact->shift(moved, stiffness, bounds, tolerated);
     for (std::size_t r = 0; r < moved.size(); ++r)
       moved[r] -= stiffness[r] * jumps[r];
   }

@@ -40,6 +40,13 @@ class Solids(unittest.TestCase):
         for one, other in zip(found, expected):
             self.assertAlmostEqual(one, other, delta=tolerance * max(1, *map(abs, expected)))
 
+    def refused(self, case, overrides, *words, status=2, options=()):
+        result = solve(case, overrides, options=options)
+        self.assertEqual(result.status, status, result)
+        self.assertIn('\n  remedy: ', result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+
     def figures(self, result):
         summary = result.summary
         pair, results = summary['results']['contact'][0], summary['results']
@@ -326,13 +333,6 @@ class Shapes(Solids):
 
 class Refused(Solids):
 
-    def refused(self, case, overrides, *words, status=2, options=()):
-        result = solve(case, overrides, options=options)
-        self.assertEqual(result.status, status, result)
-        self.assertIn('\n  remedy: ', result.stderr)
-        for word in words:
-            self.assertIn(word, result.stderr)
-
     def test_what_space_does_not_have(self):
         cube = shipped('cube_on_sphere')
         for name, value, *words in (
@@ -375,6 +375,23 @@ class Refused(Solids):
         self.refused(solid(supports={'floor': {'Boundary': 'box/bottom', 'Displacement y': '0'}}, tractions=pull), {},
                      'body box: ', 'one of 3 free motions', status=4)
         self.refused(solid(supports=hinge), {}, 'no face', "'y < -1'")
+
+
+class Shipped(Solids):
+    """Bodies in contact: the figures in the headers of the .prm files."""
+
+    def test_ring_on_a_shaft(self):
+        result = converged(shipped('ring_on_shaft'))
+        lame = 0.02 * 2.1e5 / (1 - 0.09) / (20 * ((1600 + 400) / (1600 - 400) + 1))
+        for row in result.contact:
+            self.assertAlmostEqual(row['pressure'] / lame, 1, delta=0.006)
+            self.assertEqual(row['status'], 'stick')
+        self.assertTrue(any('nothing resists' in warning for warning in result.summary['warnings']))
+
+    def test_oblique_blocks(self):
+        joint = converged(shipped('oblique_blocks'), {'Solver/Tolerance': 1e-8}).summary['results']['contact'][0]
+        self.near(joint['force'], [-96, 800, -128], 1e-6)
+        self.refused(shipped('oblique_blocks'), {'Contact joint/Friction coefficient': 0.19}, 'body box: translation along', status=4)
 
 
 if __name__ == '__main__':

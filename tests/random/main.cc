@@ -1,13 +1,13 @@
 // Random scenes against an independent dense solver.
 //
-//   test_random [--scenes N] [--first SEED] [--verbose] [--keep DIRECTORY] [--write DIRECTORY]
+//   test_random [--scenes N] [--first SEED] [--most N] [--verbose] [--keep DIRECTORY] [--write DIRECTORY]
 //
 // Scenes SEED ... SEED + N - 1 (default: 0 ... 299) are made (scenes.h), each is solved by slipstick in this process with two
 // decompositions and both algorithms, files and all, and by DenseSolver on the matrices of the untorn bodies. Every run
 // must agree with it: displacement and contact forces to 1e-6 (where forces are not unique: their sums at every
 // node), or end with the diagnosis that the dense solver comes to by itself. Where the dense solver found another solution
 // (Coulomb) or none, slipstick's answer must keep all conditions of the law, checked by the dense solver's matrices.
-// --verbose: a line a run; --keep: writes the scenes (.prm, .msh) there, to run them with slipstick; --write: does only that,
+// --most: multiplications that a run of the default method may take, more count as a failure; --verbose: a line a run; --keep: writes the scenes (.prm, .msh) there, to run them with slipstick; --write: does only that,
 // for second_oracle.py.
 // Ends with status 1 when a run disagrees that is not known to (list `known` below), or one agrees that is known not to.
 // Where 1e-10 is not reached 1e-8 is asked for, and counted.
@@ -46,7 +46,7 @@ namespace
 
   struct Options
   {
-    unsigned int scenes = 300, first = 0;
+    unsigned int scenes = 300, first = 0, most = -1; // multiplications
     bool         verbose = false, only_writes = false;
     std::string  directory;
   };
@@ -302,6 +302,8 @@ namespace
                   if (!needs_looser)
                     std::tie(found, result) = first;
                 }
+              if (k < 2 && found.multiplications > options.most)
+                result.verdict = Verdict::failed;
               const double time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
               seconds_slipstick += time;
               const bool is_bad = result.verdict == Verdict::wrong || result.verdict == Verdict::failed;
@@ -475,6 +477,8 @@ namespace
         };
         if (word == "--scenes")
           options.scenes = std::stoul(value());
+        else if (word == "--most")
+          options.most = std::stoul(value());
         else if (word == "--first")
           options.first = std::stoul(value());
         else if (word == "--verbose")
@@ -485,8 +489,9 @@ namespace
             options.only_writes = word == "--write";
           }
         else
-          throw std::runtime_error("unknown option " + word +
-                                   ": --scenes N, --first SEED, --verbose, --keep DIRECTORY, --write DIRECTORY");
+          throw std::runtime_error(
+            "unknown option " + word +
+            ": --scenes N, --first SEED, --most N, --verbose, --keep DIRECTORY, --write DIRECTORY");
       }
     return options;
   }

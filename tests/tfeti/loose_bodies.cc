@@ -70,7 +70,7 @@ namespace
       for (const auto &point : rows.contact_points)
         if (friction > 0 && point.tangential_row != tfeti::invalid_row)
           bounds.pressure_bounds.push_back({point.tangential_row, point.normal_row, {0., friction}});
-      dual->balance_bodies(stiffness, bounds, moved);
+      dual->balance_bodies(stiffness, bounds, 0.01, moved);
 
       auto forces = dual->zero();
       for (unsigned int r = 0; r < n; ++r)
@@ -173,7 +173,7 @@ TEST(LooseBodies, stay_where_supports_hold_them)
   const std::vector<double>                         stiffness(torn.constraints.kind.size(), 1.);
   std::vector<double>                               moved(stiffness.size(), 1.);
   const qp::AdmissibleSet<tfeti::DistributedVector> bounds{{dual->zero(), dual->zero()}, {}};
-  dual->balance_bodies(stiffness, bounds, moved);
+  dual->balance_bodies(stiffness, bounds, 0.01, moved);
   EXPECT_EQ(moved, stiffness);
 }
 

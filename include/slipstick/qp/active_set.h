@@ -2,9 +2,8 @@
 // conditions of the solution. How the sets are used: semismooth_newton.h.
 #pragma once
 
-#include <slipstick/qp/box.h>
+#include <slipstick/qp/admissible_set.h>
 #include <slipstick/qp/kernels.h>
-#include <slipstick/qp/pressure_bounds.h>
 
 #include <algorithm>
 #include <array>
@@ -14,19 +13,15 @@
 
 namespace slipstick::qp
 {
-  /// Where multipliers may be: in a box, tangential ones within bounds that may follow normal ones (they are set in the
-  /// box as x moves). All refer to entries of this process.
-  template <typename Vector>
-  struct AdmissibleSet
-  {
-    Box<Vector>                box;
-    std::vector<PressureBound> pressure_bounds;
-  };
-
   namespace detail
   {
     /// Of every owned entry: -1 at the lower bound, 1 at the upper, 0 free.
     using Sides = std::vector<signed char>;
+
+    // Forces out of balance by less than this part of all of them move no body: faces tell what is left, better than points on
+    // springs. Without it a body 1e6 times softer than its base cycles; with 0.1 the lap joint tightened by cooling takes 300
+    // multiplications in place of 70.
+    constexpr double largest_imbalance = 0.01;
 
     // Across a slipping force that yields by more than this times what its entry does, over the norm of F, the entry is held.
     constexpr double rigid_compliance = 1e3;
@@ -36,13 +31,19 @@ namespace slipstick::qp
     auto balance_bodies(const Problem             &problem,
                         const std::vector<double> &stiffness,
                         const Set                 &set,
+                        const double               tolerated,
                         std::vector<double>       &moved,
-                        int) -> decltype(problem.balance_bodies(stiffness, set, moved))
+                        int) -> decltype(problem.balance_bodies(stiffness, set, tolerated, moved))
     {
-      problem.balance_bodies(stiffness, set, moved);
+      problem.balance_bodies(stiffness, set, tolerated, moved);
     }
     template <typename Problem, typename Set>
-    void balance_bodies(const Problem &, const std::vector<double> &, const Set &, std::vector<double> &, long)
+    void balance_bodies(const Problem &,
+                        const std::vector<double> &,
+                        const Set &,
+                        const double,
+                        std::vector<double> &,
+                        long)
     {}
     template <typename Problem>
     auto has_loose_bodies(const Problem &problem, int) -> decltype(problem.has_loose_bodies())
@@ -144,6 +145,13 @@ namespace slipstick::qp
         softening /= 2;
         adapt_step();
         return true;
+      }
+
+      /// Near the solution bodies are balanced better: what is left may decide which of a few small forces reach their bounds.
+      /// @param residual the natural one, over that of no forces at all.
+      void approach(const double residual)
+      {
+        imbalance = std::min(imbalance, residual);
       }
 
       /// The set becomes that of x - s g. @return whether it is another one, on any process.
@@ -399,7 +407,7 @@ namespace slipstick::qp
             moved[i]     = x.begin()[i] - stiffness[i] * g.begin()[i];
           }
         if (balances)
-          balance_bodies(problem, stiffness, set, moved, 0);
+          balance_bodies(problem, stiffness, set, imbalance, moved, 0);
         const auto place = [&](const std::size_t i) {
           const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i];
           active[i]    = moved[i] <= l ? -1 : moved[i] >= u ? 1 : 0;
@@ -441,7 +449,8 @@ namespace slipstick::qp
       const double               norm;
       const bool                 balances;
       double                     step;
-      double                     softening = 1; // of s, <= 1
+      double                     softening = 1;                 // of s, <= 1
+      double                     imbalance = largest_imbalance; // of forces that moves no body
       AdmissibleSet<Vector>      set;
       const double              *weights;
       std::vector<bool>          bounded;

@@ -20,9 +20,9 @@
 //   `hold(free, gaps, well) const`   the free entries and as many others, with small gaps, as make the face regular if that
 //       can be; or, if that is asked for, far from singular
 // It may have `has_loose_bodies() const` and
-//     `balance_bodies(stiffness, set, moved) const`, which moves bodies that nothing but entries with bounds holds,
-//       moved -= stiffness times their jumps, so that proj(moved) balances their loads: the least of the potential of the
-//       projected forces. So sets are predicted that can bear the loads.
+//     `balance_bodies(stiffness, set, tolerated, moved) const`, which moves bodies that nothing but entries with bounds holds,
+//       moved -= stiffness times their jumps, so that proj(moved) balances their loads, up to the part `tolerated` of all
+//       forces: the least of the potential of the projected forces. So sets are predicted that can bear the loads.
 #pragma once
 
 #include <slipstick/qp/active_set.h>
@@ -46,6 +46,9 @@ namespace slipstick::qp
 
     /// Directions of earlier solves with the same F and G, and where this one leaves its own; none: its own.
     std::shared_ptr<DirectionStore<Vector>> directions = nullptr;
+
+    /// Far from the solution? Then a step may once raise the residual.
+    bool is_rough = false;
   };
 
   /// Ends the method before its goal is reached: called with x on its bounds and its gradient F x - d + G'a after every
@@ -106,6 +109,7 @@ namespace slipstick::qp
         , y(zero_like(d_))
         , Fy(zero_like(d_))
         , gy(zero_like(d_))
+        , is_rough(start.is_rough)
       {
         set.predict(x, g);
       }
@@ -317,7 +321,7 @@ namespace slipstick::qp
       {
         const double t = line_search();
         if (t == 0) // once more with the set of x itself
-          return !has_met_goal && restart();
+          return !has_met_goal && (restart() || leap());
         is_stuck = false;
         Vector known(g);
         if (t == 1)
@@ -335,6 +339,21 @@ namespace slipstick::qp
           merits = {set.natural_residual(x, g)};
         set.predict(x, g);
         return is_softer || is_first;
+      }
+
+      // Once from a rough start the whole step all the same (watchdog technique: Chamberlain, Powell, Lemarechal, Pedersen
+      // 1982): there the set that follows is much better than the residual tells. @return whether there was such a step left.
+      bool leap()
+      {
+        if (!is_rough)
+          return false;
+        is_rough = false;
+        go_to_y(set.natural_residual(y, gy));
+        is_stuck = false;
+        Vector known(g);
+        set.clear_solved(x, known);
+        set.predict(x, known);
+        return true;
       }
 
       // x moves towards y as far as the natural residual falls below the largest of the last steps. @return how
@@ -367,11 +386,17 @@ namespace slipstick::qp
           best = y;
         if (!(merit < merits.back()))
           set.soften();
+        go_to_y(merit);
+        return t;
+      }
+
+      void go_to_y(const double merit)
+      {
         merits.push_back(merit);
+        set.approach(merit / goal.reference);
         std::swap(x, y);
         std::swap(Fx, Fy);
         std::swap(g, gy);
-        return t;
       }
 
       bool is_accepted()
@@ -418,6 +443,7 @@ namespace slipstick::qp
       std::optional<Vector> best;      // where the natural residual is least
       double                residual = HUGE_VAL;
       bool                  is_stuck = false; // the last step did not lower the residual
+      bool                  is_rough;         // the start, and no step was made yet in spite of the residual
       Counts                counts;
     };
   } // namespace detail

@@ -1,7 +1,7 @@
 // Positions of bodies held by contact alone, for given gaps, in which the clipped contact forces balance the loads.
 #pragma once
 
-#include <slipstick/qp/active_set.h>
+#include <slipstick/qp/admissible_set.h>
 #include <slipstick/tfeti/rigid_motions.h>
 
 namespace slipstick::tfeti
@@ -9,7 +9,7 @@ namespace slipstick::tfeti
   /// The motions of bodies which no equality row resists, and the least of
   /// sum_i psi_i(t_i - k_i S_i a) + L'a,   psi_i' = clip to the bounds of row i, over k_i, S_i the jumps of the motions
   /// in row i (in space psi_i' is the nearest point of the disc), L the loads along them: there S'z = L with z = clip(t - k S a), so that the forces z, which a projected
-  /// gradient step t = x - k g gives after the motion a, balance the loads up to 1 % of all forces (only the rest of L
+  /// gradient step t = x - k g gives after the motion a, balance the loads up to a part of all forces (only the rest of L
   /// is balanced). Bounds that depend on normal forces follow these. The function is convex and piecewise quadratic;
   /// Newton's method with an exact line search.
   class BodyEquilibrium
@@ -27,10 +27,12 @@ namespace slipstick::tfeti
     /// @param of_bodies as BodyMotions::loads() gives them.
     void set_loads(const Eigen::VectorXd &of_bodies);
 
-    /// S a of the owned rows. @param t, k owned rows. @param bounds of them, pressure bounds included. Collective.
+    /// S a of the owned rows. @param t, k owned rows. @param bounds of them, pressure bounds included. @param tolerated the
+    /// part of all forces by which loads may be out of balance. Collective.
     std::vector<double> shift(const std::vector<double>                  &t,
                               const std::vector<double>                  &k,
-                              const qp::AdmissibleSet<DistributedVector> &bounds) const;
+                              const qp::AdmissibleSet<DistributedVector> &bounds,
+                              const double                                tolerated) const;
 
   private:
     struct Row

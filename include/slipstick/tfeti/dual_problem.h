@@ -158,9 +158,11 @@ namespace slipstick::tfeti
     std::vector<bool> hold(const std::vector<bool> &free, const std::vector<double> &gaps, const bool well) const;
 
     /// moved -= stiffness times the jumps of the motion of bodies held by contact alone, after which the forces
-    /// `moved`, clipped to their bounds, balance the loads of these bodies. Owned rows. Collective.
+    /// `moved`, clipped to their bounds, balance the loads of these bodies, up to the part `tolerated` of all forces. Owned
+    /// rows. Collective.
     void balance_bodies(const std::vector<double>                  &stiffness,
                         const qp::AdmissibleSet<DistributedVector> &bounds,
+                        const double                                tolerated,
                         std::vector<double>                        &moved) const;
 
     /// Are there bodies held by contact alone?
@@ -281,6 +283,7 @@ namespace slipstick::tfeti
     void fit_motions(const Projector &on_free, const std::vector<bool> &free, Recovery &at) const;
 
     double lanczos(const DualOptions &options) const;
+    void   make_metric();
     void   apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
     void   set_dual_load();                                                 // e too
 
@@ -299,14 +302,15 @@ namespace slipstick::tfeti
     std::unique_ptr<RowPreconditioner>                   preconditioner;
     std::vector<double>                                  metric; // stiffnesses of the owned rows over the least one ...
     double                                               least_stiffness = 1; // ... which this is [N/mm]
-    bool               projects_twice = false; // rounding of one projection would show in the stiffest rows
-    DistributedVector  dual_load;
-    Eigen::VectorXd    resultants; // e of this rank's subdomains in turn
-    DistributedVector  correction; // (F - F~) x, taken off the dual load
-    bool               is_single             = false;
-    double             norm_PFP              = 1;
-    unsigned long long setup_multiplications = 0;
-    double             factorization_time    = 0;
+    std::vector<double> yielding; // of the owned rows: root of that with their compliance over that without; empty: 1
+    bool                projects_twice = false; // rounding of one projection would show in the stiffest rows
+    DistributedVector   dual_load;
+    Eigen::VectorXd     resultants; // e of this rank's subdomains in turn
+    DistributedVector   correction; // (F - F~) x, taken off the dual load
+    bool                is_single             = false;
+    double              norm_PFP              = 1;
+    unsigned long long  setup_multiplications = 0;
+    double              factorization_time    = 0;
   };
 
   /// The dual problem on its free rows, as qp's semismooth Newton and PCPG ask for it.

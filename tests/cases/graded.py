@@ -1,0 +1,28 @@
+"""Grids graded towards the contact, where the start of the solver is far from the solution: its price, and what it finds."""
+
+import sys
+import unittest
+
+from program import SOURCE, WORK, converged
+
+sys.path.insert(0, str(SOURCE / 'benchmarks'))
+import graded_scenes  # noqa: E402
+from scene_files import Variant  # noqa: E402
+
+
+class Graded(unittest.TestCase):
+    # 1362 and 8047 multiplications by way of the fallback, before the first step was taken as a whole
+    def test_no_fallback_and_few_multiplications_without_friction(self):
+        for smallest, degree in ((graded_scenes.SMALLEST, 1), (graded_scenes.STEEP, 2)):
+            with self.subTest(smallest=smallest, degree=degree):
+                scene = graded_scenes.circle(Variant(degree, 8), 50, 'frictionless', smallest).write(WORK / str(degree))
+                result = converged(scene, {'Solver/Tolerance': '1e-8'})
+                solver = result.summary['solver']
+                self.assertEqual(solver['fallbacks'], 0)
+                self.assertLess(solver['hessian_multiplications'], 110)
+                # 814.5 N/mm by Hertz' formula
+                self.assertAlmostEqual(result.summary['results']['contact'][0]['normal_force'], 814.5, delta=4)
+
+
+if __name__ == '__main__':
+    unittest.main()
