@@ -65,6 +65,8 @@ namespace slipstick::tfeti
   {
     if (!blocks)
       force = subdomains[p]->apply_touched_stiffness(move);
+    else if (subdomains[p]->has_schur_complement())
+      force = subdomains[p]->apply_schur_complement(move);
     else
       (*blocks)[p].multiply(move, force);
   }

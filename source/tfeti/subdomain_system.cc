@@ -21,6 +21,11 @@ namespace slipstick::tfeti
     // 10, 50 and 200 cells along an edge, where it does not, 1e-9 and less for strips of cells of 1000 to 1, where it does.
     constexpr double smallest_single_stiffness = 2e-7;
 
+    // Blocks at the touched unknowns pay off below this number of entries over that of K. In the plane they always do; cubes
+    // of 8^3 cells in space have 8 times as many.
+    constexpr double       entries_of_blocks = 4;
+    constexpr Eigen::Index motions_in_space  = 6;
+
     std::string name_of(const SubdomainMatrices &matrices)
     {
       return "subdomain " + std::to_string(matrices.subdomain);
@@ -168,6 +173,44 @@ namespace slipstick::tfeti
       if (std::find(fixing_unknowns.begin(), fixing_unknowns.end(), order[k]) != fixing_unknowns.end())
         schur(k, k) -= regularization;
     return {schur, touched_in_last_order(), is_soft ? Precision::double_precision : precision};
+  }
+
+  void SubdomainSystem::prepare_schur_complement(const std::shared_ptr<CholmodSession> &of_inner)
+  {
+    std::vector<int> place(n_unknowns(), 0);
+    for (const unsigned int i : touched_unknowns)
+      place[i] = -1;
+    inner_unknowns.clear();
+    for (unsigned int i = 0; i < n_unknowns(); ++i)
+      if (place[i] == 0)
+        {
+          place[i] = inner_unknowns.size();
+          inner_unknowns.push_back(i);
+        }
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Eigen::Index j = 0; j < matrices.stiffness.outerSize(); ++j)
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(matrices.stiffness, j); entry; ++entry)
+        if (place[entry.row()] >= 0 && place[entry.col()] >= 0)
+          entries.emplace_back(place[entry.row()], place[entry.col()], entry.value());
+    Eigen::SparseMatrix<double> lower(inner_unknowns.size(), inner_unknowns.size());
+    lower.setFromTriplets(entries.begin(), entries.end());
+    inner.emplace(of_inner, lower, std::vector<unsigned int>(), name_of(matrices));
+  }
+
+  Eigen::VectorXd SubdomainSystem::apply_schur_complement(const Eigen::VectorXd &x) const
+  {
+    Eigen::VectorXd u        = Eigen::VectorXd::Zero(n_unknowns());
+    u(touched_unknowns)      = x;
+    Eigen::VectorXd at_inner = apply_stiffness(u)(inner_unknowns);
+    inner->solve(at_inner);
+    u(inner_unknowns) = -at_inner; // forces vanish there
+    return apply_stiffness(u)(touched_unknowns);
+  }
+
+  bool SubdomainSystem::prefers_factors(const SubdomainMatrices &matrices, const std::size_t n_touched)
+  {
+    return matrices.kernel.cols() == motions_in_space && n_touched < static_cast<std::size_t>(matrices.load.size()) &&
+           n_touched * n_touched / 2 > entries_of_blocks * matrices.stiffness.nonZeros();
   }
 
   Eigen::VectorXd SubdomainSystem::touched_diagonal() const

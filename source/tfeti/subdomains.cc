@@ -52,6 +52,7 @@ namespace slipstick::tfeti
   {
     const bool has_schur       = options.preconditioner == Preconditioner::dirichlet;
     const auto session         = std::make_shared<CholmodSession>();
+    const auto dissecting      = std::make_shared<CholmodSession>(Ordering::nested_dissection);
     auto       inverses_before = std::exchange(inverses, {}), schur_before = std::exchange(schur_complements, {});
     for (unsigned int p = 0; p < size(); ++p)
       {
@@ -62,8 +63,14 @@ namespace slipstick::tfeti
             const double start = MPI_Wtime();
             if (systems[p])
               parts[p] = systems[p]->take_matrices();
-            systems[p] =
-              std::make_unique<SubdomainSystem>(session, std::move(parts[p]), touched[p], explicit_blocks || has_schur);
+            const bool by_factors =
+              !explicit_blocks && has_schur && SubdomainSystem::prefers_factors(parts[p], touched[p].size());
+            systems[p] = std::make_unique<SubdomainSystem>(by_factors ? dissecting : session,
+                                                           std::move(parts[p]),
+                                                           touched[p],
+                                                           !by_factors && (explicit_blocks || has_schur));
+            if (by_factors)
+              systems[p]->prepare_schur_complement(dissecting);
             seconds += MPI_Wtime() - start;
             ++factorizations;
           }
@@ -73,12 +80,15 @@ namespace slipstick::tfeti
                                      : system.pseudo_inverse_block(options.operator_precision));
         if (has_schur)
           schur_complements.push_back(is_kept ? std::move(schur_before[p])
-                                              : system.schur_complement(options.preconditioner_precision));
+                                      : system.has_schur_complement()
+                                        ? PackedSymmetric(Eigen::MatrixXd(), {}, options.preconditioner_precision)
+                                        : system.schur_complement(options.preconditioner_precision));
         if (!is_kept || solutions[p].size() == 0)
           solve_load(p);
         if (explicit_blocks && !options.keeps_factors)
           system.release(); // one factor at a time
       }
     session->forget_analyses();
+    dissecting->forget_analyses();
   }
 } // namespace slipstick::tfeti

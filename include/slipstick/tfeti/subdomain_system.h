@@ -71,6 +71,20 @@ namespace slipstick::tfeti
     /// in subdomains that are far softer in one deformation than in another (strips).
     PackedSymmetric schur_complement(const Precision precision) const;
 
+    /// Makes the factor that apply_schur_complement() needs, of K at the unknowns that rows do not touch.
+    void prepare_schur_complement(const std::shared_ptr<CholmodSession> &session);
+
+    bool has_schur_complement() const
+    {
+      return inner.has_value();
+    }
+
+    /// The Schur complement of K on the touched unknowns times @p x, in their order, without the matrix itself.
+    Eigen::VectorXd apply_schur_complement(const Eigen::VectorXd &x) const;
+
+    /// Are touched unknowns so many that blocks of them would have far more entries than K?
+    static bool prefers_factors(const SubdomainMatrices &matrices, const std::size_t n_touched);
+
     /// Diagonal of K at the touched unknowns.
     Eigen::VectorXd touched_diagonal() const;
 
@@ -130,6 +144,8 @@ namespace slipstick::tfeti
     double                          regularization; // rho [N/mm]
     bool                            is_soft;  // against some deformation, by far, compared with the largest entry of K
     std::optional<Cholesky>         cholesky; // none once released
+    std::vector<unsigned int>       inner_unknowns; // not touched
+    std::optional<Cholesky>         inner;          // of K there
   };
 
   /// As many of the @p candidates as R has columns, chosen by pivoting so that the rows of R there are as independent

@@ -43,7 +43,8 @@ namespace slipstick::tfeti
     // of every subdomain, once prepared
     std::vector<std::unique_ptr<SubdomainSystem>> systems;
     std::vector<PackedSymmetric>                  inverses;          // K+ at the touched unknowns
-    std::vector<PackedSymmetric>                  schur_complements; // with the Dirichlet preconditioner
+    std::vector<PackedSymmetric>                  schur_complements; // with the Dirichlet preconditioner; empty where
+                                                                     // systems apply them by factors
 
     /// K+ f of every subdomain once prepared [mm].
     const std::vector<Eigen::VectorXd> &unconstrained();
