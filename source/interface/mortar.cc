@@ -1,3 +1,4 @@
+#include <slipstick/interface/mortar.h>
 #include <slipstick/interface/node_matching.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -15,10 +16,8 @@ namespace slipstick::interface
     // An edge counts as fully covered if no more than this fraction is missing.
     constexpr double whole_edge = 1e-9;
     // Nodes lie on their curve when they are off by no more than this part of the edge.
-    constexpr double on_curve = 1e-12;
-    // Weights below this are rounding.
-    constexpr double       smallest_weight = 1e-11;
-    constexpr unsigned int n_gauss         = 5; // per segment; exact between straight parallel edges of both degrees
+    constexpr double       on_curve = 1e-12;
+    constexpr unsigned int n_gauss  = 5; // per segment; exact between straight parallel edges of both degrees
 
     /// The integrals of all slave edges, by node.
     class MortarIntegrals
@@ -224,22 +223,6 @@ namespace slipstick::interface
           }
     }
   } // namespace
-
-  Weights normalised(const std::map<mechanics::NodeKey, double> &raw, const double sum)
-  {
-    Weights weights;
-    for (const auto &[key, value] : raw)
-      if (std::abs(value) > smallest_weight * sum)
-        weights.emplace_back(key, value / sum);
-    const auto by_size = [](const auto &a, const auto &b) { return std::abs(a.second) < std::abs(b.second); };
-    const auto largest = std::max_element(weights.begin(), weights.end(), by_size);
-    double     others  = 0;
-    for (auto w = weights.begin(); w != weights.end(); ++w)
-      if (w != largest)
-        others += w->second;
-    largest->second = 1 - others;
-    return weights;
-  }
 
   template <>
   std::vector<MortarRow<2>> mortar_rows(const std::vector<mechanics::SurfaceEdge<2>> &slave,

@@ -1,3 +1,4 @@
+#include <slipstick/interface/mortar.h>
 #include <slipstick/interface/node_matching.h>
 #include <slipstick/interface/surface_pairing.h>
 

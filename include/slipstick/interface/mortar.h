@@ -1,37 +1,12 @@
-// The mortar integrals between two curves.
-//
-// Notation: N_k shape functions of a slave edge, phi_i its test functions, y(x) the point of the master that the ray
-// from x along the normal field of the pairing meets, <.> the integral over that part of the slave that has such a
-// point, with the measure of the kinematics (of bodies of revolution the slave's circumference). A row says
-// n_i . (sum_k d_ik u_k - sum_j m_ij u_j) <= gap
-// with d_ik = <phi_i N_k> / D_i, m_ij = <phi_i N_j(y)> / D_i, D_i = <phi_i>.
+// The mortar integrals between two curves or surfaces; notation: mortar_row.h.
 #pragma once
 
 #include <slipstick/interface/curve_pairing.h>
+#include <slipstick/interface/mortar_row.h>
 #include <slipstick/mechanics/surface_facet.h>
 
 namespace slipstick::interface
 {
-  using Weights = std::vector<std::pair<mechanics::NodeKey, double>>; // sorted by node, sum 1
-
-  /// One slave node and what faces it.
-  template <int dim>
-  struct MortarRow
-  {
-    mechanics::NodeKey     slave{};
-    unsigned int           side = 0;          // a node at a corner of the slave boundary has one row for each side
-    dealii::Point<dim>     position;          // of the slave node [mm]
-    dealii::Tensor<1, dim> normal;            // outward, mean of both sides (CurvePairing)
-    Weights                slave_weights;     // d_ik
-    Weights                master_weights;    // m_ij
-    dealii::Point<dim>     master_position;   // sum_j m_ij y_j [mm]
-    double                 gap      = 0;      // along n_i [mm], negative when overlapping
-    double                 measure  = 0;      // D_i [mm], of bodies of revolution [mm^2]
-    double                 length   = 0;      // the same in the plane [mm]
-    double                 left_out = 0;      // sagitta that the edges there leave out, both sides [mm]
-    double full_measure = 0, full_length = 0; // if all edges of the slave boundary on this side were covered
-  };
-
   /// The rows of the slave nodes that have a master within @p reach along the normal, on either side; in the order
   /// of their nodes. Sides must face each other: the first crossing of the ray decides.
   ///

@@ -4,7 +4,7 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
-#include <slipstick/interface/mortar.h>
+#include <slipstick/interface/mortar_row.h>
 
 #include <cmath>
 #include <map>
