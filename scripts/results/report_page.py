@@ -8,7 +8,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-from . import contact_plot, pictures, scene_drawing
+from . import painters, pictures, scene_drawing
 
 STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 1.5rem auto; padding: 0 1rem; }
@@ -87,19 +87,29 @@ def balance_table(run, results):
     obstacles = set(run.scene.names("Obstacles"))
     entries += [(f"contact {pair['pair']} with obstacle {master}", pair) for pair in results.get("contact", [])
                 for master in [run.scene.get(f"Contact {pair['pair']}/Master")] if master in obstacles and "force" in pair]
-    rows = [(name, *(number(entry["force"][axis]) for axis in (0, 1)), number(entry["moment"])) for name, entry in entries]
-    sums = [sum(entry["force"][axis] for _, entry in entries) for axis in (0, 1)] + [sum(entry["moment"] for _, entry in entries)]
-    scales = [max((abs(entry["force"][axis]) for _, entry in entries for axis in (0, 1)), default=0)] * 2
-    scales.append(max((abs(entry["moment"]) for _, entry in entries), default=0))
-    cells = ["0" if abs(total) <= CLOSED_BALANCE * scale else number(total, 3) for total, scale in zip(sums, scales)]
-    return table(("acts on the bodies", "Fx [N]", "Fy [N]", "moment about the origin [N mm]"), rows, [("sum", *cells)])
+    def parts(entry):
+        moment = entry["moment"]
+        return list(entry["force"]), list(moment) if isinstance(moment, list) else [moment]
+
+    rows = [(name, *map(number, sum(parts(entry), []))) for name, entry in entries]
+    cells = []
+    for of_kind in zip(*(parts(entry) for _, entry in entries)):  # all forces, then all moments
+        scale = max(abs(value) for values in of_kind for value in values)
+        totals = map(sum, zip(*of_kind))
+        cells += ["0" if abs(total) <= CLOSED_BALANCE * scale else number(total, 3) for total in totals]
+    head = [f"F{axis} [N]" for axis in "xyz"] + [f"M{axis} [N mm]" for axis in "xyz"]
+    if not painters.is_in_space(run):
+        head = ["Fx [N]", "Fy [N]", "moment about the origin [N mm]"]
+    return table(("acts on the bodies", *head), rows, [("sum", *cells)])
 
 
 def pairs_table(results):
     keys = (("normal_force", "normal force [N]"), ("tangential_force", "tangential force [N]"), ("max_pressure", "largest pressure [MPa]"),
-            ("contact_length", "length in contact [mm]"), ("contact_nodes", "nodes in contact"), ("stick_nodes", "stick"),
+            ("contact_length", "length in contact [mm]"), ("contact_area", "area in contact [mm^2]"), ("contact_nodes", "nodes in contact"), ("stick_nodes", "stick"),
             ("slip_nodes", "slip"), ("open_nodes", "open"))
-    rows = [(pair["pair"], *(number(pair.get(key)) for key, _ in keys)) for pair in results.get("contact", [])]
+    pairs = results.get("contact", [])
+    keys = [(key, name) for key, name in keys if any(key in pair for pair in pairs)]
+    rows = [(pair["pair"], *(number(pair.get(key)) for key, _ in keys)) for pair in pairs]
     return table(("pair", *(name for _, name in keys)), rows) if rows else "<p>The scene has no contact.</p>"
 
 
@@ -108,7 +118,7 @@ def history_plot(run):
     rows = run.table("history.csv")
     if len(rows) < 2:
         return ""
-    columns = [name for name in rows[0] if name.endswith((" Fx", " Fy")) and any(abs(float(row[name] or 0)) > 0 for row in rows)]
+    columns = [name for name in rows[0] if name.endswith((" Fx", " Fy", " Fz")) and any(abs(float(row[name] or 0)) > 0 for row in rows)]
     figure, axes = plt.subplots(figsize=(8, 4.2), layout="constrained")
     for name in columns:
         axes.plot([float(row["t"]) for row in rows], [float(row[name]) for row in rows], marker=".", label=name)
@@ -121,12 +131,12 @@ def history_plot(run):
 
 def drawings(run, options):
     text = ""
-    grids = [run.grid(step) for step in range(len(run.grid_files))]
+    grids = painters.grids(run)
     for name in ("von_mises", "displacement") if grids else ():
-        painter = pictures.Painter(run, name, options, grids)
+        painter = painters.field_painter(run, name, options, grids)
         text += picture(painter.draw(len(grids) - 1), painter.title)
     if run.contact:
-        painter = contact_plot.ContactPainter(run)
+        painter = painters.contact_painter(run)
         figure = painter.draw(painter.steps[-1])
         if figure:
             text += picture(figure, "tractions along the contact boundaries")
@@ -144,11 +154,18 @@ def costs(run):
             f"<table><tr><th>stage</th><th>time</th><th></th></tr>{rows}</table>")
 
 
+def scene(run):
+    if painters.is_in_space(run):
+        return "<p>Solids are drawn below, with their results.</p>"
+    if not run.grid_files:
+        return "<p>Not drawn: the run wrote no fields (Output/VTU).</p>"
+    return picture(scene_drawing.draw(run), "the scene before loading")
+
+
 def page(run, options=None):
     options = options or pictures.Options()
     results = run.summary.get("results", {})
-    sections = [("Scene", (picture(scene_drawing.draw(run), "the scene before loading") if run.grid_files else
-                           "<p>Not drawn: the run wrote no fields (Output/VTU).</p>")),
+    sections = [("Scene", scene(run)),
                 ("Results", figures(run)), ("Warnings", warnings(run)),
                 ("Balance of loads and reactions" + (", last load step" if len(run.factors) > 1 else ""), balance_table(run, results)),
                 ("Contact pairs", pairs_table(results)), ("Load steps", history_plot(run)), ("Pictures", drawings(run, options)),

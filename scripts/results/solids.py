@@ -12,9 +12,8 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
-from . import bands, fields
+from . import bands, fields, pictures
 
-DRAWN_DISPLACEMENT = 0.04  # of the size of the scene
 VIEW = (0.55, 0.45, 1.0)  # from where it is seen: x to the right, y upwards, z to the front
 DPI = 150
 DEPTH_TOLERANCE = 0.01  # of the size of the picture: what lies less in front of an edge does not hide it
@@ -122,12 +121,7 @@ class SolidPainter:
         self.title, self.unit, _ = fields.FIELDS[name]
         self.values = [fields.values(name, grid) for grid in grids]
         self.faces = grids[0].surface()
-        largest = max(np.linalg.norm(grid.displacement, axis=1).max() for grid in grids)
-        size = max(np.ptp(grids[0].points, axis=0))
-        share = DRAWN_DISPLACEMENT * size / largest if largest > 0 else 1
-        decade = 10.0 ** math.floor(math.log10(share))
-        chosen = max([1] + [step * decade for step in (1, 2, 5) if step * decade <= share * (1 + 1e-12)])
-        self.factor = chosen if options.scale is None else options.scale
+        self.factor = pictures.magnification(run, grids, options.scale)
         shown = np.concatenate([values[np.unique(self.faces)] for values in self.values])
         self.limits = list(options.limits) if options.limits else [shown.min(), shown.max()]
         if self.limits[1] - self.limits[0] <= 1e-12 * max(map(abs, self.limits + [1e-300])):

@@ -308,10 +308,10 @@ namespace
   }
 
   /// Writes a block of n cells a direction from (0, 0, 0) to @p size in Gmsh's format: hexahedra, or six tetrahedra for each.
-  std::string write_block(const std::string                 &file,
-                          const dealii::Point<3>            &size,
-                          const std::array<unsigned int, 3> &n,
-                          const bool                         in_tetrahedra)
+  void write_block(const std::string                 &file,
+                   const dealii::Point<3>            &size,
+                   const std::array<unsigned int, 3> &n,
+                   const bool                         in_tetrahedra)
   {
     const auto node = [&](const unsigned int i, const unsigned int j, const unsigned int k) {
       return 1 + i + (n[0] + 1) * (j + (n[1] + 1) * k);
@@ -368,7 +368,6 @@ namespace
         << nodes.str() << "$EndNodes\n$Elements\n"
         << n_elements << '\n'
         << elements.str() << "$EndElements\n";
-    return file;
   }
 
   dealii::Tensor<1, 3> turned(const dealii::Tensor<1, 3> &x, const double angle, const dealii::Tensor<1, 3> &axis)
@@ -409,7 +408,11 @@ TEST(Solids, patch_test_between_meshes_that_do_not_match)
               {
                 auto &body = scene.bodies[0];
                 body.shape = scene::Shape::mesh;
-                body.file  = write_block("solids.msh", {10, 5, 10}, {{3, 2, 4}}, how == "tetrahedra");
+                body.file =
+                  "solids_" + std::to_string(dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD)) + ".msh";
+                if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+                  write_block(body.file, {10, 5, 10}, {{3, 2, 4}}, how == "tetrahedra");
+                MPI_Barrier(MPI_COMM_WORLD);
               }
             if (is_exchanged)
               std::swap(scene.contacts[0].slave, *scene.contacts[0].master);

@@ -107,9 +107,10 @@ def audit(result, tolerance, friction=None):
     worst = 0.
     for row in rows:
         p, q, gap, slip = (row[name] for name in ('pressure', 'tangential_traction', 'gap', 'slip'))
+        work = q * slip if 'traction_z' not in row else sum(row['traction_' + d] * row['slip_' + d] for d in 'xyz')  # per area
         bound = min(row['slip_bound'] if friction is None else friction * max(p, 0.), 2 * stress)
         worst = max(worst, -gap / length, -p / stress, abs(p * gap) / (stress * length), (abs(q) - bound) / stress,
-                    (bound * abs(slip) + q * slip) / (stress * length) if bound < math.inf else 0.)
+                    (bound * abs(slip) + work) / (stress * length) if bound < math.inf else 0.)
     if not worst <= tolerance:
         raise AssertionError('contact.csv violates the laws of contact by {:.2e}, allowed is {:.0e}\n{}'.format(
             worst, tolerance, result))
