@@ -44,6 +44,10 @@ namespace slipstick::contact
     constexpr double rounding_of_loads = 1e-12;
     // Overlaps below this part of the first ones are what rounding leaves of none.
     constexpr double negligible_overlap = 1e-10;
+    // SMALBE-M is taken over by Newton's method at this residual, ...
+    constexpr double first_takeover = 0.1;
+    // ... or at so much smaller ones.
+    constexpr double takeover_reduction = 0.3;
     // Multiplications after which Newton's method and its fallback give up.
     constexpr unsigned int longest_fallback = 5000;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
@@ -109,8 +113,6 @@ namespace slipstick::contact
                 return finished();
               }
             if (newton(from, true, !start))
-              return finished();
-            if (law.has_discs()) // SMALBE-M has bounds only
               return finished();
             refuse_overload();
             ++solution.fallbacks;
@@ -287,7 +289,7 @@ namespace slipstick::contact
             set_bounds(law.bounds(start->multipliers));
             return start->multipliers;
           }
-        Vector from                      = smalbe(feasible, options.newton.start_tolerance, {});
+        Vector from                      = start_by_smalbe(feasible);
         solution.counts.outer_iterations = 0;
         set_bounds(law.bounds(from));
         return from;
@@ -432,6 +434,21 @@ namespace slipstick::contact
         solution.multipliers = smalbe(from, accuracy, counted(), may_end_early);
       }
 
+      /// SMALBE-M comes nearer and nearer to the solution until Newton's method converges from there.
+      bool newton_from_smalbe(const Vector &from)
+      {
+        Reached reached;
+        for (double accuracy = first_takeover; accuracy > options.tolerance; accuracy *= takeover_reduction)
+          {
+            solution.multipliers = smalbe(from, accuracy, counted(), false, &reached);
+            if (solution.status != qp::Status::converged)
+              return false;
+            if (try_newton())
+              return true;
+          }
+        return false;
+      }
+
       /// Newton's method is tried again after 1, 2, 4, 8, ... rounds: a part of the cost of these, whatever they are.
       bool is_due(const unsigned int rounds) const
       {
@@ -443,7 +460,8 @@ namespace slipstick::contact
       {
         if (!law.depends_on_pressure())
           {
-            solve_within_bounds(from, options.tolerance, true);
+            if (!(options.algorithm == scene::Algorithm::semismooth_newton && newton_from_smalbe(from)))
+              solve_within_bounds(from, options.tolerance, true);
             return;
           }
         double accuracy              = std::max(options.tolerance, first_accuracy);
@@ -484,29 +502,102 @@ namespace slipstick::contact
         const auto present = solution.slip_bound;
         for (unsigned int k = 0; k < max_blends; ++k, part /= 2)
           {
-            const auto bounds  = blend(next, part);
-            Box        shifted = multiplier_box(dual, bounds);
-            shifted.lower -= solution.multipliers;
-            shifted.upper -= solution.multipliers;
-            Vector missing = dual.particular();
-            missing -= solution.multipliers;
-            const auto point = qp::feasible_point(dual, missing, shifted);
-            if (point.status == qp::Status::infeasible)
+            const auto bounds = blend(next, part);
+            const auto near   = nearest_feasible(bounds);
+            if (!near)
               continue;
-            from = solution.multipliers;
-            from += point.x;
+            from = *near;
             set_bounds(bounds);
-            qp::project(box, from); // to the last bit
+            qp::project(box, from); // to the last bit; of discs the square around them holds the point already
             return true;
           }
         return false;
       }
 
-      /// SMALBE-M from a point that balances the loads within the present bounds; fills status and residuals.
+      /// The point within these bounds nearest to the present one that balances the loads; in space the one nearest to zero.
+      std::optional<Vector> nearest_feasible(const std::vector<double> &bounds) const
+      {
+        Box shifted = multiplier_box(dual, bounds);
+        if (law.has_discs())
+          {
+            qp::ForceSet<Vector> set{std::move(shifted), law.fixed_discs(bounds, true)};
+            for (const auto &disc : set.nodes)
+              unbind(disc, set.box);
+            auto point = qp::feasible_point(dual, dual.particular(), set);
+            return point.status == qp::Status::infeasible ? std::nullopt : std::optional<Vector>(std::move(point.x));
+          }
+        shifted.lower -= solution.multipliers;
+        shifted.upper -= solution.multipliers;
+        Vector missing = dual.particular();
+        missing -= solution.multipliers;
+        auto point = qp::feasible_point(dual, missing, shifted);
+        if (point.status == qp::Status::infeasible)
+          return {};
+        point.x += solution.multipliers;
+        return std::move(point.x);
+      }
+
+      static void unbind(const qp::PressureBound &disc, Box &of)
+      {
+        for (const auto entry : {disc.tangential, disc.second})
+          {
+            of.lower.local_element(entry) = -qp::infinity;
+            of.upper.local_element(entry) = qp::infinity;
+          }
+      }
+
+      /// The present bounds about @p center, in space with discs.
+      Box shifted_box(const Vector &center) const
+      {
+        Box shifted = box;
+        shifted.lower -= center;
+        shifted.upper -= center;
+        return shifted;
+      }
+      qp::DiscBox<Vector> shifted_discs(const Vector &center) const
+      {
+        qp::DiscBox<Vector> shifted{shifted_box(center), {}};
+        for (const auto &disc : law.fixed_discs(solution.slip_bound, true))
+          if (const double radius = disc.forces.closed_radius(0); radius > 0) // others are fixed
+            {
+              unbind(disc, shifted.box);
+              shifted.discs.push_back({disc.tangential,
+                                       disc.second,
+                                       radius,
+                                       {{-center.local_element(disc.tangential), -center.local_element(disc.second)}}});
+            }
+        return shifted;
+      }
+
+      /// Where SMALBE-M came to with the same bounds and the same point that balances the loads.
+      using Reached = std::optional<qp::SmalbeStart<Vector>>;
+
+      /// SMALBE-M (with discs SMALSE-M) from a point that balances the loads within the present bounds, or from where it came
+      /// to; fills status and residuals.
       Vector smalbe(const Vector       &from,
                     const double        tolerance,
                     const qp::Observer &progress,
-                    const bool          may_end_early = false)
+                    const bool          may_end_early = false,
+                    Reached            *reached       = nullptr)
+      {
+        if (law.has_discs())
+          return smalbe_on(shifted_discs(from), from, tolerance, progress, false, reached);
+        return smalbe_on(shifted_box(from), from, tolerance, progress, may_end_early, reached);
+      }
+
+      /// A few steps, in space with squares around the discs: they tell the first set as well.
+      Vector start_by_smalbe(const Vector &feasible)
+      {
+        return smalbe_on(shifted_box(feasible), feasible, options.newton.start_tolerance, {}, false, nullptr);
+      }
+
+      template <typename Set>
+      Vector smalbe_on(const Set          &shifted,
+                       const Vector       &from,
+                       const double        tolerance,
+                       const qp::Observer &progress,
+                       const bool          may_end_early,
+                       Reached            *reached)
       {
         const auto with_start = [&progress](qp::OuterStep step) {
           ++step.hessian_multiplications; // F x~ in the homogenised load
@@ -516,17 +607,15 @@ namespace slipstick::contact
         const auto load = homogenised_load(dual, from);
         if (options.algorithm == scene::Algorithm::semismooth_newton && solution.weighted_reference == 0)
           solution.weighted_reference = dual.residual_norm(load);
-        Box shifted = box;
-        shifted.lower -= from;
-        shifted.upper -= from;
+        const Box &bounds = bounds_of(shifted);
         // entries that reached a shifted bound are put on the bound itself, to the last bit
         const auto unshifted = [&](const Vector &step) {
           Vector x = from;
           x += step;
           for (unsigned int r = 0; r < x.locally_owned_size(); ++r)
-            if (step.local_element(r) <= shifted.lower.local_element(r))
+            if (step.local_element(r) <= bounds.lower.local_element(r))
               x.local_element(r) = box.lower.local_element(r);
-            else if (step.local_element(r) >= shifted.upper.local_element(r))
+            else if (step.local_element(r) >= bounds.upper.local_element(r))
               x.local_element(r) = box.upper.local_element(r);
           return x;
         };
@@ -537,7 +626,7 @@ namespace slipstick::contact
                                        1.,
                                        load,
                                        shifted,
-                                       qp::SmalbeStart<Vector>{dual.zero()},
+                                       reached && *reached ? **reached : qp::SmalbeStart<Vector>{dual.zero()},
                                        qp::Goal(tolerance, solution.reference),
                                        options.smalbe,
                                        with_start,
@@ -549,7 +638,18 @@ namespace slipstick::contact
         solution.equality           = result.equality_residual;
         solution.reference          = result.reference;
         gradient                    = result.gradient;
+        if (reached)
+          *reached = qp::SmalbeStart<Vector>{result.x, result.shift};
         return unshifted(result.x);
+      }
+
+      static const Box &bounds_of(const Box &set)
+      {
+        return set;
+      }
+      static const Box &bounds_of(const qp::DiscBox<Vector> &set)
+      {
+        return set.box;
       }
 
       /// Fills which inequality rows are at a bound, or as near as rounding.

@@ -121,20 +121,6 @@ namespace slipstick::scene
                                "set it to auto, or Solver/Algorithm to semismooth newton");
     }
 
-    /// SMALBE-M knows bounds on single multipliers, and friction in space bounds two of them together.
-    template <int dim>
-    void check_discs(const Scene<dim> &scene, const Parameters &parameters)
-    {
-      if (dim == 2 || scene.solver.algorithm != Algorithm::smalbe)
-        return;
-      for (const auto &contact : scene.contacts)
-        if (contact.law.has_friction)
-          throw parameters.error("Solver/Algorithm",
-                                 "knows no friction in space (Dimension = 3) yet, but Contact " + contact.name +
-                                   " has Law = " + contact.law.name,
-                                 "set it to auto or semismooth newton");
-    }
-
     // Poisson's ratio above which standard elements in plane strain or of revolution are much too stiff (bulk over shear modulus 100).
     constexpr double locking_poisson_ratio = 0.495;
 
@@ -176,7 +162,6 @@ namespace slipstick::scene
     check_boundaries_used_once(scene, parameters);
     check_decomposition(scene, parameters);
     check_algorithm(scene, parameters);
-    check_discs(scene, parameters);
     check_element(scene, parameters);
     check_revolution(scene, parameters);
   }

@@ -1,3 +1,4 @@
+#include <slipstick/base/exceptions.h>
 #include <slipstick/tfeti/dual_problem.h>
 
 #include <deal.II/base/mpi.h>
@@ -20,8 +21,24 @@ namespace slipstick::tfeti
     , ties(ties_)
     , turns(turns_)
   {
-    if (!problem.bodies->free(turns.empty() ? free : nearest_rows()).empty())
+    if (!problem.bodies->free(free, BodyMotions::rounding_of_resistance, turns).empty())
       return;
+    try
+      {
+        make_projectors();
+      }
+    catch (const NumericalError &) // to rounding the free rows leave a motion open; the same on every rank
+      {
+        projector.reset();
+        tied.reset();
+        return;
+      }
+    if (problem.preconditioner)
+      weights = std::make_unique<RowWeights::Inverse>(problem.preconditioner->weights(), free, turns);
+  }
+
+  void DualProblem::Face::make_projectors()
+  {
     const std::vector<double>  softened = softened_metric();
     const std::vector<double> &metric   = turns.empty() ? problem.metric : softened;
     projector =
@@ -33,21 +50,6 @@ namespace slipstick::tfeti
           moving[tie.tied] = true;
         tied = std::make_unique<Projector>(*problem.projector, moving, problem.comm, ties, metric, turns);
       }
-    if (problem.preconditioner)
-      weights = std::make_unique<RowWeights::Inverse>(problem.preconditioner->weights(), free, turns);
-  }
-
-  // Across the force a node is held as well as along the row nearer to that.
-  std::vector<bool> DualProblem::Face::nearest_rows() const
-  {
-    std::vector<bool> holds = free;
-    for (const qp::Turn &turn : turns)
-      if (free[turn.second] && std::abs(turn.sine) > std::abs(turn.cosine))
-        {
-          holds[turn.first]  = true;
-          holds[turn.second] = false;
-        }
-    return holds;
   }
 
   // A row that yields by kappa on top of 1/k has the stiffness 1/(kappa + 1/k). Empty without turned rows.

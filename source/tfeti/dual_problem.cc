@@ -1,8 +1,8 @@
 #include <slipstick/base/collective.h>
-#include <slipstick/tfeti/dense.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
 #include <slipstick/qp/box.h>
+#include <slipstick/tfeti/dense.h>
 #include <slipstick/tfeti/dual_problem.h>
 #include <slipstick/tfeti/gathered_by_label.h>
 #include <slipstick/tfeti/operator_choice.h>
@@ -327,9 +327,16 @@ namespace slipstick::tfeti
   bool DualProblem::hold_by(const std::vector<RigidMotion> &loose,
                             const std::vector<bool>        &is_candidate,
                             const std::vector<double>      &scale,
-                            std::vector<bool>              &free) const
+                            std::vector<bool>              &free,
+                            const std::vector<qp::Turn>    &turns) const
   {
-    const Eigen::MatrixXd            own = bodies->jumps(loose).toDense();
+    Eigen::MatrixXd own = bodies->jumps(loose).toDense();
+    for (const qp::Turn &turn : turns)
+      {
+        const Eigen::RowVectorXd first = own.row(turn.first), second = own.row(turn.second);
+        own.row(turn.first)  = turn.cosine * first + turn.sine * second;
+        own.row(turn.second) = turn.cosine * second - turn.sine * first;
+      }
     std::vector<std::vector<double>> candidates;
     std::vector<std::uint64_t>       labels;
     for (unsigned int r = 0; r < free.size(); ++r)
@@ -407,7 +414,8 @@ namespace slipstick::tfeti
                                 const DistributedVector        &x,
                                 Recovery                       &at) const
   {
-    const Eigen::MatrixXd            own  = bodies->jumps(loose).toDense();
+    Eigen::MatrixXd own = bodies->jumps(loose).toDense();
+    own                 = (own.array().abs() < least_hold).select(0., own); // rounding moves no row
     const DistributedVector          jump = jumps(at.u);
     std::vector<std::vector<double>> conditions; // jump on the right side, then its derivatives
     for (unsigned int r = 0; r < free.size(); ++r)

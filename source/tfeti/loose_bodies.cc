@@ -28,11 +28,17 @@ namespace slipstick::tfeti
     // ... the search ends where the slope promises less than this part of the sum.
     constexpr double least_gain = 1e-12;
 
-    /// A row of a loose body.
+    /// A row of a loose body, or in space both tangential ones of a node, whose forces together are no larger than the
+    /// capacity.
     struct LooseRow
     {
       double          g, capacity; // capacity infinite: one-sided
-      Eigen::VectorXd share;
+      Eigen::VectorXd share, second;
+
+      double jump(const Eigen::VectorXd &a) const
+      {
+        return std::hypot(share.dot(a), second.dot(a));
+      }
     };
 
     /// The motion a at which sum r |g + S a| + e'a is least.
@@ -66,8 +72,7 @@ namespace slipstick::tfeti
       {
         double bears = 0;
         for (std::size_t i = 0; i < rows.size(); ++i)
-          bears +=
-            rows[i].capacity * (one_sided[i] ? std::max(0., -rows[i].share.dot(a)) : std::abs(rows[i].share.dot(a)));
+          bears += rows[i].capacity * (one_sided[i] ? std::max(0., -rows[i].share.dot(a)) : rows[i].jump(a));
         const double drives = -loads.dot(a);
         return drives > 0 ? bears / drives : HUGE_VAL;
       }
@@ -110,14 +115,17 @@ namespace slipstick::tfeti
           }
         for (std::size_t i = 0; i < rows.size(); ++i)
           {
-            const double t = rows[i].g + rows[i].share.dot(a), smooth = std::hypot(t, eps);
-            const double factor = one_sided[i] ? rows[i].capacity / 2 : rows[i].capacity;
+            const double          t = rows[i].g + rows[i].share.dot(a), across = rows[i].second.dot(a);
+            const double          smooth = std::hypot(t, across, eps);
+            const double          factor = one_sided[i] ? rows[i].capacity / 2 : rows[i].capacity;
+            const Eigen::VectorXd along  = t * rows[i].share + across * rows[i].second;
             value += factor * (smooth - (one_sided[i] ? t : 0.));
             if (slope)
               {
-                *slope += factor * (t / smooth - (one_sided[i] ? 1. : 0.)) * rows[i].share;
-                *curvature +=
-                  factor * eps * eps / (smooth * smooth * smooth) * rows[i].share * rows[i].share.transpose();
+                *slope += factor * along / smooth - (one_sided[i] ? factor : 0.) * rows[i].share;
+                *curvature += factor / smooth *
+                              (rows[i].share * rows[i].share.transpose() + rows[i].second * rows[i].second.transpose() -
+                               along * along.transpose() / (smooth * smooth));
               }
           }
         return value;
@@ -130,12 +138,13 @@ namespace slipstick::tfeti
     };
   } // namespace
 
-  std::vector<bool> DualProblem::hold(const std::vector<bool>   &free,
-                                      const std::vector<double> &gaps,
-                                      const bool                 well) const
+  std::vector<bool> DualProblem::hold(const std::vector<bool>     &free,
+                                      const std::vector<double>   &gaps,
+                                      const bool                   well,
+                                      const std::vector<qp::Turn> &turns) const
   {
     std::vector<bool> result = free;
-    const auto        loose  = bodies->free(free, well ? weak_resistance : BodyMotions::rounding_of_resistance);
+    const auto        loose  = bodies->free(free, well ? weak_resistance : BodyMotions::rounding_of_resistance, turns);
     if (loose.empty())
       return result;
     const double largest =
@@ -147,7 +156,7 @@ namespace slipstick::tfeti
         is_candidate[r] = !free[r];
         scale[r]        = 1 / (least_gap + (largest > 0 ? gaps[r] / largest : 0.));
       }
-    hold_by(loose, is_candidate, scale, result);
+    hold_by(loose, is_candidate, scale, result, turns);
     return result;
   }
 
@@ -175,20 +184,34 @@ namespace slipstick::tfeti
     Eigen::VectorXd                  loads(loose.size());
     for (std::size_t m = 0; m < loose.size(); ++m)
       loads[m] = loose[m].load;
-    for (unsigned int r = 0; r < free.size(); ++r)
-      if (!free[r])
+    std::vector<unsigned int> second(free.size(), invalid_row); // tangential row of the same node
+    std::vector<bool>         is_second(free.size(), false);
+    for (const auto &point : rows.contact_points)
+      if (point.tangential_row != invalid_row && point.second_row != invalid_row)
         {
-          if (capacity[r] < 0 || own.row(r).isZero(0.))
-            continue;
-          const double unit = 1; // any gap: what counts is how the sum grows far away
-          numbers.push_back({std::isfinite(capacity[r]) ? 0. : unit, capacity[r]});
-          for (std::size_t m = 0; m < loose.size(); ++m)
-            numbers.back().push_back(own(r, m));
-          labels.push_back(rows.label[r]);
+          second[point.tangential_row] = point.second_row;
+          is_second[point.second_row]  = true;
         }
+    for (unsigned int r = 0; r < free.size(); ++r)
+      {
+        const bool is_pair = second[r] != invalid_row;
+        if (free[r] || is_second[r] || capacity[r] < 0 ||
+            (own.row(r).isZero(0.) && !(is_pair && !own.row(second[r]).isZero(0.))))
+          continue;
+        const double unit = 1; // any gap: what counts is how the sum grows far away
+        numbers.push_back({std::isfinite(capacity[r]) ? 0. : unit, capacity[r]});
+        for (std::size_t m = 0; m < loose.size(); ++m)
+          numbers.back().push_back(own(r, m));
+        for (std::size_t m = 0; m < loose.size(); ++m)
+          numbers.back().push_back(is_pair ? own(second[r], m) : 0.);
+        labels.push_back(rows.label[r]);
+      }
     std::vector<LooseRow> all;
-    for (const auto &[label, row] : gathered_by_label(labels, numbers, comm)) // g, capacity, share
-      all.push_back({row[0], row[1], Eigen::Map<const Eigen::VectorXd>(row.data() + 2, row.size() - 2)});
+    for (const auto &[label, row] : gathered_by_label(labels, numbers, comm)) // g, capacity, shares
+      {
+        const Eigen::Map<const Eigen::MatrixXd> shares(row.data() + 2, loose.size(), 2);
+        all.push_back({row[0], row[1], shares.col(0), shares.col(1)});
+      }
     if (all.empty())
       return {};
     const WeakestMotion   weakest(std::move(all), loads);

@@ -160,8 +160,9 @@ namespace slipstick::tfeti
   }
 
   // Sum over rows of what they see of the motions, times itself; whole on every rank, summed in the order of the ranks.
-  Eigen::SparseMatrix<double> BodyMotions::resistance_of(const std::vector<bool> &active,
-                                                         const bool               without_levers) const
+  Eigen::SparseMatrix<double> BodyMotions::resistance_of(const std::vector<bool>  &active,
+                                                         const bool                without_levers,
+                                                         const std::vector<Share> &of_rows) const
   {
     const auto at_one_point = [without_levers](const Share &share) {
       Eigen::VectorXd values = share.values;
@@ -170,10 +171,10 @@ namespace slipstick::tfeti
       return values;
     };
     std::map<std::pair<unsigned int, unsigned int>, Eigen::MatrixXd> own;
-    for (auto begin = shares.begin(); begin != shares.end();)
+    for (auto begin = of_rows.begin(); begin != of_rows.end();)
       {
         const auto end =
-          std::find_if(begin, shares.end(), [row = begin->row](const Share &share) { return share.row != row; });
+          std::find_if(begin, of_rows.end(), [row = begin->row](const Share &share) { return share.row != row; });
         if (active.empty() || active[begin->row])
           for (auto a = begin; a != end; ++a)
             for (auto b = begin; b != end; ++b)
@@ -202,11 +203,38 @@ namespace slipstick::tfeti
     return result;
   }
 
+  // The shares of all rows, those of turned ones as they are after that.
+  std::vector<BodyMotions::Share> BodyMotions::turned(const std::vector<qp::Turn> &turns) const
+  {
+    std::map<unsigned int, std::vector<Share>> others; // of the turned rows
+    const auto                                 of_row = [this](const unsigned int row) {
+      return std::equal_range(shares.begin(), shares.end(), Share{row, 0, {}}, [](const Share &a, const Share &b) {
+        return a.row < b.row;
+      });
+    };
+    for (const qp::Turn &turn : turns)
+      for (const auto &[row, of_first, of_second] :
+           {std::tuple(turn.first, turn.cosine, turn.sine), std::tuple(turn.second, -turn.sine, turn.cosine)})
+        for (const auto &[from, factor] : {std::pair(turn.first, of_first), std::pair(turn.second, of_second)})
+          for (auto [share, end] = of_row(from); share != end; ++share)
+            others[row].push_back({static_cast<unsigned int>(row), share->body, factor * share->values});
+    std::vector<Share> result;
+    for (const Share &share : shares)
+      if (others.count(share.row) == 0)
+        result.push_back(share);
+    for (auto &[row, of_this] : others)
+      std::move(of_this.begin(), of_this.end(), std::back_inserter(result));
+    std::stable_sort(result.begin(), result.end(), [](const Share &a, const Share &b) { return a.row < b.row; });
+    return result;
+  }
+
   // Orthonormal.
-  std::vector<Eigen::VectorXd> BodyMotions::unresisted(const std::vector<bool> &active, const double resistance) const
+  std::vector<Eigen::VectorXd> BodyMotions::unresisted(const std::vector<bool>  &active,
+                                                       const double              resistance,
+                                                       const std::vector<Share> &of_rows) const
   {
     const auto null_vectors_of = [&](const bool without_levers) {
-      const Eigen::SparseMatrix<double> all = resistance_of(active, without_levers);
+      const Eigen::SparseMatrix<double> all = resistance_of(active, without_levers, of_rows);
       return null_vectors(all, resistance * std::max(largest_eigenvalue(all), 1.));
     };
     std::vector<Eigen::VectorXd> result = null_vectors_of(false);
@@ -224,10 +252,12 @@ namespace slipstick::tfeti
     return result;
   }
 
-  std::vector<RigidMotion> BodyMotions::free(const std::vector<bool> &active, const double resistance) const
+  std::vector<RigidMotion> BodyMotions::free(const std::vector<bool>     &active,
+                                             const double                 resistance,
+                                             const std::vector<qp::Turn> &turns) const
   {
     std::vector<RigidMotion> motions;
-    for (auto &amplitudes : unresisted(active, resistance))
+    for (auto &amplitudes : unresisted(active, resistance, turns.empty() ? shares : turned(turns)))
       motions.push_back({std::move(amplitudes), 0., frames});
     if (motions.empty()) // as nearly always: the loads are not asked
       return motions;

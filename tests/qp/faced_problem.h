@@ -171,7 +171,10 @@ namespace slipstick::qp::test
     }
 
     /// The entries with the least gaps become free until the face is regular.
-    std::vector<bool> hold(std::vector<bool> free, const std::vector<double> &gaps, const bool) const
+    std::vector<bool> hold(std::vector<bool>          free,
+                           const std::vector<double> &gaps,
+                           const bool,
+                           const std::vector<Turn> &) const
     {
       while (!face(free, {}).is_regular())
         {

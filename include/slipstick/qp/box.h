@@ -76,6 +76,48 @@ namespace slipstick::qp
     return p < 0 ? (x - upper) / p : infinity;
   }
 
+  /// What the gradient at one entry has in it.
+  struct GradientParts
+  {
+    double free    = 0; // phi
+    double chopped = 0; // beta
+    double reduced = 0; // phi~
+    double descent = 0; // x - step times this is projected; of bounds gP, of curved sets the whole gradient
+  };
+
+  /// Calls f(i, parts) for the owned entries of x with the gradient g.
+  template <typename Vector, typename F>
+  void for_each_part(const Box<Vector> &box, const Vector &x, const Vector &g, const double step, const F &f)
+  {
+    const auto        l = box.lower.begin(), u = box.upper.begin();
+    const auto        xi = x.begin(), gi = g.begin();
+    const std::size_t n = local_size(x);
+    for (std::size_t i = 0; i < n; ++i)
+      {
+        const double phi = free_gradient(xi[i], gi[i], l[i], u[i]), beta = chopped_gradient(xi[i], gi[i], l[i], u[i]);
+        f(i, GradientParts{phi, beta, reduced_free_gradient(xi[i], phi, l[i], u[i], step), phi + beta});
+      }
+  }
+
+  template <typename Vector>
+  constexpr bool is_curved(const Box<Vector> &)
+  {
+    return false;
+  }
+
+  /// Owned entries that a step along p has brought to their bounds, or beyond.
+  template <typename Vector>
+  std::size_t n_leaving(const Box<Vector> &box, const Vector &p, const Vector &x)
+  {
+    const auto        l = box.lower.begin(), u = box.upper.begin();
+    const auto        xi = x.begin(), pi = p.begin();
+    const std::size_t n       = local_size(x);
+    std::size_t       leaving = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      leaving += pi[i] != 0 && !is_free(xi[i], l[i], u[i]);
+    return leaving;
+  }
+
   /// x := projection of x on the box.
   template <typename Vector>
   void project(const Box<Vector> &box, Vector &x)
@@ -116,20 +158,28 @@ namespace slipstick::qp
         }
   }
 
+  /// Owned entries at their bounds.
+  template <typename Vector>
+  ActiveEntries own_active(const Box<Vector> &box, const Vector &x)
+  {
+    const auto        l = box.lower.begin(), u = box.upper.begin();
+    const auto        xi = x.begin();
+    const std::size_t n  = local_size(x);
+    ActiveEntries     active;
+    for (std::size_t i = 0; i < n; ++i)
+      {
+        active.lower += xi[i] <= l[i];
+        active.upper += xi[i] >= u[i] && l[i] < u[i];
+      }
+    return active;
+  }
+
   /// Entries at their bounds, over all processes. One reduction.
   template <typename Vector, typename Reduction>
   ActiveEntries count_active(const Box<Vector> &box, const Vector &x, const Reduction &reduction)
   {
-    const auto            l = box.lower.begin(), u = box.upper.begin();
-    const auto            xi = x.begin();
-    const std::size_t     n  = local_size(x);
-    std::array<double, 2> active{{0, 0}};
-    for (std::size_t i = 0; i < n; ++i)
-      {
-        active[0] += xi[i] <= l[i];
-        active[1] += xi[i] >= u[i] && l[i] < u[i];
-      }
-    active = reduction.sum(active);
+    const auto own    = own_active(box, x);
+    const auto active = reduction.sum(std::array<double, 2>{{double(own.lower), double(own.upper)}});
     return {static_cast<std::size_t>(active[0]), static_cast<std::size_t>(active[1])};
   }
 

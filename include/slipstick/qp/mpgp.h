@@ -1,4 +1,4 @@
-// MPGP: modified proportioning with gradient projections, for min 1/2 x'Ax - x'b within two-sided bounds.
+// MPGP: modified proportioning with gradient projections, for min 1/2 x'Ax - x'b within two-sided bounds and discs.
 // Dostal, Schoeberl 2005; Dostal 2009, section 5.8; expansions of Kruzik, Horak, Cermak, Pospisil, Pecha 2020.
 //
 // Every step lowers the objective: a projected step that does not is cut short, |A| grows when a Rayleigh quotient
@@ -96,7 +96,7 @@ namespace slipstick::qp
         const double optimal = c.pg / c.pAp, longest = std::min(optimal, iterate.longest_step());
         iterate.step(longest);
         if (options.expansion == Expansion::boundary_then_projection)
-          iterate.set_direction(free_gradient);
+          iterate.set_direction(&GradientParts::free);
         else if (optimal <= longest)
           return restart();
         const bool projects_gradient = options.expansion == Expansion::boundary_then_projection;
@@ -110,7 +110,7 @@ namespace slipstick::qp
         ++steps.proportioning_steps;
         if (options.expansion == Expansion::gradient_projection)
           return project_gradient();
-        iterate.set_direction(chopped_gradient);
+        iterate.set_direction(&GradientParts::chopped);
         is_conjugate         = false;
         const double longest = iterate.longest_step();
         if (longest * iterate.norm() < 1)
@@ -124,10 +124,10 @@ namespace slipstick::qp
         return restart();
       }
 
-      // x := projection of x - alpha gP
+      // x := projection of x - alpha gP, on discs of x - alpha g
       Outcome project_gradient()
       {
-        iterate.set_direction(projected_gradient);
+        iterate.set_direction(&GradientParts::descent);
         return project_step(iterate.step_length()) ? Outcome() : Outcome(Status::stagnated);
       }
 
@@ -137,7 +137,7 @@ namespace slipstick::qp
       {
         const auto trial = iterate.evaluate_trial(length);
         is_conjugate     = false;
-        if (trial.change <= options.sufficient_decrease * trial.best_change)
+        if (trial.change <= options.sufficient_decrease * trial.best_change + iterate.noise_of_change())
           iterate.accept_trial();
         else
           {
@@ -184,7 +184,7 @@ namespace slipstick::qp
     };
   } // namespace detail
 
-  /// Minimise 1/2 x'Ax - x'b within the box until stop(x, |gP|) is true. `A(v, Av)` applies A, symmetric positive
+  /// Minimise 1/2 x'Ax - x'b within the set (Box or DiscBox) until stop(x, |gP|) is true. `A(v, Av)` applies A, symmetric positive
   /// semidefinite; `norm` is |A|, best not too small; `stop` must answer alike on all processes. A start outside of the
   /// box is projected on it. From x = 0, or from a start with gradient, nothing is multiplied before the first step.
   /// status: converged if and only if stop() was true; stagnated at rounding level; infeasible if some lower > upper
@@ -199,11 +199,16 @@ namespace slipstick::qp
   /// assert(best.status == Status::converged);
   /// assert(best.x == (Vector{1, -1, 0.5})); // b, clipped
   /// @endcode
-  template <typename Vector, typename Operator, typename Stop, typename Reduction, typename Tracker = NoTracker>
+  template <typename Vector,
+            typename Set,
+            typename Operator,
+            typename Stop,
+            typename Reduction,
+            typename Tracker = NoTracker>
   MpgpResult<Vector> mpgp(Operator         &&A,
                           const double       norm,
                           const Vector      &b,
-                          const Box<Vector> &box,
+                          const Set         &set,
                           MpgpStart<Vector>  start,
                           const Stop        &stop,
                           const MpgpOptions &options,
@@ -211,8 +216,8 @@ namespace slipstick::qp
                           Tracker          &&tracker = Tracker())
   {
     using Iterate =
-      detail::MpgpIterate<Vector, std::remove_reference_t<Operator>, Reduction, std::remove_reference_t<Tracker>>;
-    Iterate               iterate(A, norm, b, box, std::move(start), options, reduction, tracker);
+      detail::MpgpIterate<Vector, Set, std::remove_reference_t<Operator>, Reduction, std::remove_reference_t<Tracker>>;
+    Iterate               iterate(A, norm, b, set, std::move(start), options, reduction, tracker);
     detail::Mpgp<Iterate> method(iterate, options);
     const Status          status = method.run(stop);
     const double          gP     = iterate.gradient_norm();

@@ -1,7 +1,7 @@
 // The iterate of MPGP: point, gradient, direction, and the passes over them. What to do with them: mpgp.h.
 #pragma once
 
-#include <slipstick/qp/box.h>
+#include <slipstick/qp/disc_box.h>
 #include <slipstick/qp/options.h>
 #include <slipstick/qp/types.h>
 
@@ -10,7 +10,7 @@
 
 namespace slipstick::qp
 {
-  /// Where MPGP starts. The gradient A x - b, if known, saves a multiplication; it is used only if x is within the box.
+  /// Where MPGP starts. The gradient A x - b, if known, saves a multiplication; it is used only if x is within the set.
   template <typename Vector>
   struct MpgpStart
   {
@@ -28,10 +28,13 @@ namespace slipstick::qp
 
   namespace detail
   {
-    template <typename Vector, typename Operator, typename Reduction, typename Tracker>
+    /// Set: Box or DiscBox.
+    template <typename Vector, typename Set, typename Operator, typename Reduction, typename Tracker>
     class MpgpIterate
     {
     public:
+      using Part = double GradientParts::*;
+
       /// p'g, p'Ap, p'p
       struct Curvature
       {
@@ -54,14 +57,14 @@ namespace slipstick::qp
       MpgpIterate(Operator          &A_,
                   const double       norm_A_,
                   const Vector      &b_,
-                  const Box<Vector> &box_,
+                  const Set         &set_,
                   MpgpStart<Vector>  start,
                   const MpgpOptions &options_,
                   const Reduction   &reduction_,
                   Tracker           &tracker_)
         : A(A_)
         , b(b_)
-        , box(box_)
+        , set(set_)
         , options(options_)
         , reduction(reduction_)
         , tracker(tracker_)
@@ -91,9 +94,14 @@ namespace slipstick::qp
       {
         return options.rounding * (norm_A * std::sqrt(sums.x) + norm_b);
       }
+      /// Rounding of the change of the objective along arcs: their points are off them, times the force across.
+      double noise_of_change() const
+      {
+        return is_curved(set) ? noise() * std::sqrt(sums.x) : 0.;
+      }
       double longest_step() const
       {
-        return qp::longest_step(box, x, p, reduction);
+        return qp::longest_step(set, x, p, reduction);
       }
       const Sums &split() const
       {
@@ -116,19 +124,18 @@ namespace slipstick::qp
         return multiplications;
       }
 
-      /// Bring x into the box, find the gradient. False if some lower > upper, or a bound is not a number.
+      /// Bring x into the set, find the gradient. False if some lower > upper, or a bound is not a number.
       bool prepare()
       {
-        const auto            l = box.lower.begin(), u = box.upper.begin(), bi = b.begin();
-        const auto            xi = x.begin();
-        const std::size_t     n  = local_size(x);
-        std::array<double, 4> s{{0, 0, 0, 0}}; // contradictions, moved entries, |b|^2, |x|^2
+        std::copy(x.begin(), x.end(), p.begin());
+        project(set, x);
+        const auto            bi = b.begin();
+        const auto            xi = x.begin(), old = p.begin();
+        const std::size_t     n = local_size(x);
+        std::array<double, 4> s{{n_contradictions(set), 0, 0, 0}}; // contradictions, moved entries, |b|^2, |x|^2
         for (std::size_t i = 0; i < n; ++i)
           {
-            const double old = xi[i];
-            s[0] += !(l[i] <= u[i]);
-            xi[i] = clip(old, l[i], u[i]);
-            s[1] += xi[i] != old;
+            s[1] += xi[i] != old[i];
             s[2] += bi[i] * bi[i];
             s[3] += xi[i] * xi[i];
           }
@@ -153,26 +160,19 @@ namespace slipstick::qp
       /// Split the gradient at x, begin conjugate gradients anew: p = phi.
       void restart()
       {
-        const auto        l = box.lower.begin(), u = box.upper.begin();
-        const auto        xi = x.begin(), gi = g.begin();
-        const std::size_t n = local_size(x);
-        Sums              s;
-        for (std::size_t i = 0; i < n; ++i)
-          add_entry(s, xi[i], gi[i], l[i], u[i]);
+        const Sums s     = own_sums(x, g);
         const auto total = reduction.sum(std::array<double, 4>{{s.free, s.chopped, s.reduced, s.x}});
         sums             = {total[0], total[1], total[2], total[3]};
-        set_direction(free_gradient);
+        set_direction(&GradientParts::free);
       }
 
-      /// p_i = part(x_i, g_i, lower_i, upper_i), a part of the gradient.
-      template <typename Part>
-      void set_direction(const Part &part)
+      /// p = a part of the gradient.
+      void set_direction(const Part part)
       {
-        const auto        l = box.lower.begin(), u = box.upper.begin();
-        const auto        xi = x.begin(), gi = g.begin(), pi = p.begin();
-        const std::size_t n = local_size(x);
-        for (std::size_t i = 0; i < n; ++i)
-          pi[i] = part(xi[i], gi[i], l[i], u[i]);
+        const auto pi = p.begin();
+        for_each_part(set, x, g, step_length(), [&](const std::size_t i, const GradientParts &parts) {
+          pi[i] = parts.*part;
+        });
       }
 
       /// Multiply A p.
@@ -184,32 +184,33 @@ namespace slipstick::qp
         return {s[0], s[1], s[2]};
       }
 
-      /// x := x - a p and the next conjugate direction, unless that leaves the box: then false and nothing has changed.
+      /// x := x - a p and the next conjugate direction, unless that leaves the set: then false and nothing has changed.
       /// To end on a bound counts as leaving, as p must vanish on the active entries.
       bool conjugate_step(const double a, const double pAp)
       {
-        const auto        l = box.lower.begin(), u = box.upper.begin();
-        const auto        xi = x.begin(), gi = g.begin(), pi = p.begin(), Api = Ap.begin();
-        const std::size_t n       = local_size(x);
-        double            leaving = 0, phi_Ap = 0;
-        Sums              s;
-        for (std::size_t i = 0; i < n; ++i)
-          {
-            const double y = xi[i] - a * pi[i], gy = gi[i] - a * Api[i];
-            leaving += pi[i] != 0 && !is_free(y, l[i], u[i]);
-            phi_Ap += free_gradient(y, gy, l[i], u[i]) * Api[i];
-            add_entry(s, y, gy, l[i], u[i]);
-          }
-        const auto total = reduction.sum(std::array<double, 6>{{leaving, phi_Ap, s.free, s.chopped, s.reduced, s.x}});
+        std::copy(x.begin(), x.end(), trial.begin());
+        std::copy(g.begin(), g.end(), trial_g.begin());
+        add(-a, p, trial);
+        add(-a, Ap, trial_g);
+        const auto Api    = Ap.begin();
+        double     phi_Ap = 0;
+        Sums       s;
+        for_each_part(set, trial, trial_g, step_length(), [&](const std::size_t i, const GradientParts &parts) {
+          phi_Ap += parts.free * Api[i];
+          add_entry(s, trial.begin()[i], parts);
+        });
+        const double leaving = n_leaving(set, p, trial);
+        const auto   total = reduction.sum(std::array<double, 6>{{leaving, phi_Ap, s.free, s.chopped, s.reduced, s.x}});
         if (total[0] > 0)
           return false;
 
-        for (std::size_t i = 0; i < n; ++i)
-          {
-            xi[i] -= a * pi[i];
-            gi[i] -= a * Api[i];
-            pi[i] = free_gradient(xi[i], gi[i], l[i], u[i]) - total[1] / pAp * pi[i];
-          }
+        using std::swap;
+        swap(x, trial);
+        swap(g, trial_g);
+        const auto pi = p.begin();
+        for_each_part(set, x, g, step_length(), [&](const std::size_t i, const GradientParts &parts) {
+          pi[i] = parts.free - total[1] / pAp * pi[i];
+        });
         tracker.stepped(a);
         sums = {total[2], total[3], total[4], total[5]};
         return true;
@@ -218,7 +219,7 @@ namespace slipstick::qp
       /// x := x - a p, a no longer than the longest step; A p is known. To be followed by restart() or a trial.
       void step(const double a)
       {
-        step_within(box, a, p, x);
+        step_within(set, a, p, x);
         add(-a, Ap, g);
         tracker.stepped(a);
       }
@@ -228,22 +229,20 @@ namespace slipstick::qp
       {
         std::copy(x.begin(), x.end(), trial.begin());
         add(-a, p, trial);
-        project(box, trial);
+        project(set, trial);
         multiply(trial, trial_g);
-        const auto        l = box.lower.begin(), u = box.upper.begin(), bi = b.begin();
+        add(-1., b, trial_g);
         const auto        xi = x.begin(), gi = g.begin(), yi = trial.begin(), gyi = trial_g.begin();
         const std::size_t n  = local_size(x);
         double            ss = 0, sAs = 0, sg = 0; // s = trial - x
-        Sums              t;
         for (std::size_t i = 0; i < n; ++i)
           {
-            gyi[i] -= bi[i];
             const double s = yi[i] - xi[i];
             ss += s * s;
             sAs += s * (gyi[i] - gi[i]);
             sg += s * gi[i];
-            add_entry(t, yi[i], gyi[i], l[i], u[i]);
           }
+        const Sums t     = own_sums(trial, trial_g);
         const auto total = reduction.sum(std::array<double, 7>{{ss, sAs, sg, t.free, t.chopped, t.reduced, t.x}});
         trial_sums       = {total[3], total[4], total[5], total[6]};
         note_curvature(total[1], total[0]);
@@ -260,7 +259,7 @@ namespace slipstick::qp
         swap(g, trial_g);
         tracker.moved_towards(1.0);
         sums = trial_sums;
-        set_direction(free_gradient);
+        set_direction(&GradientParts::free);
       }
 
       /// x := x + fraction (trial - x). To be followed by restart().
@@ -268,7 +267,7 @@ namespace slipstick::qp
       {
         combine(fraction, trial, 1 - fraction, x);
         combine(fraction, trial_g, 1 - fraction, g);
-        project(box, x);
+        project(set, x);
         tracker.moved_towards(fraction);
       }
 
@@ -280,12 +279,20 @@ namespace slipstick::qp
       }
 
       // Split the gradient g_y at y.
-      void add_entry(Sums &s, const double y, const double gy, const double l, const double u) const
+      Sums own_sums(const Vector &y, const Vector &gy) const
       {
-        const double phi = free_gradient(y, gy, l, u), beta = chopped_gradient(y, gy, l, u);
-        s.free += phi * phi;
-        s.chopped += beta * beta;
-        s.reduced += phi * reduced_free_gradient(y, phi, l, u, step_length());
+        Sums s;
+        for_each_part(set, y, gy, step_length(), [&](const std::size_t i, const GradientParts &parts) {
+          add_entry(s, y.begin()[i], parts);
+        });
+        return s;
+      }
+
+      static void add_entry(Sums &s, const double y, const GradientParts &parts)
+      {
+        s.free += parts.free * parts.free;
+        s.chopped += parts.chopped * parts.chopped;
+        s.reduced += parts.free * parts.reduced;
         s.x += y * y;
       }
 
@@ -298,7 +305,7 @@ namespace slipstick::qp
 
       Operator          &A;
       const Vector      &b;
-      const Box<Vector> &box;
+      const Set         &set;
       const MpgpOptions &options;
       const Reduction   &reduction;
       Tracker           &tracker;

@@ -17,7 +17,7 @@
 //       `precondition(r, z)`    z = M r on the free entries, 0 on the others; symmetric positive semidefinite
 //       the Problem and its faces may have residual_weights (kernels.h)
 //       `is_regular()`          false when the free entries alone do not determine a
-//   `hold(free, gaps, well) const`   the free entries and as many others, with small gaps, as make the face regular if that
+//   `hold(free, gaps, well, turns) const`   the free entries and as many others, with small gaps, as make the face regular if that
 //       can be; or, if that is asked for, far from singular
 // It may have `has_loose_bodies() const` and
 //     `balance_bodies(stiffness, set, tolerated, moved) const`, which moves bodies that nothing but entries with bounds holds,
@@ -212,7 +212,7 @@ namespace slipstick::qp
       std::optional<Face> regular_face()
       {
         if (is_stuck)
-          set.release(problem.hold(set.free(), set.gaps(), true));
+          set.release(problem.hold(set.free(), set.gaps(), true, set.turns()));
         for (unsigned int attempt = 0; attempt < 2; ++attempt)
           {
             ties = set.ties();
@@ -220,7 +220,7 @@ namespace slipstick::qp
             face.emplace(problem.face(set.free(), ties, set.turns()));
             if (face->is_regular())
               return face;
-            set.release(problem.hold(set.free(), set.gaps(), false));
+            set.release(problem.hold(set.free(), set.gaps(), false, set.turns()));
           }
         return {};
       }
@@ -345,10 +345,11 @@ namespace slipstick::qp
       // 1982): there the set that follows is much better than the residual tells. @return whether there was such a step left.
       bool leap()
       {
-        if (!is_rough)
+        const double merit = set.natural_residual(y, gy);
+        if (!is_rough || !(merit <= options.longest_leap * merits.back()))
           return false;
         is_rough = false;
-        go_to_y(set.natural_residual(y, gy));
+        go_to_y(merit);
         is_stuck = false;
         Vector known(g);
         set.clear_solved(x, known);

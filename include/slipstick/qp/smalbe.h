@@ -1,5 +1,6 @@
 // SMALBE-M: semimonotonic augmented Lagrangians for bounds and equalities, with MPGP inside.
-// Dostal, Horak 2004; Dostal 2009, sections 8.1-8.9; Dostal et al. 2010, doi:10.1016/j.cam.2010.05.042.
+// Dostal, Horak 2004; Dostal 2009, sections 8.1-8.9; Dostal et al. 2010, doi:10.1016/j.cam.2010.05.042. With discs (friction
+// in space) it is SMALSE-M: Dostal, Kozubek, Markopoulos, Brzobohaty, Vondrak, Horyl 2012.
 #pragma once
 
 #include <slipstick/qp/augmented_operator.h>
@@ -33,14 +34,14 @@ namespace slipstick::qp
 
   namespace detail
   {
-    template <typename Vector, typename Problem>
+    template <typename Vector, typename Problem, typename Set>
     class Smalbe
     {
     public:
       Smalbe(const Problem                                             &problem_,
              const double                                               norm_,
              const Vector                                              &b,
-             const Box<Vector>                                         &box_,
+             const Set                                                 &set_,
              SmalbeStart<Vector>                                        start,
              const Goal                                                &goal,
              const SmalbeOptions                                       &options_,
@@ -50,7 +51,7 @@ namespace slipstick::qp
         , reduction(problem.reduction())
         , norm(norm_)
         , rho(options_.regularization * norm_)
-        , box(box_)
+        , set(set_)
         , options(options_)
         , observer(observer_)
         , accepts(accepts_)
@@ -61,7 +62,7 @@ namespace slipstick::qp
         , inner_norm(std::max(norm, rho))
         , M(options_.initial_balance)
       {
-        project(box, x);
+        project(set, x);
         add(-1.0, shift, rhs);
         const auto s = reduction.sum(std::array<double, 2>{{local_dot(b, b), local_dot(x, x)}});
         reference    = goal.reference;
@@ -131,7 +132,7 @@ namespace slipstick::qp
         auto inner = mpgp(A,
                           inner_norm,
                           rhs,
-                          box,
+                          set,
                           MpgpStart<Vector>{std::move(x), std::move(g)},
                           stop,
                           options.inner,
@@ -149,21 +150,17 @@ namespace slipstick::qp
       void measure()
       {
         const Vector         &Qx = A.range_part(x);
-        const auto            l = box.lower.begin(), u = box.upper.begin();
         const auto            q  = Qx.begin();
         const auto            xi = x.begin(), gi = g->begin(), ri = rhs.begin();
-        const std::size_t     n = local_size(x);
-        std::array<double, 6> s{{0, 0, 0, 0, 0, 0}};
-        for (std::size_t i = 0; i < n; ++i)
-          {
-            const double gp = projected_gradient(xi[i], gi[i], l[i], u[i]);
-            s[0] += gp * gp;
-            s[1] += q[i] * q[i];
-            s[2] += 0.5 * xi[i] * (gi[i] - ri[i]);
-            s[3] += xi[i] <= l[i];
-            s[4] += xi[i] >= u[i] && l[i] < u[i];
-            s[5] += xi[i] * xi[i];
-          }
+        const auto            active = own_active(set, x);
+        std::array<double, 6> s{{0, 0, 0, double(active.lower), double(active.upper), 0}};
+        for_each_part(set, x, *g, 1., [&](const std::size_t i, const GradientParts &parts) {
+          const double gp = parts.free + parts.chopped;
+          s[0] += gp * gp;
+          s[1] += q[i] * q[i];
+          s[2] += 0.5 * xi[i] * (gi[i] - ri[i]);
+          s[5] += xi[i] * xi[i];
+        });
         s           = reduction.sum(s);
         gP          = std::sqrt(s[0]);
         Gx          = std::sqrt(s[1]);
@@ -207,7 +204,7 @@ namespace slipstick::qp
         Vector r = zero_like(x);
         add(-1.0, A.range_part(), r);
         const double radius = options.certificate_radius * qp::norm(x, reduction);
-        return is_farkas_certificate(box, r, zero_like(x), radius, options.inner.rounding, reduction);
+        return is_farkas_certificate(set, r, zero_like(x), radius, options.inner.rounding, reduction);
       }
 
       const Problem                                        &problem;
@@ -215,7 +212,7 @@ namespace slipstick::qp
 
       const double         norm;
       double               rho;
-      const Box<Vector>   &box;
+      const Set           &set;
       const SmalbeOptions &options;
       const Observer      &observer;
 
@@ -234,7 +231,7 @@ namespace slipstick::qp
     };
   } // namespace detail
 
-  /// Minimise 1/2 x'PFPx - x'b, b in the range of P, over the box and Q x = 0, until |gP| and |PFP| |Gx| are at most
+  /// Minimise 1/2 x'PFPx - x'b, b in the range of P, over the set (Box or DiscBox) and Q x = 0, until |gP| and |PFP| |Gx| are at most
   /// goal.tolerance times goal.reference (default |b|; if that is 0, |PFP| times |start|). `norm` is |PFP|. A start
   /// outside of the box is projected on it; from 0 nothing is multiplied before the first step. The observer is called
   /// after every outer step, on every process; so is @p accepts, with x and the gradient, which may end the solve
@@ -254,18 +251,26 @@ namespace slipstick::qp
   /// assert(best.status == Status::converged);
   /// assert(std::abs(best.x[0] - 0.25) < 1e-9 && std::abs(best.x[1] + 0.25) < 1e-9); // 0.5, -0.5 without the box
   /// @endcode
-  template <typename Vector, typename Problem>
+  template <typename Vector, typename Problem, typename Set>
   SmalbeResult<Vector> smalbe(const Problem                                                      &problem,
                               const double                                                        norm,
                               const Vector                                                       &b,
-                              const Box<Vector>                                                  &box,
+                              const Set                                                          &set,
                               SmalbeStart<Vector>                                                 start,
                               const Goal                                                         &goal,
                               const SmalbeOptions                                                &options  = {},
                               const Observer                                                     &observer = {},
                               const std::function<bool(const Vector &x, const Vector &gradient)> &accepts  = {})
   {
-    return detail::Smalbe<Vector, Problem>(problem, norm, b, box, std::move(start), goal, options, observer, accepts)
+    return detail::Smalbe<Vector, Problem, Set>(problem,
+                                                norm,
+                                                b,
+                                                set,
+                                                std::move(start),
+                                                goal,
+                                                options,
+                                                observer,
+                                                accepts)
       .run();
   }
 } // namespace slipstick::qp

@@ -154,8 +154,11 @@ namespace slipstick::tfeti
 
     /// The free rows and as many of the others as are needed to hold the bodies that the free rows leave loose,
     /// preferring the smallest gaps [of any unit]. Only the free rows if nothing is loose, or nothing can hold it.
-    /// @param well bodies that free rows hardly hold are held, too. Collective.
-    std::vector<bool> hold(const std::vector<bool> &free, const std::vector<double> &gaps, const bool well) const;
+    /// @param well bodies that free rows hardly hold are held, too. @param turns rows that count as turned. Collective.
+    std::vector<bool> hold(const std::vector<bool>     &free,
+                           const std::vector<double>   &gaps,
+                           const bool                   well,
+                           const std::vector<qp::Turn> &turns = {}) const;
 
     /// moved -= stiffness times the jumps of the motion of bodies held by contact alone, after which the forces
     /// `moved`, clipped to their bounds, balance the loads of these bodies, up to the part `tolerated` of all forces. Owned
@@ -267,7 +270,8 @@ namespace slipstick::tfeti
     bool hold_by(const std::vector<RigidMotion> &loose,
                  const std::vector<bool>        &is_candidate,
                  const std::vector<double>      &scale,
-                 std::vector<bool>              &free) const;
+                 std::vector<bool>              &free,
+                 const std::vector<qp::Turn>    &turns = {}) const;
     /// The free rows and those rows with friction forces that hold the loose motions or, if nothing drives these, some
     /// of all rows. @return whether they are rows with forces.
     bool rows_that_fix(const std::vector<RigidMotion> &loose,
@@ -351,7 +355,7 @@ namespace slipstick::tfeti
   private:
     using Projection = void (Projector::*)(const DistributedVector &, DistributedVector &) const;
     void                projected(const Projection project, const DistributedVector &x, DistributedVector &y) const;
-    std::vector<bool>   nearest_rows() const;
+    void                make_projectors();
     std::vector<double> softened_metric();
     const DistributedVector &turned(const DistributedVector &x, std::optional<DistributedVector> &copy) const;
     void                     soften(DistributedVector &x) const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <slipstick/base/exceptions.h>
+#include <slipstick/qp/pressure_bounds.h>
 #include <slipstick/tfeti/dual_operator.h>
 
 #include <Eigen/SparseCore>
@@ -46,8 +47,10 @@ namespace slipstick::tfeti
     /// @param active rows (owned by this rank) that take part; empty: all.
     /// @param resistance below which a motion counts as free: squared jumps of the rows under a unit motion, over the
     ///        largest of all motions. Rounding by default.
-    std::vector<RigidMotion> free(const std::vector<bool> &active,
-                                  const double             resistance = rounding_of_resistance) const;
+    /// @param turns rows that count as turned, active or not.
+    std::vector<RigidMotion> free(const std::vector<bool>     &active,
+                                  const double                 resistance = rounding_of_resistance,
+                                  const std::vector<qp::Turn> &turns      = {}) const;
 
     static constexpr double rounding_of_resistance = 1e-12;
 
@@ -70,8 +73,13 @@ namespace slipstick::tfeti
     };
 
     void                         find_levers();
-    std::vector<Eigen::VectorXd> unresisted(const std::vector<bool> &active, const double resistance) const;
-    Eigen::SparseMatrix<double>  resistance_of(const std::vector<bool> &active, const bool without_levers) const;
+    std::vector<Share>           turned(const std::vector<qp::Turn> &turns) const;
+    std::vector<Eigen::VectorXd> unresisted(const std::vector<bool>  &active,
+                                            const double              resistance,
+                                            const std::vector<Share> &of_rows) const;
+    Eigen::SparseMatrix<double>  resistance_of(const std::vector<bool>  &active,
+                                               const bool                without_levers,
+                                               const std::vector<Share> &of_rows) const;
 
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     MPI_Comm                                             comm;

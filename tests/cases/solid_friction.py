@@ -1,0 +1,98 @@
+"""Friction in space where the solver has to work: fallbacks, discs beside intervals, rollers, loads that friction does not bear."""
+
+import unittest
+
+import scenes
+from program import converged, shipped, solve
+
+STEEL = {'Young modulus': '2e5', 'Poisson ratio': '0.3'}
+HELD = {'Displacement ' + c: '0' for c in 'xyz'}
+
+
+def solid(name, subdomains, seed, **kinds):
+    lines = scenes.text(**{'materials': {'steel': STEEL},
+                           'Decomposition': {'Method': 'METIS', 'Subdomains': str(subdomains), 'Seed': str(seed)},
+                           **kinds}).split('\n')
+    return scenes.write(name, '\n'.join(['set Dimension = 3'] + lines[1:]))  # the first one sets the plane state
+
+
+def ring(law):
+    """A ring pressed on a shaft by so much that most of it lifts off again, and drawn along it."""
+    return solid('ring', 5, 1,
+                 bodies={'shaft': {'Shape': 'cylinder', 'Radius': '20.1', 'Length': '8', 'Cells around': '24',
+                                   'Cells along axis': '2', 'Material': 'steel'},
+                         'ring': {'Shape': 'tube', 'Radius': '40', 'Inner radius': '20', 'Length': '5', 'Center': '0, 0, 1.5',
+                                  'Cells around': '16', 'Cells along axis': '2', 'Material': 'steel'}},
+                 supports={'back': {'Boundary': 'shaft/back', **HELD}, 'front': {'Boundary': 'ring/front', 'Displacement z': '0.01'}},
+                 contacts={'fit': {'Slave': 'ring/inner', 'Master': 'shaft/side', **law}})
+
+
+def roller(force_z, seed, subdomains):
+    """A cylinder on a plane, held along its axis at one end alone: nodes there have one tangent, all others two."""
+    lines = [('obstacles', {'floor': {'Shape': 'half space', 'Point': '0, -5, 0', 'Normal': '0, 1, 0'}})]
+    return solid('roller', subdomains, seed, **dict(lines),
+                 bodies={'roller': {'Shape': 'cylinder', 'Radius': '5', 'Length': '10', 'Cells around': '24',
+                                    'Cells along axis': '4', 'Material': 'steel'}},
+                 supports={'end': {'Boundary': 'roller/back', 'Displacement z': '0'}},
+                 body_forces={'weight': {'Bodies': 'roller', 'Force y': '-1', 'Force z': str(force_z)}},
+                 contacts={'joint': {'Slave': 'roller/side', 'Master': 'floor', 'Law': 'Coulomb', 'Friction coefficient': '0.1'}})
+
+
+def blocks(coefficient, **traction):
+    """A block that friction alone holds on another."""
+    return solid('blocks', 4, 0,
+                 bodies={'low': {'Size': '10, 10, 10', 'Cells': '5, 4, 5', 'Material': 'steel'},
+                         'high': {'Size': '10, 10, 10', 'Cells': '4, 3, 4', 'Origin': '0, 10, 0', 'Material': 'steel'}},
+                 supports={'floor': {'Boundary': 'low/bottom', **HELD}},
+                 tractions={'load': {'Boundary': 'high/top', 'Traction x': '0.8', 'Traction z': '0.6',
+                                     'Traction y': '-10*(1+x/10)/1.5'}},
+                 contacts={'joint': {'Slave': 'high/bottom', 'Master': 'low/top', 'Law': 'Coulomb',
+                                     'Friction coefficient': str(coefficient)}},
+                 Solver={'Tolerance': '1e-8'})
+
+
+class Fallback(unittest.TestCase):
+    """Newton's method ends far from the solution; SMALSE-M leads to where it converges."""
+
+    def test_ring_that_lifts_off(self):
+        result = converged(ring({'Law': 'Tresca', 'Slip bound': '100'}))
+        for row in result.contact:
+            self.assertLessEqual(row['pressure'], 1e4)
+            if row['status'] == 'slip':
+                self.assertAlmostEqual(abs(row['tangential_traction']) / row['slip_bound'], 1, delta=1e-3)
+
+    def test_the_published_method_comes_to_the_same_forces(self):
+        coarse = {'Decomposition/Cells per block': 4}
+        for law in ({}, {'Contact sphere/Law': 'Tresca', 'Contact sphere/Slip bound': 100}):
+            pairs = [converged(shipped('cube_on_sphere'), {**coarse, **law, 'Solver/Algorithm': algorithm,
+                                                           'Solver/Tolerance': 1e-6}).summary['results']['contact'][0]
+                     for algorithm in ('semismooth newton', 'smalbe')]
+            for name in ('normal_force', 'tangential_force', 'max_pressure'):
+                self.assertAlmostEqual(pairs[1][name] / pairs[0][name], 1, delta=1e-4)
+            for name in ('contact_nodes', 'stick_nodes', 'slip_nodes'):
+                self.assertEqual(pairs[1][name], pairs[0][name])
+
+
+class Rollers(unittest.TestCase):
+
+    def test_discs_beside_intervals(self):
+        for force_z, seed, subdomains in ((0, 8, 8), (0.05, 3, 12)):
+            summary = converged(roller(force_z, seed, subdomains)).summary
+            pair = summary['results']['contact'][0]
+            self.assertEqual(summary['solver']['fallbacks'], 0)
+            self.assertAlmostEqual(pair['normal_force'] / abs(pair['force'][1]), 1, delta=1e-6)
+            self.assertLess(summary['results']['max_displacement'], 0.01)  # it does not roll
+
+
+class TooWeak(unittest.TestCase):
+
+    def test_friction_that_does_not_bear_the_load(self):
+        for coefficient in (0, 1e-6, 0.05, 0.09):
+            result = solve(blocks(coefficient))
+            self.assertEqual(result.status, 4, result)
+            self.assertIn('body high', result.stderr)
+        converged(blocks(0.15))
+
+
+if __name__ == '__main__':
+    unittest.main()
