@@ -29,8 +29,8 @@ def ring(law):
 
 def roller(force_z, seed, subdomains):
     """A cylinder on a plane, held along its axis at one end alone: nodes there have one tangent, all others two."""
-    lines = [('obstacles', {'floor': {'Shape': 'half space', 'Point': '0, -5, 0', 'Normal': '0, 1, 0'}})]
-    return solid('roller', subdomains, seed, **dict(lines),
+    return solid('roller', subdomains, seed,
+                 obstacles={'floor': {'Shape': 'half space', 'Point': '0, -5, 0', 'Normal': '0, 1, 0'}},
                  bodies={'roller': {'Shape': 'cylinder', 'Radius': '5', 'Length': '10', 'Cells around': '24',
                                     'Cells along axis': '4', 'Material': 'steel'}},
                  supports={'end': {'Boundary': 'roller/back', 'Displacement z': '0'}},
