@@ -24,12 +24,50 @@ namespace slipstick::interface
     // Symmetric rules on the triangles of a part. Products of shape functions are of fourth order on parallelograms and
     // triangles, where five is exact; on other quadrilaterals they are rational functions.
     constexpr unsigned int n_exact = 3, n_rational = 6;
+    // The same for facets of degree 2, where products are of eighth order at most and the rule of ninth.
+    constexpr unsigned int n_exact_quadratic = 5, n_rational_quadratic = 7;
+    // A facet is covered as a whole if no more than this fraction of it is missing.
+    constexpr double whole_facet = 1e-9;
 
+    Eigen::VectorXd scale_of(const Eigen::MatrixXd &mass)
+    {
+      return mass.diagonal().cwiseSqrt().cwiseInverse();
+    }
+    double independence(const Eigen::MatrixXd &mass)
+    {
+      const Eigen::VectorXd scale  = scale_of(mass);
+      const Eigen::MatrixXd scaled = scale.asDiagonal() * mass * scale.asDiagonal();
+      return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled).eigenvalues()[0];
+    }
+    Eigen::MatrixXd biorthogonal(const Eigen::MatrixXd &mass, const Eigen::VectorXd &measures)
+    {
+      const Eigen::VectorXd scale  = scale_of(mass);
+      const Eigen::MatrixXd scaled = scale.asDiagonal() * mass * scale.asDiagonal();
+      return measures.asDiagonal() * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal()).eval();
+    }
     bool is_affine(const Facet &facet)
     {
       const double twist =
-        facet.n_nodes == 3 ? 0. : ((facet.node(0) - facet.node(1)) + (facet.node(2) - facet.node(3))).norm();
+        facet.n_corners() == 3 ? 0. : ((facet.node(0) - facet.node(1)) + (facet.node(2) - facet.node(3))).norm();
       return twist <= smallest_cover * facet.chord();
+    }
+
+    bool is_quadratic(const std::vector<Facet> &slave, const std::vector<Facet> &master)
+    {
+      return (!slave.empty() && slave.front().is_quadratic()) || (!master.empty() && master.front().is_quadratic());
+    }
+
+    /// The values of the shape functions of degree 1 of a facet at its nodes: with them they are combinations of those of degree 2.
+    Eigen::MatrixXd linear_functions(const Facet &facet)
+    {
+      Eigen::MatrixXd at_nodes(facet.n_corners(), facet.n_nodes);
+      for (unsigned int k = 0; k < facet.n_nodes; ++k)
+        {
+          const auto N = facet.shape_of_corners(facet.node_coordinate(k));
+          for (unsigned int i = 0; i < facet.n_corners(); ++i)
+            at_nodes(i, k) = N[i];
+        }
+      return at_nodes;
     }
 
     /// The integrals of all slave facets, by node.
@@ -40,8 +78,8 @@ namespace slipstick::interface
         : pairing(slave_, master_, reach)
         , slave(slave_)
         , master(master_)
-        , exact(n_exact)
-        , rational(n_rational)
+        , exact(is_quadratic(slave_, master_) ? n_exact_quadratic : n_exact)
+        , rational(is_quadratic(slave_, master_) ? n_rational_quadratic : n_rational)
         , sums(pairing.nodes().size())
       {
         for (const auto &facet : master)
@@ -57,7 +95,8 @@ namespace slipstick::interface
       {
         std::vector<MortarRow<3>> result;
         for (unsigned int i = 0; i < sums.size(); ++i)
-          if (sums[i].area > smallest_cover * pairing.nodes()[i].covered)
+          if (sums[i].area >
+              smallest_cover * std::max(pairing.nodes()[i].covered, std::pow(pairing.nodes()[i].size, 2)))
             result.push_back(row_of(pairing.nodes()[i], sums[i]));
         return result;
       }
@@ -80,6 +119,7 @@ namespace slipstick::interface
         Eigen::MatrixXd                               mass;
         Eigen::VectorXd                               areas;
         std::map<mechanics::NodeKey, Eigen::VectorXd> master;
+        bool                                          is_whole = false; // is all of the facet covered?
       };
 
       Moments moments_of(const unsigned int e) const
@@ -87,12 +127,16 @@ namespace slipstick::interface
         const Facet &facet = slave[e];
         const auto   parts = pairing.parts(e);
         const auto   plane = pairing.plane(e);
-        Moments      sum{Eigen::MatrixXd::Zero(facet.n_nodes, facet.n_nodes), Eigen::VectorXd::Zero(facet.n_nodes), {}};
+        Moments      sum{Eigen::MatrixXd::Zero(facet.n_nodes, facet.n_nodes),
+                    Eigen::VectorXd::Zero(facet.n_nodes),
+                    {},
+                    false};
         double       covered = 0;
         for (const auto &part : parts)
           covered += area(part.polygon);
         const double full     = area(plane.project(facet));
         const bool   is_stack = covered > (1 + overlapping) * full;
+        sum.is_whole          = covered > (1 - whole_facet) * full;
         if (covered < smallest_cover * full)
           return sum;
         for (const auto &part : parts)
@@ -131,28 +175,28 @@ namespace slipstick::interface
         const Moments moments = moments_of(e);
         if (moments.master.empty())
           return;
-        // phi = dual T, scaled: on a small part the entries are of very different size
-        const Eigen::VectorXd scale  = moments.mass.diagonal().cwiseSqrt().cwiseInverse();
-        const Eigen::MatrixXd scaled = scale.asDiagonal() * moments.mass * scale.asDiagonal();
-        const bool            is_biorthogonal =
-          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled).eigenvalues()[0] > least_eigenvalue;
-        Eigen::MatrixXd dual = Eigen::MatrixXd::Identity(facet.n_nodes, facet.n_nodes);
+        // phi = functions N; of degree 2 the functions of degree 1 take the place of N where the facet is covered in part
+        const bool      is_linear = facet.is_quadratic() && !moments.is_whole;
+        Eigen::MatrixXd functions =
+          is_linear ? linear_functions(facet) : Eigen::MatrixXd::Identity(facet.n_nodes, facet.n_nodes);
+        const Eigen::MatrixXd mass            = functions * moments.mass * functions.transpose();
+        const Eigen::VectorXd areas           = functions * moments.areas;
+        const bool            is_biorthogonal = independence(mass) > least_eigenvalue;
         if (is_biorthogonal)
-          dual = moments.areas.asDiagonal() * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal()).eval();
-        for (unsigned int i = 0; i < facet.n_nodes; ++i)
+          functions = biorthogonal(mass, areas) * functions;
+        const Eigen::MatrixXd D = functions * moments.mass;
+        for (unsigned int i = 0; i < functions.rows(); ++i)
           {
             Sums &node = sums[pairing.nodes_of(e)[i]];
-            node.area += moments.areas[i];
-            if (is_biorthogonal)
-              node.slave[facet.keys[i]] += moments.areas[i];
-            else
-              for (unsigned int k = 0; k < facet.n_nodes; ++k)
-                node.slave[facet.keys[k]] += moments.mass(i, k);
+            node.area += areas[i];
+            for (unsigned int k = 0; k < facet.n_nodes; ++k)
+              if (is_linear || !is_biorthogonal || i == k)
+                node.slave[facet.keys[k]] += is_linear || !is_biorthogonal ? D(i, k) : areas[i];
           }
         for (const auto &[key, sum] : moments.master)
           {
-            const Eigen::VectorXd M = dual * sum;
-            for (unsigned int i = 0; i < facet.n_nodes; ++i)
+            const Eigen::VectorXd M = functions * sum;
+            for (unsigned int i = 0; i < M.size(); ++i)
               sums[pairing.nodes_of(e)[i]].master[key] += M[i];
           }
       }
@@ -208,7 +252,7 @@ namespace slipstick::interface
     double distance_to(const Facet &facet, const dealii::Point<3> &x)
     {
       double least = x.distance(nearest_on_triangle({{facet.node(0), facet.node(1), facet.node(2)}}, x));
-      if (facet.n_nodes == 4)
+      if (facet.n_corners() == 4)
         least = std::min(least, x.distance(nearest_on_triangle({{facet.node(0), facet.node(2), facet.node(3)}}, x)));
       return least;
     }

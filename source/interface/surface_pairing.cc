@@ -71,7 +71,7 @@ namespace slipstick::interface
   ConvexPolygon Plane::project(const mechanics::SurfaceFacet &facet) const
   {
     ConvexPolygon polygon;
-    for (unsigned int i = 0; i < facet.n_nodes; ++i)
+    for (unsigned int i = 0; i < facet.n_corners(); ++i)
       polygon.push_back(project(facet.node(i)));
     if (area(polygon) < 0)
       std::reverse(polygon.begin(), polygon.end());
@@ -81,9 +81,9 @@ namespace slipstick::interface
   dealii::Point<2> Plane::place_on(const mechanics::SurfaceFacet &facet, const dealii::Point<2> &x) const
   {
     std::array<dealii::Point<2>, Facet::max_nodes> corner;
-    for (unsigned int i = 0; i < facet.n_nodes; ++i)
+    for (unsigned int i = 0; i < facet.n_corners(); ++i)
       corner[i] = project(facet.node(i));
-    const bool           is_triangle = facet.n_nodes == 3;
+    const bool           is_triangle = facet.n_corners() == 3;
     const auto           u = corner[1] - corner[0], v = corner[is_triangle ? 2 : 3] - corner[0];
     dealii::Tensor<1, 2> twist; // 0 for parallelograms
     if (!is_triangle)
@@ -119,7 +119,7 @@ namespace slipstick::interface
   {
     double angle = 0;
     for (const auto &facet : facets)
-      for (unsigned int k = 1; k + 1 < facet.n_nodes; ++k)
+      for (unsigned int k = 1; k + 1 < facet.n_corners(); ++k)
         {
           const Tensor a = facet.node(0) - x, b = facet.node(k) - x, c = facet.node(k + 1) - x;
           angle +=
