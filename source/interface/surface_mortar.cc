@@ -1,10 +1,9 @@
+#include <slipstick/interface/biorthogonal.h>
 #include <slipstick/interface/mortar.h>
 #include <slipstick/interface/node_matching.h>
 #include <slipstick/interface/surface_pairing.h>
 
 #include <deal.II/base/quadrature_lib.h>
-
-#include <Eigen/Dense>
 
 #include <cmath>
 
@@ -12,39 +11,25 @@ namespace slipstick::interface
 {
   namespace
   {
-    using Facet  = mechanics::SurfaceFacet;
-    using Tensor = dealii::Tensor<1, 3>;
+    using Facet = mechanics::SurfaceFacet;
 
-    // Facets and nodes are left out if no more than this fraction of them is covered.
-    constexpr double smallest_cover = 1e-10;
     // Parts that cover more than the facet by this fraction of it lie one behind the other.
     constexpr double overlapping = 1e-9;
-    // Biorthogonal functions need a scaled mass matrix whose eigenvalues (at most 4) are above this.
+    // Biorthogonal functions need a scaled mass matrix whose eigenvalues are above this (those of whole facets of degree 2 are from 0.25 on).
     constexpr double least_eigenvalue = 1e-3;
     // Symmetric rules on the triangles of a part. Products of shape functions are of fourth order on parallelograms and
     // triangles, where five is exact; on other quadrilaterals they are rational functions.
     constexpr unsigned int n_exact = 3, n_rational = 6;
-    // The same for facets of degree 2, where products are of eighth order at most and the rule of ninth.
+    // The same for facets of degree 2, where products are of eighth order at most; the rule is exact for the ninth.
     constexpr unsigned int n_exact_quadratic = 5, n_rational_quadratic = 7;
     // A facet is covered as a whole if no more than this fraction of it is missing.
     constexpr double whole_facet = 1e-9;
 
-    Eigen::VectorXd scale_of(const Eigen::MatrixXd &mass)
+    bool is_quadratic(const std::vector<Facet> &slave, const std::vector<Facet> &master)
     {
-      return mass.diagonal().cwiseSqrt().cwiseInverse();
+      return (!slave.empty() && slave.front().is_quadratic()) || (!master.empty() && master.front().is_quadratic());
     }
-    double independence(const Eigen::MatrixXd &mass)
-    {
-      const Eigen::VectorXd scale  = scale_of(mass);
-      const Eigen::MatrixXd scaled = scale.asDiagonal() * mass * scale.asDiagonal();
-      return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled).eigenvalues()[0];
-    }
-    Eigen::MatrixXd biorthogonal(const Eigen::MatrixXd &mass, const Eigen::VectorXd &measures)
-    {
-      const Eigen::VectorXd scale  = scale_of(mass);
-      const Eigen::MatrixXd scaled = scale.asDiagonal() * mass * scale.asDiagonal();
-      return measures.asDiagonal() * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal()).eval();
-    }
+
     bool is_affine(const Facet &facet)
     {
       const double twist =
@@ -52,12 +37,7 @@ namespace slipstick::interface
       return twist <= smallest_cover * facet.chord();
     }
 
-    bool is_quadratic(const std::vector<Facet> &slave, const std::vector<Facet> &master)
-    {
-      return (!slave.empty() && slave.front().is_quadratic()) || (!master.empty() && master.front().is_quadratic());
-    }
-
-    /// The values of the shape functions of degree 1 of a facet at its nodes: with them they are combinations of those of degree 2.
+    /// The shape functions of degree 1 of a facet, as combinations of its own.
     Eigen::MatrixXd linear_functions(const Facet &facet)
     {
       Eigen::MatrixXd at_nodes(facet.n_corners(), facet.n_nodes);
@@ -68,6 +48,17 @@ namespace slipstick::interface
             at_nodes(i, k) = N[i];
         }
       return at_nodes;
+    }
+
+    /// Is another master facet nearer at x? Of several at one distance the first counts.
+    bool is_hidden(const SurfacePairing::View &view, const SurfacePairing::Part &part, const dealii::Point<2> &x)
+    {
+      const double gap = std::abs(view.gap(part, x));
+      for (const auto &other : view.parts)
+        if (&other != &part && contains(other.polygon, x))
+          if (const double to = std::abs(view.gap(other, x)); to < gap || (to == gap && other.master < part.master))
+            return true;
+      return false;
     }
 
     /// The integrals of all slave facets, by node.
@@ -95,9 +86,8 @@ namespace slipstick::interface
       {
         std::vector<MortarRow<3>> result;
         for (unsigned int i = 0; i < sums.size(); ++i)
-          if (sums[i].area >
-              smallest_cover * std::max(pairing.nodes()[i].covered, std::pow(pairing.nodes()[i].size, 2)))
-            result.push_back(row_of(pairing.nodes()[i], sums[i]));
+          if (has_row(pairing.nodes()[i], sums[i]))
+            result.push_back(row_of(pairing.nodes()[i], sums[i], nodes));
         return result;
       }
 
@@ -107,13 +97,7 @@ namespace slipstick::interface
       }
 
     private:
-      struct Sums
-      {
-        double                               area = 0;      // D_i
-        std::map<mechanics::NodeKey, double> slave, master; // D_ik, M_ij
-      };
-
-      /// Of one facet, with T = N: <T_a T_b>, <T_a>, <T_a N_j(y)>.
+      /// Of one facet: <N_a N_b>, <N_a>, <N_a N_j(y)>.
       struct Moments
       {
         Eigen::MatrixXd                               mass;
@@ -124,39 +108,30 @@ namespace slipstick::interface
 
       Moments moments_of(const unsigned int e) const
       {
-        const Facet &facet = slave[e];
-        const auto   parts = pairing.parts(e);
-        const auto   plane = pairing.plane(e);
-        Moments      sum{Eigen::MatrixXd::Zero(facet.n_nodes, facet.n_nodes),
+        const Facet               &facet = slave[e];
+        const SurfacePairing::View view  = pairing.view(e);
+        Moments                    sum{Eigen::MatrixXd::Zero(facet.n_nodes, facet.n_nodes),
                     Eigen::VectorXd::Zero(facet.n_nodes),
                     {},
                     false};
-        double       covered = 0;
-        for (const auto &part : parts)
+        double                     covered = 0;
+        for (const auto &part : view.parts)
           covered += area(part.polygon);
-        const double full     = area(plane.project(facet));
+        const double full     = area(view.slave.outline());
         const bool   is_stack = covered > (1 + overlapping) * full;
         sum.is_whole          = covered > (1 - whole_facet) * full;
         if (covered < smallest_cover * full)
           return sum;
-        for (const auto &part : parts)
+        for (const auto &part : view.parts)
           {
-            const Facet &to        = master[part.master];
-            const auto  &rule      = is_affine(facet) && is_affine(to) ? exact : rational;
-            const auto   is_hidden = [&](const dealii::Point<2> &x) { // is another master facet nearer there?
-              const double own = std::abs(pairing.gap(e, part.master, plane, x));
-              for (const auto &other : parts)
-                if (&other != &part && contains(other.polygon, x) &&
-                    std::abs(pairing.gap(e, other.master, plane, x)) < own)
-                  return true;
-              return false;
-            };
+            const Facet &to   = master[part.master];
+            const auto  &rule = is_affine(facet) && is_affine(to) ? exact : rational;
             integrate(part.polygon, rule, [&](const dealii::Point<2> &x, const double weight) {
-              if (is_stack && is_hidden(x))
+              if (is_stack && is_hidden(view, part, x))
                 return;
-              const auto   s  = plane.place_on(facet, x);
-              const double dx = weight / (facet.normal(s) * plane.normal);
-              const auto   N = facet.shape(s), N_m = to.shape(plane.place_on(to, x));
+              const auto   s  = view.slave.place_at(x);
+              const double dx = weight / (facet.normal(s) * view.plane.normal);
+              const auto   N = facet.shape(s), N_m = to.shape(part.facet.place_at(x));
               const auto   test = Eigen::Map<const Eigen::VectorXd>(N.data(), facet.n_nodes);
               sum.mass += dx * test * test.transpose();
               sum.areas += dx * test;
@@ -175,107 +150,59 @@ namespace slipstick::interface
         const Moments moments = moments_of(e);
         if (moments.master.empty())
           return;
-        // phi = functions N; of degree 2 the functions of degree 1 take the place of N where the facet is covered in part
-        const bool      is_linear = facet.is_quadratic() && !moments.is_whole;
-        Eigen::MatrixXd functions =
-          is_linear ? linear_functions(facet) : Eigen::MatrixXd::Identity(facet.n_nodes, facet.n_nodes);
-        const Eigen::MatrixXd mass            = functions * moments.mass * functions.transpose();
-        const Eigen::VectorXd areas           = functions * moments.areas;
-        const bool            is_biorthogonal = independence(mass) > least_eigenvalue;
-        if (is_biorthogonal)
-          functions = biorthogonal(mass, areas) * functions;
-        const Eigen::MatrixXd D = functions * moments.mass;
-        for (unsigned int i = 0; i < functions.rows(); ++i)
+        const TestFunctions phi = test_functions(facet, moments);
+        for (unsigned int i = 0; i < phi.areas.size(); ++i)
           {
-            Sums &node = sums[pairing.nodes_of(e)[i]];
-            node.area += areas[i];
-            for (unsigned int k = 0; k < facet.n_nodes; ++k)
-              if (is_linear || !is_biorthogonal || i == k)
-                node.slave[facet.keys[k]] += is_linear || !is_biorthogonal ? D(i, k) : areas[i];
+            NodeIntegrals &node = sums[pairing.nodes_of(e)[i]];
+            node.measure += phi.areas[i];
+            node.length += phi.areas[i];
+            if (phi.is_biorthogonal)
+              node.slave[facet.keys[i]] += phi.areas[i];
+            else
+              for (unsigned int k = 0; k < facet.n_nodes; ++k)
+                node.slave[facet.keys[k]] += phi.slave(i, k);
           }
         for (const auto &[key, sum] : moments.master)
           {
-            const Eigen::VectorXd M = functions * sum;
+            const Eigen::VectorXd M = phi.of_shapes * sum;
             for (unsigned int i = 0; i < M.size(); ++i)
               sums[pairing.nodes_of(e)[i]].master[key] += M[i];
           }
       }
 
-      MortarRow<3> row_of(const SurfacePairing::Node &node, const Sums &sum) const
+      /// phi of one facet: phi = of_shapes N, their areas <phi_i>, <phi_i N_k>.
+      struct TestFunctions
       {
-        MortarRow<3> row;
-        row.slave          = node.key;
-        row.side           = node.side;
-        row.position       = node.position;
-        row.normal         = node.normal;
-        row.measure        = sum.area;
-        row.length         = sum.area;
-        row.full_measure   = node.covered;
-        row.full_length    = node.covered;
-        row.slave_weights  = normalised(sum.slave, sum.area);
-        row.master_weights = normalised(sum.master, sum.area);
-        nodes.measure(row);
-        return row;
+        Eigen::MatrixXd of_shapes;
+        Eigen::VectorXd areas;
+        Eigen::MatrixXd slave;
+        bool            is_biorthogonal = false; // to all N: then <phi_i N_i> = areas[i], and else 0
+      };
+
+      /// Of degree 2 the functions of degree 1 take the place of N where the facet is covered in part: the areas of its nodes could
+      /// be negative there.
+      static TestFunctions test_functions(const Facet &facet, const Moments &moments)
+      {
+        const bool    is_linear = facet.is_quadratic() && !moments.is_whole;
+        TestFunctions phi;
+        phi.of_shapes =
+          is_linear ? linear_functions(facet) : Eigen::MatrixXd::Identity(facet.n_nodes, facet.n_nodes).eval();
+        const Eigen::MatrixXd mass = phi.of_shapes * moments.mass * phi.of_shapes.transpose();
+        phi.areas                  = phi.of_shapes * moments.areas;
+        const bool is_independent  = independence(mass) > least_eigenvalue;
+        if (is_independent)
+          phi.of_shapes = biorthogonal(mass, phi.areas) * phi.of_shapes;
+        phi.slave           = phi.of_shapes * moments.mass;
+        phi.is_biorthogonal = is_independent && !is_linear;
+        return phi;
       }
 
       const SurfacePairing                      pairing;
       const std::vector<Facet>                 &slave, &master;
       const dealii::QWitherdenVincentSimplex<2> exact, rational;
-      std::vector<Sums>                         sums; // by node of the pairing
+      std::vector<NodeIntegrals>                sums; // by node of the pairing
       NodePlaces<3>                             nodes;
     };
-
-    /// Nearest point of a triangle (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
-    dealii::Point<3> nearest_on_triangle(const std::array<dealii::Point<3>, 3> &corner, const dealii::Point<3> &x)
-    {
-      const Tensor a = corner[1] - corner[0], b = corner[2] - corner[0], n = cross_product_3d(a, b), to = x - corner[0];
-      const double beta  = cross_product_3d(to, b) * n / n.norm_square(),
-                   gamma = cross_product_3d(a, to) * n / n.norm_square();
-      if (beta >= 0 && gamma >= 0 && beta + gamma <= 1)
-        return corner[0] + beta * a + gamma * b;
-      dealii::Point<3> best;
-      double           least = std::numeric_limits<double>::max();
-      for (unsigned int i = 0; i < 3; ++i)
-        {
-          const Tensor           along = corner[(i + 1) % 3] - corner[i];
-          const double           s     = std::min(1., std::max(0., (x - corner[i]) * along / along.norm_square()));
-          const dealii::Point<3> y     = corner[i] + s * along;
-          if (x.distance(y) < least)
-            {
-              least = x.distance(y);
-              best  = y;
-            }
-        }
-      return best;
-    }
-
-    double distance_to(const Facet &facet, const dealii::Point<3> &x)
-    {
-      double least = x.distance(nearest_on_triangle({{facet.node(0), facet.node(1), facet.node(2)}}, x));
-      if (facet.n_corners() == 4)
-        least = std::min(least, x.distance(nearest_on_triangle({{facet.node(0), facet.node(2), facet.node(3)}}, x)));
-      return least;
-    }
-
-    void one_way(const std::vector<Facet> &a, const std::vector<Facet> &b, double &smallest)
-    {
-      const auto tree = facet_tree(b);
-      for (const auto &facet : a)
-        for (unsigned int i = 0; i <= facet.n_nodes; ++i)
-          {
-            const auto s = i < facet.n_nodes ? facet.node_coordinate(i) : facet.middle_place();
-            const auto x = facet.point(s);
-            const auto n = facet.normal(s);
-            tree.for_each_by_distance(
-              x,
-              [&] { return smallest; },
-              [&](const unsigned int m) {
-                if (b[m].normal(b[m].middle_place()) * n < facing_cosine)
-                  smallest = std::min(smallest, distance_to(b[m], x));
-                return true;
-              });
-          }
-    }
   } // namespace
 
   std::vector<MortarRow<3>> mortar_rows(const std::vector<Facet>          &slave,
@@ -291,15 +218,5 @@ namespace slipstick::interface
                    discretization,
                    name,
                    [](const MortarRow<3> &, const mechanics::NodeKey &) { return 0.; });
-  }
-
-  std::optional<double> facing_distance(const std::vector<Facet> &a, const std::vector<Facet> &b, const double bound)
-  {
-    double smallest = bound;
-    one_way(a, b, smallest);
-    one_way(b, a, smallest);
-    if (smallest < bound)
-      return smallest;
-    return {};
   }
 } // namespace slipstick::interface
