@@ -1,3 +1,4 @@
+#include <slipstick/app/contact_faces.h>
 #include <slipstick/app/step_results.h>
 #include <slipstick/base/text.h>
 #include <slipstick/contact/resultants.h>
@@ -5,7 +6,6 @@
 #include <slipstick/mechanics/elasticity.h>
 #include <slipstick/mechanics/loads.h>
 #include <slipstick/mechanics/singular_points.h>
-#include <slipstick/mechanics/surface_facet.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -73,32 +73,6 @@ namespace slipstick::app
     }
 
     using NodeOfPair = TotalSlip::key_type;
-
-    /// The faces of slave boundaries all of whose vertices are among the nodes (@p number). Collective.
-    void add_faces(const StepSolver<3>                      &solver,
-                   const std::map<NodeOfPair, std::int64_t> &number,
-                   output::ContactStep                      &step)
-    {
-      const auto       &scene = solver.discrete_scene();
-      std::vector<bool> wanted(scene.bodies.size());
-      for (const auto &pair : scene.contacts)
-        wanted[pair.slave.body] = true;
-      const auto all = mechanics::outlines(solver.mesh(), solver.spaces(), wanted);
-      for (unsigned int k = 0; k < scene.contacts.size(); ++k)
-        for (const auto &face : mechanics::parts_on(solver.mesh(), all, scene.contacts[k].slave))
-          {
-            std::vector<std::int64_t> nodes(face.n_nodes);
-            bool                      is_complete = true;
-            for (unsigned int v = 0; v < nodes.size(); ++v)
-              {
-                const auto found = number.find({k, face.keys[v]});
-                is_complete      = is_complete && found != number.end();
-                nodes[v]         = is_complete ? found->second : 0;
-              }
-            if (is_complete)
-              step.faces.push_back(nodes);
-          }
-    }
   } // namespace
 
   template <int dim>
@@ -235,7 +209,7 @@ namespace slipstick::app
             number.emplace(key, step.nodes.size());
             step.nodes.push_back(node);
           }
-        add_faces(solver, number, step);
+        step.faces = contact_faces(scene, solver.mesh(), solver.spaces(), number);
       }
     return step;
   }

@@ -28,7 +28,7 @@ namespace slipstick::interface
     double distance_to(const Facet &facet, const dealii::Point<3> &x)
     {
       double least = x.distance(nearest_on_triangle({{facet.node(0), facet.node(1), facet.node(2)}}, x));
-      if (facet.n_nodes == 4)
+      if (facet.n_corners() == 4)
         least = std::min(least, x.distance(nearest_on_triangle({{facet.node(0), facet.node(2), facet.node(3)}}, x)));
       return least;
     }

@@ -112,7 +112,7 @@ namespace slipstick::interface
     {
       const double s = double(i % n_places_across) / (n_places_across - 1);
       const double t = double(i / n_places_across) / (n_places_across - 1);
-      return face.n_nodes == 3 ? face.point({s * (1 - t), t}) : face.point({s, t});
+      return face.n_corners() == 3 ? face.point({s * (1 - t), t}) : face.point({s, t});
     }
 
     constexpr unsigned int n_places_on(const mechanics::SurfaceFacet &)

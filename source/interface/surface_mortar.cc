@@ -15,17 +15,39 @@ namespace slipstick::interface
 
     // Parts that cover more than the facet by this fraction of it lie one behind the other.
     constexpr double overlapping = 1e-9;
-    // Biorthogonal functions need a scaled mass matrix whose eigenvalues (at most 4) are above this.
+    // Biorthogonal functions need a scaled mass matrix whose eigenvalues are above this (those of whole facets of degree 2 are from 0.25 on).
     constexpr double least_eigenvalue = 1e-3;
     // Symmetric rules on the triangles of a part. Products of shape functions are of fourth order on parallelograms and
     // triangles, where five is exact; on other quadrilaterals they are rational functions.
     constexpr unsigned int n_exact = 3, n_rational = 6;
+    // The same for facets of degree 2, where products are of eighth order at most; the rule is exact for the ninth.
+    constexpr unsigned int n_exact_quadratic = 5, n_rational_quadratic = 7;
+    // A facet is covered as a whole if no more than this fraction of it is missing.
+    constexpr double whole_facet = 1e-9;
+
+    bool is_quadratic(const std::vector<Facet> &slave, const std::vector<Facet> &master)
+    {
+      return (!slave.empty() && slave.front().is_quadratic()) || (!master.empty() && master.front().is_quadratic());
+    }
 
     bool is_affine(const Facet &facet)
     {
       const double twist =
-        facet.n_nodes == 3 ? 0. : ((facet.node(0) - facet.node(1)) + (facet.node(2) - facet.node(3))).norm();
+        facet.n_corners() == 3 ? 0. : ((facet.node(0) - facet.node(1)) + (facet.node(2) - facet.node(3))).norm();
       return twist <= smallest_cover * facet.chord();
+    }
+
+    /// The shape functions of degree 1 of a facet, as combinations of its own.
+    Eigen::MatrixXd linear_functions(const Facet &facet)
+    {
+      Eigen::MatrixXd at_nodes(facet.n_corners(), facet.n_nodes);
+      for (unsigned int k = 0; k < facet.n_nodes; ++k)
+        {
+          const auto N = facet.shape_of_corners(facet.node_coordinate(k));
+          for (unsigned int i = 0; i < facet.n_corners(); ++i)
+            at_nodes(i, k) = N[i];
+        }
+      return at_nodes;
     }
 
     /// Is another master facet nearer at x? Of several at one distance the first counts.
@@ -47,8 +69,8 @@ namespace slipstick::interface
         : pairing(slave_, master_, reach)
         , slave(slave_)
         , master(master_)
-        , exact(n_exact)
-        , rational(n_rational)
+        , exact(is_quadratic(slave_, master_) ? n_exact_quadratic : n_exact)
+        , rational(is_quadratic(slave_, master_) ? n_rational_quadratic : n_rational)
         , sums(pairing.nodes().size())
       {
         for (const auto &facet : master)
@@ -75,24 +97,29 @@ namespace slipstick::interface
       }
 
     private:
-      /// Of one facet, with T = N: <T_a T_b>, <T_a>, <T_a N_j(y)>.
+      /// Of one facet: <N_a N_b>, <N_a>, <N_a N_j(y)>.
       struct Moments
       {
         Eigen::MatrixXd                               mass;
         Eigen::VectorXd                               areas;
         std::map<mechanics::NodeKey, Eigen::VectorXd> master;
+        bool                                          is_whole = false; // is all of the facet covered?
       };
 
       Moments moments_of(const unsigned int e) const
       {
         const Facet               &facet = slave[e];
         const SurfacePairing::View view  = pairing.view(e);
-        Moments sum{Eigen::MatrixXd::Zero(facet.n_nodes, facet.n_nodes), Eigen::VectorXd::Zero(facet.n_nodes), {}};
-        double  covered = 0;
+        Moments                    sum{Eigen::MatrixXd::Zero(facet.n_nodes, facet.n_nodes),
+                    Eigen::VectorXd::Zero(facet.n_nodes),
+                    {},
+                    false};
+        double                     covered = 0;
         for (const auto &part : view.parts)
           covered += area(part.polygon);
         const double full     = area(view.slave.outline());
         const bool   is_stack = covered > (1 + overlapping) * full;
+        sum.is_whole          = covered > (1 - whole_facet) * full;
         if (covered < smallest_cover * full)
           return sum;
         for (const auto &part : view.parts)
@@ -123,26 +150,51 @@ namespace slipstick::interface
         const Moments moments = moments_of(e);
         if (moments.master.empty())
           return;
-        const bool            is_biorthogonal = independence(moments.mass) > least_eigenvalue;
-        const Eigen::MatrixXd dual            = is_biorthogonal ? biorthogonal(moments.mass, moments.areas)
-                                                                : Eigen::MatrixXd::Identity(facet.n_nodes, facet.n_nodes);
-        for (unsigned int i = 0; i < facet.n_nodes; ++i)
+        const TestFunctions phi = test_functions(facet, moments);
+        for (unsigned int i = 0; i < phi.areas.size(); ++i)
           {
             NodeIntegrals &node = sums[pairing.nodes_of(e)[i]];
-            node.measure += moments.areas[i];
-            node.length += moments.areas[i];
-            if (is_biorthogonal)
-              node.slave[facet.keys[i]] += moments.areas[i];
+            node.measure += phi.areas[i];
+            node.length += phi.areas[i];
+            if (phi.is_biorthogonal)
+              node.slave[facet.keys[i]] += phi.areas[i];
             else
               for (unsigned int k = 0; k < facet.n_nodes; ++k)
-                node.slave[facet.keys[k]] += moments.mass(i, k);
+                node.slave[facet.keys[k]] += phi.slave(i, k);
           }
         for (const auto &[key, sum] : moments.master)
           {
-            const Eigen::VectorXd M = dual * sum;
-            for (unsigned int i = 0; i < facet.n_nodes; ++i)
+            const Eigen::VectorXd M = phi.of_shapes * sum;
+            for (unsigned int i = 0; i < M.size(); ++i)
               sums[pairing.nodes_of(e)[i]].master[key] += M[i];
           }
+      }
+
+      /// phi of one facet: phi = of_shapes N, their areas <phi_i>, <phi_i N_k>.
+      struct TestFunctions
+      {
+        Eigen::MatrixXd of_shapes;
+        Eigen::VectorXd areas;
+        Eigen::MatrixXd slave;
+        bool            is_biorthogonal = false; // to all N: then <phi_i N_i> = areas[i], and else 0
+      };
+
+      /// Of degree 2 the functions of degree 1 take the place of N where the facet is covered in part: the areas of its nodes could
+      /// be negative there.
+      static TestFunctions test_functions(const Facet &facet, const Moments &moments)
+      {
+        const bool    is_linear = facet.is_quadratic() && !moments.is_whole;
+        TestFunctions phi;
+        phi.of_shapes =
+          is_linear ? linear_functions(facet) : Eigen::MatrixXd::Identity(facet.n_nodes, facet.n_nodes).eval();
+        const Eigen::MatrixXd mass = phi.of_shapes * moments.mass * phi.of_shapes.transpose();
+        phi.areas                  = phi.of_shapes * moments.areas;
+        const bool is_independent  = independence(mass) > least_eigenvalue;
+        if (is_independent)
+          phi.of_shapes = biorthogonal(mass, phi.areas) * phi.of_shapes;
+        phi.slave           = phi.of_shapes * moments.mass;
+        phi.is_biorthogonal = is_independent && !is_linear;
+        return phi;
       }
 
       const SurfacePairing                      pairing;

@@ -42,19 +42,19 @@ namespace slipstick::interface
   {
     for (unsigned int i = 0; i < n_nodes; ++i)
       {
-        corners[i] = plane.project(facet.node(i));
+        nodes[i]   = plane.project(facet.node(i));
         heights[i] = (facet.node(i) - plane.origin) * plane.normal;
       }
-    const bool is_triangle = n_nodes == 3;
-    u                      = corners[1] - corners[0];
-    v                      = corners[is_triangle ? 2 : 3] - corners[0];
+    const bool is_triangle = facet.n_corners() == 3;
+    u                      = nodes[1] - nodes[0];
+    v                      = nodes[is_triangle ? 2 : 3] - nodes[0];
     if (!is_triangle)
-      twist = (corners[2] - corners[0]) - u - v; // 0 for parallelograms
+      twist = (nodes[2] - nodes[0]) - u - v; // 0 for parallelograms
   }
 
   ConvexPolygon ProjectedFacet::outline() const
   {
-    ConvexPolygon polygon(corners.begin(), corners.begin() + n_nodes);
+    ConvexPolygon polygon(nodes.begin(), nodes.begin() + facet->n_corners());
     if (area(polygon) < 0)
       std::reverse(polygon.begin(), polygon.end());
     return polygon;
@@ -65,7 +65,7 @@ namespace slipstick::interface
     Facet::Place s = facet->middle_place();
     for (unsigned int i = 0; i < max_steps; ++i)
       {
-        const auto                 off = corners[0] + s[0] * u + s[1] * v + s[0] * s[1] * twist - x;
+        const auto                 off = nodes[0] + s[0] * u + s[1] * v + s[0] * s[1] * twist - x;
         const auto                 a = u + s[1] * twist, b = v + s[0] * twist;
         const double               det = a[0] * b[1] - a[1] * b[0];
         const dealii::Tensor<1, 2> step({(off[0] * b[1] - off[1] * b[0]) / det, (a[0] * off[1] - a[1] * off[0]) / det});

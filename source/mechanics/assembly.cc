@@ -217,9 +217,11 @@ namespace slipstick::mechanics
     {
       if (scene.discretization.element == scene::ElementKind::nearly_incompressible && element.cell.is_simplex() &&
           element.degree == 1)
-        throw InputError("Discretization/Element = nearly incompressible: body '" + scene.bodies[body].name +
-                           "' has triangles of degree 1, which lock however the dilatation is treated",
-                         "set Discretization/Degree = 2, or mesh the body with quadrilaterals");
+        throw InputError("Discretization/Element = nearly incompressible: body '" + scene.bodies[body].name + "' has " +
+                           (dim == 2 ? "triangles" : "tetrahedra") +
+                           " of degree 1, which lock however the dilatation is treated",
+                         std::string("set Discretization/Degree = 2, or mesh the body with ") +
+                           (dim == 2 ? "quadrilaterals" : "hexahedra"));
     }
 
     template <int dim>

@@ -75,12 +75,12 @@ namespace slipstick::mechanics
     , scalar(scalar_element<dim>(cell, degree))
     , vector(std::make_unique<dealii::FESystem<dim>>(*scalar, dim))
     , mapping(isoparametric<dim>(cell, is_curved ? degree : 1))
-    , stiffness(cell_quadrature(cell.is_simplex() && degree == 1 ? 1 : degree + 1))
+    , stiffness(cell_quadrature(cell.is_simplex() && (degree == 1 || dim == 3) ? degree : degree + 1))
     , loads(cell_quadrature(degree + 2))
     , stress(cell_quadrature(degree))
   {
-    AssertThrow(degree == 1 || (degree == 2 && dim == 2),
-                dealii::ExcMessage("a face node is identified by its edge: degree 1 or 2, in space 1"));
+    AssertThrow(degree == 1 || degree == 2,
+                dealii::ExcMessage("nodes of boundaries are identified by two vertices: degree 1 or 2"));
   }
 
   template <int dim>

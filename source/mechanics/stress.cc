@@ -166,23 +166,30 @@ namespace slipstick::mechanics
     }
 
     /// From values at the points of Element::stress to values at the nodes of a cell, by the polynomial of one degree
-    /// less through those points.
+    /// less through those points; on tetrahedra, which have more points than it has coefficients, the nearest.
     template <int dim>
     Eigen::MatrixXd extrapolation_to_nodes(const Element<dim> &element)
     {
-      const auto     &points = element.stress;
-      Eigen::MatrixXd at_points(points.size(), points.size()), at_nodes(element.n_nodes(), points.size());
-      const auto      monomials = [&](const dealii::Point<dim> &x, auto &&row) {
+      const auto        &points      = element.stress;
+      const bool         is_linear   = dim == 3 && element.cell.is_simplex();
+      const unsigned int n_functions = is_linear ? std::min(dim + 1u, points.size()) : points.size();
+      Eigen::MatrixXd    at_points(points.size(), n_functions), at_nodes(element.n_nodes(), n_functions);
+      const auto         monomials = [&](const dealii::Point<dim> &x, auto &&row) {
         std::array<double, 8> values{{1, x[0], x[1], x[0] * x[1]}}; // constant; linear; bilinear; trilinear
-        for (unsigned int k = 0; k < 4 && dim == 3; ++k)
-          values[4 + k] = values[k] * x[dim - 1];
-        for (unsigned int k = 0; k < points.size(); ++k)
+        if (is_linear)
+          values[3] = x[dim - 1];
+        else
+          for (unsigned int k = 0; k < 4 && dim == 3; ++k)
+            values[4 + k] = values[k] * x[dim - 1];
+        for (unsigned int k = 0; k < n_functions; ++k)
           row[k] = values[k];
       };
       for (unsigned int q = 0; q < points.size(); ++q)
         monomials(points.point(q), at_points.row(q));
       for (unsigned int i = 0; i < element.n_nodes(); ++i)
         monomials(element.scalar->unit_support_point(i), at_nodes.row(i));
+      if (n_functions < points.size())
+        return at_nodes * at_points.completeOrthogonalDecomposition().pseudoInverse();
       return at_nodes * at_points.inverse();
     }
 
@@ -249,7 +256,7 @@ namespace slipstick::mechanics
         }
     }
 
-    /// Averages are superconvergent except on triangles of degree 2.
+    /// Averages are superconvergent except on triangles and tetrahedra of degree 2.
     template <int dim>
     bool needs_patches(const Element<dim> &element)
     {

@@ -1,6 +1,7 @@
 #include <slipstick/mechanics/surface_facet.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 
 #include <boost/serialization/vector.hpp>
 
@@ -12,44 +13,146 @@ namespace slipstick::mechanics
   using Place  = SurfaceFacet::Place;
   using Tensor = SurfaceFacet::Tensor;
 
+  namespace
+  {
+    using Corner = std::pair<NodeKey, dealii::Point<3>>; // and other nodes
+
+    // Less than this part of a facet counts as nothing: the corners of a triangle of degree 2, which have none where it is flat; other
+    // nodes have a thirty-sixth or more.
+    constexpr double smallest_share = 0.01;
+
+    bool by_key(const Corner &a, const Corner &b)
+    {
+      return a.first < b.first;
+    }
+
+    void add(const Corner &node, SurfaceFacet &facet)
+    {
+      facet.keys[facet.n_nodes] = node.first;
+      facet.at[facet.n_nodes]   = {{node.second[0], node.second[1], node.second[2]}};
+      ++facet.n_nodes;
+    }
+
+    /// Exact for the shape functions of plane facets.
+    const dealii::Quadrature<2> &rule_of(const SurfaceFacet &facet)
+    {
+      static const dealii::QGaussSimplex<2>            triangle(1);
+      static const dealii::QWitherdenVincentSimplex<2> quadratic_triangle(3);
+      static const dealii::QGauss<2>                   quadrilateral(2), quadratic_quadrilateral(3);
+      if (facet.n_corners() == 3)
+        return facet.is_quadratic() ? static_cast<const dealii::Quadrature<2> &>(quadratic_triangle) : triangle;
+      return facet.is_quadratic() ? quadratic_quadrilateral : quadrilateral;
+    }
+
+    // Quadratic shape functions of the ends and the middle of the unit interval, and their derivatives.
+    std::array<double, 3> quadratic(const double s)
+    {
+      return {{(1 - s) * (1 - 2 * s), s * (2 * s - 1), 4 * s * (1 - s)}};
+    }
+    std::array<double, 3> quadratic_derivative(const double s)
+    {
+      return {{4 * s - 3, 4 * s - 1, 4 - 8 * s}};
+    }
+
+    // Of the nodes of a quadrilateral: which function along s, and which along t.
+    constexpr std::array<std::array<unsigned int, 2>, 9> along = {
+      {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}, {{2, 0}}, {{1, 2}}, {{2, 1}}, {{0, 2}}, {{2, 2}}}};
+
+    /// Derivatives of the shape functions of degree 2 along both local coordinates.
+    std::array<std::array<double, 2>, SurfaceFacet::max_nodes> quadratic_derivatives(const unsigned int n_corners,
+                                                                                     const Place       &s)
+    {
+      std::array<std::array<double, 2>, SurfaceFacet::max_nodes> result{};
+      if (n_corners == 4)
+        {
+          const auto a = quadratic(s[0]), b = quadratic(s[1]), da = quadratic_derivative(s[0]),
+                     db = quadratic_derivative(s[1]);
+          for (unsigned int i = 0; i < along.size(); ++i)
+            result[i] = {{da[along[i][0]] * b[along[i][1]], a[along[i][0]] * db[along[i][1]]}};
+          return result;
+        }
+      const std::array<double, 3>                    L  = {{1 - s[0] - s[1], s[0], s[1]}};
+      constexpr std::array<std::array<double, 2>, 3> dL = {{{{-1, -1}}, {{1, 0}}, {{0, 1}}}};
+      for (unsigned int i = 0; i < 3; ++i)
+        for (unsigned int d = 0; d < 2; ++d)
+          {
+            const unsigned int j = (i + 1) % 3;
+            result[i][d]         = (4 * L[i] - 1) * dL[i][d];
+            result[3 + i][d]     = 4 * (L[i] * dL[j][d] + L[j] * dL[i][d]);
+          }
+      return result;
+    }
+  } // namespace
+
   SurfaceFacet surface_part(const mesh::SubdomainMesh<3>                      &subdomain,
                             const Spaces<3>                                   &spaces,
                             const dealii::DoFHandler<3>::active_cell_iterator &cell,
                             const unsigned int                                 f)
   {
-    const auto   face = cell->face(f);
+    const auto          face = cell->face(f);
+    std::vector<Corner> corners, others;
+    spaces.for_each_face_node(subdomain, face, [&](const unsigned int, const NodeKey &key, const dealii::Point<3> &x) {
+      (key[0] == key[1] ? corners : others).push_back({key, x});
+    });
+    if (corners.size() == 4) // in rows: now around
+      std::swap(corners[2], corners[3]);
+    dealii::Point<3> center;
+    for (const auto &[key, x] : corners)
+      center += x / static_cast<double>(corners.size());
+    const Tensor across =
+      cross_product_3d(corners[2].second - corners[0].second, corners.back().second - corners[1].second);
+    if (across * (center - cell->center()) < 0)
+      std::reverse(corners.begin(), corners.end());
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), by_key), corners.end());
+
     SurfaceFacet facet;
     facet.body      = subdomain.body;
     facet.boundary  = face->boundary_id();
     facet.subdomain = subdomain.subdomain;
     facet.n_nodes   = 0;
-    spaces.for_each_face_node(subdomain, face, [&](const unsigned int, const NodeKey &key, const dealii::Point<3> &x) {
-      facet.keys[facet.n_nodes] = key;
-      facet.at[facet.n_nodes]   = {{x[0], x[1], x[2]}};
-      ++facet.n_nodes;
-    });
-    if (facet.n_nodes == 4) // in rows: now around
+    for (const auto &corner : corners)
+      add(corner, facet);
+    if (others.empty())
+      return facet;
+    for (unsigned int i = 0; i < corners.size(); ++i)
       {
-        std::swap(facet.keys[2], facet.keys[3]);
-        std::swap(facet.at[2], facet.at[3]);
+        const auto a = corners[i].first[0], b = corners[(i + 1) % corners.size()].first[0];
+        const auto found = std::find_if(others.begin(), others.end(), [&](const Corner &other) {
+          return other.first == NodeKey{{std::min(a, b), std::max(a, b)}};
+        });
+        add(*found, facet);
       }
-    if (facet.area_vector(facet.middle_place()) * (facet.middle() - cell->center()) < 0)
-      {
-        std::reverse(facet.keys.begin(), facet.keys.begin() + facet.n_nodes);
-        std::reverse(facet.at.begin(), facet.at.begin() + facet.n_nodes);
-      }
-    const auto end      = facet.keys.begin() + facet.n_nodes;
-    const auto smallest = std::min_element(facet.keys.begin(), end) - facet.keys.begin();
-    std::rotate(facet.keys.begin(), facet.keys.begin() + smallest, end);
-    std::rotate(facet.at.begin(), facet.at.begin() + smallest, facet.at.begin() + facet.n_nodes);
+    if (corners.size() == 4)
+      add(others.back(), facet);
     return facet;
+  }
+
+  SurfaceFacet::Shape SurfaceFacet::shape_of_corners(const Place &s) const
+  {
+    if (n_corners() == 3)
+      return {{1 - s[0] - s[1], s[0], s[1]}};
+    return {{(1 - s[0]) * (1 - s[1]), s[0] * (1 - s[1]), s[0] * s[1], (1 - s[0]) * s[1]}};
   }
 
   SurfaceFacet::Shape SurfaceFacet::shape(const Place &s) const
   {
-    if (n_nodes == 3)
-      return {{1 - s[0] - s[1], s[0], s[1], 0.}};
-    return {{(1 - s[0]) * (1 - s[1]), s[0] * (1 - s[1]), s[0] * s[1], (1 - s[0]) * s[1]}};
+    if (!is_quadratic())
+      return shape_of_corners(s);
+    Shape N{};
+    if (n_corners() == 3)
+      {
+        const Shape L = shape_of_corners(s);
+        for (unsigned int i = 0; i < 3; ++i)
+          {
+            N[i]     = L[i] * (2 * L[i] - 1);
+            N[3 + i] = 4 * L[i] * L[(i + 1) % 3];
+          }
+        return N;
+      }
+    const auto a = quadratic(s[0]), b = quadratic(s[1]);
+    for (unsigned int i = 0; i < along.size(); ++i)
+      N[i] = a[along[i][0]] * b[along[i][1]];
+    return N;
   }
 
   dealii::Point<3> SurfaceFacet::point(const Place &s) const
@@ -63,6 +166,17 @@ namespace slipstick::mechanics
 
   SurfaceFacet::Tensor SurfaceFacet::area_vector(const Place &s) const
   {
+    if (is_quadratic())
+      {
+        const auto dN = quadratic_derivatives(n_corners(), s);
+        Tensor     a, b;
+        for (unsigned int i = 0; i < n_nodes; ++i)
+          {
+            a += dN[i][0] * Tensor(node(i));
+            b += dN[i][1] * Tensor(node(i));
+          }
+        return cross_product_3d(a, b);
+      }
     if (n_nodes == 3)
       return cross_product_3d(node(1) - node(0), node(2) - node(0));
     return cross_product_3d((1 - s[1]) * (node(1) - node(0)) + s[1] * (node(2) - node(3)),
@@ -71,45 +185,44 @@ namespace slipstick::mechanics
 
   SurfaceFacet::Place SurfaceFacet::node_coordinate(const unsigned int i) const
   {
-    static const std::array<std::array<double, 2>, 4> square = {{{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}}};
-    if (n_nodes == 3 && i == 2)
-      return {0, 1};
-    return {square[i][0], square[i][1]};
+    constexpr std::array<double, 3> ends_and_middle = {{0, 1, 0.5}};
+    if (n_corners() == 4)
+      return {ends_and_middle[along[i][0]], ends_and_middle[along[i][1]]};
+    constexpr std::array<std::array<double, 2>, 6> triangle = {
+      {{{0, 0}}, {{1, 0}}, {{0, 1}}, {{0.5, 0}}, {{0.5, 0.5}}, {{0, 0.5}}}};
+    return {triangle[i][0], triangle[i][1]};
   }
 
   SurfaceFacet::Place SurfaceFacet::middle_place() const
   {
-    const double c = n_nodes == 3 ? 1. / 3 : 0.5;
+    const double c = n_corners() == 3 ? 1. / 3 : 0.5;
     return {c, c};
   }
 
   double SurfaceFacet::chord() const
   {
     double sum = 0;
-    for (unsigned int i = 0; i < n_nodes; ++i)
-      sum += node(i).distance(node((i + 1) % n_nodes));
-    return sum / n_nodes;
+    for (unsigned int i = 0; i < n_corners(); ++i)
+      sum += node(i).distance(node((i + 1) % n_corners()));
+    return sum / n_corners();
   }
 
-  // Two Gauss points a direction integrate plane quadrilaterals exactly.
   SurfaceFacet::Shape SurfaceFacet::tributary_areas() const
   {
-    Shape areas{};
-    if (n_nodes == 3)
+    Shape       areas{};
+    double      whole = 0;
+    const auto &rule  = rule_of(*this);
+    for (unsigned int q = 0; q < rule.size(); ++q)
       {
-        areas.fill(area_vector(middle_place()).norm() / 6);
-        areas[3] = 0;
-        return areas;
+        const Shape  N  = shape(rule.point(q));
+        const double dx = area_vector(rule.point(q)).norm() * rule.weight(q);
+        whole += dx;
+        for (unsigned int i = 0; i < n_nodes; ++i)
+          areas[i] += N[i] * dx;
       }
-    const double gauss = 0.5 / std::sqrt(3.);
-    for (const double s : {0.5 - gauss, 0.5 + gauss})
-      for (const double t : {0.5 - gauss, 0.5 + gauss})
-        {
-          const Shape  N  = shape({s, t});
-          const double dx = area_vector({s, t}).norm() / 4;
-          for (unsigned int i = 0; i < n_nodes; ++i)
-            areas[i] += N[i] * dx;
-        }
+    for (double &area : areas)
+      if (area < smallest_share * whole)
+        area = 0;
     return areas;
   }
 
@@ -126,7 +239,7 @@ namespace slipstick::mechanics
     std::vector<dealii::Point<3>> points;
     const auto                    middle = facet.middle_place();
     for (const double part : {0., 0.5, 0.9}) // of the way to a corner
-      for (unsigned int i = 0; i < (part > 0 ? facet.n_nodes : 1); ++i)
+      for (unsigned int i = 0; i < (part > 0 ? facet.n_corners() : 1); ++i)
         points.push_back(facet.point(middle + part * (facet.node_coordinate(i) - middle)));
     return points;
   }

@@ -1,6 +1,7 @@
-// The parts of Abaqus' input files that describe a plane mesh: *NODE, *ELEMENT, *ELSET, *NSET, *SURFACE.
+// The parts of Abaqus' input files that describe a mesh: *NODE, *ELEMENT, *ELSET, *NSET, *SURFACE.
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/text.h>
+#include <slipstick/mesh/abaqus_element.h>
 #include <slipstick/mesh/mesh_file.h>
 
 #include <algorithm>
@@ -19,10 +20,6 @@ namespace slipstick::mesh
       {"HEADING", "PREPRINT", "PART", "END PART", "ASSEMBLY", "END ASSEMBLY", "INSTANCE", "END INSTANCE"};
     const std::set<std::string> changing =
       {"INCLUDE", "IMPORT", "SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "MANIFEST"};
-
-    // Elements that do not belong to a plane mesh, by the beginnings of their types.
-    const std::vector<std::string> other_elements =
-      {"MASS", "ROTARYI", "HEATCAP", "SPRING", "DASHPOT", "CONN", "GAP", "DCOUP", "JOINTC", "ITS"};
 
     constexpr unsigned int no_element = -1; // index of those: known, not kept
 
@@ -63,7 +60,7 @@ namespace slipstick::mesh
       {
         throw InputError(
           "mesh file " + mesh.file + ":" + std::to_string(line_number) + ": " + problem,
-          "write a flat Abaqus input file of one part with *NODE, *ELEMENT (CPS3, CPS4, CPE3, ...), *ELSET, "
+          "write a flat Abaqus input file of one part with *NODE, *ELEMENT (CPS3, CPE4, C3D8, C3D10, ...), *ELSET, "
           "*NSET, or use Gmsh's .msh");
       }
 
@@ -99,10 +96,10 @@ namespace slipstick::mesh
       void read_set(const Keyword &key, const bool of_nodes);
       void read_surface(const Keyword &key);
       void make_groups();
-      void add_side(const MeshFile::Element                                             &cell,
-                    const std::string                                                   &side,
-                    const Key                                                           &key,
-                    const std::map<std::pair<unsigned int, unsigned int>, unsigned int> &n_cells);
+      void add_side(const MeshFile::Element                      &cell,
+                    const std::string                            &label,
+                    const Key                                    &key,
+                    const std::map<MeshFile::Side, unsigned int> &n_cells);
 
       unsigned int group(const std::set<int> &physicals);
 
@@ -111,6 +108,7 @@ namespace slipstick::mesh
       bool               at_end      = false;
       unsigned int       line_number = 0;
       MeshFile           mesh;
+      unsigned int       dim_of_cells = 2;
 
       std::unordered_map<unsigned long long, unsigned int> node_index, element_index; // by number in the file
       std::map<Key, int>                                   physical_of;
@@ -169,7 +167,7 @@ namespace slipstick::mesh
     {
       const Key key = upper(name);
       if (const auto [found, is_new] = physical_of.emplace(key, physical_of.size() + 1); is_new)
-        for (const int dim : {0, 1, 2})
+        for (const int dim : {0, 1, 2, 3})
           mesh.names[{dim, found->second}] = name;
       return key;
     }
@@ -209,43 +207,16 @@ namespace slipstick::mesh
 
     void AbaqusReader::read_elements(const Keyword &key)
     {
-      // CPS4R -> 4 nodes, C3D8 -> a volume, T3D2 -> a line
       const std::string type = upper(key["TYPE"]);
-      const auto   starts = [&type](const std::string &prefix) { return type.compare(0, prefix.size(), prefix) == 0; };
-      unsigned int dim = 0, n_nodes = 0;
+      const auto starts = [&type](const std::string &prefix) { return type.compare(0, prefix.size(), prefix) == 0; };
       if (type.empty() || key.parameters.count("INPUT") > 0)
         fail(type.empty() ? "*ELEMENT without TYPE" : "*ELEMENT with INPUT is not supported");
-      if (starts("CGAX") || starts("DCAX") || starts("ACAX") || starts("SAX") || starts("MAX") || starts("CAXA"))
-        fail("elements of type " + type +
-             " are axisymmetric with twist, for heat or sound, or shells: only CAX3, CAX4, "
-             "CAX6 and CAX8 are supported");
-      if (starts("C3D") || starts("SC"))
-        dim = 3;
-      for (const std::string candidate : {"CPEG", "CPS", "CPE", "CAX", "STRI", "DC2D", "AC2D", "M3D", "SFM3D", "S"})
-        if (dim == 0 && starts(candidate) && type.size() > candidate.size() && std::isdigit(type[candidate.size()]))
-          {
-            dim     = 2;
-            n_nodes = type[candidate.size()] - '0';
-          }
-      for (const std::string candidate : {"T2D2", "T3D2", "B21", "B31", "B23", "B33", "R2D2", "RB2D2"})
-        if (starts(candidate))
-          {
-            dim     = 1;
-            n_nodes = 2;
-          }
-      for (const std::string candidate : {"T2D3", "T3D3", "B22", "B32"})
-        if (starts(candidate))
-          {
-            dim     = 1;
-            n_nodes = 3;
-          }
-      bool is_other = false;
-      for (const std::string &candidate : other_elements)
-        is_other = is_other || (dim == 0 && starts(candidate));
-      if (is_other)
+      const AbaqusElement kind = abaqus_element(type);
+      if (!kind.problem.empty())
+        fail(kind.problem);
+      const unsigned int dim = kind.dim, n_nodes = kind.n_nodes;
+      if (dim == 0)
         ++ignored["*ELEMENT, TYPE=" + type];
-      else if (dim == 0 || (dim == 2 && n_nodes != 3 && n_nodes != 4 && n_nodes != 6 && n_nodes != 8))
-        fail("elements of type " + type + " are not supported");
       if (starts("CPS"))
         mesh.plane_stress_types.insert(type);
       if (starts("CPE"))
@@ -257,16 +228,9 @@ namespace slipstick::mesh
       for_data([&](const std::vector<std::string> &parts) {
         for (const std::string &part : parts)
           data.push_back(number(part));
-        if (dim == 0 || dim == 3)
+        if (dim == 0)
           {
-            if (dim == 0)
-              element_index.emplace(data.empty() ? 0 : data[0], no_element);
-            MeshFile::Element element; // volumes are refused later
-            element.dim = 3;
-            if (dim == 3 && mesh.groups.empty())
-              mesh.groups.emplace_back();
-            if (dim == 3)
-              mesh.elements.push_back(element);
+            element_index.emplace(data.empty() ? 0 : data[0], no_element);
             data.clear();
             return;
           }
@@ -277,7 +241,7 @@ namespace slipstick::mesh
                type);
         MeshFile::Element element;
         element.dim    = dim;
-        element.n      = dim == 1 ? 2 : n_nodes % 3 == 0 ? 3 : 4;
+        element.n      = kind.n_corners;
         element.number = data[0];
         mesh.is_curved = mesh.is_curved || n_nodes > element.n;
         for (unsigned int k = 0; k < n_nodes; ++k)
@@ -288,7 +252,7 @@ namespace slipstick::mesh
                    ", which is not there");
             if (k < element.n || dim == 1)
               element.corners[k] = found->second;
-            else
+            else if (dim == 2)
               mesh.keep_middle(element, k, found->second);
           }
         if (dim == 1 && n_nodes == 3) // the middle comes second, or last: it is the one between the others
@@ -407,8 +371,8 @@ namespace slipstick::mesh
       return found->second;
     }
 
-    /// Sets of elements name cells and lines; sets of nodes name the edges between them, and points; surfaces name
-    /// sides of elements.
+    /// Sets of elements name cells, and lines (beside solids: faces); sets of nodes name the edges or faces between them, and points;
+    /// surfaces name sides of elements.
     void AbaqusReader::make_groups()
     {
       std::vector<std::set<int>>                  physicals(mesh.elements.size());
@@ -421,20 +385,22 @@ namespace slipstick::mesh
       for (std::size_t e = 0; e < n_elements; ++e)
         mesh.elements[e].group = group(physicals[e]);
 
-      std::map<std::pair<unsigned int, unsigned int>, unsigned int> n_cells; // by edge
+      dim_of_cells = mesh.dimension();
+      std::map<MeshFile::Side, unsigned int> n_cells;
       for (const auto &cell : mesh.elements)
-        for (unsigned int k = 0; k < (cell.dim == 2 ? cell.n : 0); ++k)
-          ++n_cells[std::minmax(cell.corners[k], cell.corners[(k + 1) % cell.n])];
+        if (cell.dim == dim_of_cells)
+          for (const auto &side : sides_of(cell))
+            ++n_cells[side.sorted()];
       for (const auto &[key, set] : node_sets)
         {
-          const std::string name  = mesh.name_of(1, physical_of.at(key));
+          const std::string name  = mesh.name_of(0, physical_of.at(key));
           auto             &nodes = mesh.node_sets[name];
           for (const auto tag : written_out(key, set, node_index, "node"))
             nodes.push_back(node_index.at(tag));
           if (nodes.empty())
             mesh.node_sets.erase(name);
           else
-            mesh.add_edges_of_node_set(name, group({physical_of.at(key)}));
+            mesh.add_sides_of_node_set(name, group({physical_of.at(key)}));
         }
       for (const auto &[key, sides] : surfaces)
         for (const auto &[of, side, at_line] : sides)
@@ -454,36 +420,36 @@ namespace slipstick::mesh
           }
     }
 
-    /// @param n_cells by edge: a surface without sides is all edges of single cells.
-    void AbaqusReader::add_side(const MeshFile::Element                                             &cell,
-                                const std::string                                                   &side,
-                                const Key                                                           &key,
-                                const std::map<std::pair<unsigned int, unsigned int>, unsigned int> &n_cells)
+    /// @param n_cells by side: a surface without labels is all sides of single cells. Lines of plane meshes, faces beside solids are
+    /// sides themselves.
+    void AbaqusReader::add_side(const MeshFile::Element                      &cell,
+                                const std::string                            &label,
+                                const Key                                    &key,
+                                const std::map<MeshFile::Side, unsigned int> &n_cells)
     {
-      const auto add = [&](const unsigned int a, const unsigned int b) {
-        MeshFile::Element line;
-        line.dim     = 1;
-        line.n       = 2;
-        line.corners = {{a, b, 0, 0}};
-        line.number  = cell.number;
-        line.group   = group({physical_of.at(key)});
-        mesh.elements.push_back(line);
+      const auto add = [&](MeshFile::Element side) {
+        side.number = cell.number;
+        side.group  = group({physical_of.at(key)});
+        mesh.elements.push_back(side);
       };
-      const std::string known = "S1 S2 S3 S4 E1 E2 E3 E4"; // sides of cells, edges of shells
-      if (cell.dim == 1 && (side.empty() || side == "SPOS" || side == "SNEG"))
-        add(cell.corners[0], cell.corners[1]);
-      else if (cell.dim == 2 && side.empty())
+      if (cell.dim < dim_of_cells)
         {
-          for (unsigned int k = 0; k < cell.n; ++k)
-            if (n_cells.at(std::minmax(cell.corners[k], cell.corners[(k + 1) % cell.n])) == 1)
-              add(cell.corners[k], cell.corners[(k + 1) % cell.n]);
+          if (!label.empty() && label != "SPOS" && label != "SNEG")
+            fail("surface '" + key + "' has side " + label + " of element " + std::to_string(cell.number) +
+                 ", which has sides SPOS and SNEG");
+          return add(cell);
         }
-      else if (cell.dim == 2 && side.size() == 2 && known.find(side) != std::string::npos &&
-               side[1] - '0' <= int(cell.n))
-        add(cell.corners[side[1] - '1'], cell.corners[(side[1] - '0') % cell.n]);
-      else if (cell.dim != 3)
-        fail("surface '" + key + "' has side " + side + " of element " + std::to_string(cell.number) + ", which has " +
-             (cell.dim == 2 ? "sides S1 to S" + std::to_string(cell.n) : std::string("sides SPOS and SNEG")));
+      const auto  sides = sides_of(cell);
+      std::size_t which = sides.size();
+      if (label.size() == 2 &&
+          (label[0] == 'S' || (label[0] == 'E' && cell.dim == 2))) // sides of cells, edges of shells
+        which = label[1] - '1';
+      if (!label.empty() && which >= sides.size())
+        fail("surface '" + key + "' has side " + label + " of element " + std::to_string(cell.number) +
+             ", which has sides S1 to S" + std::to_string(sides.size()));
+      for (std::size_t k = 0; k < sides.size(); ++k)
+        if (label.empty() ? n_cells.at(sides[k].sorted()) == 1 : k == which)
+          add(sides[k].element());
     }
 
     void AbaqusReader::list_ignored()

@@ -54,8 +54,11 @@ namespace slipstick::mesh
         check_connected();
         check_conformity();
         if (file.is_curved && mesh.middles.empty())
-          mesh.remarks.push_back("body " + body.name + ": only the corners of the curved cells in " + file.file +
-                                 " are used (mid nodes are kept only for second-order cells in Gmsh and Abaqus files)");
+          mesh.remarks.push_back("body " + body.name + ": only the corners of the " +
+                                 (dim == 2 ? "curved" : "second-order") + " cells in " + file.file + " are used" +
+                                 (dim == 2
+                                    ? " (mid nodes are kept only for second-order cells in Gmsh and Abaqus files)"
+                                    : ": their edges and faces are those between the corners"));
         return std::move(mesh);
       }
 
@@ -71,6 +74,16 @@ namespace slipstick::mesh
         for (unsigned int k = 0; k < cell.n; ++k)
           center += (file.nodes[cell.corners[k]] - dealii::Point<3>()) / cell.n;
         return "cell " + std::to_string(cell.number) + " at " + point_text(center, dim);
+      }
+
+      /// Types of elements of the plane, which are faces beside solids.
+      std::string plane_types() const
+      {
+        std::string all;
+        for (const auto *types : {&file.plane_stress_types, &file.plane_strain_types, &file.axisymmetric_types})
+          for (const std::string &type : *types)
+            all += (all.empty() ? " (" : ", ") + type;
+        return all.empty() ? all : all + ")";
       }
 
       void choose_cells();
@@ -204,8 +217,8 @@ namespace slipstick::mesh
              "-2 part.geo");
       if (dim == 3 && n[3] == 0)
         fail(
-          "has no solid cells, only " + std::to_string(n[2]) + " faces, " + std::to_string(n[1]) + " lines and " +
-            std::to_string(n[0]) + " points",
+          "has no solid cells, only " + std::to_string(n[2]) + " faces" + plane_types() + ", " + std::to_string(n[1]) +
+            " lines and " + std::to_string(n[0]) + " points",
           "mesh the volumes, and if physical names are used, name them too: Physical Volume(\"part\") = {1}; gmsh -3 "
           "part.geo; or set Dimension = 2");
     }
@@ -468,8 +481,8 @@ namespace slipstick::mesh
             if (const auto v = vertex_of_node.find(node); v != vertex_of_node.end() && reached.count(v->second) == 0)
               if (std::string &problem = mesh.incomplete_boundaries[name]; problem.empty())
                 problem = "its node at " + point_text(file.nodes[node], dim) +
-                          " is not an end of an edge of the outline between two nodes "
-                          "of the set";
+                          (dim == 2 ? " is not an end of an edge of the outline between two nodes of the set"
+                                    : " is not a corner of a face of the outline all of whose corners are in the set");
         }
     }
 

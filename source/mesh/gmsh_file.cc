@@ -75,6 +75,14 @@ namespace slipstick::mesh
             return {3, 8, 27};
           case 17:
             return {3, 8, 20};
+          case 13:
+            return {3, 6, 18};
+          case 18:
+            return {3, 6, 15};
+          case 14:
+            return {3, 5, 14};
+          case 19:
+            return {3, 5, 13};
         }
       return {0, 0, 0};
     }
@@ -365,8 +373,9 @@ namespace slipstick::mesh
     {
       const ElementType result = element_type(type);
       if (result.n_nodes == 0)
-        in.fail("has elements of type " + std::to_string(type) + ", which is not supported, or is corrupt",
-                "mesh with triangles or quadrilaterals of first or second order (Mesh.ElementOrder = 1)");
+        in.fail(
+          "has elements of type " + std::to_string(type) + ", which is not supported, or is corrupt",
+          "mesh with triangles, quadrilaterals, tetrahedra or hexahedra of first or second order (Mesh.ElementOrder = 1)");
       return result;
     }
 
@@ -395,7 +404,7 @@ namespace slipstick::mesh
                    (type.n_nodes == 6 || type.n_nodes == 8 || (type.n_nodes == 9 && type.n_corners == 4)))
             mesh.keep_middle(element, k, found->second);
         }
-      mesh.is_curved = mesh.is_curved || (type.dim == 2 && type.n_nodes > type.n_corners);
+      mesh.is_curved = mesh.is_curved || (type.dim >= 2 && type.n_nodes > type.n_corners);
       mesh.elements.push_back(element);
     }
 

@@ -39,53 +39,95 @@ namespace slipstick::mesh
     return false;
   }
 
-  void MeshFile::add_edges_of_node_set(const std::string &name, const unsigned int group)
+  MeshFile::Element MeshFile::Side::element() const
+  {
+    Element result;
+    result.n   = n();
+    result.dim = result.n == 2 ? 1 : 2;
+    std::copy_n(corners.begin(), result.n, result.corners.begin());
+    return result;
+  }
+
+  unsigned int MeshFile::dimension() const
+  {
+    return std::any_of(elements.begin(), elements.end(), [](const auto &element) { return element.dim == 3; }) ? 3 : 2;
+  }
+
+  std::vector<MeshFile::Side> sides_of(const MeshFile::Element &cell)
+  {
+    constexpr unsigned int no_corner = MeshFile::Side::no_corner;
+    // by corners; pyramids and wedges have none: they are refused
+    static const std::vector<std::array<unsigned int, 4>> of_tetrahedron = {{{0, 1, 2, no_corner}},
+                                                                            {{0, 3, 1, no_corner}},
+                                                                            {{1, 3, 2, no_corner}},
+                                                                            {{2, 3, 0, no_corner}}};
+    static const std::vector<std::array<unsigned int, 4>> of_hexahedron =
+      {{{0, 1, 2, 3}}, {{4, 7, 6, 5}}, {{0, 4, 5, 1}}, {{1, 5, 6, 2}}, {{2, 6, 7, 3}}, {{3, 7, 4, 0}}};
+    std::vector<MeshFile::Side> sides;
+    if (cell.dim == 2)
+      for (unsigned int k = 0; k < cell.n; ++k)
+        sides.push_back({{{cell.corners[k], cell.corners[(k + 1) % cell.n], no_corner, no_corner}}});
+    if (cell.dim == 3 && (cell.n == 4 || cell.n == 8))
+      for (const auto &local : cell.n == 4 ? of_tetrahedron : of_hexahedron)
+        {
+          sides.emplace_back();
+          for (unsigned int k = 0; k < 4; ++k)
+            if (local[k] != no_corner)
+              sides.back().corners[k] = cell.corners[local[k]];
+        }
+    return sides;
+  }
+
+  void MeshFile::add_sides_of_node_set(const std::string &name, const unsigned int group)
   {
     std::vector<bool> is_in(nodes.size(), false);
     const auto       &set = node_sets.at(name);
     for (const unsigned int node : set)
       is_in[node] = true;
-    const auto add = [&](const unsigned int dim, const unsigned int a, const unsigned int b) {
-      Element element;
-      element.dim     = dim;
-      element.n       = dim + 1;
-      element.corners = {{a, b, 0, 0}};
+    const auto add = [&](Element element) {
       element.group   = group;
       element.implied = true;
       elements.push_back(element);
     };
     if (set.size() == 1)
       {
-        add(0, set[0], 0);
+        Element point;
+        point.n          = 1;
+        point.corners[0] = set[0];
+        add(point);
         node_sets.erase(name);
         return;
       }
-    const std::size_t n_elements = elements.size();
+    const std::size_t  n_elements = elements.size();
+    const unsigned int dim        = dimension();
     for (std::size_t e = 0; e < n_elements; ++e)
-      if (const auto cell = elements[e]; cell.dim == 2)
-        for (unsigned int k = 0; k < cell.n; ++k)
-          if (is_in[cell.corners[k]] && is_in[cell.corners[(k + 1) % cell.n]])
-            add(1, cell.corners[k], cell.corners[(k + 1) % cell.n]);
+      if (elements[e].dim == dim)
+        for (const Side &side : sides_of(elements[e]))
+          if (std::all_of(side.corners.begin(), side.corners.begin() + side.n(), [&](const auto k) {
+                return is_in[k];
+              }))
+            add(side.element());
   }
 
   void MeshFile::add_outline()
   {
-    std::map<std::pair<unsigned int, unsigned int>, int> n_cells; // by edge; negative: there is a line
+    const unsigned int  dim = dimension();
+    std::map<Side, int> n_cells; // negative: there is a line or face
     for (const Element &element : elements)
-      if (element.dim == 1)
-        n_cells[std::minmax(element.corners[0], element.corners[1])] = -1000000;
-      else if (element.dim == 2)
-        for (unsigned int k = 0; k < element.n; ++k)
-          ++n_cells[std::minmax(element.corners[k], element.corners[(k + 1) % element.n])];
-    for (const auto &[edge, n] : n_cells)
+      if (element.dim == dim)
+        for (const Side &side : sides_of(element))
+          ++n_cells[side.sorted()];
+      else if (element.dim + 1 == dim)
+        {
+          Side side;
+          std::copy_n(element.corners.begin(), element.n, side.corners.begin());
+          n_cells[side.sorted()] = -1000000;
+        }
+    for (const auto &[side, n] : n_cells)
       if (n == 1)
         {
-          Element element;
-          element.dim     = 1;
-          element.n       = 2;
-          element.corners = {{edge.first, edge.second, 0, 0}};
-          element.group   = groups.size();
-          elements.push_back(element);
+          elements.push_back(side.element());
+          elements.back().group = groups.size();
         }
     groups.push_back({0});
   }

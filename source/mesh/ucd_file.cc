@@ -54,7 +54,7 @@ namespace slipstick::mesh
         if (type == "hex" || type == "tet" || type == "prism" || type == "pyr")
           {
             element.dim = 3;
-            in.line();
+            element.n   = type == "hex" ? 8 : type == "prism" ? 6 : type == "pyr" ? 5 : 4;
           }
         else if (type == "pt" || type == "line" || type == "tri" || type == "quad")
           {

@@ -3,6 +3,7 @@
 #include <slipstick/mesh/mesh_file.h>
 #include <slipstick/mesh/word_reader.h>
 
+#include <optional>
 #include <set>
 #include <unordered_map>
 
@@ -11,7 +12,7 @@ namespace slipstick::mesh
   namespace
   {
     /// Elements by their "FE descriptor": dimension, corners, nodes; those of second order have a node inside of every
-    /// edge, behind its first end.
+    /// edge, behind its first end; of solids the bottom comes first so, then the edges that rise from it, then the top.
     struct FeType
     {
       unsigned int dim, n_corners, n_nodes;
@@ -57,7 +58,35 @@ namespace slipstick::mesh
           case 95:
             return {2, 4, 8};
         }
+      switch (type)
+        {
+          case 111:
+            return {3, 4, 4};
+          case 118:
+            return {3, 4, 10};
+          case 115:
+            return {3, 8, 8};
+          case 116:
+            return {3, 8, 20};
+          case 112: // wedge
+            return {3, 6, 6};
+        }
       return {type >= 101 && type <= 118 ? 3u : 0u, 0, 0};
+    }
+
+    /// The corner that node @p k of an element is, if it is one.
+    std::optional<unsigned int> corner_at(const FeType &type, const unsigned int k)
+    {
+      if (type.n_nodes == 0)
+        return {};
+      if (type.n_nodes == type.n_corners)
+        return k;
+      const unsigned int n_below = type.dim < 3 ? type.n_corners : type.n_corners == 4 ? 3 : 4; // corners at the bottom
+      if (k < 2 * n_below)
+        return k % 2 == 0 ? std::optional<unsigned int>(k / 2) : std::nullopt;
+      if (k < 3 * n_below || (k - 3 * n_below) % 2 != 0)
+        return {};
+      return n_below + (k - 3 * n_below) / 2;
     }
 
     class UnvReader
@@ -136,9 +165,8 @@ namespace slipstick::mesh
               if (found == node_index.end())
                 in.fail("cell " + std::to_string(number) + " has corner " + std::to_string(node) +
                         ", which is not in the file");
-              const unsigned int stride = known.n_nodes > known.n_corners ? 2 : 1;
-              if (known.n_nodes > 0 && k % stride == 0)
-                element.corners[k / stride] = found->second;
+              if (const auto corner = corner_at(known, k))
+                element.corners[*corner] = found->second;
             }
           if (!element_index.emplace(number, mesh.elements.size()).second)
             in.fail("element " + std::to_string(number) + " occurs twice");
@@ -148,7 +176,7 @@ namespace slipstick::mesh
             mesh.plane_strain_types.insert("type " + std::to_string(type));
           if (type >= 81 && type <= 85)
             mesh.axisymmetric_types.insert("type " + std::to_string(type));
-          mesh.is_curved = mesh.is_curved || (known.dim == 2 && known.n_nodes > known.n_corners);
+          mesh.is_curved = mesh.is_curved || (known.dim >= 2 && known.n_nodes > known.n_corners);
           if (known.n_nodes == 0 && known.dim == 0) // springs, masses
             {
               if (ignored_types.insert(type).second)
@@ -168,7 +196,7 @@ namespace slipstick::mesh
       if (number && *number == static_cast<int>(*number) && std::abs(*number) < first_of_names)
         return *number;
       const int physical = first_of_names + members.size();
-      for (const int dim : {0, 1, 2})
+      for (const int dim : {0, 1, 2, 3})
         mesh.names[{dim, physical}] = name;
       return physical;
     }
@@ -249,7 +277,7 @@ namespace slipstick::mesh
         mesh.elements[e].group = group(physicals[e].empty() ? std::vector<int>{0} : physicals[e]);
       for (const auto &[physical, of_group] : members)
         if (!of_group.first.empty())
-          mesh.add_edges_of_node_set(mesh.name_of(1, physical), group({physical}));
+          mesh.add_sides_of_node_set(mesh.name_of(1, physical), group({physical}));
       mesh.add_outline();
     }
 

@@ -11,7 +11,7 @@ namespace slipstick::mesh
 {
   namespace
   {
-    /// VTK's kinds of cells in the plane: dimension, corners, all nodes; 0 nodes: none of them.
+    /// VTK's kinds of cells: dimension, corners, all nodes; 0 nodes: none of them.
     struct CellType
     {
       unsigned int dim, n_corners, n_nodes;
@@ -39,8 +39,22 @@ namespace slipstick::mesh
             return {2, 4, 8};
           case 28:
             return {2, 4, 9};
+          case 10:
+            return {3, 4, 4};
+          case 24:
+            return {3, 4, 10};
+          case 12:
+            return {3, 8, 8};
+          case 25:
+            return {3, 8, 20};
+          case 29:
+            return {3, 8, 27};
+          case 13:
+            return {3, 6, 6};
+          case 14:
+            return {3, 5, 5};
         }
-      return {type >= 10 && type <= 14 ? 3u : 0u, 0, 0}; // volumes; all others are not known
+      return {0, 0, 0};
     }
 
     class VtkReader
@@ -50,7 +64,7 @@ namespace slipstick::mesh
         : in(
             file,
             text,
-            "write it again (legacy .vtk in ASCII with an unstructured grid of triangles and quadrilaterals), or convert it "
+            "write it again (legacy .vtk in ASCII with an unstructured grid of triangles, quadrilaterals, tetrahedra and hexahedra), or convert it "
             "to Gmsh's .msh")
       {
         mesh.file = file;
@@ -154,7 +168,7 @@ namespace slipstick::mesh
           const auto known = cell_type(type);
           if (known.n_nodes == 0 && known.dim == 0)
             in.fail("cell " + std::to_string(c) + " is of type " + std::to_string(type) + ", which is not supported");
-          if (known.dim < 3 && corners[c].size() != known.n_nodes)
+          if (corners[c].size() != known.n_nodes)
             in.fail("cell " + std::to_string(c) + " of type " + std::to_string(type) + " has " +
                     std::to_string(corners[c].size()) + " corners");
           MeshFile::Element element;
@@ -163,7 +177,7 @@ namespace slipstick::mesh
           element.number = c;
           for (unsigned int k = 0; k < known.n_corners; ++k)
             element.corners[k] = corners[c][k];
-          mesh.is_curved = mesh.is_curved || (known.dim == 2 && known.n_nodes > known.n_corners);
+          mesh.is_curved = mesh.is_curved || (known.dim >= 2 && known.n_nodes > known.n_corners);
           mesh.elements.push_back(element);
         }
     }

@@ -3,6 +3,7 @@
 #include <slipstick/output/conditions.h>
 #include <slipstick/output/csv.h>
 
+#include <algorithm>
 #include <ostream>
 
 namespace slipstick::output
@@ -101,7 +102,7 @@ namespace slipstick::output
           {
             row(boundary.kind, boundary.name, boundary.side, boundary.where.body);
             for (unsigned int i = 0; i < n_ends; ++i)
-              out << at(part.node(i));
+              out << at(part.node(std::min(i, part.n_corners() - 1)));
             out << '\n';
           }
       for (unsigned int k = 0; k < named.size(); ++k)

@@ -51,21 +51,70 @@ namespace slipstick::output
 
     constexpr std::uint8_t vtk_triangle = 5, vtk_quadrilateral = 9, vtk_tetrahedron = 10, vtk_hexahedron = 12;
 
-    /// Nodes of the linear cells that a cell is drawn as, counterclockwise; degree 2: four, with the nodes on its
-    /// edges.
+    /// Of a hexahedron of degree 2: eight between its nodes.
     template <int dim>
-    std::vector<std::vector<unsigned int>> parts_of_cell(const bool is_simplex, const unsigned int degree)
+    std::vector<std::vector<unsigned int>> parts_of_hexahedron(const dealii::FiniteElement<dim> &scalar)
     {
-      if (dim == 3 && is_simplex)
-        return {{0, 1, 2, 3}};
-      if (dim == 3) // its back face, then its front face
-        return {{0, 1, 3, 2, 4, 5, 7, 6}};
+      std::array<unsigned int, 27> at{}; // by place on a lattice of three nodes a direction
+      for (unsigned int i = 0; i < scalar.n_dofs_per_cell(); ++i)
+        {
+          unsigned int place = 0;
+          for (unsigned int d = dim; d-- > 0;)
+            place = 3 * place + static_cast<unsigned int>(std::lround(2 * scalar.unit_support_point(i)[d]));
+          at[place] = i;
+        }
+      std::vector<std::vector<unsigned int>> parts;
+      for (const unsigned int first : {0, 1, 3, 4, 9, 10, 12, 13})
+        {
+          parts.emplace_back();
+          for (const unsigned int corner : {0, 1, 4, 3, 9, 10, 13, 12})
+            parts.back().push_back(at[first + corner]);
+        }
+      return parts;
+    }
+
+    /// Of a tetrahedron of degree 2: four at its corners, four around an axis of the octahedron between them.
+    template <int dim>
+    std::vector<std::vector<unsigned int>> parts_of_tetrahedron(const dealii::FiniteElement<dim> &scalar)
+    {
+      const auto between = [&](const unsigned int a, const unsigned int b) {
+        const auto   middle = (scalar.unit_support_point(a) + scalar.unit_support_point(b)) / 2.;
+        unsigned int i      = dim + 1;
+        while (scalar.unit_support_point(i).distance(dealii::Point<dim>(middle)) > 0.1)
+          ++i;
+        return i;
+      };
+      const unsigned int a = between(0, 1), b = between(1, 2), c = between(0, 2), d = between(0, 3), e = between(1, 3),
+                         f = between(2, 3);
+      return {{0, a, c, d},
+              {a, 1, b, e},
+              {c, b, 2, f},
+              {d, e, f, 3},
+              {c, e, a, b},
+              {c, e, b, f},
+              {c, e, f, d},
+              {c, e, d, a}};
+    }
+
+    /// Nodes of the linear cells that a cell is drawn as, counterclockwise; degree 2: four, in space eight, with the nodes
+    /// on its edges.
+    template <int dim>
+    std::vector<std::vector<unsigned int>> parts_of_cell(const mechanics::Element<dim> &element)
+    {
+      const bool is_simplex = element.cell.is_simplex(), is_linear = element.degree == 1;
+      if constexpr (dim == 3)
+        {
+          if (!is_linear)
+            return is_simplex ? parts_of_tetrahedron(*element.scalar) : parts_of_hexahedron(*element.scalar);
+          if (is_simplex)
+            return {{0, 1, 2, 3}};
+          return {{0, 1, 3, 2, 4, 5, 7, 6}}; // its back face, then its front face
+        }
       if (is_simplex)
-        return degree == 1 ? std::vector<std::vector<unsigned int>>{{0, 1, 2}}
-                           : std::vector<std::vector<unsigned int>>{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-      return degree == 1
-               ? std::vector<std::vector<unsigned int>>{{0, 1, 3, 2}}
-               : std::vector<std::vector<unsigned int>>{{0, 6, 8, 4}, {6, 1, 5, 8}, {4, 8, 7, 2}, {8, 5, 3, 7}};
+        return is_linear ? std::vector<std::vector<unsigned int>>{{0, 1, 2}}
+                         : std::vector<std::vector<unsigned int>>{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+      return is_linear ? std::vector<std::vector<unsigned int>>{{0, 1, 3, 2}}
+                       : std::vector<std::vector<unsigned int>>{{0, 6, 8, 4}, {6, 1, 5, 8}, {4, 8, 7, 2}, {8, 5, 3, 7}};
     }
 
     /// Positions and cells of a subdomain, and the fields that are constant in a cell.
@@ -75,10 +124,10 @@ namespace slipstick::output
                  const unsigned int                p,
                  const mechanics::SubdomainStress &stress)
     {
-      const auto &subdomain   = *mesh.subdomains[p];
-      const auto &dof_handler = *spaces.dof_handlers[p];
-      const auto &element     = spaces.of(p);
-      const auto  parts       = parts_of_cell<dim>(element.cell.is_simplex(), element.degree);
+      const auto                                  &subdomain   = *mesh.subdomains[p];
+      const auto                                  &dof_handler = *spaces.dof_handlers[p];
+      const auto                                  &element     = spaces.of(p);
+      const auto                                   parts       = parts_of_cell(element);
       std::vector<dealii::types::global_dof_index> dofs;
       std::vector<unsigned int>                    nodes;
       std::vector<float>                           error;

@@ -58,11 +58,11 @@ namespace slipstick::scene
     return accuracy_of(preset) > 0 ? of_percentage : Knobs();
   }
 
-  void apply_accuracy(const Parameters &parameters, dealii::ParameterHandler &prm, const unsigned int max_degree)
+  void apply_accuracy(const Parameters &parameters, dealii::ParameterHandler &prm)
   {
     const auto preset = parameters.value(name);
     if (preset) // a word that is not a preset is refused by apply()
       for (const auto &[path, value] : knobs_of_accuracy(*preset))
-        set_value(prm, path, path == degree ? std::min(value, std::to_string(max_degree)) : value);
+        set_value(prm, path, value);
   }
 } // namespace slipstick::scene

@@ -135,8 +135,7 @@ namespace slipstick::scene
              "File",
              body.file,
              "",
-             dim == 3 ? "a file: .msh (Gmsh 2.2, 4.1)"
-                      : "a file: .msh (Gmsh 2.2, 4.1), .inp (Abaqus), .ucd, .unv, .vtk",
+             "a file: .msh (Gmsh 2.2, 4.1), .inp (Abaqus), .ucd, .unv, .vtk",
              "mesh: relative to the directory of the .prm, then to the working directory; must be set");
     add_text(prm,
              "Part",

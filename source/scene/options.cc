@@ -173,10 +173,10 @@ namespace slipstick::scene
     prm.leave_subsection();
   }
 
-  void declare(dealii::ParameterHandler &prm, Discretization &discretization, const unsigned int max_degree)
+  void declare(dealii::ParameterHandler &prm, Discretization &discretization)
   {
     prm.enter_subsection("Discretization");
-    add_count(prm, "Degree", discretization.degree, 1, max_degree, "polynomial degree of the elements");
+    add_count(prm, "Degree", discretization.degree, 1, 2, "polynomial degree of the elements");
     add_choice(
       prm,
       "Element",

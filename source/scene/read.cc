@@ -18,10 +18,6 @@ namespace slipstick::scene
   namespace
   {
     // The top level lists and the subsections whose names they declare.
-    // Of the elements.
-    template <int dim>
-    constexpr unsigned int max_degree = dim == 3 ? 1 : 2;
-
     const std::string dimension_name = "Dimension";
 
     const NamedKind material_kind    = {"Material", "Materials", library_names()};
@@ -119,7 +115,7 @@ namespace slipstick::scene
       declare_all(probes);
       if (dim == 2)
         contact_search.declare(prm);
-      declare(prm, options.discretization, max_degree<dim>);
+      declare(prm, options.discretization);
       declare(prm, options.decomposition);
       declare_load_steps(prm, options.load_factors);
       declare(prm, options.friction);
@@ -272,7 +268,7 @@ namespace slipstick::scene
       names[kind.list] = parameters.names(kind);
 
     SceneParameters<dim> declared(names);
-    apply_accuracy(parameters, declared.prm, max_degree<dim>);
+    apply_accuracy(parameters, declared.prm);
     apply_library(parameters, names.at(material_kind.list), declared.prm);
     try
       {

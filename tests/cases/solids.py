@@ -3,8 +3,9 @@
 import math
 import unittest
 
+import fields
 import scenes
-from program import converged, run, shipped, solve
+from program import converged, new_path, run, shipped, solve
 
 SOFT = {'Young modulus': '1000', 'Poisson ratio': '0.25', 'Density': '2e-9', 'Thermal expansion': '1e-5'}
 BAR = {'Size': '2, 3, 4', 'Cells': '2, 3, 4', 'Material': 'elastic'}
@@ -351,7 +352,7 @@ class Refused(Solids):
                 ('Body cube/Radius', 3, 'Radius', 'has no meaning for Shape = cuboid'),
                 ('Obstacle sphere/Shape', 'polyline', "Shape = 'polyline'", 'half space'),
                 ('Obstacle sphere/Points', '0 0; 1 0', 'Obstacle sphere/Points', 'the plane'),
-                ('Discretization/Degree', 2, "Degree = '2'"),
+                ('Discretization/Degree', 3, "Degree = '3'"),
                 ('Solver/Algorithm', 'smalbe', "Solver/Algorithm = 'smalbe'", 'friction in space'),
                 ('Support clamp/Boundary', 'cube/inner', "boundary 'inner'", 'front'),
                 ('Traction pressed/Pressure', '500*w', 'z', 't')):
@@ -375,6 +376,132 @@ class Refused(Solids):
         self.refused(solid(supports={'floor': {'Boundary': 'box/bottom', 'Displacement y': '0'}}, tractions=pull), {},
                      'body box: ', 'one of 3 free motions', status=4)
         self.refused(solid(supports=hinge), {}, 'no face', "'y < -1'")
+
+
+def abaqus_block(name, size, n, origin=(0, 0, 0)):
+    """Path of an .inp with a block of C3D10, six to a brick, whose sides are sets of nodes."""
+    places, elements = {}, []
+
+    def node(twice):  # by twice its place on the lattice
+        return places.setdefault(twice, len(places) + 1)
+
+    for i, j, k in ((i, j, k) for i in range(n[0]) for j in range(n[1]) for k in range(n[2])):
+        corner = [tuple(2 * (a + (c >> d & 1)) for d, a in enumerate((i, j, k))) for c in range(8)]
+        for a, b in ((1, 3), (3, 2), (2, 6), (6, 4), (4, 5), (5, 1)):  # from corner 0 to corner 7
+            v = [corner[c] for c in (0, a, b, 7)]
+            middles = [tuple((p + q) // 2 for p, q in zip(v[a], v[b])) for a, b in ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))]
+            elements.append([node(x) for x in v + middles])
+    lines = ['*NODE'] + ['{}, {}'.format(number, text(o + s * x / (2 * m) for o, s, x, m in zip(origin, size, place, n)))
+                         for place, number in places.items()]
+    lines += ['*ELEMENT, TYPE=C3D10, ELSET=block'] + ['{}, {}'.format(1 + e, ', '.join(map(str, element)))
+                                                      for e, element in enumerate(elements)]
+    for d, (low, high) in enumerate((('left', 'right'), ('bottom', 'top'), ('back', 'front'))):
+        for side, at in ((low, 0), (high, 2 * n[d])):
+            lines += ['*NSET, NSET=' + side] + [str(number) for place, number in places.items() if place[d] == at]
+    path = new_path(name + '.inp')
+    path.write_text('\n'.join(lines) + '\n')
+    return path
+
+
+class Quadratic(Solids):
+    """Elements of degree 2."""
+
+    TWO = {'Discretization': {'Degree': '2'}}
+    LOW, HIGH, CLAMPED, SHEARED, stack = TwoBodies.LOW, TwoBodies.HIGH, TwoBodies.CLAMPED, TwoBodies.SHEARED, TwoBodies.stack
+
+    def test_forces_balance_where_facets_are_covered_in_part(self):
+        """One block overhangs the other, meshes that do not match, either side the slave."""
+        inp = abaqus_block('low', (4, 2, 3), (4, 2, 3))
+        high = {**self.HIGH, 'Cells': '5, 2, 4'}
+        for low in (self.LOW, {'Shape': 'mesh', 'File': inp, 'Material': 'elastic'}):
+            for sides in (('high/bottom', 'low/top'), ('low/top', 'high/bottom')):
+                self.LOW = low
+                result = converged(self.stack(sides, high=high, Solver={'Tolerance': '1e-9'}, **self.TWO), ranks=2)
+                pair = result.summary['results']['contact'][0]
+                sign = 1 if sides[0].startswith('high') else -1
+                self.near([sign * f for f in pair['force']], [-1.2 * 8, 80, -0.9 * 8], 1e-6)
+                self.near(pair['moment_mismatch'], [0, 0, 0], 1e-9)
+                self.assertLess(result.summary['residuals']['moment_balance'], 1e-9)
+
+    def volume(self, directory):
+        sum_ = 0
+        for piece in fields.pieces(directory):
+            arrays = fields.read_vtu(piece)
+            x, cells, begin = arrays['Points'], [v for (v,) in arrays['connectivity']], 0
+            for (end,) in arrays['offsets']:
+                corner = [x[v] for v in cells[begin:end]]
+                tetrahedra = [(0, 1, 2, 3)] if end - begin == 4 else [(0, 1, 3, 4), (2, 3, 1, 6), (5, 4, 6, 1), (7, 6, 4, 3), (1, 3, 4, 6)]
+                for a, b, c, d in tetrahedra:
+                    u, v, w = ([q - p for p, q in zip(corner[a], corner[other])] for other in (b, c, d))
+                    part = (u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0])) / 6
+                    self.assertGreater(part, 0)
+                    sum_ += part
+                begin = end
+        return sum_
+
+    def test_cantilever(self):
+        """Timoshenko: F l^3 / (3 E I) + F l / (kappa G A), the clamped end is stiffer than the plane cross-section by little."""
+        E, nu, l, h, b, F = 1000, 0.25, 40, 4, 2, 0.5
+        wall = {'wall': {'Boundary': 'box/left', **{'Displacement ' + d: '0' for d in 'xyz'}}}
+        load = {'end': {'Boundary': 'box/right', 'Traction y': F / (h * b)}}
+        inp = abaqus_block('beam', (l, h, b), (12, 2, 1))
+        deflection = F * l ** 3 / (3 * E * b * h ** 3 / 12) + F * l / (5 / 6 * E / (2 * (1 + nu)) * b * h)
+        for body in ({'Size': text((l, h, b)), 'Cells': '8, 2, 1'}, {'Shape': 'mesh', 'File': inp}):
+            case = solid(bodies={'box': {**body, 'Material': 'elastic'}}, supports=wall, tractions=load,
+                         probes={'tip': {'Body': 'box', 'Point': text((l, h / 2, b / 2))},
+                                 'in': {'Body': 'box', 'Point': text((l / 2, h, b / 2))}}, **self.TWO)
+            result = converged(case, ranks=2)
+            tip, inside = result.summary['results']['probes']
+            self.assertAlmostEqual(tip['displacement'][1] / deflection, 1, delta=0.01)
+            self.assertAlmostEqual(inside['stress'][0] / (-F * l / 2 * 6 / (b * h * h)), 1, delta=0.02)
+            self.assertAlmostEqual(self.volume(result.directory), l * h * b, delta=1e-4)
+
+    def test_nearly_incompressible_elements_do_not_lock(self):
+        """A bent bar of rubber: coarse hexahedra and tetrahedra against finer hexahedra."""
+        rubber = {'Young modulus': '10', 'Poisson ratio': '0.4999'}
+        wall = {'wall': {'Boundary': 'box/left', **{'Displacement ' + d: '0' for d in 'xyz'}}}
+        load = {'end': {'Boundary': 'box/right', 'Traction y': '0.001'}}
+        inp = abaqus_block('rubber', (12, 3, 3), (6, 2, 2))
+        found = []
+        for body in ({'Size': '12, 3, 3', 'Cells': '6, 2, 2'}, {'Shape': 'mesh', 'File': inp}, {'Size': '12, 3, 3', 'Cells': '12, 4, 4'}):
+            case = solid(materials={'elastic': rubber}, bodies={'box': {**body, 'Material': 'elastic'}}, supports=wall, tractions=load,
+                         Discretization={'Degree': '2', 'Element': 'nearly incompressible'})
+            found.append(converged(case).summary['results']['max_displacement'])
+        self.assertAlmostEqual(found[0] / found[2], 1, delta=0.01)
+        self.assertAlmostEqual(found[1] / found[2], 1, delta=0.03)
+
+    def test_a_layer_between_planes_of_symmetry_is_the_plane(self):
+        held = {'held': {'Boundary': 'box/left', 'Displacement x': '0', 'Displacement y': '0'}}
+        planes = {side: {'Boundary': 'box/' + side, 'Displacement normal': '0'} for side in ('back', 'front')}
+        pressed = {'pressed': {'Boundary': 'box/top', 'Pressure': '500'}}
+        contacts = {'touch': {'Slave': 'box/bottom', 'Master': 'round', 'Law': 'Coulomb', 'Friction coefficient': '0.3'}}
+        plane = scenes.box(plane_state='plane strain', bodies={'box': {'Size': '10, 10', 'Cells': '8, 8', 'Thickness': 2, 'Material': 'elastic'}},
+                           obstacles={'round': {'Center': '5, -100', 'Radius': '100'}}, supports=held, tractions=pressed,
+                           contacts=contacts, Decomposition=CUT, Solver=SHARP, **self.TWO)
+        space = solid(materials={'elastic': scenes.ELASTIC}, bodies={'box': {'Size': '10, 10, 2', 'Cells': '8, 8, 1', 'Material': 'elastic'}},
+                      obstacles={'round': {'Shape': 'cylinder', 'Center': '5, -100, 0', 'Radius': '100'}},
+                      supports={**held, **planes}, tractions=pressed, contacts=contacts, **self.TWO)
+        a, b = converged(plane), converged(space, ranks=2)
+        (of_plane, n), (of_space, m) = self.figures(a), self.figures(b)
+        self.assertEqual(m[0], 3 * n[0])
+        for one, other in zip(of_space[:5], of_plane[:5]):
+            self.assertAlmostEqual(one / other, 1, delta=1e-8)
+
+    def test_ranks_partitions_and_orientation_change_nothing(self):
+        coarse = {'Decomposition/Cells per block': 2, 'Solver/Tolerance': 1e-12, 'Discretization/Degree': 2}
+        first = converged(shipped('cube_on_sphere'), coarse)
+        expected, counts = self.figures(first)
+        vtp = (first.directory / 'contact_000.vtp').read_bytes()
+        self.assertEqual(int(vtp.split(b'NumberOfPolys="')[1].split(b'"')[0]), 64)
+        move = [1, -2, 3]
+        metis = {**coarse, 'Decomposition/Method': 'METIS', 'Decomposition/Subdomains': 5, 'Body cube/Cells': '4, 4, 4'}
+        rotated = {**coarse, 'Body cube/Rotation': 37, 'Body cube/Rotation axis': '1, 2, 2', 'Body cube/Translation': text(move),
+                   'Obstacle sphere/Center': text(a + b for a, b in zip(turned([5, -100, 5], 37, [1, 2, 2]), move))}
+        for overrides, ranks in ((coarse, 2), (metis, 2), (rotated, 1)):
+            found, n = self.figures(converged(shipped('cube_on_sphere'), overrides, ranks=ranks))
+            self.assertEqual(n, counts)
+            for one, other in zip(found, expected):
+                self.assertAlmostEqual(one / other, 1, delta=1e-8)
 
 
 class Shipped(Solids):

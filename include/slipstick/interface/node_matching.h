@@ -61,10 +61,12 @@ namespace slipstick::interface
     std::map<mechanics::NodeKey, double> slave, master; // D_ik, M_ij
   };
 
+  /// In the plane a node without a share of its edges (on the axis of revolution) has no row. A corner of triangles of degree 2 has
+  /// one where some of them are covered in part.
   template <int dim>
   bool has_row(const SurfaceNode<dim> &node, const NodeIntegrals &sum)
   {
-    return node.measure > 0 && sum.measure > smallest_cover * node.scale;
+    return (dim == 3 || node.measure > 0) && sum.measure > smallest_cover * node.scale;
   }
 
   /// The row of a slave node, its gap that of the edges or facets.
@@ -86,9 +88,21 @@ namespace slipstick::interface
     return row;
   }
 
+  /// Of @p node among @p weights, 0 where it is none of them.
+  inline double weight_of(const mechanics::NodeKey &node, const Weights &weights)
+  {
+    for (const auto &[key, weight] : weights)
+      if (key == node)
+        return weight;
+    return 0;
+  }
+
   // Master nodes lie across slave nodes when they are off by no more than this part of the tributary length ...
   constexpr double across_automatic = 1e-6; // ... to be taken for matching meshes
   constexpr double across_asked_for = 0.1;  // ... when node to node is asked for
+  // In space matching nodes are not enough: a quadrilateral may face two triangles. The integrals must say the same, with no less than
+  // this weight of the node across.
+  constexpr double least_weight_across = 0.99;
 
   /// Rows from node to node where the discretisation asks for them, or leaves it to the meshes and these match; else @p rows.
   /// @param rise how far the true surface is above a node along the normal of its row [mm].
@@ -108,6 +122,8 @@ namespace slipstick::interface
     for (auto &row : to_nodes)
       {
         const auto [key, off] = places.across(row);
+        if (dim == 3 && !is_asked_for && weight_of(key, row.master_weights) < least_weight_across)
+          return rows;
         if (off > tolerance * std::pow(row.length, 1. / (dim - 1)))
           {
             if (!is_asked_for)

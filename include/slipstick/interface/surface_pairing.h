@@ -46,7 +46,7 @@ namespace slipstick::interface
 
   private:
     unsigned int                                   n_nodes;
-    std::array<dealii::Point<2>, Facet::max_nodes> corners;
+    std::array<dealii::Point<2>, Facet::max_nodes> nodes;       // corners first
     Facet::Shape                                   heights{};   // of the nodes [mm]
     dealii::Tensor<1, 2>                           u, v, twist; // x = corner + s u + t v + s t twist
     const Facet                                   *facet;

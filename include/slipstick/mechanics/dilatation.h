@@ -12,7 +12,7 @@ namespace slipstick::mechanics
   /// Least-squares projection, cell by cell, on polynomials of x and y of one degree less than the displacement: the
   /// mean dilatation (Hughes 1980; degree 1) on quadrilaterals; linear functions, discontinuous, on quadrilaterals of
   /// degree 2 (the pair Q2-P1 satisfies the inf-sup condition, Boffi, Gastaldi 2002); the mean on triangles of degree 2
-  /// (P2-P0).
+  /// (P2-P0). The same on hexahedra and tetrahedra.
   template <int dim>
   class DilatationProjection
   {

@@ -13,16 +13,17 @@
 
 namespace slipstick::mechanics
 {
-  /// Identity of a node across subdomains and ranks: its vertex twice, or the two vertices of its edge.
+  /// Identity of a node across subdomains and ranks: its vertex twice, or the two vertices of its edge; of a node in the middle of a
+  /// quadrilateral in space the two vertices of that diagonal which has the smallest one (a diagonal is no edge of a conforming mesh).
   using NodeKey = std::array<mesh::GlobalVertex, 2>;
 
   /// Lagrange element of one cell type, with its mapping and quadratures. Nodes lie on vertices (degree 1) and also in
-  /// the middle of edges (degree 2; quadrilaterals have one more inside). Mappings are isoparametric: with degree 2 the
+  /// the middle of edges (degree 2; quadrilaterals and hexahedra have one more inside, hexahedra one in every face). Mappings are isoparametric: with degree 2 the
   /// edges follow the manifolds of the triangulation, of quadrilaterals and triangles alike.
   template <int dim>
   struct Element
   {
-    /// @p cell: quadrilateral or triangle, hexahedron or tetrahedron; @p degree: 1 or 2, in space 1; @p is_curved: does the mesh have manifolds to
+    /// @p cell: quadrilateral or triangle, hexahedron or tetrahedron; @p degree: 1 or 2; @p is_curved: does the mesh have manifolds to
     /// follow?
     Element(const dealii::ReferenceCell cell, const unsigned int degree, const bool is_curved = true);
 
@@ -75,7 +76,7 @@ namespace slipstick::mechanics
     }
 
     /// Calls f(node, key, position) for the nodes of a face, in deal.II's order of the face (which may run against the
-    /// order of the cell that it is seen from).
+    /// order of the cell that it is seen from): vertices, middles of edges, the middle of a quadrilateral.
     template <class F>
     void for_each_face_node(const mesh::SubdomainMesh<dim>                               &mesh,
                             const typename dealii::DoFHandler<dim>::active_face_iterator &face,
@@ -88,14 +89,34 @@ namespace slipstick::mechanics
           ends[v] = mesh.global_vertices[face->vertex_index(v)];
           f(face->vertex_dof_index(v, 0) / dim, NodeKey{{ends[v], ends[v]}}, face->vertex(v));
         }
+      if (degree == 1)
+        return;
       if constexpr (dim == 2)
-        if (degree == 2)
-          f(face->dof_index(0) / dim,
-            NodeKey{{std::min(ends[0], ends[1]), std::max(ends[0], ends[1])}},
-            face->center(true)); // on the manifold of the edge, as in the mapping
+        f(face->dof_index(0) / dim,
+          key_between(ends[0], ends[1]),
+          face->center(true)); // on the manifold of the edge, as in the mapping
+      else
+        {
+          for (unsigned int l = 0; l < face->n_lines(); ++l)
+            {
+              const auto line = face->line(l);
+              f(line->dof_index(0) / dim,
+                key_between(mesh.global_vertices[line->vertex_index(0)], mesh.global_vertices[line->vertex_index(1)]),
+                line->center(true));
+            }
+          if (face->n_vertices() == most_vertices) // vertices in rows: the diagonals are 0, 3 and 1, 2
+            f(face->dof_index(0) / dim,
+              std::min(key_between(ends[0], ends[3]), key_between(ends[1], ends[2])),
+              face->center(true));
+        }
     }
 
   private:
+    static NodeKey key_between(const mesh::GlobalVertex a, const mesh::GlobalVertex b)
+    {
+      return {{std::min(a, b), std::max(a, b)}};
+    }
+
     std::vector<std::unique_ptr<const Element<dim>>> elements; // of every cell type on this rank
     std::vector<const Element<dim> *>                element_of;
   };

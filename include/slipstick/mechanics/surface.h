@@ -33,6 +33,11 @@ namespace slipstick::mechanics
       archive &body &boundary &subdomain &n_nodes &keys &at &curve;
     }
 
+    static constexpr unsigned int n_corners()
+    {
+      return 2;
+    }
+
     dealii::Point<dim> node(const unsigned int i) const
     {
       return dealii::Point<dim>(at[i][0], at[i][1]);

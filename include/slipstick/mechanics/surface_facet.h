@@ -9,12 +9,12 @@
 
 namespace slipstick::mechanics
 {
-  /// A face on the surface of a solid: a triangle with local coordinates in the unit triangle, or a quadrilateral with
-  /// those in the unit square, of degree 1. Nodes run counter-clockwise as seen from outside, the one with the smallest
-  /// key first.
+  /// A face on the surface of a solid: a triangle with local coordinates in the unit triangle (3 or 6 nodes), or a quadrilateral with
+  /// those in the unit square (4 or 9 nodes). Corners run counter-clockwise as seen from outside, the one with the smallest
+  /// key first; then come the middles of the edges that begin at the corners, then that of a quadrilateral.
   struct SurfaceFacet
   {
-    static constexpr unsigned int max_nodes = 4;
+    static constexpr unsigned int max_nodes = 9;
 
     using Place  = dealii::Point<2>; // local coordinates
     using Shape  = std::array<double, max_nodes>;
@@ -33,6 +33,17 @@ namespace slipstick::mechanics
       archive &body &boundary &subdomain &n_nodes &keys &at;
     }
 
+    unsigned int n_corners() const
+    {
+      return n_nodes == 3 || n_nodes == 6 ? 3 : 4;
+    }
+
+    /// Of degree 2?
+    bool is_quadratic() const
+    {
+      return n_nodes > n_corners();
+    }
+
     dealii::Point<3> node(const unsigned int i) const
     {
       return dealii::Point<3>(at[i][0], at[i][1], at[i][2]);
@@ -40,6 +51,9 @@ namespace slipstick::mechanics
 
     /// Shape functions of the nodes; 0 for nodes that are none.
     Shape shape(const Place &s) const;
+
+    /// Those of degree 1 of the corners.
+    Shape shape_of_corners(const Place &s) const;
 
     dealii::Point<3> point(const Place &s) const;
 
@@ -69,7 +83,8 @@ namespace slipstick::mechanics
     /// Mean length of the edges [mm].
     double chord() const;
 
-    /// Integral of the shape function of every node over the facet [mm^2]: what lengths and measures are in space.
+    /// Integral of the shape function of every node over the facet [mm^2]: what lengths and measures are in space. That of the
+    /// corners of a triangle of degree 2 is 0: equal pressure puts no force on them.
     Shape tributary_areas() const;
     Shape tributary_lengths() const
     {

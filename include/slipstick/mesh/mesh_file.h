@@ -27,14 +27,43 @@ namespace slipstick::mesh
       bool               implied = false; // an edge between nodes of a set, which may lie inside of a body
     };
 
+    /// An edge of a plane cell, a face of a solid: its corners around, the rest is no_corner.
+    struct Side
+    {
+      static constexpr unsigned int no_corner = -1;
+
+      std::array<unsigned int, 4> corners{{no_corner, no_corner, no_corner, no_corner}};
+
+      unsigned int n() const
+      {
+        return std::find(corners.begin(), corners.end(), no_corner) - corners.begin();
+      }
+
+      /// The same for the two cells at it.
+      Side sorted() const
+      {
+        Side result = *this;
+        std::sort(result.corners.begin(), result.corners.end());
+        return result;
+      }
+
+      /// It as a line or face of the file.
+      Element element() const;
+
+      bool operator<(const Side &other) const
+      {
+        return corners < other.corners;
+      }
+    };
+
     std::string                                      file;
     std::vector<dealii::Point<3>>                    nodes;
     std::vector<Element>                             elements;
     std::vector<std::vector<int>>                    groups;            // sets of physical numbers that elements carry
     std::map<std::pair<int, int>, std::string>       names;             // by dimension and physical number
     bool                                             is_curved = false; // had nodes besides the corners
-    std::map<std::string, std::vector<unsigned int>> node_sets;         // by name: nodes whose edges are a boundary
-    std::vector<std::string>                         remarks;           // what of the file is not used, for the log
+    std::map<std::string, std::vector<unsigned int>> node_sets; // by name: nodes whose edges or faces are a boundary
+    std::vector<std::string>                         remarks;   // what of the file is not used, for the log
     std::set<std::string> plane_stress_types, plane_strain_types, axisymmetric_types; // element types, by use
 
     /// Mid nodes of the edges of cells of second order, by the two corners in ascending order.
@@ -56,14 +85,20 @@ namespace slipstick::mesh
     /// Whether the element carries @p part, a physical name or number; an empty one means all.
     bool is_in(const Element &element, const std::string &part) const;
 
-    /// Lines of @p group for all edges of cells between two nodes of node_sets[name], a point for a single node.
-    void add_edges_of_node_set(const std::string &name, const unsigned int group);
+    /// 3 when there are solids, else 2.
+    unsigned int dimension() const;
 
-    /// Lines of number 0 for the edges of single cells that have no line yet: the outline is boundary number 0.
+    /// Lines or faces of @p group for all sides of cells with all corners in node_sets[name], a point for a single node.
+    void add_sides_of_node_set(const std::string &name, const unsigned int group);
+
+    /// Lines or faces of number 0 for the sides of single cells that have none yet: the outline is boundary number 0.
     void add_outline();
   };
 
-  /// Solids are kept of Gmsh's and Abaqus' files. Reads .msh (Gmsh 2.0 to 2.2 and 4.1, ASCII and binary), .inp (Abaqus), .ucd (and UCD's .inp), .vtk, whose
+  /// Sides of a plane cell or a solid in Abaqus' order (S1, S2, ...).
+  std::vector<MeshFile::Side> sides_of(const MeshFile::Element &cell);
+
+  /// Reads .msh (Gmsh 2.0 to 2.2 and 4.1, ASCII and binary), .inp (Abaqus), .ucd (and UCD's .inp), .vtk, whose
   /// boundaries and parts have numbers in place of names, and .unv.
   /// @throws InputError that names the file, what is wrong with it and a remedy.
   MeshFile read_mesh_file(const std::string &file);
@@ -71,8 +106,8 @@ namespace slipstick::mesh
   /// Gmsh's format from @p text, the whole content of @p file.
   MeshFile parse_gmsh(const std::string &file, const std::string &text);
 
-  /// Abaqus' format. Sets of elements are parts (and lines boundaries), surfaces are boundaries; a set of nodes is the
-  /// boundary of all edges between two of its nodes, one node alone is a point.
+  /// Abaqus' format. Sets of elements are parts (and lines, beside solids faces, boundaries), surfaces are boundaries; a set of nodes
+  /// is the boundary of all edges, or faces of solids, between its nodes, one node alone is a point.
   MeshFile parse_abaqus(const std::string &file, const std::string &text);
 
   /// VTK's legacy format in ASCII, unstructured grids of versions 2 to 5. Groups are the integers of the first data of

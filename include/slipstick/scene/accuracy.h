@@ -15,8 +15,8 @@ namespace slipstick::scene
   /// The single knobs that a preset sets, with their values: {"Solver/Tolerance", "1e-3"}.
   std::vector<std::pair<std::string, std::string>> knobs_of_accuracy(const std::string &preset);
 
-  /// Sets the knobs of the preset that @p parameters names, a degree to no more than @p max_degree. To be called before Parameters::apply(), so that a knob that
+  /// Sets the knobs of the preset that @p parameters names. To be called before Parameters::apply(), so that a knob that
   /// the file or an override sets wins.
   /// @throws InputError when there is no such preset.
-  void apply_accuracy(const Parameters &parameters, dealii::ParameterHandler &prm, const unsigned int max_degree);
+  void apply_accuracy(const Parameters &parameters, dealii::ParameterHandler &prm);
 } // namespace slipstick::scene

@@ -274,7 +274,7 @@ namespace slipstick::scene
 
   // Concerns without names of their own; each declares its own subsection.
   void declare(dealii::ParameterHandler &prm, Decomposition &decomposition);
-  void declare(dealii::ParameterHandler &prm, Discretization &discretization, const unsigned int max_degree);
+  void declare(dealii::ParameterHandler &prm, Discretization &discretization);
   void declare(dealii::ParameterHandler &prm, SolverOptions &solver);
   void declare(dealii::ParameterHandler &prm, FrictionOptions &friction);
   void declare(dealii::ParameterHandler &prm, OutputOptions &output);
