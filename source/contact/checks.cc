@@ -143,8 +143,7 @@ namespace slipstick::contact
     /// Of the displacement of a node.
     unsigned int n_components(const tfeti::SubdomainSystem &subdomain)
     {
-      constexpr unsigned int motions_in_space = 6;
-      return subdomain.kernel().cols() == motions_in_space ? 3 : 2;
+      return tfeti::is_solid(subdomain.kernel().cols()) ? 3 : 2;
     }
 
     double relative(const double value, const double scale)

@@ -67,8 +67,6 @@ namespace slipstick::contact
                       const std::vector<bool>        &sticks,
                       CheckedContact                 &contact)
   {
-    constexpr unsigned int motions_in_space = 6;
-    const bool is_in_space = !dual.subdomains().empty() && dual.subdomains()[0]->kernel().cols() == motions_in_space;
     for (unsigned int i = 0; i < held.points.size(); ++i)
       {
         const auto  &point     = held.points[i];
@@ -81,7 +79,7 @@ namespace slipstick::contact
         if (point.is_bonded)
           {
             node.tangential_traction = product(force, {{-node.normal[1], node.normal[0], 0}}) / node.area;
-            if (is_in_space)
+            if (point.contact.is_in_space())
               {
                 for (unsigned int d = 0; d < 3; ++d)
                   node.traction[d] = force[d] / node.area + node.pressure * node.normal[d];

@@ -2,7 +2,7 @@
 #include <slipstick/base/text.h>
 #include <slipstick/interface/contact_search.h>
 #include <slipstick/interface/edge_tree.h>
-#include <slipstick/interface/mortar.h>
+#include <slipstick/interface/facing_distance.h>
 #include <slipstick/interface/solid_surface.h>
 
 #include <boost/geometry/algorithms/intersects.hpp>

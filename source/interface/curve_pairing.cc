@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 namespace slipstick::interface
 {
   namespace
   {
     using Edge   = CurvePairing::Edge;
-    using Node   = CurvePairing::Node;
     using Tensor = CurvePairing::Tensor;
 
     // Parts of an edge (of its length) that are shorter than this are left out.
@@ -45,53 +43,6 @@ namespace slipstick::interface
         }
       return 0.5 * (low + high);
     }
-
-    /// The nodes of a curve with the means of its own normals.
-    /// @return the nodes of every edge.
-    std::vector<std::array<unsigned int, 3>> find_nodes(const std::vector<Edge>   &curve,
-                                                        const mesh::Kinematics<2> &kinematics,
-                                                        std::vector<Node>         &nodes)
-    {
-      std::map<mechanics::NodeKey, std::vector<std::pair<unsigned int, unsigned int>>> at; // edge, node of the edge
-      for (unsigned int e = 0; e < curve.size(); ++e)
-        for (unsigned int i = 0; i < curve[e].n_nodes; ++i)
-          at[curve[e].keys[i]].emplace_back(e, i);
-      std::vector<std::array<unsigned int, 3>> node_of(curve.size());
-      for (const auto &[key, places] : at)
-        {
-          std::vector<Tensor> normals, means;
-          for (const auto &[e, i] : places)
-            normals.push_back(curve[e].outline_normal(Edge::node_coordinate(i)));
-          const auto         side  = mechanics::smooth_normals(normals, means);
-          const unsigned int first = nodes.size();
-          for (unsigned int g = 0; g < means.size(); ++g)
-            nodes.push_back({key, g, curve[places[0].first].node(places[0].second), means[g]});
-          for (unsigned int k = 0; k < places.size(); ++k)
-            {
-              const auto &[e, i] = places[k];
-              node_of[e][i]      = first + side[k];
-              nodes[first + side[k]].covered += curve[e].tributary_lengths()[i];
-              nodes[first + side[k]].size += curve[e].chord();
-              const auto measures = curve[e].tributary_measures(kinematics);
-              nodes[first + side[k]].measure += measures[i];
-              nodes[first + side[k]].scale += measures[0] + measures[1] + measures[2];
-            }
-        }
-      return node_of;
-    }
-
-    /// The nodal normals of an edge, interpolated; not of unit length.
-    Tensor interpolated(const Edge                        &edge,
-                        const std::array<unsigned int, 3> &node_of,
-                        const std::vector<Node>           &nodes,
-                        const double                       s)
-    {
-      const auto N = edge.shape(s);
-      Tensor     n;
-      for (unsigned int i = 0; i < edge.n_nodes; ++i)
-        n += N[i] * nodes[node_of[i]].normal;
-      return n;
-    }
   } // namespace
 
   CurvePairing::CurvePairing(const std::vector<Edge>   &slave_,
@@ -102,8 +53,8 @@ namespace slipstick::interface
     , master(master_)
     , reach(reach_)
     , tree(master_)
+    , own(slave_, kinematics)
   {
-    node_of = find_nodes(slave, kinematics, all_nodes);
     average_normals();
   }
 
@@ -111,16 +62,15 @@ namespace slipstick::interface
   /// it.
   void CurvePairing::average_normals()
   {
-    std::vector<Node>   of_master;
-    const auto          nodes_of_master = find_nodes(master, {}, of_master);
-    std::vector<Tensor> facing(all_nodes.size());
-    std::vector<bool>   is_done(all_nodes.size(), false);
+    const SurfaceNodes<2> of_master(master);
+    std::vector<Tensor>   facing(own.nodes.size());
+    std::vector<bool>     is_done(own.nodes.size(), false);
     for (unsigned int e = 0; e < slave.size(); ++e)
       {
         const auto near = candidates(e);
         for (unsigned int i = 0; i < slave[e].n_nodes; ++i)
           {
-            const unsigned int at = node_of[e][i];
+            const unsigned int at = own.of_part[e][i];
             const double       s  = Edge::node_coordinate(i);
             if (is_done[at])
               continue;
@@ -134,8 +84,8 @@ namespace slipstick::interface
             for (const unsigned int m : near)
               if (const auto found = hit(e, s, m); found && std::abs(found->gap - gap) <= same_place * slave[e].chord())
                 {
-                  const Tensor n     = interpolated(master[m], nodes_of_master[m], of_master, found->s);
-                  const double along = n * all_nodes[at].normal / n.norm();
+                  const Tensor n     = of_master.normal(m, master[m].n_nodes, master[m].shape(found->s));
+                  const double along = n * own.nodes[at].normal / n.norm();
                   if (along < std::min(best, facing_cosine))
                     {
                       best       = along;
@@ -144,16 +94,16 @@ namespace slipstick::interface
                 }
           }
       }
-    for (unsigned int i = 0; i < all_nodes.size(); ++i)
+    for (unsigned int i = 0; i < facing.size(); ++i)
       {
-        const Tensor sum    = all_nodes[i].normal - facing[i];
-        all_nodes[i].normal = sum / sum.norm();
+        const Tensor sum    = own.nodes[i].normal - facing[i];
+        own.nodes[i].normal = sum / sum.norm();
       }
   }
 
   Tensor CurvePairing::field(const unsigned int e, const double s) const
   {
-    return interpolated(slave[e], node_of[e], all_nodes, s);
+    return own.normal(e, slave[e].n_nodes, slave[e].shape(s));
   }
 
   double CurvePairing::side(const unsigned int e, const double s, const dealii::Point<2> &y) const

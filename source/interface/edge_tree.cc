@@ -50,4 +50,31 @@ namespace slipstick::interface
         }
     return inside;
   }
+
+  BoxTree<3> facet_tree(const std::vector<mechanics::SurfaceFacet> &facets)
+  {
+    std::vector<BoxTree<3>::Box> boxes;
+    for (const auto &facet : facets)
+      {
+        std::vector<dealii::Point<3>> corners;
+        for (unsigned int i = 0; i < facet.n_nodes; ++i)
+          corners.push_back(facet.node(i));
+        boxes.push_back(BoxTree<3>::box_around(corners));
+      }
+    return BoxTree<3>(boxes);
+  }
+
+  bool ClosedSurface<mechanics::SurfaceFacet>::contains(const dealii::Point<3> &x) const
+  {
+    double angle = 0;
+    for (const auto &facet : facets)
+      for (unsigned int k = 1; k + 1 < facet.n_nodes; ++k)
+        {
+          const auto a = facet.node(0) - x, b = facet.node(k) - x, c = facet.node(k + 1) - x;
+          angle +=
+            2 * std::atan2(a * cross_product_3d(b, c),
+                           a.norm() * b.norm() * c.norm() + a * b * c.norm() + b * c * a.norm() + c * a * b.norm());
+        }
+    return angle > 2 * dealii::numbers::PI;
+  }
 } // namespace slipstick::interface

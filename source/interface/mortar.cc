@@ -1,9 +1,8 @@
+#include <slipstick/interface/biorthogonal.h>
 #include <slipstick/interface/mortar.h>
 #include <slipstick/interface/node_matching.h>
 
 #include <deal.II/base/quadrature_lib.h>
-
-#include <Eigen/Dense>
 
 #include <cmath>
 
@@ -11,8 +10,6 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Edges and nodes are left out if no more than this fraction of them is covered.
-    constexpr double smallest_cover = 1e-10;
     // An edge counts as fully covered if no more than this fraction is missing.
     constexpr double whole_edge = 1e-9;
     // Nodes lie on their curve when they are off by no more than this part of the edge.
@@ -54,19 +51,21 @@ namespace slipstick::interface
       {
         std::vector<MortarRow<2>> result;
         for (unsigned int i = 0; i < sums.size(); ++i)
-          if (pairing.nodes()[i].measure > 0 && sums[i].measure > smallest_cover * pairing.nodes()[i].scale)
-            result.push_back(row_of(pairing.nodes()[i], sums[i]));
+          if (has_row(pairing.nodes()[i], sums[i]))
+            {
+              auto row = row_of(pairing.nodes()[i], sums[i], nodes);
+              row.gap += row.normal * sums[i].rise / sums[i].measure;
+              row.left_out = sums[i].left_out;
+              result.push_back(std::move(row));
+            }
         return result;
       }
 
     private:
-      struct Sums
+      struct Sums : NodeIntegrals
       {
-        double                               measure = 0; // D_i
-        double                               length  = 0; // in the plane
-        Tensor                               rise;        // <phi_i (rise of the master - rise of the slave) n>
-        double                               left_out = 0;
-        std::map<mechanics::NodeKey, double> slave, master; // D_ik, M_ij
+        Tensor rise; // <phi_i (rise of the master - rise of the slave) n>
+        double left_out = 0;
       };
 
       /// Adds the contributions of slave edge e to the integrals of its nodes.
@@ -122,11 +121,7 @@ namespace slipstick::interface
                   sum += dx * N_m[j] * test;
                 }
             }
-        // phi = diag(measures) mass^-1 T, scaled: on a short part the entries are of very different size
-        const Eigen::VectorXd scale  = mass.diagonal().cwiseSqrt().cwiseInverse();
-        const Eigen::MatrixXd scaled = scale.asDiagonal() * mass * scale.asDiagonal();
-        const Eigen::MatrixXd dual =
-          measures.asDiagonal() * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal()).eval();
+        const Eigen::MatrixXd dual = biorthogonal(mass, measures);
         const Eigen::MatrixXd D = dual * slave_, of_curves = dual * rises;
         for (unsigned int i = 0; i < n_test; ++i)
           {
@@ -146,25 +141,6 @@ namespace slipstick::interface
             for (unsigned int i = 0; i < n_test; ++i)
               sums[pairing.nodes_of(e)[i]].master[key] += M[i];
           }
-      }
-
-      MortarRow<2> row_of(const CurvePairing::Node &node, const Sums &sum) const
-      {
-        MortarRow<2> row;
-        row.slave          = node.key;
-        row.side           = node.side;
-        row.position       = node.position;
-        row.normal         = node.normal;
-        row.measure        = sum.measure;
-        row.length         = sum.length;
-        row.full_measure   = node.measure;
-        row.full_length    = node.covered;
-        row.slave_weights  = normalised(sum.slave, sum.measure);
-        row.master_weights = normalised(sum.master, sum.measure);
-        row.left_out       = sum.left_out;
-        nodes.measure(row);
-        row.gap += row.normal * sum.rise / sum.measure;
-        return row;
       }
 
     public:
@@ -193,35 +169,6 @@ namespace slipstick::interface
       std::map<mechanics::NodeKey, std::pair<const Edge *, double>>
         places; // an edge of every node, and where it is there
     };
-
-    /// Nearest point of the chord of an edge.
-    dealii::Point<2> nearest_on(const mechanics::SurfaceEdge<2> &edge, const dealii::Point<2> &x)
-    {
-      const auto   along = edge.node(1) - edge.node(0);
-      const double s     = std::min(1., std::max(0., (x - edge.node(0)) * along / along.norm_square()));
-      return edge.node(0) + s * along;
-    }
-
-    void one_way(const std::vector<mechanics::SurfaceEdge<2>> &a,
-                 const std::vector<mechanics::SurfaceEdge<2>> &b,
-                 double                                       &smallest)
-    {
-      const EdgeTree tree(b);
-      for (const auto &edge : a)
-        for (const double s : {0., 0.5, 1.})
-          {
-            const auto x = edge.point(s);
-            const auto n = edge.normal(s);
-            tree.for_each_by_distance(
-              x,
-              [&] { return smallest; },
-              [&](const unsigned int m) {
-                if (b[m].normal(0.5) * n < facing_cosine)
-                  smallest = std::min(smallest, x.distance(nearest_on(b[m], x)));
-                return true;
-              });
-          }
-    }
   } // namespace
 
   template <>
@@ -238,18 +185,5 @@ namespace slipstick::interface
                    discretization,
                    name,
                    [&](const MortarRow<2> &row, const mechanics::NodeKey &key) { return integrals.rise(row, key); });
-  }
-
-  template <>
-  std::optional<double> facing_distance(const std::vector<mechanics::SurfaceEdge<2>> &a,
-                                        const std::vector<mechanics::SurfaceEdge<2>> &b,
-                                        const double                                  bound)
-  {
-    double smallest = bound;
-    one_way(a, b, smallest);
-    one_way(b, a, smallest);
-    if (smallest < bound)
-      return smallest;
-    return {};
   }
 } // namespace slipstick::interface

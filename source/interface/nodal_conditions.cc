@@ -1,9 +1,8 @@
+#include <slipstick/tfeti/dense.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
 #include <slipstick/interface/nodal_conditions.h>
 #include <slipstick/mechanics/surface.h>
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -133,14 +132,14 @@ namespace slipstick::interface
             sides[i].area * (foundation.normal_stiffness * nn +
                              foundation.tangential_stiffness * (Eigen::Matrix<double, dim, dim>::Identity() - nn));
         }
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>> principal(stiffness);
+      const tfeti::SymmetricEigen principal(stiffness);
       for (unsigned int k = 0; k < dim; ++k)
-        if (principal.eigenvalues()[k] > smallest_stiffness * principal.eigenvalues()[dim - 1])
+        if (principal.values[k] > smallest_stiffness * principal.values[dim - 1])
           {
             typename InterfaceNode<dim>::Spring spring;
-            spring.stiffness = principal.eigenvalues()[k];
+            spring.stiffness = principal.values[k];
             for (unsigned int d = 0; d < dim; ++d)
-              spring.direction[d] = principal.eigenvectors()(d, k);
+              spring.direction[d] = principal.vectors(d, k);
             if (node.free_part(spring.direction).norm() > held_direction_tolerance)
               node.springs.push_back(spring);
           }
@@ -154,9 +153,9 @@ namespace slipstick::interface
       return {};
     if (held.empty())
       return direction;
-    const auto                          D = directions_of(*this);
-    const Eigen::Matrix<double, dim, 1> v = vector(direction);
-    return tensor<dim>(Eigen::Matrix<double, dim, 1>(v - D * D.colPivHouseholderQr().solve(v)));
+    const Eigen::MatrixXd D = directions_of(*this);
+    const Eigen::VectorXd v = vector(direction);
+    return tensor<dim>(Eigen::VectorXd(v - D * tfeti::basic_solution(D, v)));
   }
 
   template <int dim>
@@ -164,9 +163,7 @@ namespace slipstick::interface
   {
     if (held.empty())
       return {};
-    const Eigen::Matrix<double, dim, 1> least =
-      directions_of(*this).transpose().completeOrthogonalDecomposition().solve(values_of(*this));
-    return tensor<dim>(least);
+    return tensor<dim>(tfeti::shortest_solution(directions_of(*this).transpose(), values_of(*this)));
   }
 
   template <int dim>
@@ -192,7 +189,7 @@ namespace slipstick::interface
     });
     share(nearest->by, by);
     // the value that is implied: sum of w_k value_k with direction = sum of w_k direction_k
-    const Eigen::VectorXd shares = directions_of(node).colPivHouseholderQr().solve(vector(direction));
+    const Eigen::VectorXd shares = tfeti::basic_solution(directions_of(node), vector(direction));
     const double          there  = shares.dot(values_of(node));
     const double          size   = std::max(std::abs(value), shares.cwiseAbs().dot(values_of(node).cwiseAbs()));
     if (std::abs(there - value) > same_value_tolerance * size)

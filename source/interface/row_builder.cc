@@ -1,8 +1,7 @@
+#include <slipstick/tfeti/dense.h>
 #include <slipstick/interface/held_contact.h>
 #include <slipstick/interface/obstacle.h>
 #include <slipstick/interface/row_builder.h>
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -517,10 +516,10 @@ namespace slipstick::interface
         const Vector    a = free_of(jump(touch, tangents[0])), b = free_of(jump(touch, tangents[1]));
         Eigen::Matrix2d gram;
         gram << product(a, a), product(a, b), product(a, b), product(b, b);
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(gram);
-        if (principal.eigenvalues()[0] <= held_tangent<dim> * held_tangent<dim>)
+        const tfeti::SymmetricEigen principal(gram);
+        if (principal.values[0] <= held_tangent<dim> * held_tangent<dim>)
           {
-            const auto v = principal.eigenvectors().col(1);
+            const auto v = principal.vectors.col(1);
             const auto t = v[0] * tangents[0] + v[1] * tangents[1];
             tangents[1]  = v[0] * tangents[1] - v[1] * tangents[0];
             tangents[0]  = t;

@@ -1,4 +1,5 @@
 #include <slipstick/base/collective.h>
+#include <slipstick/tfeti/dense.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
 #include <slipstick/qp/box.h>
@@ -392,7 +393,7 @@ namespace slipstick::tfeti
         gram.col(n) += motions.transpose() * u[p];
       }
     MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, comm);
-    const Eigen::VectorXd amount     = gram.leftCols(n).completeOrthogonalDecomposition().solve(gram.col(n));
+    const Eigen::VectorXd amount     = shortest_solution(gram.leftCols(n), gram.col(n));
     Eigen::VectorXd       amplitudes = Eigen::VectorXd::Zero(loose[0].amplitudes.size());
     for (std::size_t m = 0; m < n; ++m)
       amplitudes += amount[m] * loose[m].amplitudes;
@@ -446,7 +447,7 @@ namespace slipstick::tfeti
         for (unsigned int i = 0; i < violated.size(); ++i)
           slopes.row(i) = violated[i];
         const Eigen::VectorXd change =
-          slopes.completeOrthogonalDecomposition().solve(Eigen::Map<const Eigen::VectorXd>(by.data(), by.size()));
+          shortest_solution(slopes, Eigen::Map<const Eigen::VectorXd>(by.data(), by.size()));
         amount += change;
         if (change.norm() <= slide_tolerance * amount.norm())
           break;

@@ -1,4 +1,5 @@
 #include <slipstick/base/collective.h>
+#include <slipstick/tfeti/dense.h>
 #include <slipstick/tfeti/dual_problem.h>
 #include <slipstick/tfeti/gathered_by_label.h>
 
@@ -81,7 +82,7 @@ namespace slipstick::tfeti
               Eigen::VectorXd       slope;
               Eigen::MatrixXd       curvature;
               const double          value = evaluate(a, eps, &slope, &curvature);
-              const Eigen::VectorXd step  = -curvature.completeOrthogonalDecomposition().solve(slope);
+              const Eigen::VectorXd step  = -shortest_solution(curvature, slope);
               const double          along = slope.dot(step);
               if (!(along < 0))
                 break;

@@ -1,6 +1,6 @@
+#include <slipstick/tfeti/dense.h>
 #include <slipstick/tfeti/null_vectors.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
@@ -86,12 +86,12 @@ namespace slipstick::tfeti
           for (Matrix::InnerIterator entry(matrix, j); entry; ++entry)
             if (entry.value() != 0)
               block(place[entry.row()], place[j]) = entry.value();
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(block);
-        for (Eigen::Index i = 0; i < eigen.eigenvalues().size() && eigen.eigenvalues()[i] <= limit; ++i)
+        const SymmetricEigen eigen(block);
+        for (Eigen::Index i = 0; i < eigen.values.size() && eigen.values[i] <= limit; ++i)
           {
             result.push_back(Eigen::VectorXd::Zero(matrix.cols()));
             for (std::size_t k = 0; k < part.size(); ++k)
-              result.back()[part[k]] = eigen.eigenvectors()(k, i);
+              result.back()[part[k]] = eigen.vectors(k, i);
           }
       }
     return result;

@@ -294,8 +294,6 @@ namespace slipstick::tfeti
 
   namespace
   {
-    constexpr unsigned int motions_in_space = 6;
-
     std::string direction(const Eigen::Vector3d &v)
     {
       const Eigen::Vector3d unit = (v.array().abs() < named_part * v.norm()).select(0., v.normalized());
@@ -335,7 +333,7 @@ namespace slipstick::tfeti
             text += "translation along the axis";
             continue;
           }
-        if (k == motions_in_space)
+        if (is_solid(k))
           {
             text += in_space(part, motion.frames[b]);
             continue;

@@ -23,8 +23,7 @@ namespace slipstick::tfeti
 
     // Blocks at the touched unknowns pay off below this number of entries over that of K. In the plane they always do; cubes
     // of 8^3 cells in space have 8 times as many.
-    constexpr double       entries_of_blocks = 4;
-    constexpr Eigen::Index motions_in_space  = 6;
+    constexpr double entries_of_blocks = 4;
 
     std::string name_of(const SubdomainMatrices &matrices)
     {
@@ -209,7 +208,7 @@ namespace slipstick::tfeti
 
   bool SubdomainSystem::prefers_factors(const SubdomainMatrices &matrices, const std::size_t n_touched)
   {
-    return matrices.kernel.cols() == motions_in_space && n_touched < static_cast<std::size_t>(matrices.load.size()) &&
+    return is_solid(matrices.kernel.cols()) && n_touched < static_cast<std::size_t>(matrices.load.size()) &&
            n_touched * n_touched / 2 > entries_of_blocks * matrices.stiffness.nonZeros();
   }
 

@@ -16,7 +16,7 @@ namespace
                    const double                       poisson_ratio,
                    const std::string                 &law)
   {
-    Scene scene                 = cut({}, whole());
+    Scene scene                 = cut(Scene(), whole());
     scene.discretization.degree = degree;
     add_body(scene, "lower", {0, 0}, {10, 4}, lower);
     add_body(scene, "upper", {0, 4}, {10, 3}, upper);

@@ -41,7 +41,7 @@ RULES = {
                       headers={"tfeti/constraints.h", "tfeti/subdomain_matrices.h"},
                       dealii={"base", "dofs", "fe", "grid", "lac"}, libraries={"MPI", "Boost", "Eigen"}),
     "interface": Rule(layers={"base", "mechanics", "mesh", "scene"},
-                      headers={"tfeti/constraints.h"},  # the rows that it fills
+                      headers={"tfeti/constraints.h", "tfeti/dense.h"},  # the rows that it fills; decompositions
                       dealii={"base"}, libraries={"MPI", "Boost", "Eigen"}),
     "contact": Rule(layers={"base", "qp", "scene", "tfeti"}, dealii={"base", "lac"}, libraries={"MPI", "Eigen"}),
     "output": Rule(layers={"base", "contact", "mechanics", "mesh"}, dealii=ALL_OF_DEALII, libraries={"MPI", "JSON", "POSIX", "zlib"}),
@@ -191,7 +191,7 @@ FIXTURES = {
     "mechanics with METIS": ({"source/mechanics/x.cc": "#include <metis.h>"}, "may not include METIS"),
     "interface with elements of deal.II": ({"source/interface/x.cc": "#include <deal.II/fe/fe_q.h>"}, "of deal.II only base"),
     "interface with matrices": ({"source/interface/x.cc": "#include <slipstick/tfeti/subdomain_matrices.h>"},
-                                "only tfeti/constraints.h"),
+                                "only tfeti/constraints.h, tfeti/dense.h"),
     "scene with a solver": ({"source/scene/x.cc": "#include <slipstick/qp/mpgp.h>"}, "only qp/node_set.h"),
     "scene with options": ({"source/scene/x.cc": "#include <slipstick/qp/options.h>"}, None),
     "mechanics with an operator": ({"source/mechanics/x.cc": "#include <slipstick/tfeti/dual_operator.h>"}, "only tfeti/"),

@@ -138,7 +138,7 @@ TEST(Stiffness, kernel_is_spanned_by_the_rigid_motions)
         {
           const Eigen::MatrixXd K = full(system.stiffness);
           EXPECT_LT((K * system.kernel).norm(), 1e-13 * K.norm() * system.kernel.norm());
-          const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues();
+          const Eigen::VectorXd eigenvalues = tfeti::symmetric_eigenvalues(K);
           EXPECT_LT(eigenvalues.head(3).cwiseAbs().maxCoeff(), 1e-13 * eigenvalues.tail(1)[0]);
           EXPECT_GT(eigenvalues[3], 1e-5 * eigenvalues.tail(1)[0]);
         }

@@ -195,7 +195,7 @@ TEST(SubdomainSystem, pseudo_inverse_is_symmetric_and_positive_definite)
     {
       const Eigen::MatrixXd inverse = pseudo_inverse(system(example));
       EXPECT_LT(relative_difference(inverse, inverse.transpose()), 1e-11) << example.name;
-      EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(inverse).eigenvalues()[0], 0) << example.name;
+      EXPECT_GT(tfeti::symmetric_eigenvalues(inverse)[0], 0) << example.name;
     }
 }
 
@@ -250,7 +250,7 @@ TEST(SubdomainSystem, hinge_is_named)
     for (const double skew : {0., 0.1, 0.31})
       {
         SCOPED_TRACE(std::to_string(n) + " cells, skew " + std::to_string(skew));
-        const Scene          scene = box(n);
+        const Scene                scene = box(n);
         const mesh::Mesh<2>        mesh  = mesh_of(hinged_squares(n, skew));
         const mechanics::Spaces<2> spaces(mesh, 1);
         expect_named(mechanics::assemble(scene, mesh, spaces, 1.)[0]);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <slipstick/interface/edge_tree.h>
+#include <slipstick/interface/facing_distance.h>
+#include <slipstick/interface/surface_nodes.h>
 
 #include <optional>
 
@@ -13,9 +15,6 @@ namespace slipstick::interface
     double ahead = 0, behind = 0;
   };
 
-  // Curves face each other where the product of their normals is below this.
-  constexpr double facing_cosine = -0.25; // 104 degrees
-
   /// Slave and master edges joined by rays from the slave along a continuous field of normals: at the nodes the mean of
   /// both sides' normals, linear in the shape functions between them. Two equal bodies then touch along their plane of
   /// symmetry, whichever is the slave; with the slave's own normals, the closing of a gap between curved bodies would
@@ -25,19 +24,6 @@ namespace slipstick::interface
   public:
     using Edge   = mechanics::SurfaceEdge<2>;
     using Tensor = dealii::Tensor<1, 2>;
-
-    /// A slave node; a node at a corner of the slave boundary appears once for each side.
-    struct Node
-    {
-      mechanics::NodeKey key{};
-      unsigned int       side = 0;
-      dealii::Point<2>   position;    // [mm]
-      Tensor             normal;      // outward, unit length
-      double             size    = 0; // of the edges there, their chords [mm]
-      double             covered = 0; // integral of the shape function over these edges [mm]
-      double             measure = 0; // the same with the measure of the kinematics
-      double             scale   = 0; // of that measure: of the edges there
-    };
 
     /// Where a ray from a slave point meets a master edge.
     struct Hit
@@ -59,15 +45,15 @@ namespace slipstick::interface
                  const Reach               &reach,
                  const mesh::Kinematics<2> &kinematics = {});
 
-    const std::vector<Node> &nodes() const
+    const std::vector<SurfaceNode<2>> &nodes() const
     {
-      return all_nodes;
+      return own.nodes;
     }
 
     /// The nodes of slave edge e (two or three numbers).
-    const std::array<unsigned int, 3> &nodes_of(const unsigned int e) const
+    const PartNodes<Edge> &nodes_of(const unsigned int e) const
     {
-      return node_of[e];
+      return own.of_part[e];
     }
 
     /// Parts of slave edge e over which one master edge faces it within reach; the first crossing decides.
@@ -94,10 +80,9 @@ namespace slipstick::interface
     std::vector<unsigned int>   candidates(const unsigned int e) const;
     void                        average_normals();
 
-    const std::vector<Edge>                 &slave, &master;
-    const Reach                              reach;
-    const EdgeTree                           tree; // of the master
-    std::vector<Node>                        all_nodes;
-    std::vector<std::array<unsigned int, 3>> node_of; // by slave edge
+    const std::vector<Edge> &slave, &master;
+    const Reach              reach;
+    const EdgeTree           tree; // of the master
+    SurfaceNodes<2>          own;  // of the slave
   };
 } // namespace slipstick::interface

@@ -1,8 +1,8 @@
-// Spatial search for boundary edges.
+// Spatial search for boundary edges and facets.
 #pragma once
 
 #include <slipstick/base/box_tree.h>
-#include <slipstick/mechanics/surface.h>
+#include <slipstick/mechanics/surface_facet.h>
 
 namespace slipstick::interface
 {
@@ -44,5 +44,24 @@ namespace slipstick::interface
   {
   public:
     using ClosedOutline::ClosedOutline;
+  };
+
+  /// Boxes around facets.
+  BoxTree<3> facet_tree(const std::vector<mechanics::SurfaceFacet> &facets);
+
+  template <>
+  class ClosedSurface<mechanics::SurfaceFacet>
+  {
+  public:
+    /// @param facets are not copied.
+    explicit ClosedSurface(const std::vector<mechanics::SurfaceFacet> &facets)
+      : facets(facets)
+    {}
+
+    /// Is x inside? By the solid angle of the surface (van Oosterom, Strackee 1983).
+    bool contains(const dealii::Point<3> &x) const;
+
+  private:
+    const std::vector<mechanics::SurfaceFacet> &facets;
   };
 } // namespace slipstick::interface

@@ -3,7 +3,6 @@
 
 #include <slipstick/interface/curve_pairing.h>
 #include <slipstick/interface/mortar_row.h>
-#include <slipstick/mechanics/surface_facet.h>
 
 namespace slipstick::interface
 {
@@ -41,16 +40,4 @@ namespace slipstick::interface
                                         const scene::ContactDiscretization          discretization,
                                         const std::string                          &name,
                                         const mesh::Kinematics<3>                  &kinematics = {});
-
-  /// Smallest distance of two curves where they face each other (nodes and middles of edges of one to the chords of the
-  /// other) [mm]; empty when nothing faces or nothing is closer than @p bound.
-  template <int dim>
-  std::optional<double> facing_distance(const std::vector<mechanics::SurfaceEdge<dim>> &a,
-                                        const std::vector<mechanics::SurfaceEdge<dim>> &b,
-                                        const double bound = std::numeric_limits<double>::max());
-
-  /// The same in space: of nodes and middles of facets to the facets of the other.
-  std::optional<double> facing_distance(const std::vector<mechanics::SurfaceFacet> &a,
-                                        const std::vector<mechanics::SurfaceFacet> &b,
-                                        const double bound = std::numeric_limits<double>::max());
 } // namespace slipstick::interface

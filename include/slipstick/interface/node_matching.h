@@ -5,6 +5,7 @@
 #include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
 #include <slipstick/interface/mortar_row.h>
+#include <slipstick/interface/surface_nodes.h>
 
 #include <cmath>
 #include <map>
@@ -48,6 +49,42 @@ namespace slipstick::interface
       return best;
     }
   };
+
+  // Edges, facets and nodes are left out if no more than this fraction of them is covered.
+  constexpr double smallest_cover = 1e-10;
+
+  /// What the integrals over all edges or facets give for a slave node.
+  struct NodeIntegrals
+  {
+    double                               measure = 0;   // D_i
+    double                               length  = 0;   // the same in the plane; in space an area
+    std::map<mechanics::NodeKey, double> slave, master; // D_ik, M_ij
+  };
+
+  template <int dim>
+  bool has_row(const SurfaceNode<dim> &node, const NodeIntegrals &sum)
+  {
+    return node.measure > 0 && sum.measure > smallest_cover * node.scale;
+  }
+
+  /// The row of a slave node, its gap that of the edges or facets.
+  template <int dim>
+  MortarRow<dim> row_of(const SurfaceNode<dim> &node, const NodeIntegrals &sum, const NodePlaces<dim> &places)
+  {
+    MortarRow<dim> row;
+    row.slave          = node.key;
+    row.side           = node.side;
+    row.position       = node.position;
+    row.normal         = node.normal;
+    row.measure        = sum.measure;
+    row.length         = sum.length;
+    row.full_measure   = node.measure;
+    row.full_length    = node.covered;
+    row.slave_weights  = normalised(sum.slave, sum.measure);
+    row.master_weights = normalised(sum.master, sum.measure);
+    places.measure(row);
+    return row;
+  }
 
   // Master nodes lie across slave nodes when they are off by no more than this part of the tributary length ...
   constexpr double across_automatic = 1e-6; // ... to be taken for matching meshes

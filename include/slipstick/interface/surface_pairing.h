@@ -5,7 +5,6 @@
 #include <slipstick/interface/convex_polygon.h>
 #include <slipstick/interface/curve_pairing.h>
 #include <slipstick/interface/edge_tree.h>
-#include <slipstick/mechanics/surface_facet.h>
 
 #include <optional>
 
@@ -24,33 +23,33 @@ namespace slipstick::interface
       return {(x - origin) * first, (x - origin) * second};
     }
 
-    /// Corners of the projected facet, counter-clockwise as seen from outside.
-    ConvexPolygon project(const mechanics::SurfaceFacet &facet) const;
-
-    /// The place on a facet whose projection is @p x: exact for parallelograms and triangles, else by Newton's method.
-    dealii::Point<2> place_on(const mechanics::SurfaceFacet &facet, const dealii::Point<2> &x) const;
-
     dealii::Point<3> origin;
     Tensor           normal, first, second; // unit length, right-handed
   };
 
-  /// Boxes around facets.
-  BoxTree<3> facet_tree(const std::vector<mechanics::SurfaceFacet> &facets);
-
-  template <>
-  class ClosedSurface<mechanics::SurfaceFacet>
+  /// A facet as it is seen along the normal of a plane.
+  class ProjectedFacet
   {
   public:
-    /// @param facets are not copied.
-    explicit ClosedSurface(const std::vector<mechanics::SurfaceFacet> &facets)
-      : facets(facets)
-    {}
+    using Facet = mechanics::SurfaceFacet;
 
-    /// Is x inside? By the solid angle of the surface (van Oosterom, Strackee 1983).
-    bool contains(const dealii::Point<3> &x) const;
+    ProjectedFacet(const Facet &facet, const Plane &plane);
+
+    /// Its corners, counter-clockwise as seen against the normal.
+    ConvexPolygon outline() const;
+
+    /// The place on the facet that is seen at @p x: exact for parallelograms and triangles, else by Newton's method.
+    Facet::Place place_at(const dealii::Point<2> &x) const;
+
+    /// How high above the plane that place is [mm].
+    double height_at(const dealii::Point<2> &x) const;
 
   private:
-    const std::vector<mechanics::SurfaceFacet> &facets;
+    unsigned int                                   n_nodes;
+    std::array<dealii::Point<2>, Facet::max_nodes> corners;
+    Facet::Shape                                   heights{};   // of the nodes [mm]
+    dealii::Tensor<1, 2>                           u, v, twist; // x = corner + s u + t v + s t twist
+    const Facet                                   *facet;
   };
 
   /// Slave and master facets, joined along normals that are at the nodes the means of both sides, as in CurvePairing; over
@@ -61,46 +60,44 @@ namespace slipstick::interface
     using Facet  = mechanics::SurfaceFacet;
     using Tensor = dealii::Tensor<1, 3>;
 
-    /// A slave node; a node on an edge or a corner of the slave boundary appears once for each side.
-    struct Node
-    {
-      mechanics::NodeKey key{};
-      unsigned int       side = 0;
-      dealii::Point<3>   position;    // [mm]
-      Tensor             normal;      // outward, unit length
-      double             covered = 0; // integral of the shape function over the facets there [mm^2]
-      double             size    = 0; // of these facets, the largest [mm]
-    };
-
     /// Where a slave facet and a master facet face each other.
     struct Part
     {
-      unsigned int  master = 0; // facet
-      ConvexPolygon polygon;    // on the plane of the slave facet
+      unsigned int   master; // facet
+      ProjectedFacet facet;  // the same as it is seen
+      ConvexPolygon  polygon;
+    };
+
+    /// What faces a slave facet within reach, seen along the mean normal of its nodes; parts overlap where master facets lie
+    /// one behind the other.
+    struct View
+    {
+      Plane             plane; // through the middle of the facet
+      ProjectedFacet    slave;
+      std::vector<Part> parts;
+
+      /// From the slave to the master along the normal [mm].
+      double gap(const Part &part, const dealii::Point<2> &x) const
+      {
+        return part.facet.height_at(x) - slave.height_at(x);
+      }
     };
 
     /// The facets are not copied.
     SurfacePairing(const std::vector<Facet> &slave, const std::vector<Facet> &master, const Reach &reach);
 
-    const std::vector<Node> &nodes() const
+    const std::vector<SurfaceNode<3>> &nodes() const
     {
-      return all_nodes;
+      return own.nodes;
     }
 
     /// The nodes of slave facet e.
-    const std::array<unsigned int, Facet::max_nodes> &nodes_of(const unsigned int e) const
+    const PartNodes<Facet> &nodes_of(const unsigned int e) const
     {
-      return node_of[e];
+      return own.of_part[e];
     }
 
-    /// The plane on which slave facet e is paired.
-    Plane plane(const unsigned int e) const;
-
-    /// What faces slave facet e within reach; parts overlap where master facets lie one behind the other.
-    std::vector<Part> parts(const unsigned int e) const;
-
-    /// From slave facet e to master facet m, along the normal of the plane at its point x [mm].
-    double gap(const unsigned int e, const unsigned int m, const Plane &plane, const dealii::Point<2> &x) const;
+    View view(const unsigned int e) const;
 
   private:
     void                      average_normals();
@@ -109,15 +106,11 @@ namespace slipstick::interface
                                          const double                         size) const;
 
     /// Unit normal of the master that the ray from a slave node meets, if any.
-    std::optional<Tensor> facing_normal(
-      const Node                                                    &node,
-      const std::vector<Node>                                       &of_master,
-      const std::vector<std::array<unsigned int, Facet::max_nodes>> &nodes_of_master) const;
+    std::optional<Tensor> facing_normal(const SurfaceNode<3> &node, const SurfaceNodes<3> &of_master) const;
 
-    const std::vector<Facet>                               &slave, &master;
-    const Reach                                             reach;
-    const BoxTree<3>                                        tree; // of the master
-    std::vector<Node>                                       all_nodes;
-    std::vector<std::array<unsigned int, Facet::max_nodes>> node_of; // by slave facet
+    const std::vector<Facet> &slave, &master;
+    const Reach               reach;
+    const BoxTree<3>          tree; // of the master
+    SurfaceNodes<3>           own;  // of the slave
   };
 } // namespace slipstick::interface

@@ -56,6 +56,11 @@ namespace slipstick::tfeti
     unsigned int                 second_row     = invalid_row; // in space: along the other tangent
     std::array<std::array<double, 3>, 2> tangents{};           // in space
     unsigned int                         interface_dof = 0;    // owned number of the node's first interface unknown
+
+    bool is_in_space() const
+    {
+      return tangents[0] != std::array<double, 3>{{0, 0, 0}};
+    }
   };
 
   /// What holds a node externally in one direction: supports, foundations, bonds to obstacles.

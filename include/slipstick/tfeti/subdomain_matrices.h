@@ -37,11 +37,17 @@ namespace slipstick::tfeti
     }
   };
 
+  /// Are k the rigid motions of a body in space?
+  constexpr bool is_solid(const unsigned int k)
+  {
+    return k == 6;
+  }
+
   /// How many of the k rigid motions of a body are translations, which come first; the others are rotations. Solids
   /// have six, sections of the plane three, bodies of revolution one: along their axis.
   constexpr unsigned int n_translations(const unsigned int k)
   {
-    return k == 6 ? 3 : k == 3 ? 2 : k;
+    return is_solid(k) ? 3 : k == 3 ? 2 : k;
   }
 
   /// K_p, f_p, R_p of one floating subdomain with n unknowns and k rigid motions.

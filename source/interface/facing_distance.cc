@@ -1,0 +1,109 @@
+#include <slipstick/interface/edge_tree.h>
+#include <slipstick/interface/facing_distance.h>
+
+#include <algorithm>
+
+namespace slipstick::interface
+{
+  namespace
+  {
+    using Edge  = mechanics::SurfaceEdge<2>;
+    using Facet = mechanics::SurfaceFacet;
+
+    /// Nearest point of a segment.
+    template <int dim>
+    dealii::Point<dim> nearest_on_segment(const dealii::Point<dim> &from,
+                                          const dealii::Point<dim> &to,
+                                          const dealii::Point<dim> &x)
+    {
+      const auto along = to - from;
+      return from + std::min(1., std::max(0., (x - from) * along / along.norm_square())) * along;
+    }
+
+    double distance_to(const Edge &edge, const dealii::Point<2> &x)
+    {
+      return x.distance(nearest_on_segment(edge.node(0), edge.node(1), x));
+    }
+
+    double distance_to(const Facet &facet, const dealii::Point<3> &x)
+    {
+      double least = x.distance(nearest_on_triangle({{facet.node(0), facet.node(1), facet.node(2)}}, x));
+      if (facet.n_nodes == 4)
+        least = std::min(least, x.distance(nearest_on_triangle({{facet.node(0), facet.node(2), facet.node(3)}}, x)));
+      return least;
+    }
+
+    std::vector<double> sample_places(const Edge &)
+    {
+      return {0., 0.5, 1.};
+    }
+
+    std::vector<Facet::Place> sample_places(const Facet &facet)
+    {
+      std::vector<Facet::Place> places;
+      for (unsigned int i = 0; i < facet.n_nodes; ++i)
+        places.push_back(facet.node_coordinate(i));
+      places.push_back(facet.middle_place());
+      return places;
+    }
+
+    EdgeTree tree_of(const std::vector<Edge> &edges)
+    {
+      return EdgeTree(edges);
+    }
+
+    BoxTree<3> tree_of(const std::vector<Facet> &facets)
+    {
+      return facet_tree(facets);
+    }
+
+    template <class Part>
+    void one_way(const std::vector<Part> &a, const std::vector<Part> &b, double &smallest)
+    {
+      const auto tree = tree_of(b);
+      for (const auto &part : a)
+        for (const auto &s : sample_places(part))
+          {
+            const auto x = part.point(s);
+            const auto n = part.normal(s);
+            tree.for_each_by_distance(
+              x,
+              [&] { return smallest; },
+              [&](const unsigned int m) {
+                if (middle_normal(b[m]) * n < facing_cosine)
+                  smallest = std::min(smallest, distance_to(b[m], x));
+                return true;
+              });
+          }
+    }
+  } // namespace
+
+  dealii::Point<3> nearest_on_triangle(const std::array<dealii::Point<3>, 3> &corner, const dealii::Point<3> &x)
+  {
+    const auto   a = corner[1] - corner[0], b = corner[2] - corner[0], to = x - corner[0];
+    const auto   n     = cross_product_3d(a, b);
+    const double beta  = cross_product_3d(to, b) * n / n.norm_square(),
+                 gamma = cross_product_3d(a, to) * n / n.norm_square();
+    if (beta >= 0 && gamma >= 0 && beta + gamma <= 1)
+      return corner[0] + beta * a + gamma * b;
+    auto best = nearest_on_segment(corner[2], corner[0], x);
+    for (const unsigned int i : {0, 1})
+      if (const auto y = nearest_on_segment(corner[i], corner[i + 1], x); x.distance(y) < x.distance(best))
+        best = y;
+    return best;
+  }
+
+  template <class Part>
+  std::optional<double> facing_distance(const std::vector<Part> &a, const std::vector<Part> &b, const double bound)
+  {
+    double smallest = bound;
+    one_way(a, b, smallest);
+    one_way(b, a, smallest);
+    if (smallest < bound)
+      return smallest;
+    return {};
+  }
+
+  template std::optional<double> facing_distance(const std::vector<Edge> &, const std::vector<Edge> &, const double);
+  template std::optional<double> facing_distance(const std::vector<Facet> &, const std::vector<Facet> &, const double);
+} // namespace slipstick::interface
