@@ -3,6 +3,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
+
 namespace slipstick::contact
 {
   namespace
@@ -71,7 +73,9 @@ namespace slipstick::contact
         }
     });
     follows_pressure   = dealii::Utilities::MPI::max(rows.empty() ? 0 : 1, dual.communicator()) > 0;
-    const bool has_own = !discs.empty() || (!rows.empty() && rows.front().is_disc());
+    const bool has_own = !discs.empty() || std::any_of(rows.begin(), rows.end(), [](const auto &row) {
+      return row.is_disc(); // others are intervals, where supports hold one tangent
+    });
     is_in_space        = dealii::Utilities::MPI::max(has_own ? 1 : 0, dual.communicator()) > 0;
   }
 

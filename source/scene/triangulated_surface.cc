@@ -15,8 +15,9 @@ namespace slipstick::scene
     using Tensor   = dealii::Tensor<1, 3>;
     using Triangle = TriangulatedSurface::Triangle;
 
-    // Points nearer than this part of the extent are on the surface: the direction to their foot is rounding.
-    constexpr double on_surface = 1e-12;
+    // Points nearer than this part of the extent are on the surface, at an edge or at a vertex: the direction to their foot is
+    // rounding, and so is the triangle that is nearest.
+    constexpr double on_surface = 1e-10;
 
     Tensor unit_or_zero(const Tensor &v)
     {
@@ -69,6 +70,8 @@ namespace slipstick::scene
     double squared = std::numeric_limits<double>::max(); // distance
     Point  at;
     Tensor normal; // there: of the triangle, of the two at an edge, of all at a vertex
+
+    unsigned int triangle = 0;
   };
 
   TriangulatedSurface::TriangulatedSurface(const std::string &name, const std::vector<Point> &corners)
@@ -172,7 +175,7 @@ namespace slipstick::scene
         const Point  at    = a + s * along;
         if (const double squared = (x - at).norm_square(); squared < foot.squared)
           {
-            foot = {squared, at, {}};
+            foot = {squared, at, {}, t};
             if (s == 0 || s == 1)
               foot.normal = normals_of_vertices[triangles[t][s == 0 ? k : (k + 1) % 3]];
             else
@@ -182,9 +185,24 @@ namespace slipstick::scene
     if (is_above)
       {
         const double height = (x - corner(t, 0)) * n;
-        foot                = {height * height, x - height * n, n};
+        foot                = {height * height, x - height * n, n, t};
       }
     return foot;
+  }
+
+  Tensor TriangulatedSurface::normal_around(const Foot &foot, const double distance) const
+  {
+    const unsigned int t = foot.triangle;
+    for (unsigned int k = 0; k < 3; ++k)
+      if (foot.at.distance(corner(t, k)) <= distance)
+        return normals_of_vertices[triangles[t][k]];
+    for (unsigned int k = 0; k < 3; ++k)
+      {
+        const Tensor along = corner(t, (k + 1) % 3) - corner(t, k);
+        if (cross_product_3d(foot.at - corner(t, k), along).norm() <= distance * along.norm())
+          return normals_of_triangles[t] + normals_of_triangles[neighbours[t][k]];
+      }
+    return foot.normal;
   }
 
   TriangulatedSurface::Nearest TriangulatedSurface::nearest(const Point &x) const
@@ -202,7 +220,7 @@ namespace slipstick::scene
     const double distance = away.norm();
     if (!(distance > on_surface * size))
       {
-        const Tensor n = unit_or_zero(best.normal);
+        const Tensor n = unit_or_zero(normal_around(best, on_surface * size));
         return {n, away * n};
       }
     const double side = away * best.normal >= 0 ? 1. : -1.;

@@ -1,6 +1,7 @@
 """Obstacles in space from .stl files: against the ball that they approximate, ASCII and binary, placed, damaged."""
 
 import math
+import pathlib
 import struct
 import unittest
 
@@ -56,7 +57,7 @@ def stl(content):
 
 def against(path, **more):
     """cube_on_sphere.prm with the surface in place of the ball."""
-    lines = open(shipped('cube_on_sphere')).read().split('subsection Obstacle sphere')
+    lines = pathlib.Path(shipped('cube_on_sphere')).read_text().split('subsection Obstacle sphere')
     rest = lines[1][lines[1].index('end\n') + 4:]
     values = {'Shape': 'stl', 'File': path, **more}
     section = ''.join('  set {} = {}\n'.format(name, value) for name, value in values.items())
@@ -70,12 +71,12 @@ class Surfaces(Solids):
     def test_finer_triangles_approach_the_ball(self):
         expected, counts = self.figures(converged(shipped('cube_on_sphere'), COARSE))
         errors = []
-        for n in (12, 24, 48):
+        for n in (24, 96):
             found, nodes = self.figures(converged(against(stl(binary(sphere(n)))), COARSE))
             errors.append([abs(found[k] / expected[k] - 1) for k, _ in FIGURES])
         for k, (_, name) in enumerate(FIGURES):
-            self.assertLess(errors[2][k], 0.003, (name, errors))
-            self.assertLess(errors[2][k], errors[0][k] / 4, (name, errors))
+            self.assertLess(errors[1][k], 0.012, (name, errors))
+            self.assertLess(errors[1][k], errors[0][k] / 5, (name, errors))
         self.assertEqual(nodes, counts)
 
     def test_ascii_scaled_and_turned_is_the_same(self):
@@ -90,7 +91,7 @@ class Surfaces(Solids):
         for case, ranks in ((placed, 2), (against(stl(binary(triangles))), 1)):
             found, n = self.figures(converged(case, COARSE, ranks=ranks))
             self.assertEqual(n, counts)
-            self.near(found, expected, 1e-4)  # of the forces of single nodes; binary files have seven digits
+            self.near(found, expected, 1e-5)  # binary files have seven digits
 
     def test_a_run_can_be_repeated_from_its_parameters(self):
         result = converged(against(stl(binary(sphere(12)))), COARSE)
@@ -134,12 +135,12 @@ class Surfaces(Solids):
         for content, *words in (
                 (binary(hole), 'is not closed', 'belongs to 1 triangle', 'and 2 other edges', 'close its holes'),
                 (binary(twisted), 'is not oriented', 'normals consistent'),
-                (good[:-7], 'truncated', 'export it again'), (b'', 'cannot be read, or is empty'), (b'PK\x03\x04', 'is no STL file'),
+                (good[:-7], 'truncated', 'export it again'), (b'', 'is no STL file'), (b'PK\x03\x04', 'is no STL file'),
                 (binary([]), 'has 0 triangles'), (binary([triangles[0]] * 5), 'is not closed', '5 triangles'),
                 (big, '3000000 triangles', 'coarser'),
                 (good[:100] + struct.pack('<f', math.inf) + good[104:], 'not a finite number'),
                 ('\n'.join(lines[:3] + ['      vertex 1 zwei 3'] + lines[4:]).encode(), 'line 4', 'three numbers'),
-                ('\n'.join(lines[:4] + lines[5:]).encode(), 'line 6', '2 corners'),
+                ('\n'.join(lines[:4] + lines[5:]).encode(), 'line 7', '2 corners'),
                 ('\n'.join(lines[:4] + ['color 1 2 3'] + lines[4:]).encode(), 'line 5', "'color'"),
                 ('\n'.join(lines[:10]).encode(), 'within a facet')):
             with self.subTest(words):

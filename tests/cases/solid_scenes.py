@@ -1,6 +1,7 @@
 """The scenes of prm/ with solids: the figures in their headers, on small meshes, against closed forms."""
 
 import math
+import pathlib
 import subprocess
 import sys
 import unittest
@@ -72,7 +73,7 @@ class Balls(Solids):
 
     def test_twist_at_full_slip(self):
         """A ball turned about its axis: the moment of uniform friction, T = 3 pi / 16 mu P a (half space)."""
-        lines = open(shipped('mindlin')).read().split('\n')
+        lines = pathlib.Path(shipped('mindlin')).read_text().split('\n')
         begin = lines.index('set Dimension = 3')
         text = '\n'.join(lines[begin:])
         for kind, name in (('Support', 'foot z'), ('Support', 'block z'), ('Traction', 'load'), ('Load steps', '')):

@@ -44,10 +44,12 @@ namespace slipstick::scene
   private:
     struct Foot;
 
-    void             check_closed(const std::string &name);
-    void             find_normals();
-    Foot             foot_on(const unsigned int triangle, const dealii::Point<3> &x) const;
-    dealii::Point<3> corner(const unsigned int triangle, const unsigned int k) const;
+    void check_closed(const std::string &name);
+    void find_normals();
+    Foot foot_on(const unsigned int triangle, const dealii::Point<3> &x) const;
+    /// At a vertex or an edge no farther than @p distance from the foot that of all triangles there.
+    dealii::Tensor<1, 3> normal_around(const Foot &foot, const double distance) const;
+    dealii::Point<3>     corner(const unsigned int triangle, const unsigned int k) const;
 
     std::vector<dealii::Point<3>>            vertices;
     std::vector<Triangle>                    triangles;
