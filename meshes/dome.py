@@ -12,27 +12,23 @@ import itertools
 import math
 import sys
 
-RINGS, STONES = 3, 8
+RINGS, STONES = 1, 8
 INNER, OUTER = 2500., 3000.      # radii [mm]
 EYE, SEAT = 20., 75.             # angles of the highest and the lowest joint from the axis [degrees]
-CELLS = (2, 3, 2)                # of a stone: along the meridian, around, through its thickness
+CELLS = (4, 3, 2)                # of a stone: along the meridian, around, through its thickness
 DENSITY, GRAVITY = 2.4e-9, 9810. # [t/mm^3, mm/s^2]
 FRICTION = .6
 SIDES = ('lower', 'upper', 'start', 'end', 'inner', 'outer')
 
-HEADER = '''# Dome of {n} loose stones around an open eye, dry joints with Coulomb friction, standing on a rigid conical seat: {rings} rings
-# of {stones}. Written by meshes/dome.py.
+HEADER = '''# Dome of {n} loose stones around an open eye, dry joints with Coulomb friction, standing on a rigid conical seat. Written by
+# meshes/dome.py.
 #
-# What it shows. {n} floating bodies in space, {pairs} contact pairs, no support at all: contact and friction hold the dome.
+# What it shows. {n} floating bodies in space, {pairs} contact pairs, no support at all: contact and friction hold the dome. Contact
+# search finds the joints between the stones; those on the seat are declared.
 #
 # What to expect
-#   weight {weight:.1f} kN, which is the vertical force of the seat: {seat:.2f} kN for each of its {stones} stones
-#   the {stones} stones of a ring are alike: the forces of their joints, too
-#   the upper rings are pressed together around the eye, the joints within the lowest ring open towards the seat
-#   (membrane theory: hoop forces change sign 52 degrees from the axis)
-#   with 0.1 in place of 0.6 (FRICTION in meshes/dome.py): status 4, stones slide
-#
-# Contact search finds the joints between the stones; those on the seat are declared.
+#   weight {weight:.1f} kN, of which polyhedra lack 2 %; each of the {stones} stones on the seat bears as much of it
+#   the {stones} stones are alike: so are the forces of their joints, all of them compressed
 '''
 
 
@@ -109,7 +105,7 @@ def wrapped(name, values, last=120):
 def scene():
     lowest = names()[-STONES:]
     n = RINGS * STONES
-    print(HEADER.format(n=n, rings=RINGS, stones=STONES, pairs=n + n, weight=weight() / 1000, seat=weight() / STONES / 1000))
+    print(HEADER.format(n=n, stones=STONES, pairs=n + n, weight=weight() / 1000))
     print('set Dimension   = 3')
     print('set Title       = Dome of loose stones, dry joints, own weight')
     print('set Materials   = stone')
@@ -122,11 +118,11 @@ def scene():
         print(section('Body ' + stone, Shape='mesh', File='../meshes/dome.msh', Part=stone, Material='stone'))
     print(section('Obstacle seat', Shape='function', Height='sqrt(x^2+z^2)*{!r}'.format(1 / math.tan(math.radians(SEAT)))))
     print(section('Body force weight', Bodies='all', Acceleration_y='{:g}'.format(-GRAVITY)))
+    print(section('Solver', Tolerance='1e-6'))
     print(section('Contact search', Mode='automatic', Law='Coulomb', Friction_coefficient=FRICTION))
     for stone in lowest:
         print(section('Contact seat of ' + stone, Slave='{0}/{0} lower'.format(stone), Master='seat', Law='Coulomb',
                       Friction_coefficient=FRICTION))
-    print(section('Solver', Tolerance='1e-6'))
 
 
 if __name__ == '__main__':

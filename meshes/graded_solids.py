@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""Hexahedra graded towards the point where a ball touches a block, the origin: cubes in cubes.
+"""Hexahedra graded towards the point where a ball touches a block or another ball, the origin: cubes in cubes.
 
-    meshes/graded_solids.py quarter > meshes/hertz_solid.msh      (prm/hertz_solid.prm)
-    meshes/graded_solids.py half    > meshes/mindlin.msh          (prm/mindlin.prm)
+    meshes/graded_solids.py quarter --shells 10          > meshes/hertz_solid.msh      (prm/hertz_solid.prm)
+    meshes/graded_solids.py half --shells 11 --two-balls > meshes/mindlin.msh          (prm/mindlin.prm)
 
-Bodies: foot (above: a square pillar whose lower end is part of a ball) and block, in one file. A quarter has x >= 0 and
-z >= 0, a half z >= 0; `whole` has both halves. Boundaries, of the foot, those of the block with "block" in place of
-"foot": "foot contact" (what may touch), "foot rest" (of the same face), "foot far" (the other end), "foot sides", and
-on the planes of symmetry "foot x" and "foot z".
+Bodies: upper (a square pillar whose lower end is part of a ball, of radius 50 mm) and lower (a block), in one file; with --two-balls
+both ends are parts of balls of 100 mm. A quarter has x >= 0 and z >= 0, a half z >= 0; `whole` has both halves. Boundaries, those of the
+lower body with "lower" in place of "upper": "upper contact" (what may touch), "upper rest" (of the same face), "upper far" (the other
+end), "upper sides", and on the planes of symmetry "upper x" and "upper z".
 
 Around the point lies a cube (a half or quarter of it) of equal cells, around that shells of growing thickness. The number of
 elements in the radius of the contact is CORE cells on CORE_SIZE mm. Other meshes: --cells N, --size MM, --shells N, or
@@ -18,7 +18,7 @@ import argparse
 import itertools
 import math
 
-RADIUS = 50.       # of the ball [mm]
+RADIUS = 50.       # of the ball, half of that of two balls [mm]
 EXTENT = 25.       # of both bodies: half width and height [mm]
 FIRST_SHELL = 1.3  # its thickness over the edges of the core
 CONTACT_SHELLS = 2 # belong to the contact boundaries
@@ -96,11 +96,12 @@ class Solid:
         self.faces.append((vertices, name))
 
 
-def of_foot(x, depth, z):
-    return x, depth + (RADIUS - math.sqrt(RADIUS ** 2 - x * x - z * z)) * (1 - depth / EXTENT), z
+def ball(radius, way):
+    """Where a vertex goes: above the point of contact for way = 1."""
+    return lambda x, depth, z: (x, way * (depth + (radius - math.sqrt(radius ** 2 - x * x - z * z)) * (1 - depth / EXTENT)), z)
 
 
-def of_block(x, depth, z):
+def block(x, depth, z):
     return x, -depth, z
 
 
@@ -142,10 +143,12 @@ def main():
     parser.add_argument('--cells', type=int, help='along an edge of the core, of a half or whole from its middle')
     parser.add_argument('--size', type=float, default=.735, help='of the core, from its middle [mm]')
     parser.add_argument('--shells', type=int, default=12)
+    parser.add_argument('--two-balls', action='store_true')
     given = parser.parse_args()
     cells = given.cells or {'quarter': 11, 'half': 8, 'whole': 6}[given.kind]
-    write([('foot', Solid(given.kind, cells, given.size, given.shells), of_foot),
-           ('block', Solid(given.kind, cells - 1, given.size, given.shells), of_block)])
+    pair = (ball(2 * RADIUS, 1), ball(2 * RADIUS, -1)) if given.two_balls else (ball(RADIUS, 1), block)
+    write([('upper', Solid(given.kind, cells, given.size, given.shells), pair[0]),
+           ('lower', Solid(given.kind, cells - 1, given.size, given.shells), pair[1])])
 
 
 if __name__ == '__main__':

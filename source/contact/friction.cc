@@ -110,9 +110,9 @@ namespace slipstick::contact
               }
             if (newton(from, true, !start))
               return finished();
+            refuse_overload();   // the squares around discs bear more than these: what they cannot bear discs cannot
             if (law.has_discs()) // SMALBE-M has bounds only
               return finished();
-            refuse_overload();
             ++solution.fallbacks;
             set_bounds(law.bounds(feasible));
           }

@@ -3,6 +3,7 @@
 #include <slipstick/interface/contact_search.h>
 #include <slipstick/interface/edge_tree.h>
 #include <slipstick/interface/facing_distance.h>
+#include <slipstick/interface/mortar.h>
 #include <slipstick/interface/solid_surface.h>
 
 #include <boost/geometry/algorithms/intersects.hpp>
@@ -115,6 +116,14 @@ namespace slipstick::interface
       return relative;
     }
 
+    /// Have the two sides a common part, within the reach of the pair?
+    template <int dim>
+    bool meet(const Parts<dim> &slave, const Parts<dim> &master, const scene::ContactPair<dim> &pair)
+    {
+      return !mortar_rows(slave, master, {*pair.reach, *pair.reach}, scene::ContactDiscretization::mortar, pair.name)
+                .empty();
+    }
+
     /// Inside of what is the whole outline of a body?
     class Inside
     {
@@ -182,6 +191,7 @@ namespace slipstick::interface
     }
   } // namespace
 
+  // In space bodies that touch along an edge or in a point are none: neighbours across the corner in a wall of blocks.
   template <int dim>
   std::vector<scene::ContactPair<dim>> find_contacts(const scene::Scene<dim>      &scene,
                                                      const mesh::Mesh<dim>        &mesh,
@@ -210,7 +220,8 @@ namespace slipstick::interface
           pair.slave            = {b_is_finer ? b : a, "*"};
           pair.master           = scene::BoundaryName{b_is_finer ? a : b, "*"};
           pair.reach            = reach;
-          found.push_back(pair);
+          if (dim == 2 || meet<dim>(by_body[pair.slave.body], by_body[pair.master->body], pair))
+            found.push_back(pair);
         }
     return found;
   }

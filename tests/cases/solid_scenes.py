@@ -12,13 +12,13 @@ from solids import Solids
 P, R, E = 1000., 50., 2.1e5  # of all balls
 
 
-def graded(kind, cells, shells):
+def graded(kind, cells, shells, *options):
     """A mesh of meshes/graded_solids.py for both bodies of a scene."""
     path = new_path(kind + '.msh')
-    command = [sys.executable, str(SOURCE / 'meshes' / 'graded_solids.py'), kind, '--cells', str(cells), '--shells', str(shells)]
+    command = [sys.executable, str(SOURCE / 'meshes' / 'graded_solids.py'), kind, '--cells', str(cells), '--shells', str(shells), *options]
     with open(path, 'w') as stream:
         subprocess.run(command, stdout=stream, check=True)
-    return {'Body foot/File': path, 'Body block/File': path}
+    return {'Body upper/File': path, 'Body lower/File': path}
 
 
 def hertz(nu):
@@ -49,7 +49,7 @@ class Balls(Solids):
 
     def test_mindlin(self):
         cells, mu = 6, 0.3
-        result = converged(shipped('mindlin'), graded('half', cells, 6))
+        result = converged(shipped('mindlin'), graded('half', cells, 6, '--two-balls'))
         a, p0 = hertz(0)
         c = a * 0.5 ** (1 / 3)
         for step in (0, 1):
@@ -67,7 +67,7 @@ class Balls(Solids):
         slip = [math.hypot(row['x'], row['z']) for row in rows if row['status'] == 'slip']
         self.assertLess(max(stick), c + element)
         self.assertGreater(min(slip), c - element)
-        self.assertLess(math.sqrt(error / size), 0.12)  # ten elements across; 20: see the header
+        self.assertLess(math.sqrt(error / size), 0.13)  # 11 elements across; 15 and 22: see the header
         pair = result.summary['results']['contact'][0]
         self.near(pair['force'], [-75, 500, pair['force'][2]], 1e-5)
 
@@ -76,13 +76,13 @@ class Balls(Solids):
         lines = pathlib.Path(shipped('mindlin')).read_text().split('\n')
         begin = lines.index('set Dimension = 3')
         text = '\n'.join(lines[begin:])
-        for kind, name in (('Support', 'foot z'), ('Support', 'block z'), ('Traction', 'load'), ('Load steps', '')):
+        for kind, name in (('Support', 'upper z'), ('Support', 'lower z'), ('Traction', 'load'), ('Load steps', '')):
             head = 'subsection ' + (kind + ' ' + name).strip()
             start = text.index(head)
             text = text[:start] + text[text.index('end\n', start) + 4:]
-        text = text.replace('foot z, block z, ground', 'ground, turned').replace('set Tractions = load\n', '')
+        text = text.replace('upper z, lower z, ground', 'ground, turned').replace('set Tractions = load\n', '')
         text = text.replace('  set Displacement y = 0\n', '  set Displacement y = 0\n  set Displacement z = 0\n', 1)
-        text += '\nsubsection Support turned\n  set Boundary = foot/foot far\n  set Displacement x = 0.02*z\n' \
+        text += '\nsubsection Support turned\n  set Boundary = upper/upper far\n  set Displacement x = 0.02*z\n' \
                 '  set Displacement y = -0.0105\n  set Displacement z = -0.02*x\nend\n'
         case = new_path('twist.prm')
         case.write_text(text)
@@ -100,7 +100,7 @@ class Assemblies(Solids):
     def test_cantilevers(self):
         """Euler and Bernoulli with Timoshenko's shear."""
         bending, shear = 100 ** 3 / (3 * E * 10 ** 4 / 12), 100 / (5 / 6 * E / 2.6 * 100)
-        coarse = {'Body upper/Cells': '48, 5, 3', 'Body lower/Cells': '40, 5, 2'}
+        coarse = {'Body upper/Cells': '72, 7, 3', 'Body lower/Cells': '64, 7, 2'}
         f = bending + shear
         result = converged(shipped('cantilevers'), coarse)
         pair, ends = result.summary['results']['contact'][0], result.summary['results']['probes']
@@ -123,31 +123,15 @@ class Assemblies(Solids):
     def test_dome(self):
         result = converged(shipped('dome'), ranks=2)
         pairs = {pair['pair']: pair for pair in result.summary['results']['contact']}
-        self.assertEqual(len(pairs), 48)
+        self.assertEqual(len(pairs), 16)
         weight = -result.summary['results']['loads'][0]['force'][1]
-        seats = [pair['force'][1] for name, pair in pairs.items() if name.startswith('seat of')]
-        for force in seats:
-            self.assertAlmostEqual(force / (weight / 8), 1, delta=1e-4)
         self.assertAlmostEqual(weight / 381.9e3, 1, delta=0.03)  # of polyhedra
-        for ring in '123':
-            between = [pair['normal_force'] for name, pair in pairs.items() if name.count('r' + ring) == 2]
-            self.assertEqual(len(between), 8)
-            self.near([force / max(between[0], 1) for force in between], [between[0] / max(between[0], 1)] * 8, 1e-3)
-            if ring == '1':
-                self.assertGreater(between[0], 0)
-        self.refused(shipped('dome'), {**{'Contact seat of r3s{}/Friction coefficient'.format(k): 0.05 for k in range(1, 9)},
-                                       'Contact search/Friction coefficient': 0.05}, 'body r', status=4)
-
-    def test_bolted_flange(self):
-        result = converged(shipped('bolted_flange'), ranks=2)
-        steps = result.summary['steps']
-        for step, pulled in zip(steps, (0, 50)):
-            force = {pair['pair']: pair['force'] for pair in step['contact']}
-            bolt = next(support for support in step['supports'] if support['support'] == 'tightened')['force'][2]
-            load = step['loads'][0]['force'][2]
-            self.assertAlmostEqual(load / (pulled * math.pi / 16 * (46 ** 2 - 40 ** 2)), 1, delta=0.02) if pulled else None
-            self.assertAlmostEqual(force['head'][2], -bolt, delta=1e-3 * abs(bolt))
-            self.assertAlmostEqual(force['joint'][2], -bolt - load, delta=1e-3 * abs(bolt))
+        joints = [[pair['force'][1] for name, pair in pairs.items() if name.startswith('seat of')],
+                  [pair['normal_force'] for name, pair in pairs.items() if name.startswith('r1')]]
+        for forces in joints:
+            self.assertEqual(len(forces), 8)
+            self.assertGreater(min(forces), 0.99 * max(forces))
+        self.assertAlmostEqual(sum(joints[0]) / weight, 1, delta=1e-6)
 
     def test_patch(self):
         for overrides in ({}, {'Contact joint/Slave': 'hexahedra/lower top', 'Contact joint/Master': 'tetrahedra/upper bottom'}):
