@@ -1,8 +1,12 @@
 #include <slipstick/base/exceptions.h>
-#include <slipstick/base/log.h>
+#include <slipstick/base/text.h>
 #include <slipstick/interface/contact_search.h>
 #include <slipstick/interface/edge_tree.h>
 #include <slipstick/interface/facing_distance.h>
+#include <slipstick/interface/mortar.h>
+#include <slipstick/interface/solid_surface.h>
+
+#include <boost/geometry/algorithms/intersects.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -19,19 +23,23 @@ namespace slipstick::interface
     // Edges are equally fine if they differ by less than this fraction.
     constexpr double same_size = 1e-6;
 
-    using Edges = std::vector<mechanics::SurfaceEdge<2>>;
+    /// Edges or facets.
+    template <int dim>
+    using Parts = std::vector<mechanics::BoundaryPart<dim>>;
 
-    std::vector<Edges> outline_of_every_body(const scene::Scene<2>      &scene,
-                                             const mesh::Mesh<2>        &mesh,
-                                             const mechanics::Spaces<2> &spaces)
+    template <int dim>
+    std::vector<Parts<dim>> outline_of_every_body(const scene::Scene<dim>      &scene,
+                                                  const mesh::Mesh<dim>        &mesh,
+                                                  const mechanics::Spaces<dim> &spaces)
     {
-      std::vector<Edges> by_body(scene.bodies.size());
-      for (const auto &edge : mechanics::outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true)))
-        by_body[edge.body].push_back(edge);
+      std::vector<Parts<dim>> by_body(scene.bodies.size());
+      for (const auto &part : mechanics::outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true)))
+        by_body[part.body].push_back(part);
       return by_body;
     }
 
-    std::set<std::pair<unsigned int, unsigned int>> declared_pairs(const scene::Scene<2> &scene)
+    template <int dim>
+    std::set<std::pair<unsigned int, unsigned int>> declared_pairs(const scene::Scene<dim> &scene)
     {
       std::set<std::pair<unsigned int, unsigned int>> pairs;
       for (const auto &pair : scene.contacts)
@@ -40,31 +48,50 @@ namespace slipstick::interface
       return pairs;
     }
 
-    /// Mean chord of those edges of a whose boxes are within @p reach of edges of b.
-    double size_near(const Edges &a, const Edges &b, const double reach)
+    BoxTree<2>::Box box_of(const mechanics::SurfaceEdge<2> &edge)
     {
-      const EdgeTree tree(b);
-      double         sum = 0;
-      unsigned int   n   = 0;
-      for (const auto &edge : a)
-        {
-          auto box         = EdgeTree::box_around(edge);
-          box.min_corner() = {box.min_corner().get<0>() - reach, box.min_corner().get<1>() - reach};
-          box.max_corner() = {box.max_corner().get<0>() + reach, box.max_corner().get<1>() + reach};
-          if (!tree.near(box).empty())
-            {
-              sum += edge.chord();
-              ++n;
-            }
-        }
+      return EdgeTree::box_around(edge);
+    }
+
+    BoxTree<3>::Box box_of(const mechanics::SurfaceFacet &facet)
+    {
+      std::vector<dealii::Point<3>> nodes;
+      for (unsigned int i = 0; i < facet.n_nodes; ++i)
+        nodes.push_back(facet.node(i));
+      return BoxTree<3>::box_around(nodes);
+    }
+
+    template <int dim>
+    BoxTree<dim> tree_of(const Parts<dim> &parts)
+    {
+      std::vector<typename BoxTree<dim>::Box> boxes;
+      for (const auto &part : parts)
+        boxes.push_back(box_of(part));
+      return BoxTree<dim>(boxes);
+    }
+
+    /// Mean chord of those parts of a whose boxes are within @p reach of parts of b.
+    template <int dim>
+    double size_near(const Parts<dim> &a, const Parts<dim> &b, const double reach)
+    {
+      const auto   tree = tree_of<dim>(b);
+      double       sum  = 0;
+      unsigned int n    = 0;
+      for (const auto &part : a)
+        if (!tree.near(BoxTree<dim>::widened(box_of(part), reach)).empty())
+          {
+            sum += part.chord();
+            ++n;
+          }
       return n > 0 ? sum / n : std::numeric_limits<double>::max();
     }
 
-    double smallest_chord(const Edges &edges)
+    template <int dim>
+    double smallest_chord(const Parts<dim> &parts)
     {
       double smallest = std::numeric_limits<double>::max();
-      for (const auto &edge : edges)
-        smallest = std::min(smallest, edge.chord());
+      for (const auto &part : parts)
+        smallest = std::min(smallest, part.chord());
       return smallest;
     }
 
@@ -89,32 +116,88 @@ namespace slipstick::interface
       return relative;
     }
 
-    void check_pair(const scene::Scene<2> &scene,
-                    const unsigned int     a,
-                    const Edges           &of_a,
-                    const unsigned int     b,
-                    const Edges           &of_b)
+    /// Have the two sides a common part, within the reach of the pair?
+    template <int dim>
+    bool meet(const Parts<dim> &slave, const Parts<dim> &master, const scene::ContactPair<dim> &pair)
     {
-      const ClosedOutline outline(of_b);
-      for (const auto &edge : of_a)
-        if (const auto x = edge.node(0); outline.contains(x) && relative_depth(outline, x) > overlap)
-          throw InputError(format("bodies '%s' and '%s' overlap: the point (%g, %g) of %s is inside %s",
-                                  scene.bodies[a].name.c_str(),
-                                  scene.bodies[b].name.c_str(),
-                                  x[0],
-                                  x[1],
-                                  scene.bodies[a].name.c_str(),
-                                  scene.bodies[b].name.c_str()),
-                           "move one of them, or declare a contact pair of the two (a press fit)");
+      return !mortar_rows(slave, master, {*pair.reach, *pair.reach}, scene::ContactDiscretization::mortar, pair.name)
+                .empty();
+    }
+
+    /// Inside of what is the whole outline of a body?
+    class Inside
+    {
+    public:
+      explicit Inside(const Parts<2> &outline)
+        : outline(outline)
+      {}
+
+      bool deeper_than_overlap(const dealii::Point<2> &x) const
+      {
+        return outline.contains(x) && relative_depth(outline, x) > overlap;
+      }
+
+    private:
+      const ClosedOutline outline;
+    };
+
+    /// The same in space, with the mean chord of the facets.
+    class InsideSolid
+    {
+    public:
+      explicit InsideSolid(const Parts<3> &facets)
+        : surface(facets)
+      {
+        for (const auto &facet : facets)
+          chord += facet.chord() / facets.size();
+      }
+
+      bool deeper_than_overlap(const dealii::Point<3> &x) const
+      {
+        return surface.depth(x) > overlap * chord;
+      }
+
+    private:
+      const SolidSurface surface;
+      double             chord = 0;
+    };
+
+    /// Box around the nodes of all parts.
+    template <int dim>
+    typename BoxTree<dim>::Box box_of_all(const Parts<dim> &parts)
+    {
+      std::vector<dealii::Point<dim>> nodes;
+      for (const auto &part : parts)
+        for (unsigned int i = 0; i < part.n_nodes; ++i)
+          nodes.push_back(part.node(i));
+      return BoxTree<dim>::box_around(nodes);
+    }
+
+    template <int dim>
+    void check_pair(const scene::Scene<dim> &scene,
+                    const unsigned int       a,
+                    const Parts<dim>        &of_a,
+                    const unsigned int       b,
+                    const Parts<dim>        &of_b)
+    {
+      const std::conditional_t<dim == 2, Inside, InsideSolid> body(of_b);
+      for (const auto &part : of_a)
+        for (unsigned int i = 0; i < (dim == 2 ? 1 : part.n_nodes); ++i) // edges: the other end begins the next one
+          if (const auto x = part.node(i); body.deeper_than_overlap(x))
+            throw InputError("bodies '" + scene.bodies[a].name + "' and '" + scene.bodies[b].name +
+                               "' overlap: the point " + point_text(x, dim) + " of " + scene.bodies[a].name +
+                               " is inside " + scene.bodies[b].name,
+                             "move one of them, or declare a contact pair of the two (a press fit)");
     }
   } // namespace
 
-  template <>
-  std::vector<scene::ContactPair<2>> find_contacts(const scene::Scene<2>      &scene,
-                                                   const mesh::Mesh<2>        &mesh,
-                                                   const mechanics::Spaces<2> &spaces)
+  // In space bodies that touch along an edge or in a point are none: neighbours across the corner in a wall of blocks.
+  template <int dim>
+  std::vector<scene::ContactPair<dim>> find_contacts(const scene::Scene<dim>      &scene,
+                                                     const mesh::Mesh<dim>        &mesh,
+                                                     const mechanics::Spaces<dim> &spaces)
   {
-    std::vector<scene::ContactPair<2>> found;
+    std::vector<scene::ContactPair<dim>> found;
     if (!scene.contact_search.automatic)
       return found;
     const auto by_body  = outline_of_every_body(scene, mesh, spaces);
@@ -124,44 +207,47 @@ namespace slipstick::interface
         {
           if (declared.count({a, b}) != 0)
             continue;
-          const double reach = std::max(scene.contact_search.reach,
-                                        touching * std::min(smallest_chord(by_body[a]), smallest_chord(by_body[b])));
+          const double reach =
+            std::max(scene.contact_search.reach,
+                     touching * std::min(smallest_chord<dim>(by_body[a]), smallest_chord<dim>(by_body[b])));
           if (!facing_distance(by_body[a], by_body[b], reach))
             continue;
-          const double size_a   = size_near(by_body[a], by_body[b], reach),
-                       size_b   = size_near(by_body[b], by_body[a], reach);
+          const double size_a   = size_near<dim>(by_body[a], by_body[b], reach),
+                       size_b   = size_near<dim>(by_body[b], by_body[a], reach);
           const bool b_is_finer = size_b < size_a * (1 - same_size);
           auto       pair       = scene.contact_search.pair;
           pair.name             = scene.bodies[a].name + "-" + scene.bodies[b].name;
           pair.slave            = {b_is_finer ? b : a, "*"};
           pair.master           = scene::BoundaryName{b_is_finer ? a : b, "*"};
           pair.reach            = reach;
-          found.push_back(pair);
+          if (dim == 2 || meet<dim>(by_body[pair.slave.body], by_body[pair.master->body], pair))
+            found.push_back(pair);
         }
     return found;
   }
 
-  template <>
-  void check_overlap(const scene::Scene<2> &scene, const mesh::Mesh<2> &mesh, const mechanics::Spaces<2> &spaces)
+  template <int dim>
+  void check_overlap(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh, const mechanics::Spaces<dim> &spaces)
   {
-    const auto by_body  = outline_of_every_body(scene, mesh, spaces);
-    const auto declared = declared_pairs(scene);
+    if (dim == 3 && scene.bodies.size() < 2)
+      return;
+    const auto                              by_body  = outline_of_every_body(scene, mesh, spaces);
+    const auto                              declared = declared_pairs(scene);
+    std::vector<typename BoxTree<dim>::Box> boxes;
+    for (const auto &parts : by_body)
+      boxes.push_back(box_of_all<dim>(parts));
     for (unsigned int a = 0; a < by_body.size(); ++a)
       for (unsigned int b = 0; b < by_body.size(); ++b)
-        if (a != b && declared.count(std::minmax(a, b)) == 0)
-          check_pair(scene, a, by_body[a], b, by_body[b]);
+        if (a != b && declared.count(std::minmax(a, b)) == 0 && boost::geometry::intersects(boxes[a], boxes[b]))
+          check_pair<dim>(scene, a, by_body[a], b, by_body[b]);
   }
 
-  // The scene knows no search in space.
-  template <>
-  std::vector<scene::ContactPair<3>> find_contacts(const scene::Scene<3> &,
-                                                   const mesh::Mesh<3> &,
-                                                   const mechanics::Spaces<3> &)
-  {
-    return {};
-  }
-
-  template <>
-  void check_overlap(const scene::Scene<3> &, const mesh::Mesh<3> &, const mechanics::Spaces<3> &)
-  {}
+  template std::vector<scene::ContactPair<2>> find_contacts(const scene::Scene<2> &,
+                                                            const mesh::Mesh<2> &,
+                                                            const mechanics::Spaces<2> &);
+  template std::vector<scene::ContactPair<3>> find_contacts(const scene::Scene<3> &,
+                                                            const mesh::Mesh<3> &,
+                                                            const mechanics::Spaces<3> &);
+  template void check_overlap(const scene::Scene<2> &, const mesh::Mesh<2> &, const mechanics::Spaces<2> &);
+  template void check_overlap(const scene::Scene<3> &, const mesh::Mesh<3> &, const mechanics::Spaces<3> &);
 } // namespace slipstick::interface

@@ -1,5 +1,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/interface/obstacle.h>
+#include <slipstick/scene/triangulated_surface.h>
 
 #include <cmath>
 
@@ -145,6 +146,7 @@ namespace slipstick::interface
           return with_function(obstacle.height, x, t);
         case scene::ObstacleShape::cylinder: // not offered in the plane
         case scene::ObstacleShape::bore:
+        case scene::ObstacleShape::stl:
           break;
       }
     AssertThrow(false, dealii::ExcInternalError());
@@ -167,6 +169,11 @@ namespace slipstick::interface
           return with_circle<3>(obstacle, ray - (ray * obstacle.normal) * obstacle.normal);
         case scene::ObstacleShape::function:
           return with_function(obstacle.height, x, t);
+        case scene::ObstacleShape::stl:
+          {
+            const auto there = obstacle.surface->nearest(x);
+            return {-there.normal, there.distance};
+          }
         case scene::ObstacleShape::polyline: // not offered in space
           break;
       }

@@ -4,6 +4,7 @@
 #include <slipstick/interface/obstacle.h>
 #include <slipstick/interface/pair_checks.h>
 #include <slipstick/interface/surface_pairing.h>
+#include <slipstick/scene/triangulated_surface.h>
 
 #include <algorithm>
 #include <cmath>
@@ -201,7 +202,9 @@ namespace slipstick::interface
                                    pair,
                                    all,
                                    names,
-                                   std::max(extent(slave), is_round ? 2 * obstacle.radius : 0.),
+                                   std::max({extent(slave),
+                                             is_round ? 2 * obstacle.radius : 0.,
+                                             obstacle.surface ? obstacle.surface->extent() : 0.}),
                                    found.gap);
     }
   } // namespace

@@ -3,9 +3,11 @@
 #include <slipstick/interface/obstacle.h>
 #include <slipstick/interface/pair_checks.h>
 #include <slipstick/interface/penetration.h>
+#include <slipstick/interface/solid_surface.h>
 
 #include <deal.II/base/mpi.h>
 
+#include <boost/geometry/algorithms/intersects.hpp>
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
@@ -328,6 +330,68 @@ namespace slipstick::interface
       return {std::max(0., depth), {}, other.chord(), 0.};
     }
 
+    /// The same in space. Surfaces are made when they are asked for: most bodies are far from each other.
+    struct Solid
+    {
+      Solid(Parts<3> before_, const Moves<3> &moves)
+        : before(std::move(before_))
+        , now(moved<3>(before, moves))
+      {
+        std::vector<dealii::Point<3>> nodes;
+        for (const auto &facet : now)
+          {
+            chord += facet.chord() / now.size();
+            for (unsigned int i = 0; i < facet.n_nodes; ++i)
+              nodes.push_back(facet.node(i));
+          }
+        box = BoxTree<3>::box_around(nodes);
+      }
+
+      const SolidSurface &surface_before() const
+      {
+        if (!made_before)
+          made_before = std::make_unique<SolidSurface>(before);
+        return *made_before;
+      }
+
+      const SolidSurface &surface_now() const
+      {
+        if (!made_now)
+          made_now = std::make_unique<SolidSurface>(now);
+        return *made_now;
+      }
+
+      const Parts<3>  before, now;
+      double          chord = 0; // mean
+      BoxTree<3>::Box box;
+
+    private:
+      mutable std::unique_ptr<SolidSurface> made_before, made_now;
+    };
+
+    /// Nodes and middles of the facets of a.
+    void find_in_body(const Solid &a, const Solid &b, std::optional<Penetration> &deepest)
+    {
+      if (!boost::geometry::intersects(a.box, b.box))
+        return;
+      std::set<mechanics::NodeKey> seen;
+      for (unsigned int e = 0; e < a.now.size(); ++e)
+        for (unsigned int i = 0; i <= a.now[e].n_nodes; ++i)
+          {
+            const bool is_node = i < a.now[e].n_nodes;
+            if (is_node && !seen.insert(a.now[e].keys[i]).second)
+              continue;
+            const auto x       = is_node ? a.now[e].node(i) : a.now[e].middle();
+            if (!boost::geometry::intersects(BoxTree<3>::box_around({x}), b.box))
+              continue;
+            if (const double depth = b.surface_now().depth(x); depth > 0)
+              {
+                const auto at = is_node ? a.before[e].node(i) : a.before[e].middle();
+                take(deepest, depth - b.surface_before().depth(at), at, std::min(a.now[e].chord(), b.chord), 0.);
+              }
+          }
+    }
+
     void find_in_body(const Body &a, const Body &b, std::optional<Penetration> &deepest)
     {
       for (unsigned int e = 0; e < a.now.size(); ++e)
@@ -338,6 +402,31 @@ namespace slipstick::interface
                 const auto before = depth_in(b.outline_before, b.before, a.before[e], a.before[e], s);
                 take(deepest, now.depth - before.depth, at(a.before[e], s), std::min(a.now[e].chord(), now.edge), 0.);
               }
+    }
+
+    template <int dim, class SomeBody>
+    void find_in_bodies(const scene::Scene<dim>                            &scene,
+                        const std::vector<std::unique_ptr<const SomeBody>> &bodies,
+                        const double                                        t,
+                        Penetrations                                       &found)
+    {
+      std::set<std::pair<unsigned int, unsigned int>> not_watched;
+      for (const auto &pair : scene.contacts)
+        if (pair.master &&
+            (!is_watched(pair) || !pair.offset.is_constant() || pair.offset.value(dealii::Point<dim>(), t) != 0))
+          {
+            not_watched.insert({pair.slave.body, pair.master->body});
+            not_watched.insert({pair.master->body, pair.slave.body});
+          }
+      for (unsigned int a = 0; a < bodies.size(); ++a)
+        for (unsigned int b = 0; b < bodies.size(); ++b)
+          if (a != b && not_watched.count({a, b}) == 0)
+            {
+              std::optional<Penetration> deepest;
+              find_in_body(*bodies[a], *bodies[b], deepest);
+              if (deepest)
+                found.of_bodies[{a, b}] = *deepest;
+            }
     }
   } // namespace
 
@@ -360,15 +449,9 @@ namespace slipstick::interface
     Penetrations found;
     found.beyond_reach.resize(scene.contacts.size());
     found.in_obstacle.resize(scene.contacts.size());
-    std::set<std::pair<unsigned int, unsigned int>> not_watched;
     for (unsigned int k = 0; k < scene.contacts.size(); ++k)
       {
         const auto &pair = scene.contacts[k];
-        if (pair.master && (!is_watched(pair) || !pair.offset.is_constant() || pair.offset.value(Point(), t) != 0))
-          {
-            not_watched.insert({pair.slave.body, pair.master->body});
-            not_watched.insert({pair.master->body, pair.slave.body});
-          }
         if (!is_watched(pair))
           continue;
         const auto slave = mechanics::edges_on(mesh, all, pair.slave);
@@ -387,19 +470,10 @@ namespace slipstick::interface
             find_corners_of_obstacle(scene, mesh, pair, bodies[pair.slave.body]->outline_now, t, found.in_obstacle[k]);
           }
       }
-    for (unsigned int a = 0; a < bodies.size(); ++a)
-      for (unsigned int b = 0; b < bodies.size(); ++b)
-        if (a != b && not_watched.count({a, b}) == 0)
-          {
-            std::optional<Penetration> deepest;
-            find_in_body(*bodies[a], *bodies[b], deepest);
-            if (deepest)
-              found.of_bodies[{a, b}] = *deepest;
-          }
+    find_in_bodies(scene, bodies, t, found);
     return found;
   }
 
-  // Bodies that no pair joins are not looked at.
   template <>
   Penetrations penetrations(const scene::Scene<3>              &scene,
                             const mesh::Mesh<3>                &mesh,
@@ -410,7 +484,7 @@ namespace slipstick::interface
     Penetrations found;
     found.beyond_reach.resize(scene.contacts.size());
     found.in_obstacle.resize(scene.contacts.size());
-    if (scene.contacts.empty())
+    if (scene.contacts.empty() && scene.bodies.size() < 2)
       return found;
     const auto moves = moves_of_outlines(mesh, spaces, u);
     const auto all   = mechanics::outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
@@ -430,6 +504,16 @@ namespace slipstick::interface
           if (!pair.master)
             find_in_obstacle<3>(scene, pair, slave, moved<3>(slave, moves), t, found.in_obstacle[k]);
         }
+    if (scene.bodies.size() > 1)
+      {
+        std::vector<Parts<3>> by_body(scene.bodies.size());
+        for (const auto &facet : all)
+          by_body[facet.body].push_back(facet);
+        std::vector<std::unique_ptr<const Solid>> bodies;
+        for (auto &facets : by_body)
+          bodies.push_back(std::make_unique<const Solid>(std::move(facets), moves));
+        find_in_bodies(scene, bodies, t, found);
+      }
     return found;
   }
 } // namespace slipstick::interface

@@ -17,6 +17,10 @@ namespace slipstick::interface
     // Tractions are forces over no less than this part of the tributary length: a node at the end of a boundary has
     // half of that of the others.
     constexpr double smallest_covered_part = 0.5;
+    // In space tangents are held when supports leave less than this of their rows (the slave's part is 1): at the edge of a pair on a
+    // plane of symmetry the weights of master nodes off the plane all but vanish, and such rows are nearly those of the supports.
+    template <int dim>
+    constexpr double held_tangent = dim == 2 ? held_direction_tolerance : 0.05;
 
     double norm(const std::map<unsigned int, double> &v)
     {
@@ -513,7 +517,7 @@ namespace slipstick::interface
         Eigen::Matrix2d gram;
         gram << product(a, a), product(a, b), product(a, b), product(b, b);
         const tfeti::SymmetricEigen principal(gram);
-        if (principal.values[0] <= held_direction_tolerance * held_direction_tolerance)
+        if (principal.values[0] <= held_tangent<dim> * held_tangent<dim>)
           {
             const auto v = principal.vectors.col(1);
             const auto t = v[0] * tangents[0] + v[1] * tangents[1];
@@ -525,7 +529,7 @@ namespace slipstick::interface
             touch.point.tangents[k][d] = tangents[k][d];
       }
     for (const auto &tangent : tangents)
-      if (const auto row = jump(touch, tangent); norm(free_of(row)) > held_direction_tolerance)
+      if (const auto row = jump(touch, tangent); norm(free_of(row)) > held_tangent<dim>)
         rows.push_back(row);
     return rows;
   }

@@ -11,19 +11,6 @@ namespace slipstick::mesh
   {
     constexpr unsigned int most_bisected = 8; // parts
 
-    /// About an axis of any length, z if it has none (Rodrigues).
-    dealii::Tensor<1, 3> turned(const dealii::Tensor<1, 3> &x,
-                                const dealii::Tensor<1, 3> &axis,
-                                const double                cosine,
-                                const double                sine)
-    {
-      dealii::Tensor<1, 3> a;
-      a[2] = 1;
-      if (axis.norm() > 0)
-        a = axis / axis.norm();
-      return cosine * x + sine * cross_product_3d(a, x) + (1 - cosine) * (a * x) * a;
-    }
-
     /// Sub-piece of the given cells.
     template <int dim>
     MeshPiece<dim> extract(
@@ -187,23 +174,7 @@ namespace slipstick::mesh
   template <int dim>
   void place(MeshPiece<dim> &piece, const scene::Placement<dim> &placement)
   {
-    // whole quarters are exact
-    const double quarters = placement.rotation / 90;
-    const bool   whole    = quarters == std::round(quarters);
-    const int    quarter  = whole ? static_cast<int>(std::remainder(quarters, 4)) & 3 : 0;
-    const double angle    = placement.rotation * dealii::numbers::PI / 180;
-    const double cosine   = whole ? std::array<int, 4>{{1, 0, -1, 0}}[quarter] : std::cos(angle);
-    const double sine     = whole ? std::array<int, 4>{{0, 1, 0, -1}}[quarter] : std::sin(angle);
-    const auto   move     = [&](dealii::Point<dim> &x) {
-      if (placement.mirror_x)
-        x[0] = -x[0];
-      if (placement.mirror_y)
-        x[1] = -x[1];
-      if constexpr (dim == 3)
-        x = dealii::Point<dim>(turned(x, placement.axis, cosine, sine)) + placement.translation;
-      else
-        x = dealii::Point<dim>(cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]) + placement.translation;
-    };
+    const auto move = placement.motion();
     for (auto &x : piece.vertices)
       move(x);
     for (auto &face : piece.boundary_faces)

@@ -1,6 +1,8 @@
 #include <slipstick/base/text.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/sections.h>
+#include <slipstick/scene/stl_file.h>
+#include <slipstick/scene/triangulated_surface.h>
 
 #include <cmath>
 #include <numeric>
@@ -59,7 +61,12 @@ namespace slipstick::scene
     template <int dim>
     std::vector<std::string> geometry()
     {
-      return {"Center", "Radius", "Point", "Normal", dim == 3 ? "Axis" : "Points", "Height"};
+      std::vector<std::string> names = {"Center", "Radius", "Point", "Normal", "Height"};
+      if (dim == 3)
+        names.insert(names.end(), {"Axis", "File", "Scale", "Rotation", "Rotation axis", "Translation"});
+      else
+        names.push_back("Points");
+      return names;
     }
 
     /// "x y; x y; ..." @throws InputError naming @p path.
@@ -102,8 +109,9 @@ namespace slipstick::scene
   ObstacleSection<dim>::ObstacleSection(const std::string &own_name)
     : name(own_name)
   {
-    normal[1]     = 1;
-    axis[dim - 1] = 1;
+    normal[1]              = 1;
+    axis[dim - 1]          = 1;
+    rotation_axis[dim - 1] = 1;
   }
 
   template <>
@@ -154,9 +162,10 @@ namespace slipstick::scene
                                       {"half space", ObstacleShape::half_plane},
                                       {"cylinder", ObstacleShape::cylinder},
                                       {"bore", ObstacleShape::bore},
-                                      {"function", ObstacleShape::function}},
+                                      {"function", ObstacleShape::function},
+                                      {"stl", ObstacleShape::stl}},
                "geometry; bodies are outside a ball or an infinite cylinder, inside a hollow ball or a bore, above a "
-               "function, and where the normal of a half space points");
+               "function, and where the normal of a half space or those of the triangles of an stl point");
     add_point(prm,
               "Center",
               obstacle.center,
@@ -178,6 +187,29 @@ namespace slipstick::scene
              "mm",
              "a number or a formula of x, z, t",
              "function: the obstacle is below y = height; must be set");
+    declare_placement(prm);
+  }
+
+  template <int dim>
+  void ObstacleSection<dim>::declare_placement(dealii::ParameterHandler &prm)
+  {
+    add_text(
+      prm,
+      "File",
+      file,
+      "",
+      "a file: .stl (ASCII or binary)",
+      "stl: a closed surface of triangles; relative to the directory of the .prm, then to the working directory; "
+      "must be set");
+    add_number(prm, "Scale", scale, "-", Interval::above(0), "stl: factor on its coordinates, 1000 for metres");
+    add_number(prm,
+               "Rotation",
+               placement.rotation,
+               "degrees",
+               Interval(),
+               "stl: about an axis through the origin, counterclockwise seen against it");
+    add_point(prm, "Rotation axis", rotation_axis, "", Interval(), "stl: direction of that axis, of any length");
+    add_point(prm, "Translation", placement.translation, "mm", Interval(), "stl: moves it after the rotation");
   }
 
   template <int dim>
@@ -235,6 +267,11 @@ namespace slipstick::scene
           result.height = Field<dim>(height, parameters.locate(section + "/Height"));
           fitting.push_back("Height");
           break;
+        case ObstacleShape::stl:
+          if constexpr (dim == 3)
+            read_surface(parameters, result);
+          fitting.insert(fitting.end(), {"File", "Scale", "Rotation", "Rotation axis", "Translation"});
+          break;
       }
     for (const std::string &other : geometry<dim>())
       // the default is harmless, and a .prm that the program printed sets everything
@@ -243,6 +280,31 @@ namespace slipstick::scene
           std::find(fitting.begin(), fitting.end(), other) == fitting.end())
         throw parameters.error(section + "/" + other, "has no meaning for this shape", "remove it, or change Shape");
     return result;
+  }
+
+  template <>
+  void ObstacleSection<3>::read_surface(const Parameters &parameters, Obstacle<3> &result) const
+  {
+    const std::string section = "Obstacle " + name;
+    parameters.require(section + "/File", "set the file, for example: set File = meshes/part.stl");
+    const auto found = parameters.find_file(file);
+    if (!found)
+      throw parameters.error(section + "/File",
+                             "there is no such file",
+                             "give a path from the directory of the .prm or from the working directory");
+    if (!(rotation_axis.norm() > 0))
+      throw parameters.error(section + "/Rotation axis", "has no length", "give a direction, for example: 0, 0, 1");
+    Placement<3> there = placement;
+    there.axis         = rotation_axis;
+    const auto move    = there.motion();
+    auto       corners = read_stl(*found);
+    for (auto &x : corners)
+      {
+        x *= scale;
+        move(x);
+      }
+    result.file    = *found;
+    result.surface = std::make_shared<TriangulatedSurface>("STL file " + *found, corners);
   }
 
   template struct ObstacleSection<2>;

@@ -113,8 +113,7 @@ namespace slipstick::scene
       declare_all(temperatures);
       declare_all(contacts);
       declare_all(probes);
-      if (dim == 2)
-        contact_search.declare(prm);
+      contact_search.declare(prm);
       declare(prm, options.discretization);
       declare(prm, options.decomposition);
       declare_load_steps(prm, options.load_factors);
@@ -227,8 +226,7 @@ namespace slipstick::scene
         scene.temperatures.push_back(section.read(parameters, scene));
       for (const auto &section : contacts)
         scene.contacts.push_back(section.read(parameters, scene));
-      if (dim == 2)
-        scene.contact_search = contact_search.read(parameters);
+      scene.contact_search = contact_search.read(parameters);
       for (const auto &section : probes)
         scene.probes.push_back(section.read(parameters, scene));
       if (scene.decomposition.method == DecompositionMethod::automatic)
@@ -236,6 +234,9 @@ namespace slipstick::scene
       for (const Body<dim> &body : scene.bodies)
         if (body.shape == Shape::mesh) // the path as found, so that what is printed runs from any directory
           set_value(prm, "Body " + body.name + "/File", body.file);
+      for (const Obstacle<dim> &obstacle : scene.obstacles)
+        if (obstacle.shape == ObstacleShape::stl)
+          set_value(prm, "Obstacle " + obstacle.name + "/File", obstacle.file);
       scene.parameters = print_values(prm);
       return scene;
     }

@@ -342,7 +342,6 @@ class Refused(Solids):
                 ('Accuracy', '1 %', "Accuracy = '1 %'", 'draft, engineering, reference'),
                 ('Error bars', 'true', "Error bars = 'true'", 'the plane'), ('Goal', 'strain_energy', 'Goal', 'the plane'),
                 ('Adaptivity/Max meshes', 3, 'Adaptivity/Max meshes', 'the plane'),
-                ('Contact search/Mode', 'automatic', 'Contact search/Mode', 'the plane'),
                 ('Contact sphere/Master', 'cube/top', 'Contact sphere: cube/bottom and cube/top'),
                 ('Body cube/Shape', 'disc', "Shape = 'disc'", 'cuboid'), ('Body cube/Size', '10, 10', "Size = '10, 10'"),
                 ('Body cube/Thickness', 2, 'Thickness', 'the plane'), ('Body cube/Outline', 'polygon', 'Outline', 'the plane'),

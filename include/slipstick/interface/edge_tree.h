@@ -1,7 +1,7 @@
 // Spatial search for boundary edges and facets.
 #pragma once
 
-#include <slipstick/interface/box_tree.h>
+#include <slipstick/base/box_tree.h>
 #include <slipstick/mechanics/surface_facet.h>
 
 namespace slipstick::interface

@@ -15,7 +15,7 @@ namespace slipstick::interface
   /// Distance of @p x to @p obstacle at load factor @p t. Circle and hole: along the ray through the centre. Polyline:
   /// to its nearest point; its first and last segments are extended unless it is closed (ends where it begins), and at
   /// a convex corner the normal turns with the point. Function: to the nearest point of y = h(x, t), or, if the search
-  /// for it does not converge, to the tangent at the point above or below.
+  /// for it does not converge, to the tangent at the point above or below. Triangulated surface: to its nearest point.
   /// @throws InputError for a node at the very centre of a circle or hole.
   template <int dim>
   ObstacleContact<dim> contact_with(const scene::Obstacle<dim> &obstacle, const dealii::Point<dim> &x, const double t);

@@ -8,12 +8,16 @@
 #include <deal.II/base/point.h>
 
 #include <array>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace slipstick::scene
 {
+  class TriangulatedSurface;
+
   /// What a section in the plane stands for.
   enum class PlaneState
   {
@@ -56,6 +60,9 @@ namespace slipstick::scene
     double               rotation = 0;     // [degrees], counterclockwise; in space about ...
     dealii::Tensor<1, 3> axis;             // ... this one (none: z), seen against it
     dealii::Point<dim>   translation;      // [mm]
+
+    /// Moves a point there.
+    std::function<void(dealii::Point<dim> &)> motion() const;
   };
 
   /// One elastic body, of a built-in shape or from a mesh file.
@@ -175,7 +182,8 @@ namespace slipstick::scene
     cylinder,   // in space alone: about the line through `center` along `normal`; bodies are outside
     bore,       // the same with the bodies inside
     polyline,   // bodies are to the left of the direction of travel
-    function    // bodies are above y = height(x), in space y = height(x, z)
+    function,   // bodies are above y = height(x), in space y = height(x, z)
+    stl         // in space alone: a closed surface from a file; bodies are where its normals point
   };
 
   /// A rigid obstacle that needs no mesh.
@@ -189,6 +197,10 @@ namespace slipstick::scene
     dealii::Tensor<1, dim>          normal;     // unit length; half plane: towards the bodies; cylinder: its axis
     std::vector<dealii::Point<dim>> points;     // polyline, at least two [mm]
     Field<dim>                      height;     // function [mm], of x (and z) and t
+    std::string                     file;       // stl: path as found
+
+    /// stl: placed; copies share it.
+    std::shared_ptr<const TriangulatedSurface> surface;
   };
 
   /// A point or a straight line of a body where displacement and stress are reported.

@@ -110,12 +110,18 @@ namespace slipstick::scene
     dealii::Point<dim> axis;   // of a cylinder, as given
     std::string        points;
     std::string        height;
+    std::string        file;          // of an stl
+    double             scale = 1;     // of it
+    Placement<dim>     placement;     // of it
+    dealii::Point<dim> rotation_axis; // as given
 
     void          declare(dealii::ParameterHandler &prm);
     Obstacle<dim> read(const Parameters &parameters) const;
 
   private:
     void declare_geometry(dealii::ParameterHandler &prm);
+    void declare_placement(dealii::ParameterHandler &prm);
+    void read_surface(const Parameters &parameters, Obstacle<dim> &result) const;
 
     std::map<std::string, std::string> defaults; // text of every parameter that nobody set
   };

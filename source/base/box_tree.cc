@@ -1,9 +1,9 @@
-#include <slipstick/interface/box_tree.h>
+#include <slipstick/base/box_tree.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace slipstick::interface
+namespace slipstick
 {
   namespace
   {
@@ -110,4 +110,4 @@ namespace slipstick::interface
 
   template class BoxTree<2>;
   template class BoxTree<3>;
-} // namespace slipstick::interface
+} // namespace slipstick

@@ -1,0 +1,14 @@
+// Triangles from .stl files.
+#pragma once
+
+#include <deal.II/base/point.h>
+
+#include <string>
+#include <vector>
+
+namespace slipstick::scene
+{
+  /// The corners of all triangles of a file, ASCII or binary, three of each; the normals in the file are not used, the order
+  /// of the corners is. @throws InputError for a file that cannot be read, is damaged, or has too many triangles.
+  std::vector<dealii::Point<3>> read_stl(const std::string &file);
+} // namespace slipstick::scene

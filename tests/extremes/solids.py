@@ -1,0 +1,88 @@
+"""Solids at their extremes: moduli, slabs, single nodes, loose bodies, friction, Poisson ratios. Two blocks whose meshes do not match."""
+
+import unittest
+
+from sweep import Extremes, Table, pair
+
+import scenes
+from program import new_path
+
+E = 2.1e5
+STEEL = {'Young modulus': repr(E), 'Poisson ratio': '0.3'}
+FIXED = {'Displacement ' + d: '0' for d in 'xyz'}
+
+
+def blocks(low=None, high=None, contact=None, size='10, 10, 10', above='10, 10, 10', cells=('5, 4, 5', '4, 3, 4'), at='0, 10, 0', load=None,
+           obstacles=None, **sections):
+    """The upper block, held by contact alone with the clamped lower one, pressed unevenly by 10 MPa and pushed in an oblique
+    direction by 1 MPa."""
+    text = scenes.text(
+        materials={'soft': {**STEEL, **(low or {})}, 'hard': {**STEEL, **(high or {})}},
+        bodies={'low': {'Size': size, 'Cells': cells[0], 'Material': 'soft'},
+                'high': {'Size': above, 'Cells': cells[1], 'Origin': at, 'Material': 'hard'}},
+        supports={'floor': {'Boundary': 'low/bottom', **FIXED}},
+        tractions={'load': {'Boundary': 'high/top', 'Traction x': '0.8', 'Traction z': '0.6', 'Traction y': '-10*(1+x/10)/1.5', **(load or {})}},
+        contacts={'joint': {'Slave': 'high/bottom', 'Master': 'low/top', 'Law': 'Coulomb', 'Friction coefficient': '0.3', **(contact or {})}},
+        **{'Decomposition': {'Method': 'METIS', 'Subdomains': '4'}, 'Solver': {'Tolerance': '1e-8'}, **sections})
+    return scenes.write('solid', '\n'.join(['set Dimension = 3'] + text.split('\n')[1:]))
+
+
+class Solids(Extremes):
+
+    def balanced(self, result):
+        for found, expected in zip(pair(result)['force'], (-80, 1000, -60)):
+            self.near(found, expected, 1e-6)
+
+    def test_stiffness_ratio(self):
+        table = Table('stiffness of the upper block over that of the lower one')
+        pressure = {}
+        for power in (-6, -3, 0, 3, 6):
+            result = self.converges(table, '1e{}'.format(power), blocks(high={'Young modulus': repr(E * 10.**power)}), most=250)
+            self.balanced(result)
+            pressure[power] = pair(result)['max_pressure']
+        self.near(pressure[3], pressure[6], 1e-2)
+        self.near(pressure[-3], pressure[-6], 1e-2)
+
+    def test_friction_coefficient(self):
+        table = Table('friction coefficient; the push needs 0.1')
+        for mu in (0.15, 1, 10):
+            result = self.converges(table, mu, blocks(contact={'Friction coefficient': repr(mu)}), most=250)
+            self.balanced(result)
+        for mu in (0, 1e-6):  # 0.05: see doc/status.md
+            self.ends(4, table, mu, blocks(contact={'Friction coefficient': repr(mu)}), 'body high: translation along (0.8, 0')
+
+    def test_poisson_ratio(self):
+        table = Table('Poisson ratio')
+        for nu in (0, 0.3, 0.49, 0.4999):
+            for element in ('standard', 'nearly incompressible')[nu > 0.495:]:  # standard ones lock
+                material = {'Poisson ratio': repr(nu)}
+                result = self.converges(table, '{} {}'.format(nu, element), blocks(low=material, high=material),
+                                        {'Discretization/Element': element}, most=400)
+                self.balanced(result)
+
+    def test_slabs(self):
+        table = Table('aspect ratio of the upper body, cells along')
+        for aspect, cells in ((10, '10, 2, 10'), (100, '20, 1, 20')):
+            side, height = 10., 10. / aspect
+            result = self.converges(table, aspect, blocks(above='{0}, {1}, {0}'.format(side, height), cells=('8, 4, 8', cells)), most=400)
+            self.balanced(result)
+
+    def test_one_node(self):
+        """A ball without friction that touches in one node: nothing resists its spin, which is named."""
+        table = Table('ball on one node')
+        ball = blocks(contact={'Slave': 'high/surface', 'Law': 'frictionless'}, load={'Boundary': 'high/surface where y > 19', 'Traction x': '0',
+                                                                                     'Traction z': '0', 'Traction y': '-1e-3'})
+        text = ball.read_text().replace('  set Size     = 10, 10, 10\n  set Cells    = 4, 3, 4\n  set Origin   = 0, 10, 0\n', '')
+        begin = text.index('subsection Body high')
+        end = text.index('end\n', begin)
+        text = text[:begin] + 'subsection Body high\n  set Shape = ball\n  set Center = 5, 15.0, 5\n  set Radius = 5\n  set Cells around = 16\n' \
+            '  set Material = hard\n' + text[end:]
+        case = new_path('ball.prm')
+        case.write_text(text)
+        result = self.converges(table, 'ball', case, most=1000)  # many: see doc/status.md
+        self.assertEqual(pair(result)['contact_nodes'], 1)
+        self.assertTrue(any('rotation' in text for text in result.summary['warnings']), result)  # its spin is named
+
+
+if __name__ == '__main__':
+    unittest.main()
