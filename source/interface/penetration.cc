@@ -381,7 +381,7 @@ namespace slipstick::interface
             const bool is_node = i < a.now[e].n_nodes;
             if (is_node && !seen.insert(a.now[e].keys[i]).second)
               continue;
-            const auto x       = is_node ? a.now[e].node(i) : a.now[e].middle();
+            const auto x = is_node ? a.now[e].node(i) : a.now[e].middle();
             if (!boost::geometry::intersects(BoxTree<3>::box_around({x}), b.box))
               continue;
             if (const double depth = b.surface_now().depth(x); depth > 0)

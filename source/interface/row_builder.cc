@@ -1,7 +1,7 @@
-#include <slipstick/tfeti/dense.h>
 #include <slipstick/interface/held_contact.h>
 #include <slipstick/interface/obstacle.h>
 #include <slipstick/interface/row_builder.h>
+#include <slipstick/tfeti/dense.h>
 
 #include <algorithm>
 #include <cmath>
