@@ -46,8 +46,10 @@ namespace slipstick::contact
     constexpr double negligible_overlap = 1e-10;
     // SMALBE-M is taken over by Newton's method at this residual, ...
     constexpr double first_takeover = 0.1;
-    // ... or at so much smaller ones.
+    // ... or at so much smaller ones, ...
     constexpr double takeover_reduction = 0.3;
+    // ... down to this one: where Newton's method fails even there, rounding is in its way.
+    constexpr double last_takeover = 1e-3;
     // Multiplications after which Newton's method and its fallback give up.
     constexpr unsigned int longest_fallback = 5000;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
@@ -434,11 +436,15 @@ namespace slipstick::contact
         solution.multipliers = smalbe(from, accuracy, counted(), may_end_early);
       }
 
-      /// SMALBE-M comes nearer and nearer to the solution until Newton's method converges from there.
+      /// Where Newton's method ended far from the solution, SMALBE-M comes nearer and nearer to it until that converges from
+      /// there.
       bool newton_from_smalbe(const Vector &from)
       {
+        if (solution.projected_gradient <= last_takeover)
+          return false;
         Reached reached;
-        for (double accuracy = first_takeover; accuracy > options.tolerance; accuracy *= takeover_reduction)
+        for (double accuracy = first_takeover; accuracy > std::max(options.tolerance, last_takeover);
+             accuracy *= takeover_reduction)
           {
             solution.multipliers = smalbe(from, accuracy, counted(), false, &reached);
             if (solution.status != qp::Status::converged)
