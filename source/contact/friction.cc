@@ -1,7 +1,10 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
+#include <slipstick/contact/bound_damping.h>
 #include <slipstick/contact/friction.h>
+#include <slipstick/contact/given_bounds.h>
 #include <slipstick/contact/linear.h>
+#include <slipstick/contact/traction_error.h>
 #include <slipstick/qp/feasible_point.h>
 #include <slipstick/qp/semismooth_newton.h>
 #include <slipstick/qp/smalbe.h>
@@ -26,20 +29,6 @@ namespace slipstick::contact
     constexpr double accuracy_reduction = 0.5;
     // ... and never below this part of the tolerance.
     constexpr double least_accuracy = 1e-3;
-    // Damping is halved when the change of the bounds did not fall by this part, times the damping, of the least ...
-    constexpr double cycling_progress = 0.1;
-    // ... within so many updates.
-    constexpr unsigned int cycling_window = 5;
-    // ... down to this.
-    constexpr double least_relaxation = 0.1;
-    // Errors of tractions may be this times the tolerance of the solver, over the tractions of the pair: 1 % at 1e-4 ...
-    constexpr double traction_error = 100;
-    // ... and no more than this.
-    constexpr double largest_traction_error = 0.05;
-    // Tractions of a pair below this part of the largest, of any pair in any step so far, count as this part.
-    constexpr double negligible_pair = 1e-3;
-    // ... and so do those below this part of what balances the loads, on one contact node: of pairs that no load reaches.
-    constexpr double negligible_force = 1e-6;
     // Loads below this part of those of earlier steps are what rounding leaves of none.
     constexpr double rounding_of_loads = 1e-12;
     // Overlaps below this part of the first ones are what rounding leaves of none.
@@ -94,7 +83,6 @@ namespace slipstick::contact
 
       DualSolution run(const DualSolution *start)
       {
-        largest_traction    = start ? start->largest_traction : 0.;
         const auto feasible = feasible_start(start);
         solution.algorithm  = options.algorithm == scene::Algorithm::semismooth_newton ? "semismooth newton" : "smalbe";
         set_bounds(law.bounds(feasible));
@@ -133,7 +121,7 @@ namespace slipstick::contact
       Vector feasible_start(const DualSolution *start)
       {
         const auto loads = dual.particular();
-        largest_balance  = loads.linfty_norm();
+        tractions.emplace(dual, options.tolerance, loads.linfty_norm(), start ? start->largest_traction : 0.);
         if (start && loads.l2_norm() <= rounding_of_loads * start->reference) // unloaded to zero
           return dual.zero();
         auto point = qp::feasible_point(dual, loads, law.admissible(dual));
@@ -254,23 +242,6 @@ namespace slipstick::contact
         return result;
       }
 
-      /// Damping of the bounds: halved whenever their change has not fallen for a while.
-      double damping(const double change)
-      {
-        if (change < (1 - cycling_progress * relaxation) * least_change)
-          {
-            least_change   = change;
-            updates_in_row = 0;
-          }
-        else if (++updates_in_row >= cycling_window)
-          {
-            relaxation     = std::max(relaxation / 2, least_relaxation);
-            updates_in_row = 0;
-            least_change   = change;
-          }
-        return relaxation;
-      }
-
       std::vector<double> blend(const std::vector<double> &next, const double part) const
       {
         std::vector<double> result(next.size());
@@ -324,46 +295,6 @@ namespace slipstick::contact
         return [this](const Vector &x, const Vector &g) { return accepts(x, g); };
       }
 
-      /// Are the estimated errors of the tractions of every pair, in L2, below a part of these? What a residual says of them
-      /// depends on the scene, for it is relative to all loads and gaps.
-      bool tractions_are_right(const Vector &x, const Vector &error) const
-      {
-        const auto squares = squares_of_tractions(x, error);
-        double     largest = largest_traction * largest_traction;
-        for (std::size_t k = 0; k < squares.size(); k += 2)
-          largest = std::max(largest, squares[k]);
-        double area = 0;
-        for (const auto &point : dual.constraints().contact_points)
-          area = std::max(area, point.traction_area);
-        area              = dealii::Utilities::MPI::max(area, dual.communicator());
-        const double none = area > 0 ? negligible_force * largest_balance / std::sqrt(area) : 0.;
-        const double part = std::min(largest_traction_error, traction_error * options.tolerance);
-        for (std::size_t k = 0; k < squares.size(); k += 2)
-          if (squares[k + 1] >
-              part * part * std::max({squares[k], negligible_pair * negligible_pair * largest, none * none}))
-            return false;
-        return true;
-      }
-
-      /// Of every pair in turn: squares of the norms in L2 of the tractions of x and of the error [N MPa].
-      std::vector<double> squares_of_tractions(const Vector &x, const Vector &error) const
-      {
-        unsigned int n_pairs = 0;
-        for (const auto &point : dual.constraints().contact_points)
-          n_pairs = std::max(n_pairs, point.pair + 1);
-        std::vector<double> squares(2 * dealii::Utilities::MPI::max(n_pairs, dual.communicator()), 0.);
-        for (const auto &point : dual.constraints().contact_points)
-          for (const unsigned int row : {point.normal_row, point.tangential_row, point.second_row})
-            if (row != tfeti::invalid_row)
-              {
-                squares[2 * point.pair] += x.local_element(row) * x.local_element(row) / point.traction_area;
-                squares[2 * point.pair + 1] +=
-                  error.local_element(row) * error.local_element(row) / point.traction_area;
-              }
-        qp::sum_all(squares, dual.reduction());
-        return squares;
-      }
-
       /// Semismooth Newton, with bounds that follow the solution or (a Tresca problem) as they are. @return convergence.
       /// @param is_rough is the start far from the solution?
       bool newton(const Vector &from, const bool bounds_follow, const bool is_rough = false)
@@ -383,7 +314,7 @@ namespace slipstick::contact
                                             counted(),
                                             acceptance(),
                                             qp::ErrorTest<Vector>([this](const Vector &x, const Vector &error) {
-                                              return tractions_are_right(x, error);
+                                              return tractions->is_small(x, error);
                                             }));
         gradient.reset();
         solution.counts += result.counts;
@@ -472,8 +403,7 @@ namespace slipstick::contact
           }
         double accuracy              = std::max(options.tolerance, first_accuracy);
         solution.friction_iterations = 0;
-        relaxation                   = 1;
-        least_change                 = qp::infinity;
+        BoundDamping damping;
         for (;; ++solution.friction_iterations)
           {
             solve_within_bounds(from, accuracy, false);
@@ -505,74 +435,18 @@ namespace slipstick::contact
       /// Takes the part of the way to the next bounds that admits an equilibrium; `from` is moved to the nearest one.
       bool move_bounds(const std::vector<double> &next, double part, Vector &from)
       {
-        const auto present = solution.slip_bound;
         for (unsigned int k = 0; k < max_blends; ++k, part /= 2)
           {
             const auto bounds = blend(next, part);
-            const auto near   = nearest_feasible(bounds);
+            const auto near   = nearest_feasible(dual, law, bounds, solution.multipliers);
             if (!near)
               continue;
             from = *near;
             set_bounds(bounds);
-            qp::project(box, from); // to the last bit; of discs the square around them holds the point already
+            qp::project(box, from); // to the last bit
             return true;
           }
         return false;
-      }
-
-      /// The point within these bounds nearest to the present one that balances the loads; in space the one nearest to zero.
-      std::optional<Vector> nearest_feasible(const std::vector<double> &bounds) const
-      {
-        Box shifted = multiplier_box(dual, bounds);
-        if (law.has_discs())
-          {
-            qp::ForceSet<Vector> set{std::move(shifted), law.fixed_discs(bounds, true)};
-            for (const auto &disc : set.nodes)
-              unbind(disc, set.box);
-            auto point = qp::feasible_point(dual, dual.particular(), set);
-            return point.status == qp::Status::infeasible ? std::nullopt : std::optional<Vector>(std::move(point.x));
-          }
-        shifted.lower -= solution.multipliers;
-        shifted.upper -= solution.multipliers;
-        Vector missing = dual.particular();
-        missing -= solution.multipliers;
-        auto point = qp::feasible_point(dual, missing, shifted);
-        if (point.status == qp::Status::infeasible)
-          return {};
-        point.x += solution.multipliers;
-        return std::move(point.x);
-      }
-
-      static void unbind(const qp::PressureBound &disc, Box &of)
-      {
-        for (const auto entry : {disc.tangential, disc.second})
-          {
-            of.lower.local_element(entry) = -qp::infinity;
-            of.upper.local_element(entry) = qp::infinity;
-          }
-      }
-
-      /// The present bounds about @p center, in space with discs.
-      Box shifted_box(const Vector &center) const
-      {
-        Box shifted = box;
-        shifted.lower -= center;
-        shifted.upper -= center;
-        return shifted;
-      }
-      qp::DiscBox<Vector> shifted_discs(const Vector &center) const
-      {
-        qp::DiscBox<Vector> shifted{shifted_box(center), {}};
-        for (const auto &disc : law.fixed_discs(solution.slip_bound, true))
-          if (const double radius = disc.forces.closed_radius(0); radius > 0) // others are fixed
-            {
-              unbind(disc, shifted.box);
-              shifted.discs.push_back({disc.tangential,
-                                       disc.second,
-                                       radius,
-                                       {{-center.local_element(disc.tangential), -center.local_element(disc.second)}}});
-            }
-        return shifted;
       }
 
       /// Where SMALBE-M came to with the same bounds and the same point that balances the loads.
@@ -587,18 +461,23 @@ namespace slipstick::contact
                     Reached            *reached       = nullptr)
       {
         if (law.has_discs())
-          return smalbe_on(shifted_discs(from), from, tolerance, progress, false, reached);
-        return smalbe_on(shifted_box(from), from, tolerance, progress, may_end_early, reached);
+          return smalbe_on(shifted_discs(law, solution.slip_bound, box, from),
+                           from,
+                           tolerance,
+                           progress,
+                           false,
+                           reached);
+        return smalbe_on(shifted(box, from), from, tolerance, progress, may_end_early, reached);
       }
 
       /// A few steps, in space with squares around the discs: they tell the first set as well.
       Vector start_by_smalbe(const Vector &feasible)
       {
-        return smalbe_on(shifted_box(feasible), feasible, options.newton.start_tolerance, {}, false, nullptr);
+        return smalbe_on(shifted(box, feasible), feasible, options.newton.start_tolerance, {}, false, nullptr);
       }
 
       template <typename Set>
-      Vector smalbe_on(const Set          &shifted,
+      Vector smalbe_on(const Set          &set,
                        const Vector       &from,
                        const double        tolerance,
                        const qp::Observer &progress,
@@ -613,25 +492,15 @@ namespace slipstick::contact
         const auto load = homogenised_load(dual, from);
         if (options.algorithm == scene::Algorithm::semismooth_newton && solution.weighted_reference == 0)
           solution.weighted_reference = dual.residual_norm(load);
-        const Box &bounds = bounds_of(shifted);
-        // entries that reached a shifted bound are put on the bound itself, to the last bit
-        const auto unshifted = [&](const Vector &step) {
-          Vector x = from;
-          x += step;
-          for (unsigned int r = 0; r < x.locally_owned_size(); ++r)
-            if (step.local_element(r) <= bounds.lower.local_element(r))
-              x.local_element(r) = box.lower.local_element(r);
-            else if (step.local_element(r) >= bounds.upper.local_element(r))
-              x.local_element(r) = box.upper.local_element(r);
-          return x;
-        };
         std::function<bool(const Vector &, const Vector &)> asks;
         if (is_accurate && may_end_early)
-          asks = [&](const Vector &step, const Vector &g) { return accepts(unshifted(step), g); };
+          asks = [&](const Vector &step, const Vector &g) {
+            return accepts(unshifted(box, bounds_of(set), from, step), g);
+          };
         const auto result = qp::smalbe(dual,
                                        1.,
                                        load,
-                                       shifted,
+                                       set,
                                        reached && *reached ? **reached : qp::SmalbeStart<Vector>{dual.zero()},
                                        qp::Goal(tolerance, solution.reference),
                                        options.smalbe,
@@ -646,7 +515,7 @@ namespace slipstick::contact
         gradient                    = result.gradient;
         if (reached)
           *reached = qp::SmalbeStart<Vector>{result.x, result.shift};
-        return unshifted(result.x);
+        return unshifted(box, bounds_of(set), from, result.x);
       }
 
       static const Box &bounds_of(const Box &set)
@@ -674,9 +543,7 @@ namespace slipstick::contact
             n += !solution.free[r];
           }
         solution.active_constraints = dealii::Utilities::MPI::sum(n, dual.communicator());
-        solution.largest_traction   = largest_traction;
-        for (const double square : squares_of_tractions(solution.multipliers, dual.zero()))
-          solution.largest_traction = std::max(solution.largest_traction, std::sqrt(square));
+        solution.largest_traction   = tractions->largest(solution.multipliers);
         return std::move(solution);
       }
 
@@ -690,11 +557,8 @@ namespace slipstick::contact
       Box                   box;
       std::optional<Vector> gradient; // where SMALBE-M ended
       DualSolution          solution;
-      double                relaxation       = 1; // damping of the bounds
-      double                least_change     = qp::infinity;
-      unsigned int          updates_in_row   = 0; // without progress
-      double                largest_traction = 0; // norm in L2 of a pair's, in the steps before [sqrt(N MPa)]
-      double                largest_balance  = 0; // of the least multipliers that balance the loads [N]
+
+      std::optional<TractionError> tractions;
     };
   } // namespace
 

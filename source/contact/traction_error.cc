@@ -1,0 +1,76 @@
+#include <slipstick/contact/traction_error.h>
+#include <slipstick/qp/direction_store.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::contact
+{
+  namespace
+  {
+    // Errors of tractions may be this times the tolerance of the solver, over the tractions of the pair: 1 % at 1e-4 ...
+    constexpr double traction_error = 100;
+    // ... and no more than this.
+    constexpr double largest_traction_error = 0.05;
+    // Tractions of a pair below this part of the largest, of any pair in any step so far, count as this part.
+    constexpr double negligible_pair = 1e-3;
+    // ... and so do those below this part of what balances the loads, on one contact node: of pairs that no load reaches.
+    constexpr double negligible_force = 1e-6;
+  } // namespace
+
+  TractionError::TractionError(const tfeti::DualProblem &dual,
+                               const double              tolerance,
+                               const double              balance,
+                               const double              largest_before)
+    : dual(dual)
+    , part(std::min(largest_traction_error, traction_error * tolerance))
+    , balance(balance)
+    , largest_before(largest_before)
+  {}
+
+  bool TractionError::is_small(const Vector &x, const Vector &error) const
+  {
+    const auto squares = squares_of_pairs(x, error);
+    double     largest = largest_before * largest_before;
+    for (std::size_t k = 0; k < squares.size(); k += 2)
+      largest = std::max(largest, squares[k]);
+    double area = 0;
+    for (const auto &point : dual.constraints().contact_points)
+      area = std::max(area, point.traction_area);
+    area              = dealii::Utilities::MPI::max(area, dual.communicator());
+    const double none = area > 0 ? negligible_force * balance / std::sqrt(area) : 0.;
+    for (std::size_t k = 0; k < squares.size(); k += 2)
+      if (squares[k + 1] >
+          part * part * std::max({squares[k], negligible_pair * negligible_pair * largest, none * none}))
+        return false;
+    return true;
+  }
+
+  double TractionError::largest(const Vector &x) const
+  {
+    double result = largest_before;
+    for (const double square : squares_of_pairs(x, dual.zero()))
+      result = std::max(result, std::sqrt(square));
+    return result;
+  }
+
+  // Of every pair in turn: squares of the norms in L2 of the tractions of x and of the error [N MPa].
+  std::vector<double> TractionError::squares_of_pairs(const Vector &x, const Vector &error) const
+  {
+    unsigned int n_pairs = 0;
+    for (const auto &point : dual.constraints().contact_points)
+      n_pairs = std::max(n_pairs, point.pair + 1);
+    std::vector<double> squares(2 * dealii::Utilities::MPI::max(n_pairs, dual.communicator()), 0.);
+    for (const auto &point : dual.constraints().contact_points)
+      for (const unsigned int row : {point.normal_row, point.tangential_row, point.second_row})
+        if (row != tfeti::invalid_row)
+          {
+            squares[2 * point.pair] += x.local_element(row) * x.local_element(row) / point.traction_area;
+            squares[2 * point.pair + 1] += error.local_element(row) * error.local_element(row) / point.traction_area;
+          }
+    qp::sum_all(squares, dual.reduction());
+    return squares;
+  }
+} // namespace slipstick::contact
