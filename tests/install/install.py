@@ -64,7 +64,7 @@ class Install(unittest.TestCase):
 
     def test_completion(self):
         self.assertEqual(set(self.complete('slipstick', '--')), self.options)
-        self.assertEqual(sorted(self.complete('slipstick', 'hert')), ['hertz.prm', 'hertz_ball.prm'])
+        self.assertEqual(sorted(self.complete('slipstick', 'hert')), ['hertz.prm', 'hertz_ball.prm', 'hertz_solid.prm'])
         self.assertEqual(self.complete('slipstick', '--list-parameters', 'j'), ['json'])
         self.assertEqual(self.complete('slipstick', 'box_on_circle.prm', '--set', 'Contact circle/Sl'),
                          ['Contact\\ circle/Slave=', 'Contact\\ circle/Slip\\ bound='])

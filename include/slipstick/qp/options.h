@@ -87,7 +87,7 @@ namespace slipstick::qp
     double            sufficient_decrease  = 1e-2; // ... by this part times its length, ...
     double            backtracking         = 0.5;  // ... or is cut by this factor ...
     double            shortest_step        = 1e-3; // ... down to this part of itself
-    double            longest_leap         = 10;   // residual after a leap over that before
+    double            longest_leap         = 1e4;  // residual after a leap over that before
     unsigned int      max_outer_iterations = 100;
     unsigned int      n_directions         = 200; // kept with their products
     FaceSolverOptions face;
