@@ -352,7 +352,6 @@ class Refused(Solids):
                 ('Obstacle sphere/Shape', 'polyline', "Shape = 'polyline'", 'half space'),
                 ('Obstacle sphere/Points', '0 0; 1 0', 'Obstacle sphere/Points', 'the plane'),
                 ('Discretization/Degree', 3, "Degree = '3'"),
-                ('Solver/Algorithm', 'smalbe', "Solver/Algorithm = 'smalbe'", 'friction in space'),
                 ('Support clamp/Boundary', 'cube/inner', "boundary 'inner'", 'front'),
                 ('Traction pressed/Pressure', '500*w', 'z', 't')):
             with self.subTest(name):
