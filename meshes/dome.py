@@ -29,6 +29,8 @@ HEADER = '''# Dome of {n} loose stones around an open eye, dry joints with Coulo
 # What to expect
 #   weight {weight:.1f} kN, of which polyhedra lack 2 %; each of the {stones} stones on the seat bears as much of it
 #   the {stones} stones are alike: so are the forces of their joints, all of them compressed
+#   a warning: at the lower corners a stone sticks to the seat and to its neighbour, which hold each other in more than one
+#   way; there only the sums of the forces are determined
 '''
 
 

@@ -149,7 +149,12 @@ class Doubtful(Extremes):
         for path in sorted((SOURCE / 'prm').glob('*.prm')):
             overrides = BLOCKS if path.stem.startswith('box') else None
             result = self.converges(table, path.stem, shipped(path.stem), overrides, checks=1e-3)
-            self.assertEqual(result.summary['warnings'], [], path.stem)
+            warnings = result.summary['warnings']
+            if path.stem == 'dome':  # stones that stick to two neighbours and to the seat at one corner: said, and right
+                self.assertEqual(len(warnings), 1, path.stem)
+                self.assertIn('only the sums of the forces are determined', warnings[0])
+            else:
+                self.assertEqual(warnings, [], path.stem)
 
 
 if __name__ == '__main__':
