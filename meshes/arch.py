@@ -9,6 +9,8 @@ header of the scene. Other arches: change the numbers below and pass the same to
 import math
 import sys
 
+from prm_text import section, wrapped
+
 STONES, INNER, OUTER, EMBRACE, LOADED = 24, 2500., 3000., 160., 16  # as in arch.geo [mm, degrees]
 DEPTH, DENSITY, GRAVITY, FORCE = 1000., 2.4e-9, 9810., 20000.  # [mm, t/mm^3, mm/s^2, N]
 FRICTION = .6
@@ -43,24 +45,6 @@ def stone_weight():
     d = math.radians(EMBRACE / STONES)
     weight = (OUTER ** 2 - INNER ** 2) / 2 * d * DEPTH * DENSITY * GRAVITY
     return weight, 2 / 3 * (OUTER ** 3 - INNER ** 3) / (OUTER ** 2 - INNER ** 2) * math.sin(d / 2) / (d / 2)
-
-
-def section(kind, **values):
-    width = max(len(name) for name in values)
-    lines = ['  set {} = {}'.format(name.replace('_', ' ').ljust(width), value) for name, value in values.items()]
-    return '\n'.join(['', 'subsection ' + kind] + lines + ['end'])
-
-
-def wrapped(name, values, last=120):
-    """A list parameter; lines that end in a backslash go on."""
-    lines = ['set {} ='.format(name)]
-    for i, value in enumerate(values):
-        word = ' ' + value + (',' if i + 1 < len(values) else '')
-        if len(lines[-1]) + len(word) > last - 2:
-            lines[-1] += ' \\'
-            lines.append('   ')
-        lines[-1] += word
-    return '\n'.join(lines)
 
 
 def scene():

@@ -12,6 +12,8 @@ import itertools
 import math
 import sys
 
+from prm_text import section, wrapped
+
 RINGS, STONES = 1, 8
 INNER, OUTER = 2500., 3000.      # radii [mm]
 EYE, SEAT = 20., 75.             # angles of the highest and the lowest joint from the axis [degrees]
@@ -84,24 +86,6 @@ def mesh():
     for k, (kind, of, vertices) in enumerate(elements):
         print(k + 1, kind, 2, of, of, *vertices)
     print('$EndElements')
-
-
-def section(kind, **values):
-    width = max(len(name) for name in values)
-    lines = ['  set {} = {}'.format(name.replace('_', ' ').ljust(width), value) for name, value in values.items()]
-    return '\n'.join(['', 'subsection ' + kind] + lines + ['end'])
-
-
-def wrapped(name, values, last=120):
-    """A list parameter; lines that end in a backslash go on."""
-    lines = ['set {} ='.format(name)]
-    for i, value in enumerate(values):
-        word = ' ' + value + (',' if i + 1 < len(values) else '')
-        if len(lines[-1]) + len(word) > last - 2:
-            lines[-1] += ' \\'
-            lines.append('   ')
-        lines[-1] += word
-    return '\n'.join(lines)
 
 
 def scene():

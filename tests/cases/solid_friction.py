@@ -56,8 +56,12 @@ class Fallback(unittest.TestCase):
 
     def test_ring_that_lifts_off(self):
         result = converged(ring({'Law': 'Tresca', 'Slip bound': '100'}))
+        self.assertIn('slip', [row['status'] for row in result.contact])
+        largest = max(row['pressure'] for row in result.contact)
         for row in result.contact:
-            self.assertLessEqual(row['pressure'], 1e4)
+            self.assertGreaterEqual(row['pressure'], 0)
+            if row['pressure'] > 1e-3 * largest:
+                self.assertAlmostEqual(row['gap'], 0, delta=1e-5)
             if row['status'] == 'slip':
                 self.assertAlmostEqual(abs(row['tangential_traction']) / row['slip_bound'], 1, delta=1e-3)
 

@@ -1,7 +1,7 @@
 // Which points of two surfaces face each other.
 #pragma once
 
-#include <slipstick/interface/box_tree.h>
+#include <slipstick/base/box_tree.h>
 #include <slipstick/interface/convex_polygon.h>
 #include <slipstick/interface/curve_pairing.h>
 #include <slipstick/interface/edge_tree.h>
