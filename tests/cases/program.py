@@ -1,7 +1,8 @@
 """Runs slipstick as a user does and reads what it leaves. Standard library only.
 
 Where things are comes from the environment: SLIPSTICK (the program), SLIPSTICK_SOURCE_DIR; without it from the place of
-this file and a build in build/. MPIEXEC is read by scripts/mpirun.
+this file and a build in build/. MPIEXEC is read by scripts/mpirun. With SLIPSTICK_FORK_SERVER (tests/fork_server) runs on one rank
+do not load the libraries anew.
 """
 
 import atexit
@@ -12,7 +13,11 @@ import pathlib
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'fork_server'))
+from fork_server import ForkServer  # noqa: E402
 
 SOURCE = pathlib.Path(os.environ.get('SLIPSTICK_SOURCE_DIR', pathlib.Path(__file__).resolve().parents[2]))
 PROGRAM = os.environ.get('SLIPSTICK', str(SOURCE / 'build' / 'slipstick'))
@@ -23,6 +28,8 @@ WORK = pathlib.Path(tempfile.mkdtemp(prefix='slipstick-cases-'))
 atexit.register(shutil.rmtree, WORK, ignore_errors=True)
 
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1')
+# Open MPI 4 waits for 1 to 2 s when a rank has returned a status. Slipstick's ranks have all passed MPI_Finalize by then.
+NO_GRACE = {'OMPI_MCA_odls_base_sigkill_timeout': '0'}
 
 
 def shipped(name):
@@ -43,6 +50,22 @@ def launcher(ranks):
 
 class Hang(AssertionError):
     pass
+
+
+_servers = []
+
+
+def fork_server():
+    """The server of this process, started at its first run; None where none is named."""
+    if not _servers and os.environ.get('SLIPSTICK_FORK_SERVER'):
+        _servers.append(ForkServer(os.environ['SLIPSTICK_FORK_SERVER'], ENVIRONMENT))
+        atexit.register(_servers[0].close)
+    return _servers[0] if _servers else None
+
+
+def is_text(arguments):
+    """Whether a request to the fork server, which is text, can carry these."""
+    return all(argument.isprintable() for argument in arguments)
 
 
 class Result:
@@ -77,11 +100,22 @@ class Result:
         return sorted(path.name for path in self.directory.iterdir()) if self.directory.is_dir() else []
 
 
+def hang(command, stdout, stderr):
+    return Hang('no end after {} s: {}\n{}{}'.format(TIME_LIMIT, ' '.join(command), stdout, stderr))
+
+
 def run(*arguments, ranks=1, directory=None):
     """slipstick with these arguments, as they are. @p directory: where the caller expects output, for the result."""
-    command = launcher(ranks) + [PROGRAM] + [str(argument) for argument in arguments]
+    arguments = [str(argument) for argument in arguments]
+    command = launcher(ranks) + [PROGRAM] + arguments
+    if ranks == 1 and is_text(arguments) and fork_server():
+        status, stdout, stderr, is_late = fork_server().run(arguments, WORK, TIME_LIMIT)
+        stdout, stderr = stdout.decode(), stderr.decode()
+        if is_late:
+            raise hang(command, stdout, stderr)
+        return Result(command, status, stdout, stderr, directory)
     process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                               text=True, env=ENVIRONMENT, cwd=WORK, start_new_session=True)
+                               text=True, env={**ENVIRONMENT, **NO_GRACE}, cwd=WORK, start_new_session=True)
     try:
         stdout, stderr = process.communicate(timeout=TIME_LIMIT)
     except subprocess.TimeoutExpired:
@@ -91,7 +125,7 @@ def run(*arguments, ranks=1, directory=None):
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             stdout, stderr = process.communicate()
-        raise Hang('no end after {} s: {}\n{}{}'.format(TIME_LIMIT, ' '.join(command), stdout, stderr))
+        raise hang(command, stdout, stderr)
     return Result(command, process.returncode, stdout, stderr, directory)
 
 
