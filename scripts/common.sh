@@ -122,11 +122,11 @@ n_cores() {
   echo "$cores"
 }
 
-# Compilers of deal.II code take up to 1.5 GB each.
+# Compilers of deal.II code take up to 2.1 GB each.
 n_jobs() {
   local jobs fit
   jobs=$(n_cores)
-  fit=$(awk '/^MemAvailable:/ { print int($2 / 1500000) }' /proc/meminfo 2>/dev/null) || fit=
+  fit=$(awk '/^MemAvailable:/ { print int($2 / 2200000) }' /proc/meminfo 2>/dev/null) || fit=
   [[ -n $fit && $fit -lt $jobs ]] && jobs=$fit
   [[ $jobs -ge 1 ]] || jobs=1
   echo "${SLIPSTICK_JOBS:-$jobs}"
@@ -168,6 +168,9 @@ build_errors() {
   fi
 }
 
+# Files compiled at a time: the templates of deal.II and Eigen cost more than the files.
+readonly batch_size=8
+
 # build_target TARGET: Release build of TARGET in build/.
 build_target() {
   mkdir -p "$build"
@@ -178,7 +181,8 @@ build_target() {
     ! grep -qs '^CMAKE_BUILD_TYPE:[A-Z]*=Release$' "$build/CMakeCache.txt"; then
     say "configuring in $build"
     logged cmake_errors "$build/configure.log" \
-      cmake -S "$root" -B "$build" "${generator[@]}" -D CMAKE_BUILD_TYPE=Release
+      cmake -S "$root" -B "$build" "${generator[@]}" -D CMAKE_BUILD_TYPE=Release \
+      -D CMAKE_UNITY_BUILD=ON -D CMAKE_UNITY_BUILD_BATCH_SIZE="$batch_size"
   fi
   say "building $1 (Release, $(n_jobs) jobs)"
   logged build_errors "$build/build.log" cmake --build "$build" --target "$1" --parallel "$(n_jobs)"

@@ -1,11 +1,12 @@
 # add_mpi_test_executable(TARGET SOURCES file... LINKS target...): GoogleTest under MPI. What its files share (torn.h, main)
-# is compiled once: the headers of deal.II and Eigen cost more than the tests.
+# is compiled once: the headers of deal.II and Eigen cost more than the tests. Tests run for seconds, so that -O1 pays.
 if(NOT TARGET slipstick_testing)
   add_library(slipstick_testing STATIC ${CMAKE_CURRENT_LIST_DIR}/mpi_main.cc ${CMAKE_CURRENT_LIST_DIR}/torn.cc)
   deal_ii_setup_target(slipstick_testing)
   target_include_directories(slipstick_testing PUBLIC ${CMAKE_CURRENT_LIST_DIR})
   target_link_libraries(slipstick_testing slipstick_interface slipstick_contact GTest::gtest)
-  target_precompile_headers(slipstick_testing REUSE_FROM slipstick_base)
+  target_compile_options(slipstick_testing PUBLIC $<$<CONFIG:Release>:-O1>)
+  target_precompile_headers(slipstick_testing PRIVATE ${CMAKE_CURRENT_LIST_DIR}/torn.h)
 endif()
 
 function(add_mpi_test_executable target)
@@ -13,7 +14,7 @@ function(add_mpi_test_executable target)
   add_executable(${target} ${ARGUMENT_SOURCES})
   deal_ii_setup_target(${target})
   target_link_libraries(${target} slipstick_testing ${ARGUMENT_LINKS})
-  target_precompile_headers(${target} REUSE_FROM slipstick_base)
+  target_precompile_headers(${target} REUSE_FROM slipstick_testing)
 endfunction()
 
 # add_mpi_tests(TARGET RANKS n... LABEL label): one ctest TARGET_n for every n; as root and with more ranks than

@@ -19,7 +19,7 @@ namespace slipstick::app
     // The same for bodies that no contact joins, relative to the largest displacement.
     constexpr double allowed_without_contact = 1e-3;
     // For all of them, relative to an edge: rounding of coordinates.
-    constexpr double rounding = 1e-9;
+    constexpr double coordinate_rounding = 1e-9;
     // Reserve of the Reach that is proposed.
     constexpr double reserve = 1.1;
 
@@ -43,7 +43,7 @@ namespace slipstick::app
         if (pair.master)
           joined.insert(std::minmax(pair.slave.body, pair.master->body));
         if (const auto &deepest = found.beyond_reach[k];
-            deepest && deepest->depth > std::max(allowed_beyond_reach * largest, rounding * deepest->edge) &&
+            deepest && deepest->depth > std::max(allowed_beyond_reach * largest, coordinate_rounding * deepest->edge) &&
             !findings.failure)
           findings.failure =
             format("Contact %s: at %s a slave node that was left out because it is farther away than the Reach of "
@@ -56,8 +56,8 @@ namespace slipstick::app
                    pair.name.c_str(),
                    rounded_up(reserve * deepest->gap));
         if (const auto &deepest = found.in_obstacle[k];
-            deepest && deepest->depth >
-                         std::max(allowed_between_nodes * std::min(largest, deepest->edge), rounding * deepest->edge))
+            deepest && deepest->depth > std::max(allowed_between_nodes * std::min(largest, deepest->edge),
+                                                 coordinate_rounding * deepest->edge))
           findings.warnings["edge " + pair.name] =
             format("Contact %s: obstacle %s is %.3g mm inside body %s at %s, on %s of %.3g mm: contact acts at nodes, "
                    "and the obstacle enters between them; refine %s there (%sRefinements) until edges are "
@@ -78,7 +78,7 @@ namespace slipstick::app
         const double allowed =
           has_contact ? allowed_between_nodes * std::min(largest, deepest.edge) : allowed_without_contact * largest;
         const auto &a = scene.bodies[bodies.first].name, &b = scene.bodies[bodies.second].name;
-        if (deepest.depth > std::max(allowed, rounding * deepest.edge))
+        if (deepest.depth > std::max(allowed, coordinate_rounding * deepest.edge))
           findings.warnings["inside " + std::min(a, b) + " " + std::max(a, b)] =
             format("body %s is %.3g mm inside body %s after loading, at %s: %s",
                    a.c_str(),

@@ -1,3 +1,4 @@
+#include <slipstick/app/names.h>
 #include <slipstick/app/report.h>
 #include <slipstick/base/text.h>
 #include <slipstick/scene/checks.h>
@@ -19,7 +20,7 @@ namespace slipstick::app
     constexpr double check_factor  = 1000;
     constexpr double largest_limit = 0.05;
     // Residuals below this one are due to rounding in the operators of the solver.
-    constexpr double rounding = 1e-11;
+    constexpr double residual_rounding = 1e-11;
     // Rounding errors differ by about this factor between ways of computing the same quantity.
     constexpr double margin_of_rounding = 2;
 
@@ -38,83 +39,7 @@ namespace slipstick::app
       text += " body " + scene.bodies[place.body].name;
       return text + (place.in_pair ? ", contact " + scene.contacts[place.pair].name : "");
     }
-
-    const char *name_of(const scene::Accuracy accuracy)
-    {
-      switch (accuracy)
-        {
-          case scene::Accuracy::draft:
-            return "draft";
-          case scene::Accuracy::engineering:
-            return "engineering";
-          case scene::Accuracy::reference:
-            return "reference";
-        }
-      return "";
-    }
-
-    const char *name_of(const scene::PlaneState state)
-    {
-      switch (state)
-        {
-          case scene::PlaneState::plane_stress:
-            return "plane stress";
-          case scene::PlaneState::plane_strain:
-            return "plane strain";
-          case scene::PlaneState::axisymmetric:
-            return "axisymmetric";
-        }
-      return "";
-    }
-
-    const char *name_of(const scene::DecompositionMethod method)
-    {
-      switch (method)
-        {
-          case scene::DecompositionMethod::automatic:
-            return "auto";
-          case scene::DecompositionMethod::blocks:
-            return "blocks";
-          case scene::DecompositionMethod::metis:
-            return "METIS";
-          case scene::DecompositionMethod::none:
-            return "none";
-        }
-      return "";
-    }
   } // namespace
-
-  std::string name_of(const scene::Algorithm algorithm)
-  {
-    switch (algorithm)
-      {
-        case scene::Algorithm::automatic:
-          return "auto";
-        case scene::Algorithm::smalbe:
-          return "smalbe";
-        case scene::Algorithm::semismooth_newton:
-          return "semismooth newton";
-        case scene::Algorithm::pcg:
-          return "pcg";
-      }
-    return "";
-  }
-
-  std::string name_of(const tfeti::Preconditioner preconditioner)
-  {
-    switch (preconditioner)
-      {
-        case tfeti::Preconditioner::automatic:
-          return "auto";
-        case tfeti::Preconditioner::none:
-          return "none";
-        case tfeti::Preconditioner::lumped:
-          return "lumped";
-        case tfeti::Preconditioner::dirichlet:
-          return "Dirichlet";
-      }
-    return "";
-  }
 
   template <int dim>
   void print_header(const Log &log, const scene::Scene<dim> &scene, const MPI_Comm comm)
@@ -128,7 +53,7 @@ namespace slipstick::app
     const auto &solver = scene.solver;
     log.line(line("accuracy",
                   format("%s: tolerance %s, slip bounds %g, degree %u, operator in %s precision, contact nodes %s",
-                         name_of(scene.accuracy),
+                         name_of(scene.accuracy).c_str(),
                          solver.stops_at_discretization_error ? "auto" : format("%g", solver.tolerance).c_str(),
                          scene.friction.tolerance,
                          scene.discretization.degree,
@@ -152,7 +77,7 @@ namespace slipstick::app
                          static_cast<unsigned long long>(mesh.n_cells),
                          scene.discretization.degree,
                          mesh.n_subdomains(),
-                         name_of(scene.decomposition.method),
+                         name_of(scene.decomposition.method).c_str(),
                          spaces.n_dofs)));
     for (const auto &remark : mesh.remarks)
       log.line(line("", remark));
@@ -269,7 +194,7 @@ namespace slipstick::app
                  where.c_str(),
                  check_limit(tolerance),
                  reached);
-        if (!worst.is_balance && reached > rounding)
+        if (!worst.is_balance && reached > residual_rounding)
           {
             log.warning(what +
                         format("\n  remedy: set Solver/Tolerance to %.1g, and look at the residuals in convergence.csv",

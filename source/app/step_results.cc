@@ -26,7 +26,7 @@ namespace slipstick::app
     // Forces on what holds motions that nothing resists are told of above this part of the largest force.
     constexpr double negligible_held_force = 1e-6;
 
-    constexpr double rounding = 1e-12; // of displacements, relative
+    constexpr double displacement_rounding = 1e-12; // of displacements, relative
 
     template <int dim>
     std::array<double, 3> in_space(const dealii::Tensor<1, dim> &x)
@@ -55,7 +55,7 @@ namespace slipstick::app
         held += reactions[h];
       // the least force that can be told from none: rounding of the displacement, over the compliance |PFP|
       double largest =
-        rounding * answer.contact->checks.max_displacement / solver.dual().norm() / negligible_held_force;
+        displacement_rounding * answer.contact->checks.max_displacement / solver.dual().norm() / negligible_held_force;
       for (const auto &load : sums.loads)
         largest = std::max(largest, size(load.sum));
       for (const auto &reaction : reactions)

@@ -1,4 +1,5 @@
 #include <slipstick/app/held_nodes.h>
+#include <slipstick/app/names.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/step_solver.h>
 #include <slipstick/base/collective.h>

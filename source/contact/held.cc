@@ -9,19 +9,19 @@ namespace slipstick::contact
 {
   namespace
   {
-    using Vector = std::array<double, 3>;
+    using Components = std::array<double, 3>; // x, y, z
 
-    double product(const Vector &a, const Vector &b)
+    double product(const Components &a, const Components &b)
     {
       return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     }
 
     /// On a node that touches [N].
-    Vector force_on(const tfeti::HeldContacts::Point &point,
-                    const tfeti::Constraints         &constraints,
-                    const tfeti::DistributedVector   &multipliers)
+    Components force_on(const tfeti::HeldContacts::Point &point,
+                        const tfeti::Constraints         &constraints,
+                        const tfeti::DistributedVector   &multipliers)
     {
-      Vector                 force{{0, 0, 0}};
+      Components             force{{0, 0, 0}};
       std::set<unsigned int> holders;
       for (const unsigned int r : point.reactions)
         {
@@ -69,10 +69,10 @@ namespace slipstick::contact
   {
     for (unsigned int i = 0; i < held.points.size(); ++i)
       {
-        const auto  &point     = held.points[i];
-        const bool   has_place = point.place != tfeti::invalid_row;
-        ContactNode  node      = has_place ? contact.nodes[point.place] : node_at(point.contact);
-        const Vector force     = touches[i] ? force_on(point, dual.constraints(), multipliers) : Vector{{0, 0, 0}};
+        const auto      &point     = held.points[i];
+        const bool       has_place = point.place != tfeti::invalid_row;
+        ContactNode      node      = has_place ? contact.nodes[point.place] : node_at(point.contact);
+        const Components force = touches[i] ? force_on(point, dual.constraints(), multipliers) : Components{{0, 0, 0}};
         node.is_closed         = touches[i];
         node.gap               = gaps[i];
         node.pressure          = (0. - product(force, node.normal)) / node.area; // no -0

@@ -13,7 +13,7 @@ namespace slipstick::interface
   {
     /// An edge of a slave boundary: its vertices, their coordinates, its length.
     template <int dim>
-    struct Edge
+    struct OutlineEdge
     {
       unsigned int                           pair = 0;
       std::array<mesh::GlobalVertex, 2>      ends{};
@@ -28,11 +28,11 @@ namespace slipstick::interface
     };
 
     template <int dim>
-    std::vector<Edge<dim>> local_edges(const scene::Scene<dim>      &scene,
-                                       const mesh::Mesh<dim>        &mesh,
-                                       const mechanics::Spaces<dim> &spaces)
+    std::vector<OutlineEdge<dim>> local_edges(const scene::Scene<dim>      &scene,
+                                              const mesh::Mesh<dim>        &mesh,
+                                              const mechanics::Spaces<dim> &spaces)
     {
-      std::vector<Edge<dim>> edges;
+      std::vector<OutlineEdge<dim>> edges;
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
         for (unsigned int k = 0; k < scene.contacts.size(); ++k)
           {
@@ -43,7 +43,7 @@ namespace slipstick::interface
               for (const auto &face : cell->face_iterators())
                 if (face->at_boundary() && mesh.on_boundary(slave, face->boundary_id()))
                   {
-                    Edge<dim> edge;
+                    OutlineEdge<dim> edge;
                     edge.pair   = k;
                     edge.length = face->measure();
                     for (unsigned int v = 0; v < 2; ++v)
@@ -63,7 +63,7 @@ namespace slipstick::interface
     class Walk
     {
     public:
-      explicit Walk(const std::vector<Edge<dim>> &edges_)
+      explicit Walk(const std::vector<OutlineEdge<dim>> &edges_)
         : edges(edges_)
       {
         for (unsigned int e = 0; e < edges.size(); ++e)
@@ -116,7 +116,7 @@ namespace slipstick::interface
           }
       }
 
-      const std::vector<Edge<dim>>                           &edges;
+      const std::vector<OutlineEdge<dim>>                    &edges;
       std::map<mesh::GlobalVertex, std::vector<unsigned int>> at_vertex;
       std::map<mesh::GlobalVertex, std::array<double, dim>>   position;
       std::set<unsigned int>                                  walked;
@@ -130,7 +130,7 @@ namespace slipstick::interface
                                                                             const mesh::Mesh<dim>        &mesh,
                                                                             const mechanics::Spaces<dim> &spaces)
   {
-    std::vector<std::vector<Edge<dim>>> by_pair(scene.contacts.size());
+    std::vector<std::vector<OutlineEdge<dim>>> by_pair(scene.contacts.size());
     for (const auto &list : dealii::Utilities::MPI::gather(mesh.comm, local_edges(scene, mesh, spaces)))
       for (const auto &edge : list)
         by_pair[edge.pair].push_back(edge);

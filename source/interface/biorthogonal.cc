@@ -1,5 +1,5 @@
-#include <slipstick/tfeti/dense.h>
 #include <slipstick/interface/biorthogonal.h>
+#include <slipstick/tfeti/dense.h>
 
 namespace slipstick::interface
 {

@@ -1,14 +1,10 @@
+#include <slipstick/base/cross.h>
 #include <slipstick/interface/convex_polygon.h>
 
 namespace slipstick::interface
 {
   namespace
   {
-    double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
-    {
-      return a[0] * b[1] - a[1] * b[0];
-    }
-
     const dealii::Point<2> &next(const ConvexPolygon &polygon, const std::size_t i)
     {
       return polygon[(i + 1) % polygon.size()];

@@ -1,46 +1,33 @@
 #include <slipstick/interface/curve_pairing.h>
 
+#include <boost/math/special_functions/sign.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace slipstick::interface
 {
   namespace
   {
-    using Edge   = CurvePairing::Edge;
-    using Tensor = CurvePairing::Tensor;
-
     // Parts of an edge (of its length) that are shorter than this are left out.
     constexpr double smallest_segment = 1e-12;
     // Crossings at distances that differ by no more than this part of an edge are one: at a node of the master.
     constexpr double same_place = 1e-9;
 
-    /// Zero of a continuous f with f(low) f(high) <= 0: false position (Illinois), safeguarded by bisection.
+    // Of a zero in [0, 1], absolute: rounding of the coordinates.
+    constexpr double         root_tolerance   = 1e-16;
+    constexpr std::uintmax_t most_evaluations = 200;
+
+    /// Zero in [0, 1] of a continuous f with f(0) f(1) <= 0.
     template <class F>
-    double zero_between(const F &f, double low, double high, double f_low, double f_high)
+    double zero(const F &f, const double f_0, const double f_1)
     {
-      for (unsigned int i = 0; i < 200 && high - low > 1e-16 && f_low != f_high; ++i)
-        {
-          const double s = i % 4 == 3 ? 0.5 * (low + high) : (low * f_high - high * f_low) / (f_high - f_low);
-          if (!(s > low && s < high))
-            return s <= low ? low : high;
-          const double value = f(s);
-          if (value == 0)
-            return s;
-          if ((value < 0) == (f_low < 0))
-            {
-              low   = s;
-              f_low = value;
-              f_high /= 2;
-            }
-          else
-            {
-              high   = s;
-              f_high = value;
-              f_low /= 2;
-            }
-        }
+      auto       evaluations = most_evaluations;
+      const auto is_close    = [](const double low, const double high) { return high - low <= root_tolerance; };
+      const auto [low, high] = boost::math::tools::toms748_solve(f, 0., 1., f_0, f_1, is_close, evaluations);
       return 0.5 * (low + high);
     }
   } // namespace
@@ -101,14 +88,14 @@ namespace slipstick::interface
       }
   }
 
-  Tensor CurvePairing::field(const unsigned int e, const double s) const
+  CurvePairing::Tensor CurvePairing::field(const unsigned int e, const double s) const
   {
     return own.normal(e, slave[e].n_nodes, slave[e].shape(s));
   }
 
   double CurvePairing::side(const unsigned int e, const double s, const dealii::Point<2> &y) const
   {
-    return mechanics::cross(field(e, s), y - slave[e].point(s));
+    return cross(field(e, s), y - slave[e].point(s));
   }
 
   std::optional<CurvePairing::Hit> CurvePairing::hit(const unsigned int e, const double s, const unsigned int m) const
@@ -116,13 +103,12 @@ namespace slipstick::interface
     const Edge            &edge = master[m];
     const dealii::Point<2> x    = slave[e].point(s);
     const Tensor           n    = field(e, s);
-    const double           f0 = mechanics::cross(n, edge.node(0) - x), f1 = mechanics::cross(n, edge.node(1) - x);
-    if (f0 * f1 > 0 || f0 == f1)
+    const double           f0 = cross(n, edge.node(0) - x), f1 = cross(n, edge.node(1) - x);
+    if (boost::math::sign(f0) * boost::math::sign(f1) > 0 || f0 == f1)
       return {};
     Hit result;
-    result.s   = edge.n_nodes == 2
-                   ? f0 / (f0 - f1)
-                   : zero_between([&](const double r) { return mechanics::cross(n, edge.point(r) - x); }, 0., 1., f0, f1);
+    result.s =
+      edge.n_nodes == 2 ? f0 / (f0 - f1) : zero([&](const double r) { return cross(n, edge.point(r) - x); }, f0, f1);
     result.gap = (edge.point(result.s) - x) * n / n.norm();
     return result;
   }
@@ -175,7 +161,7 @@ namespace slipstick::interface
           const auto   y  = master[m].node(i);
           const double f0 = side(e, 0., y), f1 = side(e, 1., y);
           if (f0 * f1 < 0)
-            breaks.push_back(zero_between([&](const double s) { return side(e, s, y); }, 0., 1., f0, f1));
+            breaks.push_back(zero([&](const double s) { return side(e, s, y); }, f0, f1));
         }
     std::sort(breaks.begin(), breaks.end());
     std::vector<Segment> parts;

@@ -7,9 +7,6 @@ namespace slipstick::interface
 {
   namespace
   {
-    using Edge  = mechanics::SurfaceEdge<2>;
-    using Facet = mechanics::SurfaceFacet;
-
     /// Nearest point of a segment.
     template <int dim>
     dealii::Point<dim> nearest_on_segment(const dealii::Point<dim> &from,
@@ -20,12 +17,12 @@ namespace slipstick::interface
       return from + std::min(1., std::max(0., (x - from) * along / along.norm_square())) * along;
     }
 
-    double distance_to(const Edge &edge, const dealii::Point<2> &x)
+    double distance_to(const mechanics::SurfaceEdge<2> &edge, const dealii::Point<2> &x)
     {
       return x.distance(nearest_on_segment(edge.node(0), edge.node(1), x));
     }
 
-    double distance_to(const Facet &facet, const dealii::Point<3> &x)
+    double distance_to(const mechanics::SurfaceFacet &facet, const dealii::Point<3> &x)
     {
       double least = x.distance(nearest_on_triangle({{facet.node(0), facet.node(1), facet.node(2)}}, x));
       if (facet.n_corners() == 4)
@@ -33,26 +30,26 @@ namespace slipstick::interface
       return least;
     }
 
-    std::vector<double> sample_places(const Edge &)
+    std::vector<double> sample_places(const mechanics::SurfaceEdge<2> &)
     {
       return {0., 0.5, 1.};
     }
 
-    std::vector<Facet::Place> sample_places(const Facet &facet)
+    std::vector<mechanics::SurfaceFacet::Place> sample_places(const mechanics::SurfaceFacet &facet)
     {
-      std::vector<Facet::Place> places;
+      std::vector<mechanics::SurfaceFacet::Place> places;
       for (unsigned int i = 0; i < facet.n_nodes; ++i)
         places.push_back(facet.node_coordinate(i));
       places.push_back(facet.middle_place());
       return places;
     }
 
-    EdgeTree tree_of(const std::vector<Edge> &edges)
+    EdgeTree tree_of(const std::vector<mechanics::SurfaceEdge<2>> &edges)
     {
       return EdgeTree(edges);
     }
 
-    BoxTree<3> tree_of(const std::vector<Facet> &facets)
+    BoxTree<3> tree_of(const std::vector<mechanics::SurfaceFacet> &facets)
     {
       return facet_tree(facets);
     }
@@ -104,6 +101,10 @@ namespace slipstick::interface
     return {};
   }
 
-  template std::optional<double> facing_distance(const std::vector<Edge> &, const std::vector<Edge> &, const double);
-  template std::optional<double> facing_distance(const std::vector<Facet> &, const std::vector<Facet> &, const double);
+  template std::optional<double> facing_distance(const std::vector<mechanics::SurfaceEdge<2>> &,
+                                                 const std::vector<mechanics::SurfaceEdge<2>> &,
+                                                 const double);
+  template std::optional<double> facing_distance(const std::vector<mechanics::SurfaceFacet> &,
+                                                 const std::vector<mechanics::SurfaceFacet> &,
+                                                 const double);
 } // namespace slipstick::interface

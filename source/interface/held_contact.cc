@@ -18,7 +18,7 @@ namespace slipstick::interface
     // ... or, where nothing is moved, of the length of the node: files give coordinates with some seven digits.
     constexpr double digits_of_files = 1e-6;
     // Rounding of coordinates in gaps, part of them.
-    constexpr double rounding = 1e-12;
+    constexpr double rounding_of_coordinates = 1e-12;
 
     template <int dim>
     std::string names_of(const scene::Scene<dim> &scene, const std::vector<unsigned int> &holders)
@@ -90,9 +90,9 @@ namespace slipstick::interface
     for (const double x : point.contact.position)
       coordinates = std::max(coordinates, std::abs(x));
     const bool is_moved = point.is_known && point.closing != 0;
-    return rounding * coordinates + (is_moved
-                                       ? same_gap * std::max(std::abs(point.closing), std::abs(point.contact.gap))
-                                       : digits_of_files * point.contact.length);
+    return rounding_of_coordinates * coordinates +
+           (is_moved ? same_gap * std::max(std::abs(point.closing), std::abs(point.contact.gap))
+                     : digits_of_files * point.contact.length);
   }
 
   template <int dim>

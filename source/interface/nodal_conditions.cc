@@ -1,8 +1,8 @@
-#include <slipstick/tfeti/dense.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
 #include <slipstick/interface/nodal_conditions.h>
 #include <slipstick/mechanics/surface.h>
+#include <slipstick/tfeti/dense.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ namespace slipstick::interface
     }
 
     template <int dim>
-    std::string describe(const dealii::Tensor<1, dim> &direction, const unsigned int which)
+    std::string name_of(const dealii::Tensor<1, dim> &direction, const unsigned int which)
     {
       if (which < dim)
         return format("displacement %c", "xyz"[which]);
@@ -196,7 +196,7 @@ namespace slipstick::interface
       throw InputError(format("supports prescribe both %g and %g for %s at (%g, %g%s)",
                               there,
                               value,
-                              describe(direction, which).c_str(),
+                              name_of(direction, which).c_str(),
                               node.position[0],
                               node.position[1],
                               dim == 3 ? format(", %g", node.position[dim - 1]).c_str() : ""),

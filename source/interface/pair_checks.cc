@@ -23,7 +23,7 @@ namespace slipstick::interface
     // A master is behind its slave when it is deeper than this part of a mean slave edge.
     constexpr double deep = 0.1;
     // Sides nearer than this part of their extent touch.
-    constexpr double touching = 1e-9;
+    constexpr double corner_on_corner = 1e-9;
     // Normals that are compared for a message, per side.
     constexpr unsigned int n_compared = 500;
     constexpr double       infinity   = std::numeric_limits<double>::infinity();
@@ -248,7 +248,7 @@ namespace slipstick::interface
       mortar_rows(sides.slave, sides.master, {any, any}, scene::ContactDiscretization::mortar, pair.name);
     if (lies_behind(sides, rows))
       refuse_facing_away(scene, pair, rows);
-    if (*distance <= touching * any) // corner on corner
+    if (*distance <= corner_on_corner * any) // corner on corner
       throw InputError(between(scene, pair) +
                          " do not meet: they touch in single points, and no normal of the slave hits the master",
                        "move the bodies until the sides overlap, or exchange slave and master");

@@ -8,9 +8,6 @@ namespace slipstick::interface
 {
   namespace
   {
-    using Facet  = SurfacePairing::Facet;
-    using Tensor = SurfacePairing::Tensor;
-
     // Points outside a facet by no more than this part of its size are on its edge.
     constexpr double on_edge = 1e-9;
     // Parts of a facet (of its area) that are smaller than this are left out.
@@ -22,7 +19,7 @@ namespace slipstick::interface
     constexpr double       last_step = 1e-14;
   } // namespace
 
-  Plane::Plane(const dealii::Point<3> &origin, const Tensor &n)
+  Plane::Plane(const dealii::Point<3> &origin, const dealii::Tensor<1, 3> &n)
     : origin(origin)
     , normal(n / n.norm())
   {
@@ -108,8 +105,8 @@ namespace slipstick::interface
     return tree.near(BoxTree<3>::widened(BoxTree<3>::box_around(around), margin * size));
   }
 
-  std::optional<Tensor> SurfacePairing::facing_normal(const SurfaceNode<3>  &node,
-                                                      const SurfaceNodes<3> &of_master) const
+  std::optional<SurfacePairing::Tensor> SurfacePairing::facing_normal(const SurfaceNode<3>  &node,
+                                                                      const SurfaceNodes<3> &of_master) const
   {
     const Plane           plane(node.position, node.normal);
     double                nearest = std::numeric_limits<double>::max();

@@ -23,7 +23,7 @@ namespace slipstick::mechanics
     constexpr double same_distance = 1e-9;
 
     template <int dim>
-    struct Candidate
+    struct NearCell
     {
       double                  distance = std::numeric_limits<double>::max();
       double                  size     = 0; // diameter of the largest cell of the subdomain around the node
@@ -36,7 +36,7 @@ namespace slipstick::mechanics
         archive &distance &size &position &subdomain &node;
       }
 
-      bool comes_before(const Candidate &other) const
+      bool comes_before(const NearCell &other) const
       {
         if (std::abs(distance - other.distance) > same_distance * std::max(size, other.size))
           return distance < other.distance;
@@ -52,7 +52,7 @@ namespace slipstick::mechanics
                            const mesh::Mesh<dim>    &mesh,
                            const unsigned int        p,
                            const dealii::Point<dim> &x,
-                           Candidate<dim>           &best)
+                           NearCell<dim>            &best)
     {
       const auto                                  &element = spaces.of(p);
       std::vector<dealii::types::global_dof_index> dofs;
@@ -66,7 +66,7 @@ namespace slipstick::mechanics
           for (unsigned int i = 0; i < nodes.size(); ++i)
             {
               const auto at = element.mapping->transform_unit_to_real_cell(cell, element.scalar->unit_support_point(i));
-              Candidate<dim> candidate;
+              NearCell<dim> candidate;
               candidate.distance  = x.distance(at);
               candidate.size      = size;
               candidate.subdomain = mesh.subdomains[p]->subdomain;
@@ -94,7 +94,7 @@ namespace slipstick::mechanics
     std::vector<dealii::Point<dim>> at;
     for (const auto &point : points)
       at.push_back(point.point.empty() ? *point.coordinates : mesh.points[point.body].at(point.point).position);
-    std::vector<Candidate<dim>> best(points.size());
+    std::vector<NearCell<dim>> best(points.size());
     for (unsigned int k = 0; k < points.size(); ++k)
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
         if (mesh.subdomains[p]->body == points[k].body)

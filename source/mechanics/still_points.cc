@@ -18,7 +18,7 @@ namespace slipstick::mechanics
 
     /// One displacement of one node.
     template <int dim>
-    struct Candidate
+    struct StillNode
     {
       double                  amount    = 0; // by which the motions that are left move it
       unsigned int            body      = 0;
@@ -31,7 +31,7 @@ namespace slipstick::mechanics
         archive &amount &body &component &position;
       }
 
-      bool comes_before(const Candidate &other) const
+      bool comes_before(const StillNode &other) const
       {
         if (std::abs(amount - other.amount) > same_amount * std::max(amount, other.amount))
           return amount > other.amount;
@@ -43,7 +43,7 @@ namespace slipstick::mechanics
     template <int dim>
     Eigen::VectorXd displacements(const std::vector<Eigen::VectorXd>  &motions,
                                   const std::vector<tfeti::BodyFrame> &frames,
-                                  const Candidate<dim>                &at)
+                                  const StillNode<dim>                &at)
     {
       constexpr unsigned int k     = dim * (dim + 1) / 2; // amplitudes a body
       const auto            &frame = frames[at.body];
@@ -64,9 +64,9 @@ namespace slipstick::mechanics
 
     /// Nodes of this rank: those inside bodies, then those on outlines.
     template <int dim>
-    std::array<std::vector<Candidate<dim>>, 2> nodes_of(const mesh::Mesh<dim> &mesh, const Spaces<dim> &spaces)
+    std::array<std::vector<StillNode<dim>>, 2> nodes_of(const mesh::Mesh<dim> &mesh, const Spaces<dim> &spaces)
     {
-      std::array<std::vector<Candidate<dim>>, 2> result;
+      std::array<std::vector<StillNode<dim>>, 2> result;
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
         {
           const auto            &subdomain = *mesh.subdomains[p];
@@ -87,7 +87,7 @@ namespace slipstick::mechanics
               for (const unsigned int v : cell->vertex_indices()) // the vertices come first
                 for (unsigned int d = 0; d < dim; ++d)
                   {
-                    Candidate<dim> one;
+                    StillNode<dim> one;
                     one.body      = subdomain.body;
                     one.component = d;
                     for (unsigned int e = 0; e < dim; ++e)
@@ -111,7 +111,7 @@ namespace slipstick::mechanics
     std::vector<scene::PrescribedDisplacement<dim>> supports;
     while (left.cols() > 0)
       {
-        std::vector<Candidate<dim>> best(2); // inside, on an outline
+        std::vector<StillNode<dim>> best(2); // inside, on an outline
         for (unsigned int k = 0; k < 2; ++k)
           for (auto &candidate : nodes[k])
             {

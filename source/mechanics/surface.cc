@@ -16,7 +16,7 @@ namespace slipstick::mechanics
     const std::array<double, 3> gauss_weights = {{5. / 18, 8. / 18, 5. / 18}};
     // Less than this part of an edge counts as nothing: the end of a quadratic edge on the axis of revolution, which
     // has none when the edge is straight and next to none when it is curved; other nodes have a ninth or more.
-    constexpr double smallest_share = 0.01;
+    constexpr double smallest_edge_share = 0.01;
 
     /// Unit normal on the right of a direction.
     template <int dim>
@@ -91,7 +91,7 @@ namespace slipstick::mechanics
           measures[i] += N[i] * dx;
       }
     for (double &measure : measures)
-      if (measure < smallest_share * (measures[0] + measures[1] + measures[2]))
+      if (measure < smallest_edge_share * (measures[0] + measures[1] + measures[2]))
         measure = 0;
     return measures;
   }

@@ -19,7 +19,7 @@ namespace slipstick::mechanics
 
     // Less than this part of a facet counts as nothing: the corners of a triangle of degree 2, which have none where it is flat; other
     // nodes have a thirty-sixth or more.
-    constexpr double smallest_share = 0.01;
+    constexpr double smallest_facet_share = 0.01;
 
     bool by_key(const Corner &a, const Corner &b)
     {
@@ -221,7 +221,7 @@ namespace slipstick::mechanics
           areas[i] += N[i] * dx;
       }
     for (double &area : areas)
-      if (area < smallest_share * whole)
+      if (area < smallest_facet_share * whole)
         area = 0;
     return areas;
   }

@@ -1,3 +1,4 @@
+#include <slipstick/base/cross.h>
 #include <slipstick/mesh/conformity.h>
 
 #include <boost/geometry/geometries/box.hpp>
@@ -17,11 +18,6 @@ namespace slipstick::mesh
     constexpr double on_edge = 1e-4;
     // Sine of the angle below which edges from one place run along each other.
     constexpr double along = 1e-3;
-
-    double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
-    {
-      return a[0] * b[1] - a[1] * b[0];
-    }
 
     class OutlineCheck
     {

@@ -1,3 +1,4 @@
+#include <slipstick/base/cross.h>
 #include <slipstick/mesh/edge_curve.h>
 
 #include <algorithm>
@@ -12,13 +13,6 @@ namespace slipstick::mesh
     constexpr unsigned int most_steps   = 20;
     constexpr double       small_step   = 1e-15;
     constexpr double       continuation = 0.5;
-
-    template <int dim>
-    double across(const dealii::Tensor<1, dim> &a, const dealii::Tensor<1, dim> &b)
-    {
-      static_assert(dim == 2, "curves in the plane");
-      return a[0] * b[1] - a[1] * b[0];
-    }
 
     /// Shares of the rays to both ends in the ray to the point at s of an arc, and their derivatives.
     template <int dim>
@@ -122,10 +116,10 @@ namespace slipstick::mesh
     double r = s;
     for (unsigned int i = 0; i < most_steps; ++i)
       {
-        const double slope = across(direction, tangent(r));
+        const double slope = cross(direction, tangent(r));
         if (slope == 0)
           return 0;
-        const double step = across(direction, point(r) - x) / slope;
+        const double step = cross(direction, point(r) - x) / slope;
         r                 = std::clamp(r - step, -continuation, 1 + continuation);
         if (std::abs(step) <= small_step)
           break;
@@ -139,7 +133,7 @@ namespace slipstick::mesh
     if (!curve)
       return 0;
     const auto start = curve.point(0), end = curve.point(1);
-    return std::abs(across<dim>(curve.point(0.5) - start, end - start)) / (end - start).norm();
+    return std::abs(cross(curve.point(0.5) - start, end - start)) / (end - start).norm();
   }
 
   template struct EdgeCurve<2>;

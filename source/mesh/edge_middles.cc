@@ -1,3 +1,4 @@
+#include <slipstick/base/cross.h>
 #include <slipstick/mesh/edge_middles.h>
 
 #include <cmath>
@@ -11,13 +12,6 @@ namespace slipstick::mesh
     constexpr double largest_sagitta = 0.3;
     // The Jacobian of a cell with curved edges at its corners, over that with straight ones, is no less than this.
     constexpr double smallest_jacobian = 0.2;
-
-    template <int dim>
-    double across(const dealii::Tensor<1, dim> &a, const dealii::Tensor<1, dim> &b)
-    {
-      static_assert(dim == 2, "cells in the plane");
-      return a[0] * b[1] - a[1] * b[0];
-    }
 
     /// Whether the corners of a cell stay corners when its edges are parabolas through the middles.
     template <int dim>
@@ -35,8 +29,8 @@ namespace slipstick::mesh
         {
           const unsigned int last = k + n - 1; // face before the corner
           const auto         to = x(k + 1) - x(k), from = x(last) - x(k);
-          if (!(across<dim>(4 * (middle(k) - x(k)) - to, 4 * (middle(last) - x(k)) - from) >=
-                smallest_jacobian * across<dim>(to, from)))
+          if (!(cross(4 * (middle(k) - x(k)) - to, 4 * (middle(last) - x(k)) - from) >=
+                smallest_jacobian * cross(to, from)))
             return false;
         }
       return true;
@@ -73,7 +67,7 @@ namespace slipstick::mesh
     const auto   along = x(f + 1) - x(f);
     const double rise  = sagitta(curve) * along.norm();
     for (unsigned int k = f + 2; k < f + n_corners<dim>(cell); ++k)
-      if (rise > largest_sagitta * std::abs(across<dim>(along, x(k) - x(f))))
+      if (rise > largest_sagitta * std::abs(cross(along, x(k) - x(f))))
         return false;
     return true;
   }

@@ -10,9 +10,6 @@ namespace slipstick::mesh
   {
     constexpr unsigned int automatic_cells_around = 64; // of a whole ring
 
-    // Disc: a square with bent sides in the middle, rings of cells around it.
-    constexpr double core_radius  = 0.55; // of the corners of the square, over the radius: cells of about equal size
-    constexpr double core_bending = 0.4;  // 0: straight sides, 1: arcs
     constexpr double core_corner =
       1.15; // quarter disc: its core's outer corner, over the other two: angles of 116 degrees there
 

@@ -1,3 +1,4 @@
+#include <slipstick/base/cross.h>
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/edge_middles.h>
 #include <slipstick/mesh/smooth_outline.h>
@@ -25,11 +26,6 @@ namespace slipstick::mesh
     constexpr double off_middle = 0.05, other_speed = 0.25;
     // Mid nodes are on the chord when they are no farther from it than this part of its length.
     constexpr double on_chord = 1e-9;
-
-    double across(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
-    {
-      return a[0] * b[1] - a[1] * b[0];
-    }
 
     dealii::Tensor<1, 2> turned(const dealii::Tensor<1, 2> &v, const double angle)
     {
@@ -128,7 +124,7 @@ namespace slipstick::mesh
             continue;
           edge.next             = starting[edge.to][0];
           edges[edge.next].last = e;
-          edge.turn = std::atan2(across(edge.chord, edges[edge.next].chord), edge.chord * edges[edge.next].chord);
+          edge.turn = std::atan2(cross(edge.chord, edges[edge.next].chord), edge.chord * edges[edge.next].chord);
         }
     }
 
@@ -226,7 +222,7 @@ namespace slipstick::mesh
       const auto found = mesh.middles.find(face_of_cell<2>(mesh.piece.cells[edge.cell], edge.face));
       const auto start = mesh.piece.vertices[edge.from], end = mesh.piece.vertices[edge.to];
       if (found == mesh.middles.end() ||
-          std::abs(across(edge.chord, found->second - start)) <= on_chord * edge.length * edge.length)
+          std::abs(cross(edge.chord, found->second - start)) <= on_chord * edge.length * edge.length)
         return {};
       return Curve::parabola(start, found->second, end);
     }
@@ -249,7 +245,7 @@ namespace slipstick::mesh
           parabolas.push_back(parabola(edge));
           edge.is_flat = !parabolas.back();
         }
-      const auto angle   = [](const Tensor &a, const Tensor &b) { return std::atan2(across(a, b), a * b); };
+      const auto angle   = [](const Tensor &a, const Tensor &b) { return std::atan2(cross(a, b), a * b); };
       const auto tangent = [&](const unsigned int e, const double s) {
         return parabolas[e] ? parabolas[e].tangent(s) : edges[e].chord;
       };
@@ -285,7 +281,7 @@ namespace slipstick::mesh
         return through;
       const auto   middle = through.point(0.5) - mesh.piece.vertices[edge.from];
       const double half   = std::cos((std::abs(edge.start) + std::abs(edge.end)) / 4);
-      const double height = across(edge.chord, middle) / edge.length, sines = std::sin(edge.start) + std::sin(edge.end);
+      const double height = cross(edge.chord, middle) / edge.length, sines = std::sin(edge.start) + std::sin(edge.end);
       const double speed = sines != 0 ? -8 * height / sines / edge.length : 0; // over the length
       if (std::abs(middle * edge.chord / (edge.length * edge.length) - 0.5) > off_middle ||
           std::abs(speed * half * half - 1) > other_speed)

@@ -8,10 +8,6 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Ball: a bent cube in the middle, layers of cells around it.
-    constexpr double core_radius  = 0.55; // of the corners of the cube, over the radius: cells of about equal size
-    constexpr double core_bending = 0.4;  // 0: plane sides, 1: parts of a sphere
-
     /// Hexahedra between @p n_layers + 1 copies of a mesh of the plane, from @p start along z; its boundary ids stay, the two
     /// ends get the next ones.
     MeshPiece<3> extruded(const MeshPiece<2>              &section,

@@ -58,12 +58,12 @@ namespace slipstick::output
       return first == 1;
     }
 
-    const char *vtk_type(const double)
+    const char *vtk_name(const double)
     {
       return "Float64";
     }
 
-    const char *vtk_type(const std::int64_t)
+    const char *vtk_name(const std::int64_t)
     {
       return "Int64";
     }
@@ -80,7 +80,7 @@ namespace slipstick::output
       std::memcpy(bytes.data(), &n_bytes, sizeof(n_bytes));
       if (n_bytes > 0)
         std::memcpy(bytes.data() + sizeof(n_bytes), values.data(), n_bytes);
-      out << "<DataArray type=\"" << vtk_type(Number()) << "\" Name=\"" << name << "\" NumberOfComponents=\""
+      out << "<DataArray type=\"" << vtk_name(Number()) << "\" Name=\"" << name << "\" NumberOfComponents=\""
           << n_components << "\" format=\"binary\">" << dealii::Utilities::encode_base64(bytes) << "</DataArray>\n";
     }
 

@@ -9,11 +9,7 @@
 namespace slipstick::scene
 {
   namespace
-  {
-    const std::array<std::string, 3> axes = {{"x", "y", "z"}};
-
-    const std::string boundary_format = "BODY/BOUNDARY, such as box/left, or a part of it, such as box/top where x < 5";
-  } // namespace
+  {} // namespace
 
   template <int dim>
   BoundaryName read_boundary(const std::string            &text,

@@ -1,4 +1,5 @@
 #include <slipstick/base/nearest_name.h>
+#include <slipstick/scene/boundary_part.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/sections.h>
 
@@ -9,7 +10,6 @@ namespace slipstick::scene
 {
   namespace
   {
-    const std::string boundary_format = "BODY/BOUNDARY, such as box/left";
 
     /// A formula whose value, where it is a number, is not negative.
     template <int dim>

@@ -1,6 +1,7 @@
 // Loads: tractions, body forces, point loads, temperatures.
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/base/text.h>
+#include <slipstick/scene/boundary_part.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/sections.h>
 
@@ -11,10 +12,8 @@ namespace slipstick::scene
 {
   namespace
   {
-    const std::array<std::string, 3> axes = {{"x", "y", "z"}};
 
-    const std::string boundary_format = "BODY/BOUNDARY, such as box/left";
-    const std::string bodies_format   = "all, or names from Bodies separated by commas";
+    const std::string bodies_format = "all, or names from Bodies separated by commas";
 
     template <int dim>
     std::string point_format()

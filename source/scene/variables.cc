@@ -16,7 +16,7 @@ namespace slipstick::scene
   {
     const std::string list_name = "Variables";
     const std::string prefix    = list_name + "/";
-    const std::string format    = "write: set Variables = d = 0.05; mu = 0.2, and use them as {mu} or {10 - d/2}";
+    const std::string how_to    = "write: set Variables = d = 0.05; mu = 0.2, and use them as {mu} or {10 - d/2}";
 
     // They mean something else in formulas.
     const std::vector<std::string> reserved = {"x", "y", "z", "t", "pi"};
@@ -27,7 +27,7 @@ namespace slipstick::scene
       double      value = 0;
     };
 
-    InputError error(const Setting &setting, const std::string &reason, const std::string &remedy = format)
+    InputError error(const Setting &setting, const std::string &reason, const std::string &remedy = how_to)
     {
       return InputError(setting.where + ": " + setting.path + " = '" + setting.value + "': " + reason, remedy);
     }
@@ -105,7 +105,7 @@ namespace slipstick::scene
             if (found == variables.end())
               throw error(setting,
                           "the scene has no variable '" + name + "'",
-                          variables.empty() ? format : suggest_name(name, names_of(variables)));
+                          variables.empty() ? how_to : suggest_name(name, names_of(variables)));
             found->expression = setting.value;
           }
       settings.erase(std::remove_if(settings.begin(),

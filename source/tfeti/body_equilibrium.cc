@@ -19,9 +19,9 @@ namespace slipstick::tfeti
   namespace
   {
     // Newton steps of one search; piecewise quadratic functions of a few variables take some five.
-    constexpr unsigned int max_newton_steps = 50;
+    constexpr unsigned int most_search_steps = 50;
     // A step must lower what is out of balance by this part times its length, or is halved, down to the shortest.
-    constexpr double least_decrease = 1e-4, shortest_step = 1e-6;
+    constexpr double search_decrease = 1e-4, shortest_search_step = 1e-6;
     // Of a line search with discs: the longest step, over the first, and bisections.
     constexpr double       longest_step   = 1e12;
     constexpr unsigned int max_bisections = 50;
@@ -251,7 +251,7 @@ namespace slipstick::tfeti
       stiffness[i] = rows[i].k;
     const Eigen::VectorXd least = regularization * (shares.cwiseAbs2().transpose() * stiffness);
     double                size  = 0;
-    for (unsigned int step = 0; step < max_newton_steps; ++step)
+    for (unsigned int step = 0; step < most_search_steps; ++step)
       {
         const Eigen::VectorXd slips = shares * a;
         Eigen::VectorXd       moved(rows.size());
@@ -321,7 +321,7 @@ namespace slipstick::tfeti
     double                      size, largest = 0;
     Eigen::SparseMatrix<double> derivative;
     Eigen::VectorXd             r = imbalance(loads, rows, a, size, &derivative);
-    for (unsigned int step = 0; step < max_newton_steps && r.norm() > balanced * (largest = std::max(largest, size));
+    for (unsigned int step = 0; step < most_search_steps && r.norm() > balanced * (largest = std::max(largest, size));
          ++step)
       {
         const double scale = derivative.coeffs().size() ? derivative.coeffs().cwiseAbs().maxCoeff() : 0.;
@@ -335,7 +335,7 @@ namespace slipstick::tfeti
           return false;
         double          part = 1;
         Eigen::VectorXd next = imbalance(loads, rows, a + p, size, nullptr);
-        while (!(next.norm() < (1 - least_decrease * part) * r.norm()) && part > shortest_step)
+        while (!(next.norm() < (1 - search_decrease * part) * r.norm()) && part > shortest_search_step)
           {
             part /= 2;
             next = imbalance(loads, rows, a + part * p, size, nullptr);

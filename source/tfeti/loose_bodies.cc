@@ -11,6 +11,8 @@ namespace slipstick::tfeti
 {
   namespace
   {
+    // Rows hold loose motions if the shares of a choice of them differ by no more than this factor.
+    constexpr double least_hold = 1e-8;
     // Motions that free rows resist by less than this part of the best held one count as weakly held.
     constexpr double weak_resistance = 1e-3;
     // Gaps below this part of the largest count alike.
@@ -137,6 +139,48 @@ namespace slipstick::tfeti
       double                largest = 0;
     };
   } // namespace
+
+  bool DualProblem::hold_by(const std::vector<RigidMotion> &loose,
+                            const std::vector<bool>        &is_candidate,
+                            const std::vector<double>      &scale,
+                            std::vector<bool>              &free,
+                            const std::vector<qp::Turn>    &turns) const
+  {
+    Eigen::MatrixXd own = bodies->jumps(loose).toDense();
+    for (const qp::Turn &turn : turns)
+      {
+        const Eigen::RowVectorXd first = own.row(turn.first), second = own.row(turn.second);
+        own.row(turn.first)  = turn.cosine * first + turn.sine * second;
+        own.row(turn.second) = turn.cosine * second - turn.sine * first;
+      }
+    std::vector<std::vector<double>> candidates;
+    std::vector<std::uint64_t>       labels;
+    for (unsigned int r = 0; r < free.size(); ++r)
+      if (is_candidate[r])
+        {
+          const Eigen::VectorXd share = scale[r] * own.row(r);
+          candidates.emplace_back(share.data(), share.data() + share.size());
+          labels.push_back(rows.label[r]);
+        }
+    const auto all = gathered_by_label(labels, candidates, comm);
+    if (all.empty()) // Eigen's decomposition of a matrix without columns reads out of bounds
+      return false;
+    Eigen::MatrixXd shares(loose.size(), all.size());
+    unsigned int    column = 0;
+    for (const auto &candidate : all)
+      shares.col(column++) = Eigen::Map<const Eigen::VectorXd>(candidate.second.data(), loose.size());
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted(shares);
+    // of unit motions; shares that are only rounding hold nothing
+    pivoted.setThreshold(least_hold * std::max(1., 1 / std::max(pivoted.maxPivot(), least_hold)));
+    if (pivoted.rank() < static_cast<Eigen::Index>(loose.size()))
+      return false;
+    std::set<std::uint64_t> chosen;
+    for (unsigned int i = 0; i < loose.size(); ++i)
+      chosen.insert(std::next(all.begin(), pivoted.colsPermutation().indices()[i])->first);
+    for (unsigned int r = 0; r < free.size(); ++r)
+      free[r] = free[r] || (is_candidate[r] && chosen.count(rows.label[r]) > 0);
+    return true;
+  }
 
   std::vector<bool> DualProblem::hold(const std::vector<bool>     &free,
                                       const std::vector<double>   &gaps,

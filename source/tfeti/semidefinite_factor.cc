@@ -7,7 +7,7 @@ namespace slipstick::tfeti
   namespace
   {
     // Pivots below this part of the diagonal entry are rounding.
-    constexpr double smallest_pivot = 1e-11;
+    constexpr double least_kept_pivot = 1e-11;
   } // namespace
 
   SemidefiniteFactor::SemidefiniteFactor(const Eigen::SparseMatrix<double> &matrix)
@@ -81,7 +81,7 @@ namespace slipstick::tfeti
             value[first[i] + filled[i]] = l;
             ++filled[i];
           }
-        const bool is_kept = pivot > smallest_pivot * diagonal;
+        const bool is_kept = pivot > least_kept_pivot * diagonal;
         inverse_pivot[k]   = is_kept ? 1 / pivot : 0.;
         left_out += !is_kept;
       }

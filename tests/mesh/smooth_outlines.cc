@@ -215,7 +215,7 @@ TEST(SmoothOutline, mid_nodes_of_files_are_kept)
       double                     area    = 0;
       for (const auto &edge : outline) // Gauss
         for (const double s : {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)})
-          area += (s == 0.5 ? 8. : 5.) / 36 * mechanics::cross(dealii::Tensor<1, 2>(edge.point(s)), edge.tangent(s));
+          area += (s == 0.5 ? 8. : 5.) / 36 * cross(dealii::Tensor<1, 2>(edge.point(s)), edge.tangent(s));
       EXPECT_NEAR(area, 200 + 2. / 3 * 20 * 1, 1e-11);
     }
 }

@@ -13,10 +13,6 @@ namespace slipstick::app
   template <int dim>
   void print_header(const Log &log, const scene::Scene<dim> &scene, const MPI_Comm comm);
 
-  /// As in the .prm.
-  std::string name_of(const scene::Algorithm algorithm);
-  std::string name_of(const tfeti::Preconditioner preconditioner);
-
   /// Sizes of the problem, one line a stage.
   template <int dim>
   void print_mesh(const Log                    &log,

@@ -1,6 +1,7 @@
 // Boundary edges of bodies as curves of their own: nodes, shape functions, normals.
 #pragma once
 
+#include <slipstick/base/cross.h>
 #include <slipstick/mechanics/spaces.h>
 #include <slipstick/mesh/kinematics.h>
 
@@ -8,12 +9,6 @@
 
 namespace slipstick::mechanics
 {
-  /// a_x b_y - a_y b_x.
-  inline double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
-  {
-    return a[0] * b[1] - a[1] * b[0];
-  }
-
   /// An edge on the outline of a body, straight with two nodes or curved with three; local coordinate s in [0, 1]. The
   /// body lies to the left when going from node 0 (s = 0) to node 1 (s = 1); node 2 is in the middle.
   template <int dim>

@@ -5,6 +5,10 @@
 
 namespace slipstick::mesh
 {
+  // Discs and balls: a square or cube with bent sides in the middle, layers of cells around it.
+  constexpr double core_radius  = 0.55; // of its corners, over the radius: cells of about equal size
+  constexpr double core_bending = 0.4;  // 0: plane sides, 1: arcs or parts of a sphere
+
   /// Cells of a rectangle per direction, refinements included.
   template <int dim>
   std::array<unsigned int, dim> rectangle_cells(const scene::Scene<dim> &scene, const scene::Body<dim> &body);

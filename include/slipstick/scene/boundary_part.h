@@ -9,6 +9,10 @@
 
 namespace slipstick::scene
 {
+  /// How a boundary is written in a .prm.
+  inline const std::string boundary_format =
+    "BODY/BOUNDARY, such as box/left, or a part of it, such as box/top where x < 5";
+
   /// A boundary's name in two parts.
   struct BoundaryPart
   {

@@ -14,6 +14,9 @@
 
 namespace slipstick::scene
 {
+  /// As parameters of components are called.
+  inline const std::array<std::string, 3> axes = {{"x", "y", "z"}};
+
   /// The largest size of numbers in a scene, and the smallest of those that must be positive: products of four of them are far
   /// from overflow, and no units need more.
   constexpr double smallest_number = 1e-30, largest_number = 1e30;

@@ -106,4 +106,8 @@ namespace slipstick::tfeti
   /// Among the combinations of free motions, the one along which the loads push or, if they push along none, the one
   /// that moves the fewest components (translations before rotations). @param motions orthonormal, at least one.
   RigidMotion plainest(const std::vector<RigidMotion> &motions);
+
+  /// @throws NoEquilibrium naming the plainest of the motions if the loads push along it, else UnheldMotions; nothing when
+  /// there are none.
+  void require_support(const std::vector<RigidMotion> &motions, const std::vector<std::string> &body_names);
 } // namespace slipstick::tfeti

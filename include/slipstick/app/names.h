@@ -1,0 +1,16 @@
+// What settings are called in .prm files, in the log and in summary.json.
+#pragma once
+
+#include <slipstick/scene/scene.h>
+#include <slipstick/tfeti/options.h>
+
+#include <string>
+
+namespace slipstick::app
+{
+  std::string name_of(const scene::Accuracy accuracy);
+  std::string name_of(const scene::PlaneState state);
+  std::string name_of(const scene::DecompositionMethod method);
+  std::string name_of(const scene::Algorithm algorithm);
+  std::string name_of(const tfeti::Preconditioner preconditioner);
+} // namespace slipstick::app

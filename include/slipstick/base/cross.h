@@ -1,0 +1,13 @@
+// The cross product in the plane.
+#pragma once
+
+#include <deal.II/base/tensor.h>
+
+namespace slipstick
+{
+  /// The component of a x b across the plane: positive when b is on the left of a.
+  inline double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
+  {
+    return a[0] * b[1] - a[1] * b[0];
+  }
+} // namespace slipstick

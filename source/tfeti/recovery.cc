@@ -1,0 +1,200 @@
+// Displacements and free motions of bodies from the multipliers.
+#include <slipstick/tfeti/dense.h>
+#include <slipstick/tfeti/dual_problem.h>
+
+#include <deal.II/base/mpi.h>
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    // Newton steps of the amounts by which loose bodies slide, and the change at which they end.
+    constexpr unsigned int max_slide_steps = 100;
+    constexpr double       slide_tolerance = 1e-14;
+    // Jumps of a row per unit motion below this are rounding.
+    constexpr double least_jump = 1e-8;
+
+    /// Amounts at which the sum of squares of the violated conditions is least, by Newton's method from 0, where the steps
+    /// are as short as possible. Of every condition: a value, then its n derivatives; value + derivatives * amounts >= 0.
+    Eigen::VectorXd least_violation(const std::vector<std::vector<double>> &conditions, const unsigned int n)
+    {
+      Eigen::VectorXd amount = Eigen::VectorXd::Zero(n);
+      for (unsigned int step = 0; step < max_slide_steps; ++step)
+        {
+          std::vector<Eigen::VectorXd> violated;
+          std::vector<double>          by;
+          for (const auto &condition : conditions)
+            {
+              const Eigen::Map<const Eigen::VectorXd> slope(condition.data() + 1, n);
+              const double                            value = condition[0] + slope.dot(amount);
+              if (value < 0)
+                {
+                  violated.push_back(slope);
+                  by.push_back(-value);
+                }
+            }
+          if (violated.empty())
+            break;
+          Eigen::MatrixXd slopes(violated.size(), n);
+          for (unsigned int i = 0; i < violated.size(); ++i)
+            slopes.row(i) = violated[i];
+          const Eigen::VectorXd change =
+            shortest_solution(slopes, Eigen::Map<const Eigen::VectorXd>(by.data(), by.size()));
+          amount += change;
+          if (change.norm() <= slide_tolerance * amount.norm())
+            break;
+        }
+      return amount;
+    }
+  } // namespace
+
+  bool DualProblem::rows_that_fix(const std::vector<RigidMotion> &loose,
+                                  const DistributedVector        &x,
+                                  const bool                      keeps_still,
+                                  std::vector<bool>              &free) const
+  {
+    const double              noise = force_rounding * x.linfty_norm();
+    const std::vector<double> equal(free.size(), 1.);
+    std::vector<bool>         is_candidate(free.size());
+    for (unsigned int r = 0; r < free.size(); ++r)
+      is_candidate[r] = !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
+    if (hold_by(loose, is_candidate, equal, free))
+      return true;
+    if (!keeps_still || plainest(loose).work > 0)
+      require_support(loose, names_of_bodies);
+    for (unsigned int r = 0; r < free.size(); ++r)
+      is_candidate[r] = !free[r];
+    if (!hold_by(loose, is_candidate, equal, free))
+      require_support(loose, names_of_bodies);
+    return false;
+  }
+
+  void DualProblem::remove_motions(const std::vector<RigidMotion> &loose, std::vector<Eigen::VectorXd> &u) const
+  {
+    const std::size_t n    = loose.size();
+    Eigen::MatrixXd   gram = Eigen::MatrixXd::Zero(n, n + 1); // the last column: of u
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        Eigen::MatrixXd motions(u[p].size(), n);
+        for (std::size_t m = 0; m < n; ++m)
+          motions.col(m) = bodies->displacements(p, loose[m].amplitudes);
+        gram.leftCols(n) += motions.transpose() * motions;
+        gram.col(n) += motions.transpose() * u[p];
+      }
+    MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, comm);
+    const Eigen::VectorXd amount     = shortest_solution(gram.leftCols(n), gram.col(n));
+    Eigen::VectorXd       amplitudes = Eigen::VectorXd::Zero(loose[0].amplitudes.size());
+    for (std::size_t m = 0; m < n; ++m)
+      amplitudes += amount[m] * loose[m].amplitudes;
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      u[p] -= bodies->displacements(p, amplitudes);
+  }
+
+  // Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of the violations.
+  void DualProblem::slide_apart(const std::vector<RigidMotion> &loose,
+                                const std::vector<bool>        &free,
+                                const DistributedVector        &x,
+                                Recovery                       &at) const
+  {
+    Eigen::MatrixXd own                   = bodies->jumps(loose).toDense();
+    own                                   = (own.array().abs() < least_jump).select(0., own); // rounding moves no row
+    const DistributedVector          jump = jumps(at.u);
+    std::vector<std::vector<double>> conditions; // jump on the right side, then its derivatives
+    for (unsigned int r = 0; r < free.size(); ++r)
+      {
+        const double force = x.local_element(r);
+        const double side  = free[r] || is_equality(rows.kind[r]) || (rows.kind[r] == RowKind::tangential && force == 0)
+                               ? 0.
+                             : rows.kind[r] == RowKind::tangential && force > 0 ? 1.
+                                                                                : -1.;
+        if (side == 0)
+          continue;
+        conditions.push_back({side * (jump.local_element(r) - rows.c[r])});
+        for (unsigned int m = 0; m < loose.size(); ++m)
+          conditions.back().push_back(side * own(r, m));
+      }
+    std::vector<std::vector<double>> all;
+    for (const auto &part : dealii::Utilities::MPI::all_gather(comm, conditions))
+      all.insert(all.end(), part.begin(), part.end());
+    const Eigen::VectorXd amount     = least_violation(all, loose.size());
+    Eigen::VectorXd       amplitudes = Eigen::VectorXd::Zero(loose[0].amplitudes.size());
+    for (unsigned int m = 0; m < loose.size(); ++m)
+      amplitudes += amount[m] * loose[m].amplitudes;
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      at.u[p] += bodies->displacements(p, amplitudes);
+  }
+
+  DualProblem::Recovery DualProblem::recover(const DistributedVector &x,
+                                             const std::vector<bool> &free,
+                                             const bool               keeps_still) const
+  {
+    const auto        loose      = bodies->free(free);
+    std::vector<bool> fixed      = free;
+    const bool        is_at_rest = loose.empty() || rows_that_fix(loose, x, keeps_still, fixed);
+    const Projector   on_free(*projector, fixed, comm, std::vector<qp::Tie>(), metric);
+    Recovery          result{{}, zero(), {}};
+    DistributedVector step{zero()};
+    result.multipliers = x;
+    for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
+      {
+        on_free.particular(resultants - projector->multiply(result.multipliers), step);
+        result.multipliers += step;
+      }
+
+    result.u = forces(result.multipliers);
+    auto &u  = result.u;
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        u[p] = systems[p]->load() - u[p];
+        systems[p]->apply_pseudo_inverse(u[p]);
+      }
+
+    fit_motions(on_free, fixed, result);
+    if (!is_at_rest)
+      {
+        remove_motions(loose, result.u);
+        result.unresisted = loose;
+      }
+    if (!loose.empty())
+      slide_apart(loose, free, x, result);
+    return result;
+  }
+
+  DistributedVector DualProblem::misfit(const Recovery &of, const std::vector<bool> &free) const
+  {
+    DistributedVector missing = jumps(of.u);
+    for (unsigned int r = 0; r < rows.c.size(); ++r)
+      missing.local_element(r) = free[r] ? rows.c[r] - missing.local_element(r) : 0.;
+    for (unsigned int r = 0; r < rows.compliance.size(); ++r)
+      missing.local_element(r) += free[r] ? rows.compliance[r] * of.multipliers.local_element(r) : 0.;
+    return missing;
+  }
+
+  void DualProblem::fit_motions(const Projector &on_free, const std::vector<bool> &free, Recovery &at) const
+  {
+    DistributedVector missing = misfit(at, free), range = zero();
+    Eigen::VectorXd   a = on_free.amplitudes(missing);
+    on_free.project_range(missing, range);
+    missing -= range;
+    a += on_free.amplitudes(missing); // for the rounding of the first
+    unsigned int next = 0;
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        const unsigned int k = systems[p]->kernel().cols();
+        at.u[p] += systems[p]->kernel() * a.segment(next, k);
+        next += k;
+      }
+  }
+
+  void DualProblem::correct(Recovery &at, const DistributedVector &step, const std::vector<bool> &free) const
+  {
+    auto change = forces(step);
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        systems[p]->apply_pseudo_inverse(change[p]);
+        at.u[p] -= change[p];
+      }
+    at.multipliers += step;
+    fit_motions(Projector(*projector, free, comm, std::vector<qp::Tie>(), metric), free, at);
+  }
+} // namespace slipstick::tfeti
