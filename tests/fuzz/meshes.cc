@@ -1,8 +1,7 @@
 // fuzz_meshes N SEED [FOLDER...]: N mutated mesh files of all formats, read in this process. Each is either refused with an
-// InputError or gives a mesh whose cells nowhere lie on top of each other, which points thrown at random tell. Status 0 when all
-// do; 1 with the seed of the first that does not. fuzz_meshes --show SEED FOLDER...: that file, on standard output.
-#include <slipstick/base/exceptions.h>
-#include <slipstick/mesh/body_mesh.h>
+// InputError or gives a mesh; in the plane its cells nowhere lie on top of each other, which points thrown at random tell. Status 0
+// when all do; 1 with the seed of the first that does not. fuzz_meshes --show SEED FOLDER...: that file, on standard output.
+#include "read_mesh.h"
 
 #include <algorithm>
 #include <csignal>
@@ -54,6 +53,17 @@ namespace
       {"plate.ucd",
        ".ucd",
        "6 3 0 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 2 0 0\n6 2 1 0\n1 5 quad 1 2 3 4\n2 6 quad 2 5 6 3\n3 7 line 1 2\n"});
+    sources.push_back(
+      {"cubes.inp",
+       ".inp",
+       "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 1, 1, 0\n4, 0, 1, 0\n5, 0, 0, 1\n6, 1, 0, 1\n7, 1, 1, 1\n8, 0, 1, 1\n9, 2, 0, 0\n"
+       "10, 2, 1, 0\n11, 2, 0, 1\n12, 2, 1, 1\n*ELEMENT, TYPE=C3D8, ELSET=ALL\n1, 1,2,3,4,5,6,7,8\n2, 2,9,10,3,6,11,12,7\n"
+       "*NSET, NSET=FOOT\n1, 2, 3, 4, 9, 10\n*SURFACE, NAME=TOP\n1, S2\n2, S2\n"});
+    sources.push_back(
+      {"tetrahedra.vtk",
+       ".vtk",
+       "# vtk DataFile Version 3.0\ntetrahedra\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0\n1 0 0\n"
+       "0 1 0\n0 0 1\n1 1 1\nCELLS 2 10\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 2\n10\n10\n"});
     std::sort(sources.begin(), sources.end(), [](const Source &a, const Source &b) { return a.name < b.name; });
     return sources;
   }
@@ -189,17 +199,6 @@ namespace
     const std::vector<Source> &sources;
   };
 
-  mesh::MeshFile parse(const Source &source)
-  {
-    if (source.extension != ".msh" && source.text.find('\0') != std::string::npos)
-      throw InputError("a byte that is 0", "read_mesh_file() refuses those");
-    return source.extension == ".msh"   ? mesh::parse_gmsh(source.name, source.text)
-           : source.extension == ".inp" ? mesh::parse_abaqus(source.name, source.text)
-           : source.extension == ".vtk" ? mesh::parse_vtk(source.name, source.text)
-           : source.extension == ".unv" ? mesh::parse_unv(source.name, source.text)
-                                        : mesh::parse_ucd(source.name, source.text);
-  }
-
   /// Whether a point lies inside of two cells.
   bool overlaps(const mesh::MeshPiece<2> &piece, std::mt19937_64 &random)
   {
@@ -270,10 +269,14 @@ int main(int argc, char **argv)
       alarm(seconds_per_mesh);
       try
         {
-          scene::Body<2> body;
-          body.name       = "mutant";
-          body.shape      = scene::Shape::mesh;
-          const auto mesh = mesh::body_from_file(body, parse(mutation.result));
+          const auto file = fuzz::parse(mutation.result.name, mutation.result.extension, mutation.result.text);
+          if (file.dimension() == 3)
+            {
+              fuzz::whole_body<3>(file);
+              ++taken;
+              continue;
+            }
+          const auto mesh = fuzz::whole_body<2>(file);
           ++taken;
           if (overlaps(mesh.piece, mutation.random))
             {
@@ -284,7 +287,7 @@ int main(int argc, char **argv)
         }
       catch (const InputError &error)
         {
-          if (std::string(error.what()).find("\n  remedy: ") == std::string::npos)
+          if (!fuzz::has_remedy(error))
             {
               std::cerr << "seed " << present_seed << ": no remedy: " << error.what() << std::endl;
               return 1;
