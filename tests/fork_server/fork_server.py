@@ -34,6 +34,8 @@ class ForkServer:
         time limit was hit; such a run gets SIGTERM, and SIGKILL 10 s later."""
         with self.lock:
             files = [pathlib.Path(self.place.name) / name for name in ('stdout', 'stderr')]
+            for file in files:
+                file.write_bytes(b'')  # of a child that dies before it opens them
             request = {'arguments': [os.fsdecode(argument) for argument in arguments], 'directory': str(directory),
                        'stdout': str(files[0]), 'stderr': str(files[1]), 'memory': memory}
             self.process.stdin.write(json.dumps(request) + '\n')

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""scenes.py N SEED PROGRAM [--keep DIR] [--time SECONDS] [--memory MB] [--jobs N]: N mutated scenes, and mesh files in them,
-through the program. Each run must end with status 0, 2, 3 or 4 within the limits; with one error and one remedy where it is
-refused, nothing left half written, and where it converges with an answer that contact.csv itself shows to be one: no penetration,
-no tension, no friction beyond its bound, no pressure at a gap. What fails is kept in DIR (default output/fuzz) under its seed.
-Status 1 when any did. Standard library only.
+"""scenes.py N SEED PROGRAM [--server FORK_SERVER] [--keep DIR] [--time SECONDS] [--memory MB] [--jobs N]: N mutated scenes, and
+mesh files in them, through the program. Each run must end with status 0, 2, 3 or 4 within the limits; with one error and one remedy
+where it is refused, nothing left half written, and where it converges with an answer that its files themselves show to be one: loads,
+supports, foundations and contact with obstacles are in balance; no tension, no penetration, no pressure at a gap, no friction beyond
+its bound. With the program of tests/fork_server runs do not load the libraries anew. What fails is kept in DIR (default output/fuzz)
+under its seed. Status 1 when any did. Standard library only.
 """
 
 import argparse
@@ -20,15 +21,21 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / 'tests' / 'fork_server'))
+from fork_server import ForkServer  # noqa: E402
+
 # Shipped scenes that solve in about a second on the meshes that these settings give.
 SHIPPED = {
     'box_on_circle': ['Decomposition/Cells per block=3'],
     'box_frictionless': ['Decomposition/Cells per block=3'],
     'box_prescribed': ['Decomposition/Cells per block=3'],
     'box_linear': ['Decomposition/Cells per block=3'],
-    'raous': [], 'press_fit': [], 'incline': [], 'patch_gmsh': [], 'lap_joint': [],
+    'raous': [], 'press_fit': [], 'incline': [], 'patch_gmsh': [], 'lap_joint': [], 'circular_punch': [], 'hertz_ball': [],
+    'oblique_blocks': ['Body base/Cells=4, 1, 4', 'Body box/Cells=3, 2, 3'], 'patch_solid': [],
+    'cube_on_sphere': ['Body cube/Cells=4, 4, 4', 'Decomposition/Method=none'],
 }
 ODD = ['0', '-1', '1', '1e30', '1e-30', '1e300', 'nan', 'inf', '-0', '1e6', '1e-6', '0.5', '2', '1000000', '10', '', ' ', 'x', 'auto',
        'free', 'all', '*', '0, 0', '1, 2, 3', '-250*x', 'sin(', 'x/0', 'sqrt(y-5)', 't', '1e9*x', 'true', '\xf6', '\x1b[31m', 'none']
@@ -131,11 +138,40 @@ def make_case(seed, folder):
     return case, arguments
 
 
-def check_contact(path, stress):
+def settings_of(path):
+    """{'Section/Name': value} of the parameters that a run has written."""
+    settings, sections = {}, []
+    for line in path.read_text(errors='replace').split('\n'):
+        word, _, rest = line.strip().partition(' ')
+        if word == 'subsection':
+            sections.append(rest.strip())
+        elif word == 'end' and sections:
+            sections.pop()
+        elif word == 'set' and '=' in rest:
+            name, value = rest.split('=', 1)
+            settings['/'.join(sections + [name.strip()])] = value.strip()
+    return settings
+
+
+def check_balance(summary, settings):
+    """All that acts on the bodies from outside, relative to the sum of magnitudes."""
+    outside = [entry['force'] for kind in ('loads', 'supports', 'foundations') for entry in summary['results'].get(kind) or []]
+    obstacles = [name.strip() for name in settings.get('Obstacles', '').split(',')]
+    for pair in summary['results'].get('contact') or []:
+        if settings.get('Contact {}/Master'.format(pair['pair'])) in obstacles:
+            outside.append(pair['force'])
+    for components in zip(*outside):
+        if abs(sum(components)) > 1e-3 * sum(abs(c) for force in outside for c in force):
+            return 'forces are out of balance: ' + str(outside)
+    return ''
+
+
+def check_contact(path, results):
     """What contact.csv says against the conditions of contact, relative to its largest numbers, which are rounding where they
-    are a tiny part of the @p stress in the bodies."""
+    are a tiny part of the stress or of the displacements."""
     with open(path, newline='') as stream:
         rows = list(csv.DictReader(stream))
+    stress, displacement = results['max_von_mises'], results['max_displacement']
     for step in {row['step'] for row in rows}:
         for pair in {row['pair'] for row in rows}:
             own = [row for row in rows if row['step'] == step and row['pair'] == pair]
@@ -146,10 +182,15 @@ def check_contact(path, stress):
             if largest < 1e-5 * stress:
                 continue
             for row in own:
+                place = ' at ' + row['x'] + ', ' + row['y'] + ' of ' + pair
                 if number(row, 'pressure') < -1e-3 * largest:
-                    return 'tension at ' + row['x'] + ', ' + row['y'] + ' of ' + pair
+                    return 'tension' + place
                 if abs(number(row, 'tangential_traction')) > number(row, 'slip_bound') + 1e-2 * largest:
-                    return 'friction beyond its bound at ' + row['x'] + ', ' + row['y'] + ' of ' + pair
+                    return 'friction beyond its bound' + place
+                if number(row, 'gap') < -1e-2 * displacement:
+                    return 'penetration' + place
+                if number(row, 'gap') > 1e-2 * displacement and number(row, 'pressure') > 1e-2 * largest:
+                    return 'pressure across a gap' + place
     return ''
 
 
@@ -158,6 +199,29 @@ def limit(memory):
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_AS, (memory << 20, memory << 20))
     return set_limits
+
+
+ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1', OMPI_ALLOW_RUN_AS_ROOT='1',
+                   OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
+of_thread = threading.local()
+
+
+def start(arguments, options):
+    """Returns the status, what was printed on standard error as bytes, and whether the time limit was hit."""
+    if options.server and all(argument.isprintable() for argument in arguments):
+        if not hasattr(of_thread, 'server'):
+            of_thread.server = ForkServer(options.server, ENVIRONMENT)
+        status, _, stderr, is_late = of_thread.server.run(arguments, os.getcwd(), options.time, options.memory)
+        return status, stderr, is_late
+    process = subprocess.Popen([options.program, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, start_new_session=True, preexec_fn=limit(options.memory), env=ENVIRONMENT)
+    try:
+        stderr = process.communicate(timeout=options.time)[1]
+        return process.returncode, stderr, False
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        return process.returncode, b'', True
 
 
 def run_one(seed, options):
@@ -170,22 +234,11 @@ def run_one(seed, options):
     status = None
     try:
         case, arguments = make_case(seed, folder)
-        command = [options.program, str(case), '--output', str(output), *arguments]
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                   start_new_session=True, preexec_fn=limit(options.memory),
-                                   env=dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
-                                            OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1'))
-        try:
-            stdout, stderr = process.communicate(timeout=options.time)
-        except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.communicate()
-            problem = 'no end within {} s'.format(options.time)
-            stdout = stderr = b''
-        status = process.returncode
+        arguments = [str(case), '--output', str(output), *arguments]
+        status, stderr, is_late = start(arguments, options)
         errors = stderr.decode(errors='surrogateescape')
-        if problem:
-            pass
+        if is_late:
+            problem = 'no end within {} s'.format(options.time)
         elif status not in (0, 2, 3, 4):
             problem = 'status {}: {}'.format(status, errors.strip()[-300:])
         elif status == 2 and (errors.count('error: ') != 1 or errors.count('\n  remedy: ') != 1):
@@ -200,13 +253,15 @@ def run_one(seed, options):
                 problem = 'status 0 of a run that did not converge'
             elif any(value is None or value > 1e-3 for value in summary['residuals'].values()):
                 problem = 'status 0 with residuals ' + str(summary['residuals'])
-            elif (output / 'contact.csv').exists():
-                problem = check_contact(output / 'contact.csv', summary['results']['max_von_mises'])
+            else:
+                problem = check_balance(summary, settings_of(output / 'parameters.prm'))
+                if not problem and (output / 'contact.csv').exists():
+                    problem = check_contact(output / 'contact.csv', summary['results'])
         if problem:
             kept = options.keep / str(seed)
             shutil.rmtree(kept, ignore_errors=True)
             shutil.copytree(folder, kept)
-            (kept / 'command').write_text(' '.join(command) + '\n' + problem + '\n', errors='replace')
+            (kept / 'command').write_text(' '.join([options.program, *arguments]) + '\n' + problem + '\n', errors='replace')
     finally:
         shutil.rmtree(work, ignore_errors=True)
     return status, problem
@@ -217,6 +272,7 @@ def main():
     parser.add_argument('n', type=int)
     parser.add_argument('seed', type=int)
     parser.add_argument('program')
+    parser.add_argument('--server')
     parser.add_argument('--keep', type=pathlib.Path, default=ROOT / 'output/fuzz')
     parser.add_argument('--time', type=float, default=60)
     parser.add_argument('--memory', type=int, default=2048)
