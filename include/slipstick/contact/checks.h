@@ -1,22 +1,12 @@
 // Checks of the answer from the recovered displacement alone, and the contact nodes computed from it.
 #pragma once
 
-#include <slipstick/contact/result.h>
+#include <slipstick/contact/contact_nodes.h>
+#include <slipstick/contact/places.h>
 #include <slipstick/tfeti/dual_problem.h>
 
 namespace slipstick::contact
 {
-  /// Where a check is at its largest.
-  struct Place
-  {
-    bool                  is_known = false;
-    unsigned int          body     = 0;
-    std::array<double, 3> position{{0, 0, 0}}; // reference configuration [mm]
-    bool                  is_point = false;    // else the whole body
-    bool                  in_pair  = false;    // of contact
-    unsigned int          pair     = 0;        // index into Scene::contacts
-  };
-
   /// All relative: lengths to the largest displacement, contact forces to the largest nodal contact force, works and
   /// the energy norm to twice the strain energy, forces and moments of a body to the sum of the force magnitudes on it
   /// (to what rounding leaves of gaps and displacements, where these are smaller). Gaps and slips come from u; contact
@@ -81,9 +71,6 @@ namespace slipstick::contact
     std::vector<std::array<double, 3>>        held_forces; // on the HeldContacts::points of this rank [N]
   };
 
-  /// What the rows do not contain about a contact node: its place.
-  ContactNode node_at(const tfeti::ContactPoint &point);
-
   /// @param u displacements of this rank's subdomains [mm].
   /// @param multipliers [N], balanced with u as DualProblem::recover returns them.
   /// @param slip_bound of every owned row [N].
@@ -96,9 +83,4 @@ namespace slipstick::contact
                        const std::vector<bool>            &free,
                        const unsigned int                  n_bodies,
                        const History                      &before = {});
-
-  /// Sums over the nodes of all pairs, from the nodes of all ranks.
-  std::vector<PairResult> pair_results(const std::vector<ContactNode> &nodes,
-                                       const std::vector<std::string> &pair_names,
-                                       const unsigned int              dim = 2);
 } // namespace slipstick::contact

@@ -1,0 +1,51 @@
+// Where something is at its largest.
+#pragma once
+
+#include <slipstick/tfeti/dual_problem.h>
+
+#include <array>
+#include <cmath>
+
+namespace slipstick::contact
+{
+  /// Where a check is at its largest.
+  struct Place
+  {
+    bool                  is_known = false;
+    unsigned int          body     = 0;
+    std::array<double, 3> position{{0, 0, 0}}; // reference configuration [mm]
+    bool                  is_point = false;    // else the whole body
+    bool                  in_pair  = false;    // of contact
+    unsigned int          pair     = 0;        // index into Scene::contacts
+  };
+
+  /// The largest of some numbers (0 if there are none; a NaN persists) and where it is.
+  struct Largest
+  {
+    double value = 0;
+    Place  place;
+
+    /// @return whether @p other is the largest so far.
+    bool take(const double other, const Place &where)
+    {
+      if (std::isnan(value) || !(std::isnan(other) || other > value))
+        return false;
+      value = other;
+      place = where;
+      return true;
+    }
+
+    /// The first of the ranks with the largest value broadcasts it. Collective.
+    void over_all_ranks(const MPI_Comm comm);
+  };
+
+  /// Maximum over all ranks of the violations of owned rows, with a node that the row touches, on the rank of its
+  /// subdomain. Collective.
+  void find_place_of_row(const tfeti::DualProblem &dual, const unsigned int owned_row, Largest &violation);
+
+  /// Where a body has most of the energy of its jumps, and the pair that touches there. Collective.
+  void find_place_in_body(const tfeti::DualProblem               &dual,
+                          const tfeti::DualProblem::JumpEnergies &energies,
+                          const unsigned int                      body,
+                          Largest                                &error);
+} // namespace slipstick::contact

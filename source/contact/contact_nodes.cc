@@ -1,0 +1,160 @@
+#include <slipstick/contact/contact_nodes.h>
+#include <slipstick/contact/node_law.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slipstick::contact
+{
+  namespace
+  {
+    using tfeti::DistributedVector;
+
+    /// Moment of the forces on both sides: force on the slave body at its node, the opposite one at the mean of the
+    /// master nodes.
+    /// @param N compressive force, @param T minus the tangential force on the slave body, in the plane.
+    std::array<double, 3> moment_mismatch(const tfeti::ContactPoint &point,
+                                          const ContactNode         &node,
+                                          const double               N,
+                                          const double               T)
+    {
+      if (!point.has_master)
+        return {{0, 0, 0}};
+      std::array<double, 3> force{
+        {-(N * point.normal[0] - T * point.normal[1]), -(N * point.normal[1] + T * point.normal[0]), 0}};
+      if (point.is_in_space())
+        for (unsigned int d = 0; d < 3; ++d)
+          force[d] = node.traction[d] * node.area - N * point.normal[d];
+      std::array<double, 3> apart;
+      for (unsigned int d = 0; d < 3; ++d)
+        apart[d] = point.position[d] - point.master_position[d];
+      Resultant mismatch;
+      mismatch.add<3>(force, apart);
+      return mismatch.moment;
+    }
+
+    /// Vectors and lengths of tangential traction and slip.
+    void complete_in_space(const tfeti::DualProblem  &dual,
+                           const tfeti::ContactPoint &point,
+                           const DistributedVector   &multipliers,
+                           const DistributedVector   &jumps,
+                           ContactNode               &node)
+    {
+      for (const unsigned int k : {0, 1})
+        {
+          const unsigned int row = k == 0 ? point.tangential_row : point.second_row;
+          if (row == tfeti::invalid_row) // a support holds the node there
+            continue;
+          for (unsigned int d = 0; d < 3; ++d)
+            {
+              node.traction[d] -= multipliers.local_element(row) / node.area * point.tangents[k][d];
+              node.slip_vector[d] += (jumps.local_element(row) - dual.constraints().c[row]) * point.tangents[k][d];
+            }
+        }
+      node.tangential_traction = std::hypot(node.traction[0], node.traction[1], node.traction[2]);
+      node.slip                = std::hypot(node.slip_vector[0], node.slip_vector[1], node.slip_vector[2]);
+    }
+  } // namespace
+
+  ContactNode node_at(const tfeti::ContactPoint &point)
+  {
+    ContactNode node;
+    node.pair     = point.pair;
+    node.position = point.position;
+    node.normal   = point.normal;
+    node.area     = point.traction_area;
+    node.length   = point.length;
+    return node;
+  }
+
+  ContactNode contact_node(const tfeti::DualProblem       &dual,
+                           const tfeti::ContactPoint      &point,
+                           const tfeti::DistributedVector &multipliers,
+                           const tfeti::DistributedVector &jumps,
+                           const std::vector<double>      &slip_bound,
+                           const std::vector<bool>        &free)
+  {
+    ContactNode node = node_at(point);
+    if (point.normal_row != tfeti::invalid_row)
+      {
+        node.pressure = multipliers.local_element(point.normal_row) / node.area;
+        node.gap      = dual.constraints().c[point.normal_row] - jumps.local_element(point.normal_row);
+      }
+    node.is_closed    = point.normal_row == tfeti::invalid_row || free[point.normal_row];
+    node.status       = status_of(node.is_closed, 0., false);
+    double tangential = 0;
+    if (point.tangential_row != tfeti::invalid_row)
+      {
+        tangential               = multipliers.local_element(point.tangential_row);
+        node.tangential_traction = -tangential / node.area; // on the slave body
+        node.slip       = jumps.local_element(point.tangential_row) - dual.constraints().c[point.tangential_row];
+        node.slip_bound = slip_bound[point.tangential_row] / node.area;
+        node.status     = status_of(node.is_closed, node.slip_bound, free[point.tangential_row]);
+      }
+    if (point.is_in_space())
+      complete_in_space(dual, point, multipliers, jumps, node);
+    node.moment_mismatch = moment_mismatch(point, node, node.pressure * node.area, tangential);
+    return node;
+  }
+
+  ContactNode bonded_node(const tfeti::DualProblem       &dual,
+                          const tfeti::ContactPoint      &point,
+                          const tfeti::DistributedVector &multipliers,
+                          const tfeti::DistributedVector &jumps)
+  {
+    ContactNode node  = node_at(point);
+    node.status       = ContactStatus::stick;
+    node.is_closed    = true;
+    node.slip_bound   = std::numeric_limits<double>::infinity();
+    node.gap          = point.gap;
+    double tangential = 0;
+    if (point.normal_row != tfeti::invalid_row)
+      {
+        node.pressure = multipliers.local_element(point.normal_row) / node.area;
+        node.gap -= jumps.local_element(point.normal_row);
+      }
+    if (point.tangential_row != tfeti::invalid_row)
+      {
+        tangential               = multipliers.local_element(point.tangential_row);
+        node.tangential_traction = -tangential / node.area;
+        node.slip                = jumps.local_element(point.tangential_row);
+      }
+    if (point.is_in_space())
+      complete_in_space(dual, point, multipliers, jumps, node);
+    node.moment_mismatch = moment_mismatch(point, node, node.pressure * node.area, tangential);
+    return node;
+  }
+  std::vector<PairResult> pair_results(const std::vector<ContactNode> &nodes,
+                                       const std::vector<std::string> &pair_names,
+                                       const unsigned int              dim)
+  {
+    std::vector<PairResult> results(pair_names.size());
+    for (unsigned int k = 0; k < pair_names.size(); ++k)
+      results[k].pair = pair_names[k];
+    for (const auto &node : nodes)
+      {
+        PairResult &result = results[node.pair];
+        result.normal_force += node.pressure * node.area;
+        result.tangential_force += node.tangential_traction * node.area;
+        const double          N = node.pressure * node.area, T = node.tangential_traction * node.area;
+        std::array<double, 3> force{
+          {-N * node.normal[0] - T * node.normal[1], -N * node.normal[1] + T * node.normal[0], 0}};
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            result.moment_mismatch[d] += node.moment_mismatch[d];
+            if (dim == 3)
+              force[d] = node.traction[d] * node.area - N * node.normal[d];
+          }
+        result.on_slave.add<3>(force, node.position);
+        result.max_pressure = std::max(result.max_pressure, node.pressure);
+        result.contact_length += node.is_closed ? node.length : 0.;
+        result.contact_nodes += node.is_closed;
+        result.open_nodes += !node.is_closed;
+        result.slip_nodes += node.status == ContactStatus::slip;
+        result.open_slip_nodes += node.status == ContactStatus::slip && !node.is_closed;
+        result.stick_nodes += node.status == ContactStatus::stick;
+      }
+    return results;
+  }
+} // namespace slipstick::contact
