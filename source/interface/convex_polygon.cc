@@ -4,6 +4,9 @@ namespace slipstick::interface
 {
   namespace
   {
+    // Corners of less than this angle [rad] count as none.
+    constexpr double straight = 1e-9;
+
     double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
     {
       return a[0] * b[1] - a[1] * b[0];
@@ -36,6 +39,18 @@ namespace slipstick::interface
         corners += u / double(polygon.size());
       }
     return polygon[0] + (sum > 0 ? moment / sum : corners);
+  }
+
+  bool is_convex(const ConvexPolygon &polygon)
+  {
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+      {
+        const auto &y    = next(polygon, i);
+        const auto  from = y - polygon[i], to = next(polygon, i + 1) - y;
+        if (cross(from, to) < -straight * from.norm() * to.norm())
+          return false;
+      }
+    return true;
   }
 
   bool contains(const ConvexPolygon &polygon, const dealii::Point<2> &x, const double tolerance)

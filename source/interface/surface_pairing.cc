@@ -38,6 +38,7 @@ namespace slipstick::interface
 
   ProjectedFacet::ProjectedFacet(const Facet &facet, const Plane &plane)
     : n_nodes(facet.n_nodes)
+    , is_bent(facet.is_bent())
     , facet(&facet)
   {
     for (unsigned int i = 0; i < n_nodes; ++i)
@@ -54,7 +55,18 @@ namespace slipstick::interface
 
   ConvexPolygon ProjectedFacet::outline() const
   {
-    ConvexPolygon polygon(nodes.begin(), nodes.begin() + facet->n_corners());
+    const unsigned int n = facet->n_corners();
+    ConvexPolygon      polygon(nodes.begin(), nodes.begin() + n);
+    if (is_bent)
+      {
+        ConvexPolygon around;
+        for (unsigned int i = 0; i < n; ++i)
+          around.insert(around.end(), {nodes[i], nodes[n + i]});
+        if (area(around) < 0)
+          std::reverse(around.begin(), around.end());
+        if (is_convex(around))
+          return around;
+      }
     if (area(polygon) < 0)
       std::reverse(polygon.begin(), polygon.end());
     return polygon;
@@ -63,10 +75,35 @@ namespace slipstick::interface
   ProjectedFacet::Facet::Place ProjectedFacet::place_at(const dealii::Point<2> &x) const
   {
     Facet::Place s = facet->middle_place();
+    if (is_bent)
+      return bent_place_at(x);
     for (unsigned int i = 0; i < max_steps; ++i)
       {
         const auto                 off = nodes[0] + s[0] * u + s[1] * v + s[0] * s[1] * twist - x;
         const auto                 a = u + s[1] * twist, b = v + s[0] * twist;
+        const double               det = a[0] * b[1] - a[1] * b[0];
+        const dealii::Tensor<1, 2> step({(off[0] * b[1] - off[1] * b[0]) / det, (a[0] * off[1] - a[1] * off[0]) / det});
+        s -= step;
+        if (!(step.norm() > last_step))
+          break;
+      }
+    return s;
+  }
+
+  ProjectedFacet::Facet::Place ProjectedFacet::bent_place_at(const dealii::Point<2> &x) const
+  {
+    Facet::Place s = facet->middle_place();
+    for (unsigned int k = 0; k < max_steps; ++k)
+      {
+        const auto           N  = facet->shape(s);
+        const auto           dN = mesh::FacetShapes::quadratic_derivatives(facet->n_corners(), s);
+        dealii::Tensor<1, 2> off(-1. * x), a, b;
+        for (unsigned int i = 0; i < n_nodes; ++i)
+          {
+            off += N[i] * dealii::Tensor<1, 2>(nodes[i]);
+            a += dN[i][0] * dealii::Tensor<1, 2>(nodes[i]);
+            b += dN[i][1] * dealii::Tensor<1, 2>(nodes[i]);
+          }
         const double               det = a[0] * b[1] - a[1] * b[0];
         const dealii::Tensor<1, 2> step({(off[0] * b[1] - off[1] * b[0]) / det, (a[0] * off[1] - a[1] * off[0]) / det});
         s -= step;

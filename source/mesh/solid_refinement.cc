@@ -1,4 +1,5 @@
 #include <slipstick/mesh/refinement.h>
+#include <slipstick/mesh/solid_middles.h>
 
 #include <numeric>
 
@@ -15,6 +16,7 @@ namespace slipstick::mesh
       explicit SolidRefiner(const Piece &piece_)
         : piece(piece_)
         , boundary(boundary_by_vertices(piece_))
+        , curved(piece, boundary)
       {
         finer.subdomain = piece.subdomain;
         finer.body      = piece.body;
@@ -26,20 +28,35 @@ namespace slipstick::mesh
       {
         for (const auto &cell : piece.cells)
           is_simplex<3>(cell) ? divide_tetrahedron(cell) : divide_hexahedron(cell);
+        std::map<Piece::Line, unsigned int> of_lines;
+        for (const auto &entry : piece.line_middles)
+          of_lines[entry.first] = middles.at({entry.first[0], entry.first[1]});
+        refine_middles(piece, of_lines, finer);
         finer.global_vertices.resize(finer.vertices.size());
         std::iota(finer.global_vertices.begin(), finer.global_vertices.end(), GlobalVertex(0));
         return std::move(finer);
       }
 
     private:
+      /// Where the middle of an edge, of a face, vertices in rows, or of the cell is.
+      dealii::Point<3> place_of(const Piece::Cell &cell, const std::vector<unsigned int> &of) const
+      {
+        if (of.size() == 8)
+          return curved.in_hexahedron(cell);
+        return of.size() == 4 ? curved.on_face({{of[0], of[1], of[2], of[3]}}) : curved.on_line(of[0], of[1]);
+      }
+
       /// The vertex in the middle of others.
-      unsigned int middle(std::vector<unsigned int> of)
+      unsigned int middle(const Piece::Cell &cell, std::vector<unsigned int> of)
       {
         if (of.size() == 1)
           return of[0];
+        const auto rows = of;
         std::sort(of.begin(), of.end());
         const auto [found, is_new] = middles.emplace(of, finer.vertices.size());
-        if (is_new)
+        if (is_new && !piece.line_middles.empty() && curved.is_curved(cell))
+          finer.vertices.push_back(place_of(cell, rows));
+        else if (is_new)
           {
             dealii::Tensor<1, 3> sum;
             for (const unsigned int v : of)
@@ -61,7 +78,7 @@ namespace slipstick::mesh
             if (is_near)
               of.push_back(cell[v]);
           }
-        return middle(std::move(of));
+        return middle(cell, std::move(of));
       }
 
       void divide_hexahedron(const Piece::Cell &cell)
@@ -76,9 +93,15 @@ namespace slipstick::mesh
             for (unsigned int f = 0; f < 6; ++f)
               if (const auto found = boundary.find(face_of_cell<3>(cell, f));
                   found != boundary.end() && (child >> (f / 2) & 1) == f % 2)
-                finer.boundary_faces.push_back({face_of_cell<3>(part, f), found->second.id});
+                add_face(found->second, face_of_cell<3>(part, f));
             finer.cells.push_back(part);
           }
+      }
+
+      /// A quarter of a boundary face.
+      void add_face(const Piece::BoundaryFace &whole, const Piece::Face &face)
+      {
+        finer.boundary_faces.push_back({face, whole.id, quarter_of(whole, face, finer), whole.bends_cell});
       }
 
       void add_tetrahedron(unsigned int a, unsigned int b, const unsigned int c, const unsigned int d)
@@ -98,7 +121,7 @@ namespace slipstick::mesh
       // Four at the corners, and an octahedron divided along its shortest diagonal.
       void divide_tetrahedron(const Piece::Cell &cell)
       {
-        const auto m = [&](const unsigned int i, const unsigned int j) { return middle({cell[i], cell[j]}); };
+        const auto m = [&](const unsigned int i, const unsigned int j) { return middle(cell, {cell[i], cell[j]}); };
         for (unsigned int i = 0; i < 4; ++i)
           add_tetrahedron(cell[i], m(i, (i + 1) % 4), m(i, (i + 2) % 4), m(i, (i + 3) % 4));
         const std::array<std::array<unsigned int, 2>, 3> across = {
@@ -121,7 +144,7 @@ namespace slipstick::mesh
               const auto add = [&](const unsigned int a, const unsigned int b, const unsigned int c) {
                 Piece::Face face = {{a, b, c, Piece::no_vertex}};
                 std::sort(face.begin(), face.end());
-                finer.boundary_faces.push_back({face, found->second.id});
+                add_face(found->second, face);
               };
               for (unsigned int k = 0; k < 3; ++k)
                 add(cell[at[k]], m(at[k], at[(k + 1) % 3]), m(at[k], at[(k + 2) % 3]));
@@ -131,6 +154,7 @@ namespace slipstick::mesh
 
       const Piece                                      &piece;
       const std::map<Piece::Face, Piece::BoundaryFace>  boundary;
+      const SolidMiddles                                curved;
       Piece                                             finer;
       std::map<std::vector<unsigned int>, unsigned int> middles; // by what they are between
     };

@@ -229,6 +229,14 @@ namespace slipstick::scene
                       max_cells,
                       "cylinder, tube; auto: as long as those around");
     declare_file(prm);
+    add_choice(
+      prm,
+      "Outline",
+      body.has_smooth_outline,
+      Choices<bool>{{"smooth", true}, {"polygon", false}},
+      "what faces stand for in gaps and normals of contact, and in cells of degree 2: smooth: balls and cylinders of "
+      "built-in shapes, of meshes the surfaces through the mid nodes of the file; polygon: faces with straight "
+      "edges, which leave out their sagitta");
   }
 
   template <int dim>

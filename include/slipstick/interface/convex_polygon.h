@@ -17,6 +17,9 @@ namespace slipstick::interface
   /// The middle of its area; of its corners when it has none.
   dealii::Point<2> centroid(const ConvexPolygon &polygon);
 
+  /// Does no corner point inwards?
+  bool is_convex(const ConvexPolygon &polygon);
+
   /// Is x inside, or outside by no more than @p tolerance?
   bool contains(const ConvexPolygon &polygon, const dealii::Point<2> &x, const double tolerance = 0);
 
