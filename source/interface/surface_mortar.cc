@@ -223,6 +223,13 @@ namespace slipstick::interface
         bool            is_biorthogonal = false; // to all N: then <phi_i N_i> = areas[i], and else 0
       };
 
+      /// The corners of bent triangles of degree 2 have little area, of either sign: they get no row, as those of plane ones.
+      static void give_to_edges(Eigen::VectorXd &areas)
+      {
+        areas.tail(3).array() += areas.head(3).sum() / 3;
+        areas.head(3).setZero();
+      }
+
       /// Of degree 2 the functions of degree 1 take the place of N where the facet is covered in part: the areas of its nodes could
       /// be negative there.
       static TestFunctions test_functions(const Facet &facet, const Moments &moments)
@@ -233,7 +240,9 @@ namespace slipstick::interface
           is_linear ? linear_functions(facet) : Eigen::MatrixXd::Identity(facet.n_nodes, facet.n_nodes).eval();
         const Eigen::MatrixXd mass = phi.of_shapes * moments.mass * phi.of_shapes.transpose();
         phi.areas                  = phi.of_shapes * moments.areas;
-        const bool is_independent  = independence(mass) > least_eigenvalue;
+        if (!is_linear && facet.n_nodes == 6 && facet.is_bent())
+          give_to_edges(phi.areas);
+        const bool is_independent = independence(mass) > least_eigenvalue;
         if (is_independent)
           phi.of_shapes = biorthogonal(mass, phi.areas) * phi.of_shapes;
         phi.slave           = phi.of_shapes * moments.mass;

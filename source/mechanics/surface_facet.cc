@@ -176,6 +176,13 @@ namespace slipstick::mechanics
         for (unsigned int i = 0; i < n_nodes; ++i)
           areas[i] += N[i] * dx;
       }
+    if (n_nodes == 6 && is_bent()) // corners have none, as those of plane ones
+      for (unsigned int i = 0; i < 3; ++i)
+        {
+          for (unsigned int k = 3; k < 6; ++k)
+            areas[k] += areas[i] / 3;
+          areas[i] = 0;
+        }
     for (double &area : areas)
       if (area < smallest_share * whole)
         area = 0;

@@ -1,6 +1,8 @@
 #include <slipstick/mesh/curved_faces.h>
 #include <slipstick/mesh/solid_middles.h>
 
+#include <cmath>
+
 namespace slipstick::mesh
 {
   namespace
@@ -12,6 +14,9 @@ namespace slipstick::mesh
     // Mid nodes no farther from the chord than this part of its length belong to straight edges: files give seven digits of
     // coordinates, which may be a hundred times as large. The same of faces that are plane.
     constexpr double straight = 1e-5;
+    // A face of first order belongs to a curved surface when its neighbours at all of its corners turn by an angle that is more than
+    // this part of the largest; smaller angles [rad] are those of planes.
+    constexpr double share_of_turn = 1. / 3, smallest_turn = 1e-4;
 
     Point between(const Point &a, const Point &b)
     {
@@ -69,6 +74,84 @@ namespace slipstick::mesh
       return true;
     }
 
+    /// What faces of first order leave out of the surface that they seem to stand for, by the angles between them: those of a
+    /// polygon around a cylinder turn on all sides of a face, a plane that ends at a chamfer on one. Angles from the corner angle of
+    /// the body on are edges of it.
+    class LeftOut
+    {
+    public:
+      LeftOut(const double corner_angle, Piece &piece)
+        : limit(corner_angle * M_PI / 180)
+        , piece(piece)
+        , around(vertices_around(piece))
+      {}
+
+      void run()
+      {
+        std::map<Piece::Line, std::vector<unsigned int>> faces_at;
+        for (unsigned int f = 0; f < piece.boundary_faces.size(); ++f)
+          for (const auto &line : lines_of(f))
+            faces_at[line].push_back(f);
+        for (const auto &[line, faces] : faces_at)
+          if (faces.size() == 2)
+            add_turn(line, normal(faces[0]), normal(faces[1]));
+        for (unsigned int f = 0; f < piece.boundary_faces.size(); ++f)
+          piece.boundary_faces[f].curve.left_out = of_face(f);
+      }
+
+    private:
+      std::vector<Piece::Line> lines_of(const unsigned int f) const
+      {
+        const auto              &v = around.at(piece.boundary_faces[f].vertices);
+        std::vector<Piece::Line> lines;
+        for (unsigned int k = 0; k < v.size(); ++k)
+          lines.push_back({{std::min(v[k], v[(k + 1) % v.size()]), std::max(v[k], v[(k + 1) % v.size()])}});
+        return lines;
+      }
+
+      /// Twice its area; on either side.
+      Tensor normal(const unsigned int f) const
+      {
+        const auto &v = around.at(piece.boundary_faces[f].vertices);
+        const auto &x = piece.vertices;
+        return cross_product_3d(x[v[2]] - x[v[0]], x[v[v.size() - 1]] - x[v[1]]);
+      }
+
+      void add_turn(const Piece::Line &line, const Tensor &a, const Tensor &b)
+      {
+        const double turn = std::atan2(cross_product_3d(a, b).norm(), std::abs(a * b));
+        if (turn >= limit)
+          return;
+        turns[line] = turn;
+        for (const unsigned int v : line)
+          at_vertex[v] = std::max(at_vertex[v], turn);
+      }
+
+      double of_face(const unsigned int f) const
+      {
+        const double area    = normal(f).norm() / 2;
+        double       largest = 0, left_out = 0;
+        for (const auto &line : lines_of(f))
+          if (const auto found = turns.find(line); found != turns.end() && found->second > smallest_turn)
+            {
+              const double length = piece.vertices[line[0]].distance(piece.vertices[line[1]]);
+              const double height = (around.at(piece.boundary_faces[f].vertices).size() == 3 ? 2 : 1) * area / length;
+              largest             = std::max(largest, found->second);
+              left_out            = std::max(left_out, height * found->second / 8);
+            }
+        for (const unsigned int v : around.at(piece.boundary_faces[f].vertices))
+          if (const auto found = at_vertex.find(v); found != at_vertex.end() && found->second < share_of_turn * largest)
+            return 0;
+        return left_out;
+      }
+
+      const double                                           limit;
+      Piece                                                 &piece;
+      const std::map<Piece::Face, std::vector<unsigned int>> around;
+      std::map<Piece::Line, double>                          turns;
+      std::map<unsigned int, double>                         at_vertex; // the largest
+    };
+
     /// Through the corners, mid nodes of curved edges, the middles of straight ones, and that of the face.
     FaceSurface patch_of(const BodyMesh<3>               &mesh,
                          const Piece::BoundaryFace       &face,
@@ -110,7 +193,7 @@ namespace slipstick::mesh
     Piece &piece = mesh.piece;
     straighten(piece);
     if (piece.line_middles.empty())
-      return;
+      return LeftOut(body.corner_angle, piece).run();
     unsigned int n_bent = 0;
     const auto   around = vertices_around(piece);
     for (auto &face : piece.boundary_faces)

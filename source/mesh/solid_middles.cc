@@ -109,25 +109,36 @@ namespace slipstick::mesh
     return center;
   }
 
+  double SolidMiddles::jacobian(const Piece::Cell &cell, const std::array<double, 4> &L) const
+  {
+    std::array<Tensor, 4> by; // derivatives by the barycentric coordinates
+    for (unsigned int i = 0; i < 4; ++i)
+      {
+        by[i] += (4 * L[i] - 1) * Tensor(piece.vertices[cell[i]]);
+        for (unsigned int j = 0; j < 4; ++j)
+          if (j != i)
+            by[i] += 4 * L[j] * Tensor(on_line(cell[i], cell[j]));
+      }
+    return cross_product_3d(by[1] - by[0], by[2] - by[0]) * (by[3] - by[0]);
+  }
+
   bool SolidMiddles::keeps_its_shape(const Piece::Cell &cell) const
   {
     if (is_simplex<3>(cell))
       {
-        // along the edges from every corner, to the other corners and to the middles
-        for (unsigned int k = 0; k < 4; ++k)
-          {
-            std::array<Tensor, 3> straight, bent;
-            for (unsigned int d = 0; d < 3; ++d)
-              {
-                const unsigned int v = cell[k], w = cell[(k + 1 + d) % 4];
-                straight[d] = piece.vertices[w] - piece.vertices[v];
-                bent[d]     = 4 * (on_line(v, w) - piece.vertices[v]) - straight[d];
-              }
-            const double volume = cross_product_3d(straight[0], straight[1]) * straight[2],
-                         curved = cross_product_3d(bent[0], bent[1]) * bent[2];
-            if (!(curved / volume >= smallest_jacobian))
-              return false;
-          }
+        std::array<Tensor, 3> straight;
+        for (unsigned int d = 0; d < 3; ++d)
+          straight[d] = piece.vertices[cell[d + 1]] - piece.vertices[cell[0]];
+        const double volume = cross_product_3d(straight[0], straight[1]) * straight[2];
+        for (unsigned int i = 0; i < 4; ++i) // at the corners and the middles of the edges
+          for (unsigned int j = i; j < 4; ++j)
+            {
+              std::array<double, 4> L{};
+              L[i] += 0.5;
+              L[j] += 0.5;
+              if (!(jacobian(cell, L) / volume >= smallest_jacobian))
+                return false;
+            }
         return true;
       }
     std::array<Point, 27> bent, straight;
@@ -187,7 +198,7 @@ namespace slipstick::mesh
         }
   }
 
-  FaceSurface quarter_of(const Piece::BoundaryFace &whole, const Piece::Face &face, const Piece &finer)
+  FaceSurface part_of(const Piece::BoundaryFace &whole, const Piece::Face &face, const Piece &finer)
   {
     const FaceSurface &surface = whole.curve;
     if (surface.kind != FaceSurface::Kind::patch)
@@ -196,27 +207,33 @@ namespace slipstick::mesh
         part.left_out /= 4; // edges are half as long
         return part;
       }
-    const auto middle_of = [&](const auto &points, const unsigned int n) {
-      Point sum;
-      for (unsigned int k = 0; k < n; ++k)
-        sum += Tensor(points(k)) / double(n);
-      return sum;
-    };
-    const unsigned int n      = surface.n_corners();
-    const Point        middle = middle_of([&](const unsigned int k) { return finer.vertices[face[k]]; }, n);
-    FaceSurface        nearest;
-    double             smallest = std::numeric_limits<double>::max();
-    for (unsigned int k = 0; k < 4; ++k)
+    // vertices are nodes of the patch
+    const unsigned int              n = surface.n_corners();
+    std::vector<FaceSurface::Place> corners;
+    FaceSurface::Place              center;
+    for (unsigned int k = 0; k < n; ++k)
       {
-        const FaceSurface part = surface.quarter(k);
-        const double distance  = middle.distance(middle_of([&](const unsigned int i) { return part.points[i]; }, n));
-        if (distance < smallest)
-          {
-            smallest = distance;
-            nearest  = part;
-          }
+        const Point &x = finer.vertices[face[k]];
+        const auto   node =
+          std::min_element(surface.points.begin(),
+                           surface.points.begin() + surface.n_nodes,
+                           [&](const Point &a, const Point &b) { return a.distance(x) < b.distance(x); });
+        corners.push_back(FacetShapes::node(n, node - surface.points.begin()));
+        center += corners.back() / double(n);
       }
-    return nearest;
+    std::sort(corners.begin(), corners.end(), [&](const auto &p, const auto &q) {
+      return std::atan2(p[1] - center[1], p[0] - center[0]) < std::atan2(q[1] - center[1], q[0] - center[0]);
+    });
+    std::vector<Point> nodes;
+    for (unsigned int i = 0; i < surface.n_nodes; ++i)
+      {
+        const auto         N = FacetShapes::linear(n, FacetShapes::node(n, i));
+        FaceSurface::Place at;
+        for (unsigned int k = 0; k < n; ++k)
+          at += N[k] * corners[k];
+        nodes.push_back(surface.point(at));
+      }
+    return FaceSurface::patch(nodes);
   }
 
   void refine_middles(const Piece &coarse, const std::map<Piece::Line, unsigned int> &middle_of, Piece &finer)
@@ -228,8 +245,14 @@ namespace slipstick::mesh
     };
     for (const auto &[line, x] : coarse.line_middles) // parabolas
       {
-        const auto &[a, b]   = line;
-        const unsigned int m = middle_of.at(line);
+        const auto &[a, b] = line;
+        const auto found   = middle_of.find(line);
+        if (found == middle_of.end())
+          {
+            put(a, b, x);
+            continue;
+          }
+        const unsigned int m = found->second;
         const Tensor       from(coarse.vertices[a]), to(coarse.vertices[b]);
         put(a, m, Point(0.375 * from + 0.75 * Tensor(x) - 0.125 * to));
         put(m, b, Point(0.375 * to + 0.75 * Tensor(x) - 0.125 * from));

@@ -2,6 +2,8 @@
 #include <slipstick/mesh/solid_middles.h>
 
 #include <numeric>
+#include <optional>
+#include <set>
 
 namespace slipstick::mesh
 {
@@ -9,12 +11,55 @@ namespace slipstick::mesh
   {
     using Piece = MeshPiece<3>;
 
-    /// The cells of a piece divided by eight.
+    using Line = Piece::Line;
+
+    Line line_of(const unsigned int a, const unsigned int b)
+    {
+      return {{std::min(a, b), std::max(a, b)}};
+    }
+
+    /// Edges to be halved such that every tetrahedron has none, one, the three of a face, or all six of them: those of marked
+    /// cells, and what follows.
+    std::set<Line> halved_lines(const Piece &piece, std::vector<bool> red)
+    {
+      std::set<Line> halved;
+      for (bool has_changed = true; has_changed;)
+        {
+          has_changed    = false;
+          const auto add = [&](const Line &line) { has_changed = halved.insert(line).second || has_changed; };
+          for (unsigned int c = 0; c < piece.cells.size(); ++c)
+            {
+              const auto lines = lines_of_cell(piece.cells[c]);
+              const auto n =
+                std::count_if(lines.begin(), lines.end(), [&](const Line &l) { return halved.count(l) > 0; });
+              // those that lie on one face leave out the fourth corner
+              std::optional<Piece::Face> face;
+              for (unsigned int f = 0; f < 4; ++f)
+                {
+                  const unsigned int apart = piece.cells[c][f];
+                  if (std::none_of(lines.begin(), lines.end(), [&](const Line &l) {
+                        return halved.count(l) > 0 && (l[0] == apart || l[1] == apart);
+                      }))
+                    face = face_of_cell<3>(piece.cells[c], f);
+                }
+              if (red[c] || n > 3 || (n > 1 && !face))
+                for (const Line &line : lines)
+                  add(line);
+              else if (n > 1)
+                for (const auto &[k, l] : {std::pair(0, 1), {0, 2}, {1, 2}})
+                  add(line_of((*face)[k], (*face)[l]));
+            }
+        }
+      return halved;
+    }
+
+    /// The cells of a piece divided by eight, or where @p halved says so; of tetrahedra then some by two or four (red and green).
     class SolidRefiner
     {
     public:
-      explicit SolidRefiner(const Piece &piece_)
+      explicit SolidRefiner(const Piece &piece_, std::optional<std::set<Line>> halved_ = {})
         : piece(piece_)
+        , halved(std::move(halved_))
         , boundary(boundary_by_vertices(piece_))
         , curved(piece, boundary)
       {
@@ -27,10 +72,11 @@ namespace slipstick::mesh
       Piece run()
       {
         for (const auto &cell : piece.cells)
-          is_simplex<3>(cell) ? divide_tetrahedron(cell) : divide_hexahedron(cell);
-        std::map<Piece::Line, unsigned int> of_lines;
+          !is_simplex<3>(cell) ? divide_hexahedron(cell) : halved ? divide_halved(cell) : divide_tetrahedron(cell);
+        std::map<Line, unsigned int> of_lines;
         for (const auto &entry : piece.line_middles)
-          of_lines[entry.first] = middles.at({entry.first[0], entry.first[1]});
+          if (const auto found = middles.find({entry.first[0], entry.first[1]}); found != middles.end())
+            of_lines[entry.first] = found->second;
         refine_middles(piece, of_lines, finer);
         finer.global_vertices.resize(finer.vertices.size());
         std::iota(finer.global_vertices.begin(), finer.global_vertices.end(), GlobalVertex(0));
@@ -101,7 +147,7 @@ namespace slipstick::mesh
       /// A quarter of a boundary face.
       void add_face(const Piece::BoundaryFace &whole, const Piece::Face &face)
       {
-        finer.boundary_faces.push_back({face, whole.id, quarter_of(whole, face, finer), whole.bends_cell});
+        finer.boundary_faces.push_back({face, whole.id, part_of(whole, face, finer), whole.bends_cell});
       }
 
       void add_tetrahedron(unsigned int a, unsigned int b, const unsigned int c, const unsigned int d)
@@ -152,7 +198,66 @@ namespace slipstick::mesh
             }
       }
 
+      bool is_halved(const unsigned int a, const unsigned int b) const
+      {
+        return halved->count(line_of(a, b)) > 0;
+      }
+
+      /// Triangles that a face with its halved edges is divided into: none, one, or three of them.
+      std::vector<std::array<unsigned int, 3>> parts_of_face(const Piece::Cell &cell, const Piece::Face &face)
+      {
+        const auto &[a, b, c, none] = face;
+        const auto                m = [&](const unsigned int v, const unsigned int w) { return middle(cell, {v, w}); };
+        const std::array<Line, 3> edges      = {{{{a, b}}, {{b, c}}, {{c, a}}}};
+        const std::array<unsigned, 3> across = {{c, a, b}};
+        if (is_halved(a, b) && is_halved(b, c) && is_halved(c, a))
+          return {{{a, m(a, b), m(c, a)}},
+                  {{b, m(b, c), m(a, b)}},
+                  {{c, m(c, a), m(b, c)}},
+                  {{m(a, b), m(b, c), m(c, a)}}};
+        for (unsigned int k = 0; k < 3; ++k)
+          if (const auto &[v, w] = edges[k]; is_halved(v, w))
+            return {{{v, m(v, w), across[k]}}, {{m(v, w), w, across[k]}}};
+        return {{{a, b, c}}};
+      }
+
+      // None, one edge, the edges of one face, or all.
+      void divide_halved(const Piece::Cell &cell)
+      {
+        unsigned int n = 0;
+        for (const auto &[a, b] : lines_of_cell(cell))
+          n += is_halved(a, b);
+        if (n == 6)
+          return divide_tetrahedron(cell);
+        // the face with most of them
+        std::size_t  most = 0;
+        unsigned int base = 0;
+        for (unsigned int f = 0; f < 4; ++f)
+          if (const auto parts = parts_of_face(cell, face_of_cell<3>(cell, f)); parts.size() > most)
+            {
+              most = parts.size();
+              base = f;
+            }
+        for (const auto &[a, b, c] : parts_of_face(cell, face_of_cell<3>(cell, base)))
+          add_tetrahedron(a, b, c, cell[base]);
+        for (unsigned int f = 0; f < 4; ++f)
+          if (const auto found = boundary.find(face_of_cell<3>(cell, f)); found != boundary.end())
+            {
+              const auto parts = parts_of_face(cell, found->first);
+              for (const auto &[a, b, c] : parts)
+                {
+                  Piece::Face face = {{a, b, c, Piece::no_vertex}};
+                  std::sort(face.begin(), face.end());
+                  if (parts.size() == 1)
+                    finer.boundary_faces.push_back(found->second);
+                  else
+                    add_face(found->second, face);
+                }
+            }
+      }
+
       const Piece                                      &piece;
+      const std::optional<std::set<Line>>               halved;
       const std::map<Piece::Face, Piece::BoundaryFace>  boundary;
       const SolidMiddles                                curved;
       Piece                                             finer;
@@ -164,5 +269,23 @@ namespace slipstick::mesh
   MeshPiece<3> refined(const MeshPiece<3> &piece)
   {
     return SolidRefiner(piece).run();
+  }
+
+  template <>
+  MeshPiece<3> refined_towards(const MeshPiece<3> &piece, const std::set<dealii::types::boundary_id> &ids)
+  {
+    std::vector<bool> is_on_boundary(piece.vertices.size(), false), red;
+    for (const auto &face : piece.boundary_faces)
+      if (ids.count(face.id) > 0)
+        for (const unsigned int v : face.vertices)
+          if (v != Piece::no_vertex)
+            is_on_boundary[v] = true;
+    for (const auto &cell : piece.cells)
+      {
+        Assert(is_simplex<3>(cell), dealii::ExcMessage("hexahedra are refined as a whole only"));
+        red.push_back(
+          std::any_of(cell.begin(), cell.begin() + 4, [&](const unsigned int v) { return is_on_boundary[v]; }));
+      }
+    return SolidRefiner(piece, halved_lines(piece, std::move(red))).run();
   }
 } // namespace slipstick::mesh

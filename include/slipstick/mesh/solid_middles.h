@@ -31,6 +31,9 @@ namespace slipstick::mesh
     bool keeps_its_shape(const Piece::Cell &cell) const;
 
   private:
+    /// Of the map of degree 2 of a tetrahedron, at barycentric coordinates.
+    double jacobian(const Piece::Cell &cell, const std::array<double, 4> &L) const;
+
     const Piece                                      &piece;
     const std::map<Piece::Face, Piece::BoundaryFace> &boundary;
   };
@@ -38,13 +41,13 @@ namespace slipstick::mesh
   /// Gives the edges of the faces on balls and cylinders (BoundaryFace::curve) their middles.
   void bend_lines(MeshPiece<3> &piece);
 
-  /// What quarter @p face (vertices of @p finer) of a face stands for.
-  FaceSurface quarter_of(const MeshPiece<3>::BoundaryFace &whole,
-                         const MeshPiece<3>::Face         &face,
-                         const MeshPiece<3>               &finer);
+  /// What part @p face (vertices of @p finer, which halve edges) of a face stands for.
+  FaceSurface part_of(const MeshPiece<3>::BoundaryFace &whole,
+                      const MeshPiece<3>::Face         &face,
+                      const MeshPiece<3>               &finer);
 
-  /// Gives the edges of a refined piece on its curved faces and edges their middles. @param middle_of the vertex in the middle of each
-  /// curved edge of @p coarse.
+  /// Gives the edges of a refined piece on its curved faces and edges their middles. @param middle_of the vertices in the middle of
+  /// curved edges of @p coarse that were halved.
   void refine_middles(const MeshPiece<3>                               &coarse,
                       const std::map<MeshPiece<3>::Line, unsigned int> &middle_of,
                       MeshPiece<3>                                     &finer);
