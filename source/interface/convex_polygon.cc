@@ -26,6 +26,14 @@ namespace slipstick::interface
     return sum;
   }
 
+  double area(const std::vector<ConvexPolygon> &polygons)
+  {
+    double sum = 0;
+    for (const auto &polygon : polygons)
+      sum += area(polygon);
+    return sum;
+  }
+
   dealii::Point<2> centroid(const ConvexPolygon &polygon)
   {
     dealii::Tensor<1, 2> moment, corners;

@@ -53,23 +53,34 @@ namespace slipstick::interface
       twist = (nodes[2] - nodes[0]) - u - v; // 0 for parallelograms
   }
 
-  ConvexPolygon ProjectedFacet::outline() const
+  std::vector<ConvexPolygon> ProjectedFacet::outline() const
   {
-    const unsigned int n = facet->n_corners();
-    ConvexPolygon      polygon(nodes.begin(), nodes.begin() + n);
-    if (is_bent)
+    const unsigned int n       = facet->n_corners();
+    const auto         counted = [](ConvexPolygon polygon) {
+      if (area(polygon) < 0)
+        std::reverse(polygon.begin(), polygon.end());
+      return polygon;
+    };
+    if (!is_bent)
+      return {counted(ConvexPolygon(nodes.begin(), nodes.begin() + n))};
+    ConvexPolygon around;
+    for (unsigned int i = 0; i < n; ++i)
+      around.insert(around.end(), {nodes[i], nodes[n + i]});
+    around = counted(around);
+    if (is_convex(around))
+      return {around};
+    std::vector<ConvexPolygon> parts;
+    for (unsigned int i = 0; i < n; ++i) // at the corners
       {
-        ConvexPolygon around;
-        for (unsigned int i = 0; i < n; ++i)
-          around.insert(around.end(), {nodes[i], nodes[n + i]});
-        if (area(around) < 0)
-          std::reverse(around.begin(), around.end());
-        if (is_convex(around))
-          return around;
+        parts.push_back({nodes[i], nodes[n + i]});
+        if (n == 4)
+          parts.back().push_back(nodes[8]);
+        parts.back().push_back(nodes[n + (i + n - 1) % n]);
+        parts.back() = counted(parts.back());
       }
-    if (area(polygon) < 0)
-      std::reverse(polygon.begin(), polygon.end());
-    return polygon;
+    if (n == 3)
+      parts.push_back(counted({nodes[3], nodes[4], nodes[5]}));
+    return parts;
   }
 
   ProjectedFacet::Facet::Place ProjectedFacet::place_at(const dealii::Point<2> &x) const
@@ -156,7 +167,10 @@ namespace slipstick::interface
         if (middle_normal(master[m]) * node.normal >= facing_cosine)
           continue;
         const ProjectedFacet facet(master[m], plane);
-        if (!contains(facet.outline(), {0, 0}, on_edge * master[m].chord()))
+        const auto           outline = facet.outline();
+        if (std::none_of(outline.begin(), outline.end(), [&](const ConvexPolygon &polygon) {
+              return contains(polygon, {0, 0}, on_edge * master[m].chord());
+            }))
           continue;
         const double gap = facet.height_at({0, 0});
         if (gap > reach.ahead || gap < -reach.behind || std::abs(gap) > nearest + on_edge * node.size)
@@ -188,7 +202,8 @@ namespace slipstick::interface
     const auto                    middle = facet.middle_place();
     const Plane                   plane(facet.point(middle), own.normal(e, facet.n_nodes, facet.shape(middle)));
     View                          view{plane, ProjectedFacet(facet, plane), {}};
-    const ConvexPolygon           outline = view.slave.outline();
+    const auto                    outline = view.slave.outline();
+    const double                  least   = smallest_part * area(outline);
     std::vector<dealii::Point<3>> corners;
     for (unsigned int i = 0; i < facet.n_nodes; ++i)
       corners.push_back(facet.node(i));
@@ -197,12 +212,17 @@ namespace slipstick::interface
         if (middle_normal(master[m]) * plane.normal >= facing_cosine)
           continue;
         const ProjectedFacet to(master[m], plane);
-        Part                 part{m, to, intersection(outline, to.outline())};
-        if (area(part.polygon) <= smallest_part * area(outline))
-          continue;
-        if (const double distance = view.gap(part, centroid(part.polygon));
-            distance <= reach.ahead && distance >= -reach.behind)
-          view.parts.push_back(std::move(part));
+        const auto           of_master = to.outline();
+        for (const auto &polygon : outline)
+          for (const auto &other : of_master)
+            {
+              Part part{m, to, intersection(polygon, other)};
+              if (area(part.polygon) <= least)
+                continue;
+              if (const double distance = view.gap(part, centroid(part.polygon));
+                  distance <= reach.ahead && distance >= -reach.behind)
+                view.parts.push_back(std::move(part));
+            }
       }
     return view;
   }

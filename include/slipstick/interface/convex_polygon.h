@@ -14,6 +14,9 @@ namespace slipstick::interface
   /// Negative for corners that run clockwise.
   double area(const ConvexPolygon &polygon);
 
+  /// Of all together.
+  double area(const std::vector<ConvexPolygon> &polygons);
+
   /// The middle of its area; of its corners when it has none.
   dealii::Point<2> centroid(const ConvexPolygon &polygon);
 

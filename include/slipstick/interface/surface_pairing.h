@@ -35,8 +35,9 @@ namespace slipstick::interface
 
     ProjectedFacet(const Facet &facet, const Plane &plane);
 
-    /// Its corners, counter-clockwise as seen against the normal; with the nodes on bent edges where that is convex.
-    ConvexPolygon outline() const;
+    /// The polygon of its corners, counter-clockwise as seen against the normal, of bent facets with the nodes on their edges; cut
+    /// in four by its nodes where that is not convex.
+    std::vector<ConvexPolygon> outline() const;
 
     /// The place on the facet that is seen at @p x: exact for parallelograms and triangles, else by Newton's method. Just outside of
     /// bent facets it is beyond the edge.
