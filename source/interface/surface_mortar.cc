@@ -24,6 +24,8 @@ namespace slipstick::interface
     constexpr unsigned int n_exact_quadratic = 5, n_rational_quadratic = 7;
     // A facet is covered as a whole if no more than this fraction of it is missing.
     constexpr double whole_facet = 1e-9;
+    // The same of bent facets, where polygons stand for curved edges: less than shares of nodes could be negative for.
+    constexpr double whole_bent_facet = 1e-3;
 
     bool is_quadratic(const std::vector<Facet> &slave, const std::vector<Facet> &master)
     {
@@ -156,7 +158,7 @@ namespace slipstick::interface
           covered += area(part.polygon);
         const double full     = area(view.slave.outline());
         const bool   is_stack = covered > (1 + overlapping) * full;
-        sum.is_whole          = covered > (1 - whole_facet) * full;
+        sum.is_whole          = covered > (1 - (facet.is_bent() ? whole_bent_facet : whole_facet)) * full;
         if (covered < smallest_cover * full)
           return sum;
         for (const auto &part : view.parts)
