@@ -11,7 +11,7 @@ end), "upper sides", and on the planes of symmetry "upper x" and "upper z".
 
 Around the point lies a cube (a half or quarter of it) of equal cells, around that shells of growing thickness. The number of
 elements in the radius of the contact is CORE cells on CORE_SIZE mm. Other meshes: --cells N, --size MM, --shells N, or
-change the numbers below.
+change the numbers below. --second-order writes hexahedra of 27 nodes, those of the ball on its surface.
 """
 
 import argparse
@@ -23,6 +23,11 @@ EXTENT = 25.       # of both bodies: half width and height [mm]
 FIRST_SHELL = 1.3  # its thickness over the edges of the core
 CONTACT_SHELLS = 2 # belong to the contact boundaries
 NODES = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))  # of Gmsh's hexahedron
+# of Gmsh's cells of second order: between which corners their other nodes are
+MIDDLES = {4: ((0, 1), (1, 2), (2, 3), (3, 0), range(4)),
+           8: ((0, 1), (0, 3), (0, 4), (1, 2), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 7), (5, 6), (6, 7), (0, 3, 2, 1),
+               (0, 1, 5, 4), (0, 4, 7, 3), (1, 2, 6, 5), (2, 3, 7, 6), (4, 5, 6, 7), range(8))}
+KINDS = {4: 3, 8: 5, 9: 10, 27: 12}  # Gmsh's numbers, by number of nodes
 
 
 def growth(first, n, total):
@@ -111,20 +116,36 @@ def volume(points):
     return sum(a[d] * (b[(d + 1) % 3] * c[(d + 2) % 3] - b[(d + 2) % 3] * c[(d + 1) % 3]) for d in range(3))
 
 
-def write(bodies):
+def with_middles(solid, nodes, numbers):
+    """The nodes of a cell or face of second order; numbers of those in the middle, by the corners that they are between."""
+    all_nodes = list(nodes)
+    for between in MIDDLES[len(nodes)]:
+        key = tuple(sorted(nodes[k] for k in between))
+        if key not in numbers:
+            numbers[key] = len(solid.points)
+            solid.points.append([sum(solid.points[v][d] for v in key) / len(key) for d in range(3)])
+        all_nodes.append(numbers[key])
+    return all_nodes
+
+
+def write(bodies, is_second_order):
     """[(name, solid, map)] as Gmsh 2.2."""
     names, nodes, elements = {}, [], []
     for body, solid, place in bodies:
-        first = len(nodes)
+        first, middles = len(nodes), {}
         points = [place(*x) for x in solid.points]
-        nodes += points
         group = names.setdefault((3, body), len(names) + 1)
         for cell in solid.cells:
             if volume([points[v] for v in cell]) < 0:
                 cell = cell[4:] + cell[:4]
-            elements.append((5, group, [first + v + 1 for v in cell]))
+            if is_second_order:
+                cell = with_middles(solid, cell, middles)
+            elements.append((KINDS[len(cell)], group, [first + v + 1 for v in cell]))
         for face, side in solid.faces:
-            elements.append((3, names.setdefault((2, body + ' ' + side), len(names) + 1), [first + v + 1 for v in face]))
+            if is_second_order:
+                face = with_middles(solid, face, middles)
+            elements.append((KINDS[len(face)], names.setdefault((2, body + ' ' + side), len(names) + 1), [first + v + 1 for v in face]))
+        nodes += [place(*x) for x in solid.points]
     print('$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{}'.format(len(names)))
     for (dimension, name), group in names.items():
         print('{} {} "{}"'.format(dimension, group, name))
@@ -144,11 +165,12 @@ def main():
     parser.add_argument('--size', type=float, default=.735, help='of the core, from its middle [mm]')
     parser.add_argument('--shells', type=int, default=12)
     parser.add_argument('--two-balls', action='store_true')
+    parser.add_argument('--second-order', action='store_true')
     given = parser.parse_args()
     cells = given.cells or {'quarter': 11, 'half': 8, 'whole': 6}[given.kind]
     pair = (ball(2 * RADIUS, 1), ball(2 * RADIUS, -1)) if given.two_balls else (ball(RADIUS, 1), block)
     write([('upper', Solid(given.kind, cells, given.size, given.shells), pair[0]),
-           ('lower', Solid(given.kind, cells - 1, given.size, given.shells), pair[1])])
+           ('lower', Solid(given.kind, cells - 1, given.size, given.shells), pair[1])], given.second_order)
 
 
 if __name__ == '__main__':

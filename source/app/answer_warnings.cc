@@ -177,8 +177,7 @@ namespace slipstick::app
     const auto                         pairs = peaks_of_pairs(scene, dual.constraints(), nodes, mesh.comm);
     if (const std::string text = split_warning(scene, dual, free); !text.empty())
       texts["split"] = text;
-    if constexpr (dim == 2)
-      texts.merge(curve_warnings(scene, mesh, spaces, dual.constraints().contact_points, nodes));
+    texts.merge(curve_warnings(scene, mesh, spaces, dual.constraints().contact_points, nodes));
     for (unsigned int k = 0; k < pairs.size(); ++k)
       {
         const auto        &pair = pairs[k];

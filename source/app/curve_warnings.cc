@@ -1,5 +1,6 @@
 #include <slipstick/app/curve_warnings.h>
 #include <slipstick/base/log.h>
+#include <slipstick/base/text.h>
 #include <slipstick/interface/body_contact.h>
 #include <slipstick/mesh/smooth_outline.h>
 
@@ -20,7 +21,8 @@ namespace slipstick::app
     constexpr double largest_share = 0.1;
 
     /// 1/E' = 1/E of one side + 1/E of the other.
-    double modulus_of_both(const scene::Scene<2> &scene, const scene::ContactPair<2> &pair)
+    template <int dim>
+    double modulus_of_both(const scene::Scene<dim> &scene, const scene::ContactPair<dim> &pair)
     {
       const auto of = [&](const unsigned int body) {
         return scene.materials[scene.bodies[body].material].young_modulus;
@@ -51,8 +53,19 @@ namespace slipstick::app
       return result;
     }
 
-    std::string text_of(const scene::ContactPair<2> &pair, const std::vector<double> &worst, const bool is_closed)
+    template <int dim>
+    std::string text_of(const scene::ContactPair<dim> &pair, const std::vector<double> &worst, const bool is_closed)
     {
+      if constexpr (dim == 3)
+        return format(
+          "Contact %s: at %s plane faces leave out a surface %.4g mm above them, which is not small compared with %s of %.4g mm, "
+          "so that pressures are those of a polyhedron; use a mesh of second order (built-in shapes: Outline = smooth), or a finer "
+          "one",
+          pair.name.c_str(),
+          point_text(dealii::Point<3>(worst[1], worst[2], worst[5]), 3).c_str(),
+          worst[3],
+          is_closed ? "the deformation" : "the gap",
+          worst[4]);
       return format(
         "Contact %s: at (%.6g, %.6g) straight edges leave out an arc %.4g mm high, which is not small compared with %s "
         "of %.4g mm, so that pressures are those of a polygon; set Outline = smooth or a larger Corner angle for the "
@@ -66,11 +79,12 @@ namespace slipstick::app
     }
   } // namespace
 
-  std::map<std::string, std::string> curve_warnings(const scene::Scene<2>                   &scene,
-                                                      const mesh::Mesh<2>                     &mesh,
-                                                      const mechanics::Spaces<2>              &spaces,
-                                                      const std::vector<tfeti::ContactPoint>  &points,
-                                                      const std::vector<contact::ContactNode> &nodes)
+  template <int dim>
+  std::map<std::string, std::string> curve_warnings(const scene::Scene<dim>                 &scene,
+                                                    const mesh::Mesh<dim>                   &mesh,
+                                                    const mechanics::Spaces<dim>            &spaces,
+                                                    const std::vector<tfeti::ContactPoint>  &points,
+                                                    const std::vector<contact::ContactNode> &nodes)
   {
     std::map<std::string, std::string> texts;
     if (!mesh::leaves_out_curves(mesh)) // nearly always
@@ -87,16 +101,20 @@ namespace slipstick::app
         if (!pair.master || pair.law.is_bonded)
           continue;
         const auto [pressure, gap] = of_pair[k];
-        std::vector<double> worst(5, 0.); // share, place, sagitta, what it is compared with
+        std::vector<double> worst(dim + 3, 0.); // share, place, sagitta, what it is compared with; z
         for (unsigned int i = 0; i < points.size(); ++i)
           if (points[i].pair == k && (pressure == 0 || nodes[i].is_closed))
             {
+              const double length = dim == 3 ? std::sqrt(points[i].area) : points[i].length;
               const double scale =
-                pressure > 0 ? 2 * points[i].length * pressure / (dealii::numbers::PI * modulus_of_both(scene, pair))
-                             : gap;
+                pressure > 0 ? 2 * length * pressure / (dealii::numbers::PI * modulus_of_both(scene, pair)) : gap;
               const double sagitta = left_out[{k, points[i].key}];
               if (sagitta > largest_share * scale && sagitta / scale > worst[0])
-                worst = {sagitta / scale, points[i].position[0], points[i].position[1], sagitta, scale};
+                {
+                  worst = {sagitta / scale, points[i].position[0], points[i].position[1], sagitta, scale};
+                  if (dim == 3)
+                    worst.push_back(points[i].position[2]);
+                }
             }
         for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.comm, worst))
           worst = std::max(worst, of_rank);
@@ -105,4 +123,15 @@ namespace slipstick::app
       }
     return texts;
   }
+
+  template std::map<std::string, std::string> curve_warnings(const scene::Scene<2> &,
+                                                             const mesh::Mesh<2> &,
+                                                             const mechanics::Spaces<2> &,
+                                                             const std::vector<tfeti::ContactPoint> &,
+                                                             const std::vector<contact::ContactNode> &);
+  template std::map<std::string, std::string> curve_warnings(const scene::Scene<3> &,
+                                                             const mesh::Mesh<3> &,
+                                                             const mechanics::Spaces<3> &,
+                                                             const std::vector<tfeti::ContactPoint> &,
+                                                             const std::vector<contact::ContactNode> &);
 } // namespace slipstick::app

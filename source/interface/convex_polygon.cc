@@ -5,6 +5,9 @@ namespace slipstick::interface
 {
   namespace
   {
+    // Corners of less than this angle [rad] count as none.
+    constexpr double straight = 1e-9;
+
     const dealii::Point<2> &next(const ConvexPolygon &polygon, const std::size_t i)
     {
       return polygon[(i + 1) % polygon.size()];
@@ -16,6 +19,14 @@ namespace slipstick::interface
     double sum = 0;
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
       sum += cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]) / 2;
+    return sum;
+  }
+
+  double area(const std::vector<ConvexPolygon> &polygons)
+  {
+    double sum = 0;
+    for (const auto &polygon : polygons)
+      sum += area(polygon);
     return sum;
   }
 
@@ -32,6 +43,18 @@ namespace slipstick::interface
         corners += u / double(polygon.size());
       }
     return polygon[0] + (sum > 0 ? moment / sum : corners);
+  }
+
+  bool is_convex(const ConvexPolygon &polygon)
+  {
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+      {
+        const auto &y    = next(polygon, i);
+        const auto  from = y - polygon[i], to = next(polygon, i + 1) - y;
+        if (cross(from, to) < -straight * from.norm() * to.norm())
+          return false;
+      }
+    return true;
   }
 
   bool contains(const ConvexPolygon &polygon, const dealii::Point<2> &x, const double tolerance)

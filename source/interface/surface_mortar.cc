@@ -24,6 +24,8 @@ namespace slipstick::interface
     constexpr unsigned int n_exact_quadratic = 5, n_rational_quadratic = 7;
     // A facet is covered as a whole if no more than this fraction of it is missing.
     constexpr double whole_facet = 1e-9;
+    // The same of bent facets, where polygons stand for curved edges: less than shares of nodes could be negative for.
+    constexpr double whole_bent_facet = 1e-3;
 
     bool is_quadratic(const std::vector<Facet> &slave, const std::vector<Facet> &master)
     {
@@ -34,8 +36,11 @@ namespace slipstick::interface
     {
       const double twist =
         facet.n_corners() == 3 ? 0. : ((facet.node(0) - facet.node(1)) + (facet.node(2) - facet.node(3))).norm();
-      return twist <= smallest_cover * facet.chord();
+      return twist <= smallest_cover * facet.chord() && !facet.is_bent();
     }
+
+    // Nodes lie on their surface when they are off by no more than this part of the facet.
+    constexpr double on_surface = 1e-12;
 
     /// The shape functions of degree 1 of a facet, as combinations of its own.
     Eigen::MatrixXd linear_functions(const Facet &facet)
@@ -76,6 +81,11 @@ namespace slipstick::interface
         for (const auto &facet : master)
           for (unsigned int i = 0; i < facet.n_nodes; ++i)
             nodes.master[facet.keys[i]] = facet.node(i);
+        for (const auto *side : {&slave, &master})
+          for (const auto &facet : *side)
+            for (unsigned int i = 0; i < facet.n_nodes; ++i)
+              if (facet.surface)
+                curved[facet.keys[i]] = {&facet, i};
         for (const auto &node : pairing.nodes())
           nodes.slave[node.key] = node.position;
         for (unsigned int e = 0; e < slave.size(); ++e)
@@ -87,8 +97,25 @@ namespace slipstick::interface
         std::vector<MortarRow<3>> result;
         for (unsigned int i = 0; i < sums.size(); ++i)
           if (has_row(pairing.nodes()[i], sums[i]))
-            result.push_back(row_of(pairing.nodes()[i], sums[i], nodes));
+            {
+              auto row = row_of(pairing.nodes()[i], sums[i], nodes);
+              row.gap += row.normal * sums[i].rise / sums[i].measure;
+              row.left_out = sums[i].left_out;
+              result.push_back(std::move(row));
+            }
         return result;
+      }
+
+      /// How far the surface is above the facets at a node, along the normal of a row: nothing but for nodes between the corners of
+      /// facets that could not be bent.
+      double rise(const MortarRow<3> &row, const mechanics::NodeKey &key) const
+      {
+        const auto found = curved.find(key);
+        if (found == curved.end())
+          return 0;
+        const auto &[facet, i] = found->second;
+        const double distance  = facet->rise(facet->node_coordinate(i), row.normal);
+        return std::abs(distance) > on_surface * facet->chord() ? distance : 0.;
       }
 
       const NodePlaces<3> &places_of_nodes() const
@@ -97,12 +124,21 @@ namespace slipstick::interface
       }
 
     private:
-      /// Of one facet: <N_a N_b>, <N_a>, <N_a N_j(y)>.
+      struct Sums : NodeIntegrals
+      {
+        dealii::Tensor<1, 3> rise; // <phi_i (rise of the master - rise of the slave) n>
+        double               left_out = 0;
+      };
+
+      /// Of one facet: <N_a N_b>, <N_a>, <N_a N_j(y)>, <N_a (rise of the master - rise of the slave)>.
       struct Moments
       {
         Eigen::MatrixXd                               mass;
         Eigen::VectorXd                               areas;
         std::map<mechanics::NodeKey, Eigen::VectorXd> master;
+        Eigen::VectorXd                               rises;
+        Facet::Tensor                                 normal; // along which they are measured
+        double                                        left_out = 0;
         bool                                          is_whole = false; // is all of the facet covered?
       };
 
@@ -113,28 +149,35 @@ namespace slipstick::interface
         Moments                    sum{Eigen::MatrixXd::Zero(facet.n_nodes, facet.n_nodes),
                     Eigen::VectorXd::Zero(facet.n_nodes),
                     {},
+                    Eigen::VectorXd::Zero(facet.n_nodes),
+                    view.plane.normal,
+                    0,
                     false};
         double                     covered = 0;
         for (const auto &part : view.parts)
           covered += area(part.polygon);
         const double full     = area(view.slave.outline());
         const bool   is_stack = covered > (1 + overlapping) * full;
-        sum.is_whole          = covered > (1 - whole_facet) * full;
+        sum.is_whole          = covered > (1 - (facet.is_bent() ? whole_bent_facet : whole_facet)) * full;
         if (covered < smallest_cover * full)
           return sum;
         for (const auto &part : view.parts)
           {
             const Facet &to   = master[part.master];
             const auto  &rule = is_affine(facet) && is_affine(to) ? exact : rational;
+            sum.left_out      = std::max(sum.left_out, facet.surface.left_out + to.surface.left_out);
             integrate(part.polygon, rule, [&](const dealii::Point<2> &x, const double weight) {
               if (is_stack && is_hidden(view, part, x))
                 return;
-              const auto   s  = view.slave.place_at(x);
-              const double dx = weight / (facet.normal(s) * view.plane.normal);
-              const auto   N = facet.shape(s), N_m = to.shape(part.facet.place_at(x));
+              const auto   s   = view.slave.place_at(x);
+              const double dx  = weight / (facet.normal(s) * view.plane.normal);
+              const auto   s_m = part.facet.place_at(x);
+              const auto   N = facet.shape(s), N_m = to.shape(s_m);
               const auto   test = Eigen::Map<const Eigen::VectorXd>(N.data(), facet.n_nodes);
               sum.mass += dx * test * test.transpose();
               sum.areas += dx * test;
+              if (facet.surface || to.surface)
+                sum.rises += dx * (to.rise(s_m, view.plane.normal) - facet.rise(s, view.plane.normal)) * test;
               for (unsigned int j = 0; j < to.n_nodes; ++j)
                 sum.master.emplace(to.keys[j], Eigen::VectorXd::Zero(facet.n_nodes)).first->second +=
                   dx * N_m[j] * test;
@@ -150,10 +193,13 @@ namespace slipstick::interface
         const Moments moments = moments_of(e);
         if (moments.master.empty())
           return;
-        const TestFunctions phi = test_functions(facet, moments);
+        const TestFunctions   phi   = test_functions(facet, moments);
+        const Eigen::VectorXd rises = phi.of_shapes * moments.rises;
         for (unsigned int i = 0; i < phi.areas.size(); ++i)
           {
-            NodeIntegrals &node = sums[pairing.nodes_of(e)[i]];
+            Sums &node = sums[pairing.nodes_of(e)[i]];
+            node.rise += rises[i] * moments.normal;
+            node.left_out = std::max(node.left_out, moments.left_out);
             node.measure += phi.areas[i];
             node.length += phi.areas[i];
             if (phi.is_biorthogonal)
@@ -179,6 +225,13 @@ namespace slipstick::interface
         bool            is_biorthogonal = false; // to all N: then <phi_i N_i> = areas[i], and else 0
       };
 
+      /// The corners of bent triangles of degree 2 have little area, of either sign: they get no row, as those of plane ones.
+      static void give_to_edges(Eigen::VectorXd &areas)
+      {
+        areas.tail(3).array() += areas.head(3).sum() / 3;
+        areas.head(3).setZero();
+      }
+
       /// Of degree 2 the functions of degree 1 take the place of N where the facet is covered in part: the areas of its nodes could
       /// be negative there.
       static TestFunctions test_functions(const Facet &facet, const Moments &moments)
@@ -189,7 +242,9 @@ namespace slipstick::interface
           is_linear ? linear_functions(facet) : Eigen::MatrixXd::Identity(facet.n_nodes, facet.n_nodes).eval();
         const Eigen::MatrixXd mass = phi.of_shapes * moments.mass * phi.of_shapes.transpose();
         phi.areas                  = phi.of_shapes * moments.areas;
-        const bool is_independent  = independence(mass) > least_eigenvalue;
+        if (!is_linear && facet.n_nodes == 6 && facet.is_bent())
+          give_to_edges(phi.areas);
+        const bool is_independent = independence(mass) > least_eigenvalue;
         if (is_independent)
           phi.of_shapes = biorthogonal(mass, phi.areas) * phi.of_shapes;
         phi.slave           = phi.of_shapes * moments.mass;
@@ -200,8 +255,11 @@ namespace slipstick::interface
       const SurfacePairing                      pairing;
       const std::vector<Facet>                 &slave, &master;
       const dealii::QWitherdenVincentSimplex<2> exact, rational;
-      std::vector<NodeIntegrals>                sums; // by node of the pairing
+      std::vector<Sums>                         sums; // by node of the pairing
       NodePlaces<3>                             nodes;
+
+      std::map<mechanics::NodeKey, std::pair<const Facet *, unsigned int>>
+        curved; // a facet of every node on a curved surface
     };
   } // namespace
 
@@ -217,6 +275,6 @@ namespace slipstick::interface
                    integrals.places_of_nodes(),
                    discretization,
                    name,
-                   [](const MortarRow<3> &, const mechanics::NodeKey &) { return 0.; });
+                   [&](const MortarRow<3> &row, const mechanics::NodeKey &key) { return integrals.rise(row, key); });
   }
 } // namespace slipstick::interface

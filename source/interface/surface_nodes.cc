@@ -16,7 +16,7 @@ namespace slipstick::interface
 
     dealii::Tensor<1, 3> own_normal(const mechanics::SurfaceFacet &facet, const unsigned int i)
     {
-      return facet.normal_at(i);
+      return facet.outline_normal(i);
     }
   } // namespace
 

@@ -35,6 +35,7 @@ namespace slipstick::interface
 
   ProjectedFacet::ProjectedFacet(const Facet &facet, const Plane &plane)
     : n_nodes(facet.n_nodes)
+    , is_bent(facet.is_bent())
     , facet(&facet)
   {
     for (unsigned int i = 0; i < n_nodes; ++i)
@@ -49,21 +50,68 @@ namespace slipstick::interface
       twist = (nodes[2] - nodes[0]) - u - v; // 0 for parallelograms
   }
 
-  ConvexPolygon ProjectedFacet::outline() const
+  std::vector<ConvexPolygon> ProjectedFacet::outline() const
   {
-    ConvexPolygon polygon(nodes.begin(), nodes.begin() + facet->n_corners());
-    if (area(polygon) < 0)
-      std::reverse(polygon.begin(), polygon.end());
-    return polygon;
+    const unsigned int n       = facet->n_corners();
+    const auto         counted = [](ConvexPolygon polygon) {
+      if (area(polygon) < 0)
+        std::reverse(polygon.begin(), polygon.end());
+      return polygon;
+    };
+    if (!is_bent)
+      return {counted(ConvexPolygon(nodes.begin(), nodes.begin() + n))};
+    ConvexPolygon around;
+    for (unsigned int i = 0; i < n; ++i)
+      around.insert(around.end(), {nodes[i], nodes[n + i]});
+    around = counted(around);
+    if (is_convex(around))
+      return {around};
+    std::vector<ConvexPolygon> parts;
+    for (unsigned int i = 0; i < n; ++i) // at the corners
+      {
+        parts.push_back({nodes[i], nodes[n + i]});
+        if (n == 4)
+          parts.back().push_back(nodes[8]);
+        parts.back().push_back(nodes[n + (i + n - 1) % n]);
+        parts.back() = counted(parts.back());
+      }
+    if (n == 3)
+      parts.push_back(counted({nodes[3], nodes[4], nodes[5]}));
+    return parts;
   }
 
   ProjectedFacet::Facet::Place ProjectedFacet::place_at(const dealii::Point<2> &x) const
   {
     Facet::Place s = facet->middle_place();
+    if (is_bent)
+      return bent_place_at(x);
     for (unsigned int i = 0; i < max_steps; ++i)
       {
         const auto                 off = nodes[0] + s[0] * u + s[1] * v + s[0] * s[1] * twist - x;
         const auto                 a = u + s[1] * twist, b = v + s[0] * twist;
+        const double               det = a[0] * b[1] - a[1] * b[0];
+        const dealii::Tensor<1, 2> step({(off[0] * b[1] - off[1] * b[0]) / det, (a[0] * off[1] - a[1] * off[0]) / det});
+        s -= step;
+        if (!(step.norm() > last_step))
+          break;
+      }
+    return s;
+  }
+
+  ProjectedFacet::Facet::Place ProjectedFacet::bent_place_at(const dealii::Point<2> &x) const
+  {
+    Facet::Place s = facet->middle_place();
+    for (unsigned int k = 0; k < max_steps; ++k)
+      {
+        const auto           N  = facet->shape(s);
+        const auto           dN = mesh::FacetShapes::quadratic_derivatives(facet->n_corners(), s);
+        dealii::Tensor<1, 2> off(-1. * x), a, b;
+        for (unsigned int i = 0; i < n_nodes; ++i)
+          {
+            off += N[i] * dealii::Tensor<1, 2>(nodes[i]);
+            a += dN[i][0] * dealii::Tensor<1, 2>(nodes[i]);
+            b += dN[i][1] * dealii::Tensor<1, 2>(nodes[i]);
+          }
         const double               det = a[0] * b[1] - a[1] * b[0];
         const dealii::Tensor<1, 2> step({(off[0] * b[1] - off[1] * b[0]) / det, (a[0] * off[1] - a[1] * off[0]) / det});
         s -= step;
@@ -116,7 +164,10 @@ namespace slipstick::interface
         if (middle_normal(master[m]) * node.normal >= facing_cosine)
           continue;
         const ProjectedFacet facet(master[m], plane);
-        if (!contains(facet.outline(), {0, 0}, on_edge * master[m].chord()))
+        const auto           outline = facet.outline();
+        if (std::none_of(outline.begin(), outline.end(), [&](const ConvexPolygon &polygon) {
+              return contains(polygon, {0, 0}, on_edge * master[m].chord());
+            }))
           continue;
         const double gap = facet.height_at({0, 0});
         if (gap > reach.ahead || gap < -reach.behind || std::abs(gap) > nearest + on_edge * node.size)
@@ -148,7 +199,8 @@ namespace slipstick::interface
     const auto                    middle = facet.middle_place();
     const Plane                   plane(facet.point(middle), own.normal(e, facet.n_nodes, facet.shape(middle)));
     View                          view{plane, ProjectedFacet(facet, plane), {}};
-    const ConvexPolygon           outline = view.slave.outline();
+    const auto                    outline = view.slave.outline();
+    const double                  least   = smallest_part * area(outline);
     std::vector<dealii::Point<3>> corners;
     for (unsigned int i = 0; i < facet.n_nodes; ++i)
       corners.push_back(facet.node(i));
@@ -157,12 +209,17 @@ namespace slipstick::interface
         if (middle_normal(master[m]) * plane.normal >= facing_cosine)
           continue;
         const ProjectedFacet to(master[m], plane);
-        Part                 part{m, to, intersection(outline, to.outline())};
-        if (area(part.polygon) <= smallest_part * area(outline))
-          continue;
-        if (const double distance = view.gap(part, centroid(part.polygon));
-            distance <= reach.ahead && distance >= -reach.behind)
-          view.parts.push_back(std::move(part));
+        const auto           of_master = to.outline();
+        for (const auto &polygon : outline)
+          for (const auto &other : of_master)
+            {
+              Part part{m, to, intersection(polygon, other)};
+              if (area(part.polygon) <= least)
+                continue;
+              if (const double distance = view.gap(part, centroid(part.polygon));
+                  distance <= reach.ahead && distance >= -reach.behind)
+                view.parts.push_back(std::move(part));
+            }
       }
     return view;
   }

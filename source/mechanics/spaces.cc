@@ -40,6 +40,38 @@ namespace slipstick::mechanics
       }
     };
 
+    /// Mapping of hexahedra of degree 2 whose edges and faces follow their own manifolds. MappingQ asks the manifold of the cell.
+    class HexahedronMapping : public dealii::MappingQ<3>
+    {
+    public:
+      using dealii::MappingQ<3>::MappingQ;
+
+      std::unique_ptr<dealii::Mapping<3>> clone() const override
+      {
+        return std::make_unique<HexahedronMapping>(*this);
+      }
+
+    protected:
+      std::vector<dealii::Point<3>> compute_mapping_support_points(
+        const dealii::Triangulation<3>::cell_iterator &cell) const override
+      {
+        std::vector<dealii::Point<3>> points;
+        dealii::Point<3>              middle; // on Coons' patch of the faces
+        const auto                    add = [&](const dealii::Point<3> &x, const double share) {
+          points.push_back(x);
+          middle += share * dealii::Tensor<1, 3>(x);
+        };
+        for (const unsigned int v : cell->vertex_indices())
+          add(cell->vertex(v), 0.125);
+        for (const unsigned int l : cell->line_indices())
+          add(cell->line(l)->center(true), -0.25);
+        for (const unsigned int f : cell->face_indices())
+          add(cell->face(f)->center(true), 0.5);
+        points.push_back(middle);
+        return points;
+      }
+    };
+
     template <int dim>
     std::unique_ptr<const dealii::FiniteElement<dim>> scalar_element(const dealii::ReferenceCell cell,
                                                                      const unsigned int          degree)
@@ -53,6 +85,9 @@ namespace slipstick::mechanics
     std::unique_ptr<const dealii::Mapping<dim>> isoparametric(const dealii::ReferenceCell cell,
                                                               const unsigned int          degree)
     {
+      if constexpr (dim == 3)
+        if (!cell.is_simplex() && degree == 2)
+          return std::make_unique<HexahedronMapping>(degree);
       if (!cell.is_simplex())
         return std::make_unique<dealii::MappingQ<dim>>(degree);
       return std::make_unique<SimplexMapping<dim>>(dealii::FE_SimplexP<dim>(degree));

@@ -20,6 +20,8 @@ namespace slipstick::mechanics
     // Less than this part of a facet counts as nothing: the corners of a triangle of degree 2, which have none where it is flat; other
     // nodes have a thirty-sixth or more.
     constexpr double smallest_facet_share = 0.01;
+    // Nodes of bent facets are farther than this part of an edge from where those of straight ones are.
+    constexpr double bent = 1e-9;
 
     bool by_key(const Corner &a, const Corner &b)
     {
@@ -42,45 +44,6 @@ namespace slipstick::mechanics
       if (facet.n_corners() == 3)
         return facet.is_quadratic() ? static_cast<const dealii::Quadrature<2> &>(quadratic_triangle) : triangle;
       return facet.is_quadratic() ? quadratic_quadrilateral : quadrilateral;
-    }
-
-    // Quadratic shape functions of the ends and the middle of the unit interval, and their derivatives.
-    std::array<double, 3> quadratic(const double s)
-    {
-      return {{(1 - s) * (1 - 2 * s), s * (2 * s - 1), 4 * s * (1 - s)}};
-    }
-    std::array<double, 3> quadratic_derivative(const double s)
-    {
-      return {{4 * s - 3, 4 * s - 1, 4 - 8 * s}};
-    }
-
-    // Of the nodes of a quadrilateral: which function along s, and which along t.
-    constexpr std::array<std::array<unsigned int, 2>, 9> along = {
-      {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}, {{2, 0}}, {{1, 2}}, {{2, 1}}, {{0, 2}}, {{2, 2}}}};
-
-    /// Derivatives of the shape functions of degree 2 along both local coordinates.
-    std::array<std::array<double, 2>, SurfaceFacet::max_nodes> quadratic_derivatives(const unsigned int n_corners,
-                                                                                     const Place       &s)
-    {
-      std::array<std::array<double, 2>, SurfaceFacet::max_nodes> result{};
-      if (n_corners == 4)
-        {
-          const auto a = quadratic(s[0]), b = quadratic(s[1]), da = quadratic_derivative(s[0]),
-                     db = quadratic_derivative(s[1]);
-          for (unsigned int i = 0; i < along.size(); ++i)
-            result[i] = {{da[along[i][0]] * b[along[i][1]], a[along[i][0]] * db[along[i][1]]}};
-          return result;
-        }
-      const std::array<double, 3>                    L  = {{1 - s[0] - s[1], s[0], s[1]}};
-      constexpr std::array<std::array<double, 2>, 3> dL = {{{{-1, -1}}, {{1, 0}}, {{0, 1}}}};
-      for (unsigned int i = 0; i < 3; ++i)
-        for (unsigned int d = 0; d < 2; ++d)
-          {
-            const unsigned int j = (i + 1) % 3;
-            result[i][d]         = (4 * L[i] - 1) * dL[i][d];
-            result[3 + i][d]     = 4 * (L[i] * dL[j][d] + L[j] * dL[i][d]);
-          }
-      return result;
     }
   } // namespace
 
@@ -112,6 +75,16 @@ namespace slipstick::mechanics
     facet.n_nodes   = 0;
     for (const auto &corner : corners)
       add(corner, facet);
+    if (!subdomain.curves.empty())
+      {
+        std::array<unsigned int, 4> key;
+        key.fill(dealii::numbers::invalid_unsigned_int);
+        for (const unsigned int v : face->vertex_indices())
+          key[v] = face->vertex_index(v);
+        std::sort(key.begin(), key.end());
+        if (const auto found = subdomain.curves.find(key); found != subdomain.curves.end())
+          facet.surface = found->second;
+      }
     if (others.empty())
       return facet;
     for (unsigned int i = 0; i < corners.size(); ++i)
@@ -129,30 +102,29 @@ namespace slipstick::mechanics
 
   SurfaceFacet::Shape SurfaceFacet::shape_of_corners(const Place &s) const
   {
-    if (n_corners() == 3)
-      return {{1 - s[0] - s[1], s[0], s[1]}};
-    return {{(1 - s[0]) * (1 - s[1]), s[0] * (1 - s[1]), s[0] * s[1], (1 - s[0]) * s[1]}};
+    return mesh::FacetShapes::linear(n_corners(), s);
   }
 
   SurfaceFacet::Shape SurfaceFacet::shape(const Place &s) const
   {
+    return is_quadratic() ? mesh::FacetShapes::quadratic(n_corners(), s) : shape_of_corners(s);
+  }
+
+  bool SurfaceFacet::is_bent() const
+  {
     if (!is_quadratic())
-      return shape_of_corners(s);
-    Shape N{};
-    if (n_corners() == 3)
+      return false;
+    const double least = bent * chord();
+    for (unsigned int i = n_corners(); i < n_nodes; ++i)
       {
-        const Shape L = shape_of_corners(s);
-        for (unsigned int i = 0; i < 3; ++i)
-          {
-            N[i]     = L[i] * (2 * L[i] - 1);
-            N[3 + i] = 4 * L[i] * L[(i + 1) % 3];
-          }
-        return N;
+        const Shape N = shape_of_corners(node_coordinate(i));
+        Tensor      off(node(i));
+        for (unsigned int k = 0; k < n_corners(); ++k)
+          off -= N[k] * Tensor(node(k));
+        if (off.norm() > least)
+          return true;
       }
-    const auto a = quadratic(s[0]), b = quadratic(s[1]);
-    for (unsigned int i = 0; i < along.size(); ++i)
-      N[i] = a[along[i][0]] * b[along[i][1]];
-    return N;
+    return false;
   }
 
   dealii::Point<3> SurfaceFacet::point(const Place &s) const
@@ -168,7 +140,7 @@ namespace slipstick::mechanics
   {
     if (is_quadratic())
       {
-        const auto dN = quadratic_derivatives(n_corners(), s);
+        const auto dN = mesh::FacetShapes::quadratic_derivatives(n_corners(), s);
         Tensor     a, b;
         for (unsigned int i = 0; i < n_nodes; ++i)
           {
@@ -181,22 +153,6 @@ namespace slipstick::mechanics
       return cross_product_3d(node(1) - node(0), node(2) - node(0));
     return cross_product_3d((1 - s[1]) * (node(1) - node(0)) + s[1] * (node(2) - node(3)),
                             (1 - s[0]) * (node(3) - node(0)) + s[0] * (node(2) - node(1)));
-  }
-
-  SurfaceFacet::Place SurfaceFacet::node_coordinate(const unsigned int i) const
-  {
-    constexpr std::array<double, 3> ends_and_middle = {{0, 1, 0.5}};
-    if (n_corners() == 4)
-      return {ends_and_middle[along[i][0]], ends_and_middle[along[i][1]]};
-    constexpr std::array<std::array<double, 2>, 6> triangle = {
-      {{{0, 0}}, {{1, 0}}, {{0, 1}}, {{0.5, 0}}, {{0.5, 0.5}}, {{0, 0.5}}}};
-    return {triangle[i][0], triangle[i][1]};
-  }
-
-  SurfaceFacet::Place SurfaceFacet::middle_place() const
-  {
-    const double c = n_corners() == 3 ? 1. / 3 : 0.5;
-    return {c, c};
   }
 
   double SurfaceFacet::chord() const
@@ -220,6 +176,13 @@ namespace slipstick::mechanics
         for (unsigned int i = 0; i < n_nodes; ++i)
           areas[i] += N[i] * dx;
       }
+    if (n_nodes == 6 && is_bent()) // corners have none, as those of plane ones
+      for (unsigned int i = 0; i < 3; ++i)
+        {
+          for (unsigned int k = 3; k < 6; ++k)
+            areas[k] += areas[i] / 3;
+          areas[i] = 0;
+        }
     for (double &area : areas)
       if (area < smallest_facet_share * whole)
         area = 0;

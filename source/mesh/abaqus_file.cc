@@ -3,6 +3,7 @@
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/abaqus_element.h>
 #include <slipstick/mesh/mesh_file.h>
+#include <slipstick/mesh/solid_nodes.h>
 
 #include <algorithm>
 #include <cctype>
@@ -223,7 +224,8 @@ namespace slipstick::mesh
         mesh.plane_strain_types.insert(type);
       if (starts("CAX"))
         mesh.axisymmetric_types.insert(type);
-      const std::string               set = key["ELSET"];
+      const auto                     &of_solid = middles_of_solid(NodeOrder::abaqus, dim == 3 ? n_nodes : 0);
+      const std::string               set      = key["ELSET"];
       std::vector<unsigned long long> data; // of one element, which may take several lines
       for_data([&](const std::vector<std::string> &parts) {
         for (const std::string &part : parts)
@@ -254,6 +256,8 @@ namespace slipstick::mesh
               element.corners[k] = found->second;
             else if (dim == 2)
               mesh.keep_middle(element, k, found->second);
+            else if (k - element.n < of_solid.size())
+              mesh.keep_middle_of_solid(element, of_solid[k - element.n], found->second);
           }
         if (dim == 1 && n_nodes == 3) // the middle comes second, or last: it is the one between the others
           {

@@ -53,12 +53,9 @@ namespace slipstick::mesh
         keep_middles();
         check_connected();
         check_conformity();
-        if (file.is_curved && mesh.middles.empty())
-          mesh.remarks.push_back("body " + body.name + ": only the corners of the " +
-                                 (dim == 2 ? "curved" : "second-order") + " cells in " + file.file + " are used" +
-                                 (dim == 2
-                                    ? " (mid nodes are kept only for second-order cells in Gmsh and Abaqus files)"
-                                    : ": their edges and faces are those between the corners"));
+        if (file.is_curved && mesh.middles.empty() && mesh.piece.line_middles.empty())
+          mesh.remarks.push_back("body " + body.name + ": only the corners of the curved cells in " + file.file +
+                                 " are used (mid nodes are kept only for second-order cells in Gmsh and Abaqus files)");
         return std::move(mesh);
       }
 
@@ -570,19 +567,44 @@ namespace slipstick::mesh
     template <int dim>
     void Extraction<dim>::keep_middles()
     {
-      if (file.middles.empty() || dim == 3)
+      if (file.middles.empty())
         return;
       std::vector<unsigned int> node_of_vertex(vertex_of_node.size());
       for (const auto &[node, vertex] : vertex_of_node)
         node_of_vertex[vertex] = node;
+      const auto place = [&](const unsigned int node) {
+        dealii::Point<dim> x;
+        for (unsigned int d = 0; d < dim; ++d)
+          x[d] = body.scale * file.nodes[node][d];
+        return x;
+      };
       for (const auto &face : mesh.piece.boundary_faces)
-        {
-          const auto ends  = std::minmax(node_of_vertex[face.vertices[0]], node_of_vertex[face.vertices[1]]);
-          const auto found = file.middles.find({ends.first, ends.second});
-          if (found != file.middles.end())
-            for (unsigned int d = 0; d < dim; ++d)
-              mesh.middles[face.vertices][d] = body.scale * file.nodes[found->second][d];
-        }
+        if constexpr (dim == 3)
+          {
+            std::array<unsigned int, 4> nodes;
+            nodes.fill(MeshPiece<dim>::no_vertex);
+            for (unsigned int a = 0; a < nodes.size() && face.vertices[a] != MeshPiece<dim>::no_vertex; ++a)
+              {
+                nodes[a] = node_of_vertex[face.vertices[a]];
+                for (unsigned int b = 0; b < a; ++b) // diagonals have none
+                  if (const auto found = file.middles.find(std::minmax({nodes[a], nodes[b]}));
+                      found != file.middles.end())
+                    {
+                      const auto ends = std::minmax({face.vertices[a], face.vertices[b]});
+                      mesh.piece.line_middles[{{ends.first, ends.second}}] = place(found->second);
+                    }
+              }
+            std::sort(nodes.begin(), nodes.end());
+            if (const auto found = file.middles_of_faces.find(nodes); found != file.middles_of_faces.end())
+              mesh.middles[face.vertices] = place(found->second);
+          }
+        else
+          {
+            const auto ends  = std::minmax(node_of_vertex[face.vertices[0]], node_of_vertex[face.vertices[1]]);
+            const auto found = file.middles.find({ends.first, ends.second});
+            if (found != file.middles.end())
+              mesh.middles[face.vertices] = place(found->second);
+          }
     }
 
     template <int dim>

@@ -2,6 +2,7 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/mesh_file.h>
+#include <slipstick/mesh/solid_nodes.h>
 
 #include <charconv>
 #include <cstdlib>
@@ -386,10 +387,11 @@ namespace slipstick::mesh
                                  const ReadTag     &read_tag)
     {
       MeshFile::Element element;
-      element.dim    = type.dim;
-      element.n      = type.n_corners;
-      element.group  = of_group;
-      element.number = number;
+      element.dim          = type.dim;
+      element.n            = type.n_corners;
+      element.group        = of_group;
+      element.number       = number;
+      const auto &of_solid = middles_of_solid(NodeOrder::gmsh, type.n_nodes);
       for (unsigned int k = 0; k < type.n_nodes; ++k)
         {
           const std::size_t tag   = read_tag();
@@ -403,6 +405,8 @@ namespace slipstick::mesh
           else if (type.dim == 2 &&
                    (type.n_nodes == 6 || type.n_nodes == 8 || (type.n_nodes == 9 && type.n_corners == 4)))
             mesh.keep_middle(element, k, found->second);
+          else if (type.dim == 3 && k - type.n_corners < of_solid.size())
+            mesh.keep_middle_of_solid(element, of_solid[k - type.n_corners], found->second);
         }
       mesh.is_curved = mesh.is_curved || (type.dim >= 2 && type.n_nodes > type.n_corners);
       mesh.elements.push_back(element);

@@ -3,10 +3,12 @@
 #include <slipstick/base/nearest_name.h>
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/boundary_parts.h>
+#include <slipstick/mesh/curved_faces.h>
 #include <slipstick/mesh/kinematics.h>
 #include <slipstick/mesh/make_body.h>
 #include <slipstick/mesh/refinement.h>
 #include <slipstick/mesh/smooth_outline.h>
+#include <slipstick/mesh/solid_middles.h>
 #include <slipstick/scene/boundary_part.h>
 
 #include <algorithm>
@@ -253,12 +255,20 @@ namespace slipstick::mesh
             auto &of_file = files[body.file].remarks; // once
             mesh.remarks.insert(mesh.remarks.begin(), of_file.begin(), of_file.end());
             of_file.clear();
+            curve_faces(body, mesh);
             for (unsigned int k = 0; k < body.refinements + scene.discretization.refinements; ++k)
               mesh.piece = mesh::refined(mesh.piece);
           }
         else
           mesh = body_from_shape(scene, body);
         check_names(scene, b, mesh);
+        if (body.boundary_refinements > 0 &&
+            !std::all_of(mesh.piece.cells.begin(), mesh.piece.cells.end(), is_simplex<dim>))
+          throw InputError("Body " + body.name + "/Refine levels = " + std::to_string(body.boundary_refinements) +
+                             ": hexahedra cannot be refined towards a boundary",
+                           "mesh the body with tetrahedra, grade the mesh itself, or set Refinements");
+        refine_towards_boundaries(body, mesh);
+        keep_good_middles(mesh.piece);
         mesh.piece.body = b;
         place_in_scene(scene, b, mesh.piece);
         add_boundary_parts(scene, b, mesh);

@@ -42,6 +42,14 @@ namespace slipstick::mesh
                 }
               v = entry->second;
             }
+          if constexpr (dim == 3)
+            if (!whole.line_middles.empty())
+              for (const auto &[a, b] : lines_of_cell(whole.cells[c]))
+                if (const auto found = whole.line_middles.find({{a, b}}); found != whole.line_middles.end())
+                  {
+                    const auto ends                                 = std::minmax(local.at(a), local.at(b));
+                    piece.line_middles[{{ends.first, ends.second}}] = found->second;
+                  }
           piece.cells.push_back(cell);
         }
       for (auto &face : piece.boundary_faces)
@@ -179,6 +187,8 @@ namespace slipstick::mesh
       move(x);
     for (auto &face : piece.boundary_faces)
       face.curve.move(move);
+    for (auto &entry : piece.line_middles)
+      move(entry.second);
     if (placement.mirror_x != placement.mirror_y)
       for (auto &cell : piece.cells)
         {

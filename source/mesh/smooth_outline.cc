@@ -356,8 +356,8 @@ namespace slipstick::mesh
     Reconstruction(body, mesh).run();
   }
 
-  template <>
-  bool leaves_out_curves(const Mesh<2> &mesh)
+  template <int dim>
+  bool leaves_out_curves(const Mesh<dim> &mesh)
   {
     bool is_left_out = false;
     for (const auto &subdomain : mesh.subdomains)
@@ -365,4 +365,7 @@ namespace slipstick::mesh
         is_left_out = is_left_out || curve.left_out > 0;
     return dealii::Utilities::MPI::logical_or(is_left_out, mesh.comm);
   }
+
+  template bool leaves_out_curves(const Mesh<2> &);
+  template bool leaves_out_curves(const Mesh<3> &);
 } // namespace slipstick::mesh

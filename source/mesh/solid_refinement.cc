@@ -1,6 +1,9 @@
 #include <slipstick/mesh/refinement.h>
+#include <slipstick/mesh/solid_middles.h>
 
 #include <numeric>
+#include <optional>
+#include <set>
 
 namespace slipstick::mesh
 {
@@ -8,13 +11,57 @@ namespace slipstick::mesh
   {
     using Piece = MeshPiece<3>;
 
-    /// The cells of a piece divided by eight.
+    using Line = Piece::Line;
+
+    Line line_of(const unsigned int a, const unsigned int b)
+    {
+      return {{std::min(a, b), std::max(a, b)}};
+    }
+
+    /// Edges to be halved such that every tetrahedron has none, one, the three of a face, or all six of them: those of marked
+    /// cells, and what follows.
+    std::set<Line> halved_lines(const Piece &piece, std::vector<bool> red)
+    {
+      std::set<Line> halved;
+      for (bool has_changed = true; has_changed;)
+        {
+          has_changed    = false;
+          const auto add = [&](const Line &line) { has_changed = halved.insert(line).second || has_changed; };
+          for (unsigned int c = 0; c < piece.cells.size(); ++c)
+            {
+              const auto lines = lines_of_cell(piece.cells[c]);
+              const auto n =
+                std::count_if(lines.begin(), lines.end(), [&](const Line &l) { return halved.count(l) > 0; });
+              // those that lie on one face leave out the fourth corner
+              std::optional<Piece::Face> face;
+              for (unsigned int f = 0; f < 4; ++f)
+                {
+                  const unsigned int apart = piece.cells[c][f];
+                  if (std::none_of(lines.begin(), lines.end(), [&](const Line &l) {
+                        return halved.count(l) > 0 && (l[0] == apart || l[1] == apart);
+                      }))
+                    face = face_of_cell<3>(piece.cells[c], f);
+                }
+              if (red[c] || n > 3 || (n > 1 && !face))
+                for (const Line &line : lines)
+                  add(line);
+              else if (n > 1)
+                for (const auto &[k, l] : {std::pair(0, 1), {0, 2}, {1, 2}})
+                  add(line_of((*face)[k], (*face)[l]));
+            }
+        }
+      return halved;
+    }
+
+    /// The cells of a piece divided by eight, or where @p halved says so; of tetrahedra then some by two or four (red and green).
     class SolidRefiner
     {
     public:
-      explicit SolidRefiner(const Piece &piece_)
+      explicit SolidRefiner(const Piece &piece_, std::optional<std::set<Line>> halved_ = {})
         : piece(piece_)
+        , halved(std::move(halved_))
         , boundary(boundary_by_vertices(piece_))
+        , curved(piece, boundary)
       {
         finer.subdomain = piece.subdomain;
         finer.body      = piece.body;
@@ -25,21 +72,37 @@ namespace slipstick::mesh
       Piece run()
       {
         for (const auto &cell : piece.cells)
-          is_simplex<3>(cell) ? divide_tetrahedron(cell) : divide_hexahedron(cell);
+          !is_simplex<3>(cell) ? divide_hexahedron(cell) : halved ? divide_halved(cell) : divide_tetrahedron(cell);
+        std::map<Line, unsigned int> of_lines;
+        for (const auto &entry : piece.line_middles)
+          if (const auto found = middles.find({entry.first[0], entry.first[1]}); found != middles.end())
+            of_lines[entry.first] = found->second;
+        refine_middles(piece, of_lines, finer);
         finer.global_vertices.resize(finer.vertices.size());
         std::iota(finer.global_vertices.begin(), finer.global_vertices.end(), GlobalVertex(0));
         return std::move(finer);
       }
 
     private:
+      /// Where the middle of an edge, of a face, vertices in rows, or of the cell is.
+      dealii::Point<3> place_of(const Piece::Cell &cell, const std::vector<unsigned int> &of) const
+      {
+        if (of.size() == 8)
+          return curved.in_hexahedron(cell);
+        return of.size() == 4 ? curved.on_face({{of[0], of[1], of[2], of[3]}}) : curved.on_line(of[0], of[1]);
+      }
+
       /// The vertex in the middle of others.
-      unsigned int middle(std::vector<unsigned int> of)
+      unsigned int middle(const Piece::Cell &cell, std::vector<unsigned int> of)
       {
         if (of.size() == 1)
           return of[0];
+        const auto rows = of;
         std::sort(of.begin(), of.end());
         const auto [found, is_new] = middles.emplace(of, finer.vertices.size());
-        if (is_new)
+        if (is_new && !piece.line_middles.empty() && curved.is_curved(cell))
+          finer.vertices.push_back(place_of(cell, rows));
+        else if (is_new)
           {
             dealii::Tensor<1, 3> sum;
             for (const unsigned int v : of)
@@ -61,7 +124,7 @@ namespace slipstick::mesh
             if (is_near)
               of.push_back(cell[v]);
           }
-        return middle(std::move(of));
+        return middle(cell, std::move(of));
       }
 
       void divide_hexahedron(const Piece::Cell &cell)
@@ -76,9 +139,15 @@ namespace slipstick::mesh
             for (unsigned int f = 0; f < 6; ++f)
               if (const auto found = boundary.find(face_of_cell<3>(cell, f));
                   found != boundary.end() && (child >> (f / 2) & 1) == f % 2)
-                finer.boundary_faces.push_back({face_of_cell<3>(part, f), found->second.id});
+                add_face(found->second, face_of_cell<3>(part, f));
             finer.cells.push_back(part);
           }
+      }
+
+      /// A quarter of a boundary face.
+      void add_face(const Piece::BoundaryFace &whole, const Piece::Face &face)
+      {
+        finer.boundary_faces.push_back({face, whole.id, part_of(whole, face, finer), whole.bends_cell});
       }
 
       void add_tetrahedron(unsigned int a, unsigned int b, const unsigned int c, const unsigned int d)
@@ -98,7 +167,7 @@ namespace slipstick::mesh
       // Four at the corners, and an octahedron divided along its shortest diagonal.
       void divide_tetrahedron(const Piece::Cell &cell)
       {
-        const auto m = [&](const unsigned int i, const unsigned int j) { return middle({cell[i], cell[j]}); };
+        const auto m = [&](const unsigned int i, const unsigned int j) { return middle(cell, {cell[i], cell[j]}); };
         for (unsigned int i = 0; i < 4; ++i)
           add_tetrahedron(cell[i], m(i, (i + 1) % 4), m(i, (i + 2) % 4), m(i, (i + 3) % 4));
         const std::array<std::array<unsigned int, 2>, 3> across = {
@@ -121,7 +190,7 @@ namespace slipstick::mesh
               const auto add = [&](const unsigned int a, const unsigned int b, const unsigned int c) {
                 Piece::Face face = {{a, b, c, Piece::no_vertex}};
                 std::sort(face.begin(), face.end());
-                finer.boundary_faces.push_back({face, found->second.id});
+                add_face(found->second, face);
               };
               for (unsigned int k = 0; k < 3; ++k)
                 add(cell[at[k]], m(at[k], at[(k + 1) % 3]), m(at[k], at[(k + 2) % 3]));
@@ -129,8 +198,68 @@ namespace slipstick::mesh
             }
       }
 
+      bool is_halved(const unsigned int a, const unsigned int b) const
+      {
+        return halved->count(line_of(a, b)) > 0;
+      }
+
+      /// Triangles that a face with its halved edges is divided into: none, one, or three of them.
+      std::vector<std::array<unsigned int, 3>> parts_of_face(const Piece::Cell &cell, const Piece::Face &face)
+      {
+        const auto &[a, b, c, none] = face;
+        const auto                m = [&](const unsigned int v, const unsigned int w) { return middle(cell, {v, w}); };
+        const std::array<Line, 3> edges      = {{{{a, b}}, {{b, c}}, {{c, a}}}};
+        const std::array<unsigned, 3> across = {{c, a, b}};
+        if (is_halved(a, b) && is_halved(b, c) && is_halved(c, a))
+          return {{{a, m(a, b), m(c, a)}},
+                  {{b, m(b, c), m(a, b)}},
+                  {{c, m(c, a), m(b, c)}},
+                  {{m(a, b), m(b, c), m(c, a)}}};
+        for (unsigned int k = 0; k < 3; ++k)
+          if (const auto &[v, w] = edges[k]; is_halved(v, w))
+            return {{{v, m(v, w), across[k]}}, {{m(v, w), w, across[k]}}};
+        return {{{a, b, c}}};
+      }
+
+      // None, one edge, the edges of one face, or all.
+      void divide_halved(const Piece::Cell &cell)
+      {
+        unsigned int n = 0;
+        for (const auto &[a, b] : lines_of_cell(cell))
+          n += is_halved(a, b);
+        if (n == 6)
+          return divide_tetrahedron(cell);
+        // the face with most of them
+        std::size_t  most = 0;
+        unsigned int base = 0;
+        for (unsigned int f = 0; f < 4; ++f)
+          if (const auto parts = parts_of_face(cell, face_of_cell<3>(cell, f)); parts.size() > most)
+            {
+              most = parts.size();
+              base = f;
+            }
+        for (const auto &[a, b, c] : parts_of_face(cell, face_of_cell<3>(cell, base)))
+          add_tetrahedron(a, b, c, cell[base]);
+        for (unsigned int f = 0; f < 4; ++f)
+          if (const auto found = boundary.find(face_of_cell<3>(cell, f)); found != boundary.end())
+            {
+              const auto parts = parts_of_face(cell, found->first);
+              for (const auto &[a, b, c] : parts)
+                {
+                  Piece::Face face = {{a, b, c, Piece::no_vertex}};
+                  std::sort(face.begin(), face.end());
+                  if (parts.size() == 1)
+                    finer.boundary_faces.push_back(found->second);
+                  else
+                    add_face(found->second, face);
+                }
+            }
+      }
+
       const Piece                                      &piece;
+      const std::optional<std::set<Line>>               halved;
       const std::map<Piece::Face, Piece::BoundaryFace>  boundary;
+      const SolidMiddles                                curved;
       Piece                                             finer;
       std::map<std::vector<unsigned int>, unsigned int> middles; // by what they are between
     };
@@ -140,5 +269,23 @@ namespace slipstick::mesh
   MeshPiece<3> refined(const MeshPiece<3> &piece)
   {
     return SolidRefiner(piece).run();
+  }
+
+  template <>
+  MeshPiece<3> refined_towards(const MeshPiece<3> &piece, const std::set<dealii::types::boundary_id> &ids)
+  {
+    std::vector<bool> is_on_boundary(piece.vertices.size(), false), red;
+    for (const auto &face : piece.boundary_faces)
+      if (ids.count(face.id) > 0)
+        for (const unsigned int v : face.vertices)
+          if (v != Piece::no_vertex)
+            is_on_boundary[v] = true;
+    for (const auto &cell : piece.cells)
+      {
+        Assert(is_simplex<3>(cell), dealii::ExcMessage("hexahedra are refined as a whole only"));
+        red.push_back(
+          std::any_of(cell.begin(), cell.begin() + 4, [&](const unsigned int v) { return is_on_boundary[v]; }));
+      }
+    return SolidRefiner(piece, halved_lines(piece, std::move(red))).run();
   }
 } // namespace slipstick::mesh

@@ -1,5 +1,7 @@
 // Hexahedra for the built-in shapes of solids.
+#include <slipstick/mesh/curved_faces.h>
 #include <slipstick/mesh/shapes.h>
+#include <slipstick/mesh/solid_middles.h>
 
 #include <cmath>
 #include <numeric>
@@ -8,6 +10,31 @@ namespace slipstick::mesh
 {
   namespace
   {
+    /// What a face with the given corners, around, stands for: the surface, or the sagitta that it leaves out.
+    FaceSurface surface_or_polygon(const scene::Body<3>                &body,
+                                   const FaceSurface                   &surface,
+                                   const std::vector<dealii::Point<3>> &corners)
+    {
+      if (body.has_smooth_outline)
+        return surface;
+      FaceSurface none;
+      none.left_out = sagitta(surface, corners);
+      return none;
+    }
+
+    /// The cylinder over an arc, or what its edge leaves out.
+    FaceSurface cylinder_over(const EdgeCurve<2> &arc)
+    {
+      FaceSurface none;
+      none.left_out = arc.left_out;
+      if (!arc)
+        return none;
+      const auto &center = arc.points[2];
+      return FaceSurface::cylinder({center[0], center[1], 0},
+                                   dealii::Tensor<1, 3>({0, 0, 1}),
+                                   center.distance(arc.points[0]));
+    }
+
     /// Hexahedra between @p n_layers + 1 copies of a mesh of the plane, from @p start along z; its boundary ids stay, the two
     /// ends get the next ones.
     MeshPiece<3> extruded(const MeshPiece<2>              &section,
@@ -36,7 +63,8 @@ namespace slipstick::mesh
           for (const auto &edge : section.boundary_faces)
             piece.boundary_faces.push_back(
               {{{at(edge.vertices[0], 0), at(edge.vertices[1], 0), at(edge.vertices[0], 1), at(edge.vertices[1], 1)}},
-               edge.id});
+               edge.id,
+               cylinder_over(edge.curve)});
         }
       for (const auto &c : section.cells)
         for (const unsigned int end : {0u, 1u})
@@ -61,6 +89,7 @@ namespace slipstick::mesh
       section.radius                   = body.radius;
       section.inner_radius             = body.inner_radius;
       section.cells_along_arc          = body.cells_along_arc;
+      section.has_smooth_outline       = body.has_smooth_outline;
       if (is_tube)
         section.cells = std::array<unsigned int, 2>{
           {body.cells_along_arc,
@@ -219,7 +248,11 @@ namespace slipstick::mesh
                   for (const auto &[v, w] : {std::pair(0, 1), {2, 3}, {0, 2}, {1, 3}})
                     add_rim(corners[v], corners[w], k);
                 }
-              piece.boundary_faces.push_back({face(n_layers), 0});
+              std::vector<dealii::Point<3>> around;
+              for (const unsigned int v : {0, 1, 3, 2})
+                around.push_back(piece.vertices[vertex(corners[v], n_layers)]);
+              piece.boundary_faces.push_back(
+                {face(n_layers), 0, surface_or_polygon(body, FaceSurface::ball(body.center, body.radius), around)});
             }
       }
 
@@ -263,6 +296,7 @@ namespace slipstick::mesh
         case scene::Shape::mesh:
           Assert(false, dealii::ExcInternalError());
       }
+    bend_lines(mesh.piece);
     mesh.piece.global_vertices.resize(mesh.piece.vertices.size());
     std::iota(mesh.piece.global_vertices.begin(), mesh.piece.global_vertices.end(), GlobalVertex(0));
     return mesh;

@@ -1,4 +1,5 @@
 #include <slipstick/mesh/edge_middles.h>
+#include <slipstick/mesh/solid_middles.h>
 #include <slipstick/mesh/triangulate.h>
 
 #include <deal.II/grid/grid_tools.h>
@@ -26,7 +27,7 @@ namespace slipstick::mesh
 
     // every face starts as a cut, the boundaries are marked from their vertices
     const auto   boundary = boundary_by_vertices(piece);
-    Middles<dim> middles; // edges are straight in space
+    Middles<dim> middles;
     if constexpr (dim == 2)
       middles = middles_of_edges(piece, boundary);
     for (const auto &cell : mesh->triangulation.active_cell_iterators())
@@ -42,17 +43,17 @@ namespace slipstick::mesh
             face->set_boundary_id(found == boundary.end() ? cut_id : found->second.id);
             if (found == boundary.end())
               continue;
+            if (const auto &curve = found->second.curve; curve || curve.left_out > 0)
+              mesh->curves[key] = curve;
             if constexpr (dim == 2)
-              {
-                if (const auto &curve = found->second.curve; curve || curve.left_out > 0)
-                  mesh->curves[key] = curve;
-                if (middles.count(key) > 0)
-                  face->set_manifold_id(EdgeMiddles<dim>::id);
-              }
+              if (middles.count(key) > 0)
+                face->set_manifold_id(EdgeMiddles<dim>::id);
           }
     if constexpr (dim == 2)
       if (!middles.empty())
         mesh->triangulation.set_manifold(EdgeMiddles<dim>::id, EdgeMiddles<dim>(middles));
+    if constexpr (dim == 3)
+      follow_middles(piece, boundary, mesh->triangulation);
     return mesh;
   }
 

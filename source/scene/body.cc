@@ -69,6 +69,8 @@ namespace slipstick::scene
           {"File", {Shape::mesh}},
           {"Part", {Shape::mesh}},
           {"Scale", {Shape::mesh}},
+          {"Refine towards", {Shape::mesh}},
+          {"Refine levels", {Shape::mesh}},
         };
       return dim == 3 ? of_space : of_plane;
     }
@@ -229,6 +231,14 @@ namespace slipstick::scene
                       max_cells,
                       "cylinder, tube; auto: as long as those around");
     declare_file(prm);
+    add_choice(
+      prm,
+      "Outline",
+      body.has_smooth_outline,
+      Choices<bool>{{"smooth", true}, {"polygon", false}},
+      "what faces stand for in gaps and normals of contact, and in cells of degree 2: smooth: balls and cylinders of "
+      "built-in shapes, of meshes the surfaces through the mid nodes of the file; polygon: faces with straight "
+      "edges, which leave out their sagitta");
   }
 
   template <int dim>
@@ -245,7 +255,8 @@ namespace slipstick::scene
               body.boundary_refinements,
               0,
               max_refinements,
-              "how many times: each divides edges of quadrilaterals by 3, of triangles by 2");
+              dim == 3 ? "tetrahedra: how many times: each divides their edges by 2"
+                       : "how many times: each divides edges of quadrilaterals by 3, of triangles by 2");
   }
 
   template <int dim>
@@ -275,8 +286,7 @@ namespace slipstick::scene
               0,
               max_refinements,
               "uniform refinements of this body, on top of Discretization/Refinements");
-    if constexpr (dim == 2)
-      declare_refinement(prm);
+    declare_refinement(prm);
     add_text(prm, "Material", material, "", "a name from Materials", "material of the body; must be set");
     if constexpr (dim == 2)
       add_number(prm,

@@ -9,12 +9,13 @@
 
 namespace slipstick::app
 {
-  /// Warnings with remedy, keyed by subject, for pairs of bodies whose edges leave out a curve (EdgeCurve::left_out)
+  /// Warnings with remedy, keyed by subject, for pairs of bodies whose edges or faces leave out a curve (EdgeCurve::left_out)
   /// that is not small compared with the indentation or, where nothing touches, with the gap. Collective.
   /// @param nodes contact nodes of this rank with the points that they belong to at the front of Constraints.
-  std::map<std::string, std::string> curve_warnings(const scene::Scene<2>                   &scene,
-                                                      const mesh::Mesh<2>                     &mesh,
-                                                      const mechanics::Spaces<2>              &spaces,
-                                                      const std::vector<tfeti::ContactPoint>  &points,
-                                                      const std::vector<contact::ContactNode> &nodes);
+  template <int dim>
+  std::map<std::string, std::string> curve_warnings(const scene::Scene<dim>                 &scene,
+                                                    const mesh::Mesh<dim>                   &mesh,
+                                                    const mechanics::Spaces<dim>            &spaces,
+                                                    const std::vector<tfeti::ContactPoint>  &points,
+                                                    const std::vector<contact::ContactNode> &nodes);
 } // namespace slipstick::app

@@ -14,8 +14,14 @@ namespace slipstick::interface
   /// Negative for corners that run clockwise.
   double area(const ConvexPolygon &polygon);
 
+  /// Of all together.
+  double area(const std::vector<ConvexPolygon> &polygons);
+
   /// The middle of its area; of its corners when it has none.
   dealii::Point<2> centroid(const ConvexPolygon &polygon);
+
+  /// Does no corner point inwards?
+  bool is_convex(const ConvexPolygon &polygon);
 
   /// Is x inside, or outside by no more than @p tolerance?
   bool contains(const ConvexPolygon &polygon, const dealii::Point<2> &x, const double tolerance = 0);

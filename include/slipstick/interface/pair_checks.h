@@ -50,12 +50,12 @@ namespace slipstick::interface
   /// scene; a pair with a Reach or a Gap of its own may start at any distance within these. The same on all ranks.
   /// @throws InputError for sides that face away from each other (lies_behind) or are out of reach.
   template <int dim>
-  void check_sides(const scene::Scene<dim>                        &scene,
-                   const mesh::Mesh<dim>                          &mesh,
-                   const scene::ContactPair<dim>                  &pair,
-                   const PairSides<dim>                           &sides,
+  void check_sides(const scene::Scene<dim>                         &scene,
+                   const mesh::Mesh<dim>                           &mesh,
+                   const scene::ContactPair<dim>                   &pair,
+                   const PairSides<dim>                            &sides,
                    const std::vector<mechanics::BoundaryPart<dim>> &all,
-                   const std::vector<MortarRow<dim>>              &rows);
+                   const std::vector<MortarRow<dim>>               &rows);
 
   /// Checks the pairs with obstacles: some node must have an outward normal against the obstacle (facing_cosine) and a
   /// gap within the Reach; with an automatic one the rule is that of check_sides with the size of the slave boundary

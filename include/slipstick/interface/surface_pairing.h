@@ -35,20 +35,25 @@ namespace slipstick::interface
 
     ProjectedFacet(const Facet &facet, const Plane &plane);
 
-    /// Its corners, counter-clockwise as seen against the normal.
-    ConvexPolygon outline() const;
+    /// The polygon of its corners, counter-clockwise as seen against the normal, of bent facets with the nodes on their edges; cut
+    /// in four by its nodes where that is not convex.
+    std::vector<ConvexPolygon> outline() const;
 
-    /// The place on the facet that is seen at @p x: exact for parallelograms and triangles, else by Newton's method.
+    /// The place on the facet that is seen at @p x: exact for parallelograms and triangles, else by Newton's method. Just outside of
+    /// bent facets it is beyond the edge.
     Facet::Place place_at(const dealii::Point<2> &x) const;
 
     /// How high above the plane that place is [mm].
     double height_at(const dealii::Point<2> &x) const;
 
   private:
+    Facet::Place bent_place_at(const dealii::Point<2> &x) const;
+
     unsigned int                                   n_nodes;
     std::array<dealii::Point<2>, Facet::max_nodes> nodes;       // corners first
     Facet::Shape                                   heights{};   // of the nodes [mm]
     dealii::Tensor<1, 2>                           u, v, twist; // x = corner + s u + t v + s t twist
+    bool                                           is_bent;     // else that holds
     const Facet                                   *facet;
   };
 

@@ -14,10 +14,10 @@ namespace slipstick::mechanics
   /// key first; then come the middles of the edges that begin at the corners, then that of a quadrilateral.
   struct SurfaceFacet
   {
-    static constexpr unsigned int max_nodes = 9;
+    static constexpr unsigned int max_nodes = mesh::FacetShapes::max_nodes;
 
-    using Place  = dealii::Point<2>; // local coordinates
-    using Shape  = std::array<double, max_nodes>;
+    using Place  = mesh::FacetShapes::Place; // local coordinates
+    using Shape  = mesh::FacetShapes::Shape;
     using Tensor = dealii::Tensor<1, 3>;
 
     unsigned int                                 body      = 0;
@@ -25,12 +25,13 @@ namespace slipstick::mechanics
     unsigned int                                 subdomain = 0;
     unsigned int                                 n_nodes   = 4;
     std::array<NodeKey, max_nodes>               keys{};
-    std::array<std::array<double, 3>, max_nodes> at{}; // [mm]
+    std::array<std::array<double, 3>, max_nodes> at{};    // [mm]
+    mesh::FaceSurface                            surface; // that the facet stands for; none: the facet itself
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &body &boundary &subdomain &n_nodes &keys &at;
+      archive &body &boundary &subdomain &n_nodes &keys &at &surface;
     }
 
     unsigned int n_corners() const
@@ -43,6 +44,9 @@ namespace slipstick::mechanics
     {
       return n_nodes > n_corners();
     }
+
+    /// Of degree 2 with nodes off the bilinear surface of its corners?
+    bool is_bent() const;
 
     dealii::Point<3> node(const unsigned int i) const
     {
@@ -72,8 +76,28 @@ namespace slipstick::mechanics
       return normal(node_coordinate(i));
     }
 
-    Place node_coordinate(const unsigned int i) const;
-    Place middle_place() const;
+    /// Outward unit normal of the surface over node i.
+    Tensor outline_normal(const unsigned int i) const
+    {
+      const Tensor own = normal_at(i);
+      return surface ? surface.normal(node(i), own) : own;
+    }
+
+    /// How far the surface is above the facet at s along @p direction, a unit vector across both [mm].
+    double rise(const Place &s, const Tensor &direction) const
+    {
+      return surface ? surface.distance_along(point(s), direction) : 0.;
+    }
+
+    Place node_coordinate(const unsigned int i) const
+    {
+      return mesh::FacetShapes::node(n_corners(), i);
+    }
+
+    Place middle_place() const
+    {
+      return mesh::FacetShapes::middle(n_corners());
+    }
 
     dealii::Point<3> middle() const
     {

@@ -16,8 +16,9 @@ namespace slipstick::mesh
     std::map<std::string, dealii::types::boundary_id>                          boundary_ids; // by name
     std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>> combined_ids; // as in Mesh
     std::map<std::string, unsigned int>                                        points;       // by name: local vertex
-    std::map<typename MeshPiece<dim>::Face, dealii::Point<dim>> middles; // mid nodes of the outline in the file
-    std::vector<std::string>                                    remarks;
+    std::map<typename MeshPiece<dim>::Face, dealii::Point<dim>>
+                             middles; // mid nodes of edges of the outline, in space of faces, in the file
+    std::vector<std::string> remarks;
 
     // by name: why the boundary or point cannot be used, as parts of it are not of the outline or it is several points
     std::map<std::string, std::string> incomplete_boundaries, ambiguous_points;

@@ -1,7 +1,7 @@
 // The torn mesh: one deal.II triangulation a subdomain, each rank holding its own subdomains only.
 #pragma once
 
-#include <slipstick/mesh/edge_curve.h>
+#include <slipstick/mesh/face_surface.h>
 #include <slipstick/scene/scene.h>
 
 #include <deal.II/grid/tria.h>
@@ -31,8 +31,9 @@ namespace slipstick::mesh
     dealii::Triangulation<dim> triangulation;
     std::vector<GlobalVertex>  global_vertices; // of every vertex of the triangulation
 
-    /// Curves of boundary edges that have one, by their two vertices in ascending order; they run from the first.
-    std::map<std::array<unsigned int, 2>, EdgeCurve<dim>> curves;
+    /// Curves of boundary edges that have one, by their two vertices in ascending order; they run from the first. In space the
+    /// surfaces of boundary faces, by their vertices in ascending order, behind those of a triangle invalid_unsigned_int.
+    std::map<std::array<unsigned int, 2 * (dim - 1)>, BoundaryCurve<dim>> curves;
   };
 
   /// A point that a mesh file names.

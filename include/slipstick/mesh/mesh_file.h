@@ -79,6 +79,24 @@ namespace slipstick::mesh
       middles[{std::min(a, b), std::max(a, b)}] = node;
     }
 
+    /// The same of quadrilateral faces of solids, by their corners in ascending order.
+    std::map<std::array<unsigned int, 4>, unsigned int> middles_of_faces;
+
+    /// Keeps a node of a solid of second order that is in the middle of an edge or a face.
+    /// @param between which corners of the cell it lies.
+    void keep_middle_of_solid(const Element &cell, const std::vector<unsigned int> &between, const unsigned int node)
+    {
+      if (between.size() == 2)
+        middles[std::minmax({cell.corners[between[0]], cell.corners[between[1]]})] = node;
+      if (between.size() != 4)
+        return;
+      std::array<unsigned int, 4> face;
+      for (unsigned int k = 0; k < 4; ++k)
+        face[k] = cell.corners[between[k]];
+      std::sort(face.begin(), face.end());
+      middles_of_faces[face] = node;
+    }
+
     /// Physical name of a number, or the number itself where it has none.
     std::string name_of(const unsigned int dim, const int physical) const;
 

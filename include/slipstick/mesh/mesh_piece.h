@@ -32,11 +32,14 @@ namespace slipstick::mesh
     /// Local vertices of a face; behind those of a triangle in space stands no_vertex.
     using Face = std::array<unsigned int, vertices_per_face>;
 
+    /// Two vertices in ascending order.
+    using Line = std::array<unsigned int, 2>;
+
     struct BoundaryFace
     {
       Face                       vertices;
       dealii::types::boundary_id id;
-      EdgeCurve<dim>             curve      = {};   // runs from the first vertex to the second
+      BoundaryCurve<dim>         curve      = {};   // of an edge: runs from the first vertex to the second
       bool                       bends_cell = true; // new nodes lie on the curve; else on the chord
 
       template <class Archive>
@@ -54,11 +57,14 @@ namespace slipstick::mesh
     std::vector<BoundaryFace>       boundary_faces;  // of the body; all others are cut
     bool                            ordered = false; // lines of neighbouring cells already run the same way
 
+    /// Of solids: the points in the middle of curved edges, which all lie on the boundary of the body. Other edges are straight.
+    std::map<Line, dealii::Point<dim>> line_middles;
+
     /// For sending between ranks (Boost serialization, through deal.II's MPI utilities).
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &subdomain &body &vertices &global_vertices &cells &boundary_faces &ordered;
+      archive &subdomain &body &vertices &global_vertices &cells &boundary_faces &ordered &line_middles;
     }
   };
 
@@ -122,6 +128,19 @@ namespace slipstick::mesh
         face[v] = cell[dealii::GeometryInfo<dim>::face_to_cell_vertices(f, v)];
     std::sort(face.begin(), face.end());
     return face;
+  }
+
+  /// The edges of a solid, vertices in ascending order.
+  inline std::vector<MeshPiece<3>::Line> lines_of_cell(const MeshPiece<3>::Cell &cell)
+  {
+    std::vector<MeshPiece<3>::Line> lines;
+    const unsigned int              n = n_corners<3>(cell);
+    for (unsigned int a = 0; a < n; ++a)
+      for (unsigned int b = a + 1; b < n; ++b)
+        if (const unsigned int step = a ^ b;
+            n == 4 || (step & (step - 1)) == 0) // corners of a cube that differ in one direction
+          lines.push_back({{std::min(cell[a], cell[b]), std::max(cell[a], cell[b])}});
+    return lines;
   }
 
   /// All faces with the cells behind them (one at the boundary, two inside), sorted by face.

@@ -22,9 +22,11 @@ namespace slipstick::mesh
   /// templates for one to three marked corners (after R. Schneiders, Refining quadrilateral and hexahedral element
   /// meshes, 1996; the templates for two opposite and three corners are our own and keep the marks from spreading).
   /// Triangles are divided into four, their neighbours into two (red-green). Cells must be of one kind. Vertices keep
-  /// their numbers.
+  /// their numbers. In space tetrahedra alone: into eight, their neighbours into two or four.
   template <int dim>
   MeshPiece<dim> refined_towards(const MeshPiece<dim> &piece, const std::set<dealii::types::boundary_id> &ids);
+  template <>
+  MeshPiece<3> refined_towards(const MeshPiece<3> &piece, const std::set<dealii::types::boundary_id> &ids);
 
   /// Where a cell of a finer mesh comes from.
   struct CellOrigin

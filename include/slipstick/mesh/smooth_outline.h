@@ -20,7 +20,7 @@ namespace slipstick::mesh
   template <int dim>
   void smooth_outline(const scene::Body<dim> &body, BodyMesh<dim> &mesh);
 
-  /// Is there an edge of any body that leaves out a curve? Collective.
+  /// Is there an edge, in space a face, of any body that leaves out a curve? Collective.
   template <int dim>
   bool leaves_out_curves(const Mesh<dim> &mesh);
 } // namespace slipstick::mesh

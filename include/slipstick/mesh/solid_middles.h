@@ -1,0 +1,84 @@
+// Nodes of degree 2 of solids whose boundary is curved: a manifold that knows them.
+#pragma once
+
+#include <slipstick/mesh/mesh_piece.h>
+
+#include <deal.II/grid/manifold.h>
+
+namespace slipstick::mesh
+{
+  /// Where the middles of edges, faces and cells of a piece are: on the curved boundary, elsewhere on Coons' patch of what bounds
+  /// them.
+  class SolidMiddles
+  {
+  public:
+    using Piece = MeshPiece<3>;
+    using Point = dealii::Point<3>;
+
+    /// @param boundary boundary_by_vertices() of the piece. Neither is copied.
+    SolidMiddles(const Piece &piece, const std::map<Piece::Face, Piece::BoundaryFace> &boundary);
+
+    bool  is_curved(const unsigned int a, const unsigned int b) const;
+    bool  is_curved(const Piece::Cell &cell) const;
+    Point on_line(const unsigned int a, const unsigned int b) const;
+
+    /// Of a quadrilateral whose vertices stand in rows.
+    Point on_face(const Piece::Face &rows) const;
+    Point in_hexahedron(const Piece::Cell &cell) const;
+
+    /// Does the map of degree 2 of a cell keep its orientation, with volumes no less than a part of those that it has with straight
+    /// edges?
+    bool keeps_its_shape(const Piece::Cell &cell) const;
+
+  private:
+    /// Of the map of degree 2 of a tetrahedron, at barycentric coordinates.
+    double jacobian(const Piece::Cell &cell, const std::array<double, 4> &L) const;
+
+    const Piece                                      &piece;
+    const std::map<Piece::Face, Piece::BoundaryFace> &boundary;
+  };
+
+  /// Gives the edges of the faces on balls and cylinders (BoundaryFace::curve) their middles.
+  void bend_lines(MeshPiece<3> &piece);
+
+  /// What part @p face (vertices of @p finer, which halve edges) of a face stands for.
+  FaceSurface part_of(const MeshPiece<3>::BoundaryFace &whole,
+                      const MeshPiece<3>::Face         &face,
+                      const MeshPiece<3>               &finer);
+
+  /// Gives the edges of a refined piece on its curved faces and edges their middles. @param middle_of the vertices in the middle of
+  /// curved edges of @p coarse that were halved.
+  void refine_middles(const MeshPiece<3>                               &coarse,
+                      const std::map<MeshPiece<3>::Line, unsigned int> &middle_of,
+                      MeshPiece<3>                                     &finer);
+
+  /// Takes the middles from edges of cells that a map of degree 2 would turn over or flatten, and marks the faces there
+  /// (BoundaryFace::bends_cell). @return number of these cells.
+  unsigned int keep_good_middles(MeshPiece<3> &piece);
+
+  /// Manifold of edges and faces whose middles are given, flat for all others. Mappings of degree 2 ask for nothing else.
+  class SolidManifold : public dealii::FlatManifold<3>
+  {
+  public:
+    static constexpr dealii::types::manifold_id id = 1;
+
+    using Lines = std::map<MeshPiece<3>::Line, dealii::Point<3>>;
+    using Faces = std::map<MeshPiece<3>::Face, dealii::Point<3>>; // vertices in ascending order
+
+    SolidManifold(Lines lines, Faces faces);
+
+    std::unique_ptr<dealii::Manifold<3>> clone() const override;
+
+    dealii::Point<3> get_new_point_on_line(const dealii::Triangulation<3>::line_iterator &line) const override;
+    dealii::Point<3> get_new_point_on_quad(const dealii::Triangulation<3>::quad_iterator &face) const override;
+
+  private:
+    const Lines lines;
+    const Faces faces;
+  };
+
+  /// Gives the triangulation of a piece the manifold of its curved edges.
+  void follow_middles(const MeshPiece<3>                                             &piece,
+                      const std::map<MeshPiece<3>::Face, MeshPiece<3>::BoundaryFace> &boundary,
+                      dealii::Triangulation<3>                                       &triangulation);
+} // namespace slipstick::mesh

@@ -1,0 +1,17 @@
+// Where the nodes of solids of second order are, in the orders of mesh files.
+#pragma once
+
+#include <vector>
+
+namespace slipstick::mesh
+{
+  enum class NodeOrder
+  {
+    gmsh,
+    abaqus
+  };
+
+  /// Between which corners the nodes behind the corners lie: two of an edge, four of a face, eight of the cell.
+  /// @param n_nodes 10, 20, 27 (Gmsh's only); none for other cells.
+  const std::vector<std::vector<unsigned int>> &middles_of_solid(const NodeOrder order, const unsigned int n_nodes);
+} // namespace slipstick::mesh
