@@ -397,7 +397,8 @@ namespace slipstick::contact
                        const std::vector<double>          &slip_bound,
                        const std::vector<bool>            &free,
                        const unsigned int                  n_bodies,
-                       const History                      &history)
+                       const History                      &history,
+                       const std::vector<double>          &energies_beside)
   {
     const MPI_Comm comm        = dual.communicator();
     const auto    &constraints = dual.constraints();
@@ -429,6 +430,8 @@ namespace slipstick::contact
                    Eigen::Map<const Eigen::MatrixXd>(u[p].data(), dim, u[p].size() / dim).colwise().norm().maxCoeff());
         energies[dual.subdomains()[p]->body()] += deformed[p].dot(forces[p] + dual.subdomains()[p]->load());
       }
+    for (std::size_t b = 0; b < energies_beside.size(); ++b)
+      energies[b] += energies_beside[b];
     const auto violation = [&](const unsigned int r) {
       const double compliance = constraints.compliance.empty() ? 0. : constraints.compliance[r];
       return jumps.local_element(r) - constraints.c[r] - compliance * multipliers.local_element(r);

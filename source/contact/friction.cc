@@ -502,7 +502,7 @@ namespace slipstick::contact
                                        load,
                                        set,
                                        reached && *reached ? **reached : qp::SmalbeStart<Vector>{dual.zero()},
-                                       qp::Goal(tolerance, solution.reference),
+                                       qp::Goal(tolerance, solution.reference, from.l2_norm()),
                                        options.smalbe,
                                        with_start,
                                        asks);
