@@ -156,7 +156,7 @@ def bodies_of(scene, path):
 
 
 def middles(run, grid, names):
-    """Of bodies: the middle of the cell that is nearest to the centre of all of their cells, so that it is in the body."""
+    """Of bodies: the centre of their cells where that is in the body, else the middle of the cell next to it."""
     numbers, all_names = grid.cell_fields.get("body"), run.scene.names("Bodies")
     found = []
     for name in names:
@@ -166,8 +166,19 @@ def middles(run, grid, names):
         if len(cells) == 0:
             continue
         centres = grid.points[cells].mean(axis=1)
-        found.append((name, centres[np.argmin(((centres - centres.mean(axis=0)) ** 2).sum(axis=1))]))
+        centre = centres.mean(axis=0)
+        if not is_in_any(centre, grid.points[cells]):
+            centre = centres[np.argmin(((centres - centre) ** 2).sum(axis=1))]
+        found.append((name, centre))
     return found
+
+
+def is_in_any(point, cells):
+    """@p cells: corners in turn, convex; a triangle has one of them twice."""
+    along = np.roll(cells, -1, axis=1) - cells
+    to_point = point - cells
+    side = along[:, :, 0] * to_point[:, :, 1] - along[:, :, 1] * to_point[:, :, 0]
+    return bool(((side >= 0).all(axis=1) | (side <= 0).all(axis=1)).any())
 
 
 def body_force(scene, load, body, x, y, t):
@@ -235,7 +246,7 @@ def draw_all(axes, run, grid, t, size, moved_point):
     draw_obstacles(axes, run, t, size)
     draw_supports(axes, run, t, 0.02 * size, moved_point)
     draw_loads(axes, run, t, 0.08 * size, moved_point)
-    draw_body_forces(axes, run, grid, t, 0.08 * size, moved_point)
+    draw_body_forces(axes, run, grid, t, 0.06 * size, moved_point)
     draw_temperatures(axes, run, grid, t, moved_point)
     draw_bolts(axes, run, 0.06 * size, moved_point)
 

@@ -123,7 +123,7 @@ class Pictures(WithRun):
         axes = self.painter(run=run, scale=0).draw(1).axes[0]
         arrows = [patch for patch in axes.patches if type(patch).__name__ == 'FancyArrowPatch']
         ends = [[tuple(numpy.round(point, 6)) for point in patch._posA_posB] for patch in arrows]
-        length = 0.08 * 2
+        length = 0.06 * 2
         for tail in ((0.5, 0.5), (1.5, 0.5)):
             self.assertIn([tail, (tail[0], round(tail[1] - length, 6))], ends)
         self.assertIn([(0.5, 0.62), (0.5, 0.5)], ends)  # the bolt
