@@ -37,6 +37,8 @@ namespace slipstick::qp
     // |G x| may be this times the tolerance, over the forces: 1 % at 1e-4. Elsewhere than beside large gaps the goal asks
     // for less.
     constexpr double allowed_imbalance = 100;
+    // ... and never for less than this part of the reference.
+    constexpr double rounding_of_balance = 1e-13;
 
     template <typename Vector, typename Problem, typename Set>
     class Smalbe
@@ -72,10 +74,11 @@ namespace slipstick::qp
         reference    = goal.reference;
         if (!(reference > 0))
           reference = s[0] > 0 ? std::sqrt(s[0]) : s[1] > 0 ? norm * std::sqrt(s[1]) : norm;
-        target    = goal.tolerance * reference;
-        feasible  = target;
-        tolerance = goal.tolerance;
-        forces    = goal.forces;
+        target = goal.tolerance * reference;
+        // where gaps make the reference, forces may be next to nothing beside it
+        feasible =
+          std::min(target,
+                   std::max(allowed_imbalance * goal.tolerance * norm * goal.forces, rounding_of_balance * reference));
       }
 
       SmalbeResult<Vector> run()
@@ -174,8 +177,6 @@ namespace slipstick::qp
         feasibility = norm * Gx;
         lagrangian  = s[2];
         noise       = options.inner.rounding * norm * std::sqrt(s[5]);
-        // where gaps make the reference, forces may be next to nothing beside it
-        feasible = std::min(target, allowed_imbalance * tolerance * norm * std::max(forces, std::sqrt(s[5])));
         if (observer)
           observer({counts.outer_iterations,
                     counts.hessian_multiplications,
@@ -234,8 +235,7 @@ namespace slipstick::qp
       Vector                shift, rhs; // rhs = b - shift
       double                inner_norm, M;
       double                reference = 0, target = 0; // of residuals
-      double                feasible  = 0;             // of |PFP| |G x|
-      double                tolerance = 0, forces = 0; // of the goal
+      double                feasible = 0;              // of |PFP| |G x|
       double                gP = 0, Gx = 0, feasibility = 0, lagrangian = 0, noise = 0;
       std::optional<double> lagrangian_before;
       Counts                counts;
