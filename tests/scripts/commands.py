@@ -114,7 +114,7 @@ class Commands(unittest.TestCase):
             if result.returncode == NOT_INSTALLED:
                 continue
             for option in re.findall(r'--[a-z-]+', match.group(3)):
-                self.assertIn(option, result.stdout, match.group(1))
+                self.assertIn(option, result.stdout + result.stderr, match.group(1))
                 n += 1
         self.assertGreater(n, 5)
 
