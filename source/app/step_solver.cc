@@ -326,7 +326,7 @@ namespace slipstick::app
         if (!scene.pretensions.empty())
           {
             bolts.emplace(scene, matrices, comm);
-            bolts_so_far = Tightening(bolts->stiffnesses(), bolts->lengths());
+            bolts_so_far = mechanics::Tightening(bolts->stiffnesses(), bolts->lengths());
           }
         std::vector<Eigen::VectorXd> loads;
         for (const auto &subdomain : matrices)
@@ -406,9 +406,10 @@ namespace slipstick::app
                                     scene.bodies.size(),
                                     history,
                                     bolts ? bolts->energies_beside(u, bolts_so_far.shortening(), scene.bodies.size())
-                                          : std::vector<double>());
+                                                    : std::vector<double>());
     add_held_nodes(scene, *the_dual, held, x, u, *answer.contact);
-    answer.stress = mechanics::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), elastic_part(u), t);
+    answer.stress =
+      mechanics::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), elastic_part(u), t);
   }
 
   template <int dim>

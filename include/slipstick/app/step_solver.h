@@ -2,13 +2,13 @@
 #pragma once
 
 #include <slipstick/app/step_state.h>
-#include <slipstick/app/tightening.h>
 #include <slipstick/base/log.h>
 #include <slipstick/contact/checks.h>
 #include <slipstick/contact/friction.h>
 #include <slipstick/interface/contact_constraints.h>
 #include <slipstick/mechanics/bolts.h>
 #include <slipstick/mechanics/stress.h>
+#include <slipstick/mechanics/tightening.h>
 #include <slipstick/mesh/adaptive_refinement.h>
 #include <slipstick/output/convergence.h>
 #include <slipstick/scene/scene.h>
@@ -103,7 +103,7 @@ namespace slipstick::app
       return the_solution;
     }
     /// Forces and lengths of the bolts, after the step solved last.
-    const Tightening &tightening() const
+    const mechanics::Tightening &tightening() const
     {
       return bolts_so_far;
     }
@@ -211,7 +211,7 @@ namespace slipstick::app
     std::unique_ptr<Answer>                 accepted; // by the test of accuracy, in the step
     std::vector<Eigen::VectorXd>            u;        // of the last step
     contact::History                        history;  // of the steps before
-    Tightening                              bolts_so_far;
+    mechanics::Tightening                   bolts_so_far;
     std::vector<output::ConvergenceRow>     rows;
   };
 } // namespace slipstick::app

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace slipstick::app
+namespace slipstick::mechanics
 {
   /// The tensions of n bolts as functions of how much they are shortened are solved for by Broyden's method (good, 1965),
   /// from the stiffness of the bolts alone; exact after the second solve where nothing but the bolts loads the bodies and no
@@ -64,4 +64,4 @@ namespace slipstick::app
     unsigned int                       n_loose   = 0;    // attempts without tension
     double low = -HUGE_VAL, high = HUGE_VAL;             // of a single bolt: too short a way, too long a way [mm]
   };
-} // namespace slipstick::app
+} // namespace slipstick::mechanics

@@ -1,9 +1,9 @@
-#include <slipstick/app/tightening.h>
+#include <slipstick/mechanics/tightening.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace slipstick::app
+namespace slipstick::mechanics
 {
   namespace
   {
@@ -160,4 +160,4 @@ namespace slipstick::app
     std::copy(state[2].begin(), state[2].end(), J.data());
     has_known = false;
   }
-} // namespace slipstick::app
+} // namespace slipstick::mechanics
