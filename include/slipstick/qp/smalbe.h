@@ -34,11 +34,10 @@ namespace slipstick::qp
 
   namespace detail
   {
-    // |G x| may be this times the tolerance, over the forces: 1 % at 1e-4. Elsewhere than beside large gaps the goal asks
-    // for less.
-    constexpr double allowed_imbalance = 100;
-    // ... and never for less than this part of the reference.
-    constexpr double rounding_of_balance = 1e-13;
+    // |G x| beyond this part of the forces that balance the loads is too large, whatever the goal ...
+    constexpr double gross_imbalance = 0.01;
+    // ... unless the forces are less than this part of all.
+    constexpr double negligible_forces = 1e-9;
 
     template <typename Vector, typename Problem, typename Set>
     class Smalbe
@@ -74,11 +73,9 @@ namespace slipstick::qp
         reference    = goal.reference;
         if (!(reference > 0))
           reference = s[0] > 0 ? std::sqrt(s[0]) : s[1] > 0 ? norm * std::sqrt(s[1]) : norm;
-        target = goal.tolerance * reference;
-        // where gaps make the reference, forces may be next to nothing beside it
-        feasible =
-          std::min(target,
-                   std::max(allowed_imbalance * goal.tolerance * norm * goal.forces, rounding_of_balance * reference));
+        target      = goal.tolerance * reference;
+        feasible    = target;
+        goal_forces = goal.forces;
       }
 
       SmalbeResult<Vector> run()
@@ -177,6 +174,9 @@ namespace slipstick::qp
         feasibility = norm * Gx;
         lagrangian  = s[2];
         noise       = options.inner.rounding * norm * std::sqrt(s[5]);
+        // where gaps make the reference, forces may be next to nothing beside it
+        feasible =
+          std::min(target, gross_imbalance * norm * std::max(goal_forces, negligible_forces * std::sqrt(s[5])));
         if (observer)
           observer({counts.outer_iterations,
                     counts.hessian_multiplications,
@@ -234,8 +234,8 @@ namespace slipstick::qp
       std::optional<Vector> g;
       Vector                shift, rhs; // rhs = b - shift
       double                inner_norm, M;
-      double                reference = 0, target = 0; // of residuals
-      double                feasible = 0;              // of |PFP| |G x|
+      double                reference = 0, target = 0;     // of residuals
+      double                feasible = 0, goal_forces = 0; // of |PFP| |G x|; those that balance the loads
       double                gP = 0, Gx = 0, feasibility = 0, lagrangian = 0, noise = 0;
       std::optional<double> lagrangian_before;
       Counts                counts;

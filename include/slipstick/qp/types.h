@@ -80,7 +80,7 @@ namespace slipstick::qp
 
     double tolerance;
     double reference;
-    double forces; // size of those that balance the loads: |G x| is also asked to be small beside them
+    double forces; // size of those that balance the loads, beside which |G x| must not be gross
   };
 
   /// Reduction of a single process.
