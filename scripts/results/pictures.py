@@ -168,12 +168,9 @@ class Painter:
         return matplotlib.colors.ListedColormap(matplotlib.colormaps["coolwarm"](np.linspace((1 + low) / 2, (1 + high) / 2, 512)))
 
     def draw_symbols(self, axes, grid, t):
-        symbols.draw_obstacles(axes, self.run, t, self.size)
-
         def moved(point):
             return point + self.factor * grid.displacement_near([point])[0]
-        symbols.draw_supports(axes, self.run, t, 0.02 * self.size, moved)
-        symbols.draw_loads(axes, self.run, t, 0.08 * self.size, moved)
+        symbols.draw_all(axes, self.run, grid, t, self.size, moved)
         return symbols.key(self.run)
 
     def save(self, step, file):

@@ -48,9 +48,7 @@ def draw(run, step=0):
         if len(pairs) <= MOST_NAMES:
             handles.append(matplotlib.lines.Line2D([], [], color=colour, linewidth=2.4, label="contact " + name))
     t = run.factor(len(run.factors) - 1)
-    symbols.draw_obstacles(axes, run, t, painter.size)
-    symbols.draw_supports(axes, run, t, 0.02 * painter.size, lambda point: point)
-    symbols.draw_loads(axes, run, t, 0.08 * painter.size, lambda point: point)
+    symbols.draw_all(axes, run, grid, t, painter.size, lambda point: point)
     axes.set_xlabel("x [mm]")
     axes.set_ylabel("y [mm]")
     loads = f", loads at t = {t:g}" if len(run.factors) > 1 else ""

@@ -6,7 +6,7 @@ import matplotlib.collections
 import matplotlib.patches
 import numpy as np
 
-LOAD, SUPPORT, MOVED = "crimson", "darkgreen", "royalblue"
+LOAD, SUPPORT, MOVED, HEAT, BOLT = "crimson", "darkgreen", "royalblue", "darkorange", "purple"
 MOST_SYMBOLS = 12  # a boundary
 SMALL = 1e-9  # part of the largest traction that is drawn as none
 
@@ -150,6 +150,107 @@ def draw_loads(axes, run, t, length, moved_point):
                 arrow(axes, place - drawn, place, LOAD)
 
 
+def bodies_of(scene, path):
+    names = scene.names(path)
+    return scene.names("Bodies") if names in (["all"], ["*"]) else names
+
+
+def middles(run, grid, names):
+    """Of bodies: the centre of their cells where that is in the body, else the middle of the cell next to it."""
+    numbers, all_names = grid.cell_fields.get("body"), run.scene.names("Bodies")
+    found = []
+    for name in names:
+        if numbers is None or name not in all_names:
+            continue
+        cells = grid.cells[numbers == all_names.index(name)]
+        if len(cells) == 0:
+            continue
+        centres = grid.points[cells].mean(axis=1)
+        centre = centres.mean(axis=0)
+        if not is_in_any(centre, grid.points[cells]):
+            centre = centres[np.argmin(((centres - centre) ** 2).sum(axis=1))]
+        found.append((name, centre))
+    return found
+
+
+def is_in_any(point, cells):
+    """@p cells: corners in turn, convex; a triangle has one of them twice."""
+    along = np.roll(cells, -1, axis=1) - cells
+    to_point = point - cells
+    side = along[:, :, 0] * to_point[:, :, 1] - along[:, :, 1] * to_point[:, :, 0]
+    return bool(((side >= 0).all(axis=1) | (side <= 0).all(axis=1)).any())
+
+
+def body_force(scene, load, body, x, y, t):
+    """Force per volume."""
+    section, density = "Body force " + load, scene.field(f"Material {scene.get(f'Body {body}/Material')}/Density", x, y, t) or 0.
+    vector = lambda name: np.array([scene.field(f"{section}/{name} {axis}", x, y, t) or 0. for axis in "xy"])
+    return vector("Force") + density * vector("Acceleration")
+
+
+def draw_body_forces(axes, run, grid, t, length, moved_point):
+    """An arrow with a dot at its tail in the middle of every body, the longest with @p length; a turning arrow about the axis
+    of a rotation."""
+    arrows = []
+    for name in run.scene.names("Body forces"):
+        for body, place in middles(run, grid, bodies_of(run.scene, f"Body force {name}/Bodies")):
+            arrows.append((place, body_force(run.scene, name, body, *place, t)))
+        if (run.scene.field(f"Body force {name}/Angular velocity", 0, 0, t) or 0.) != 0:
+            centre = run.scene.numbers(f"Body force {name}/Axis", (0., 0.))
+            if run.summary.get("problem", {}).get("plane_state") != "axisymmetric" and len(centre) == 2:
+                draw_turning(axes, np.array(centre), 0.6 * length)
+    largest = max((np.linalg.norm(vector) for _, vector in arrows), default=0)
+    for place, vector in arrows:
+        if largest > 0 and math.isfinite(largest) and np.linalg.norm(vector) > SMALL * largest:
+            tail = moved_point(place)
+            axes.plot(*tail, marker="o", markersize=5, color=LOAD, zorder=6)
+            arrow(axes, tail, tail + vector / largest * length, LOAD)
+
+
+def draw_turning(axes, centre, radius):
+    angles = np.radians(np.linspace(20, 290, 40))
+    axes.plot(centre[0] + radius * np.cos(angles), centre[1] + radius * np.sin(angles), color=LOAD, linewidth=1.2, zorder=6)
+    at = lambda angle: centre + radius * np.array([math.cos(angle), math.sin(angle)])
+    arrow(axes, at(angles[-2]), at(angles[-1] + 0.3), LOAD)
+    axes.plot(*centre, marker="+", color=LOAD, markersize=6, zorder=6)
+
+
+def draw_temperatures(axes, run, grid, t, moved_point):
+    """The sum of the changes in the middle of every body that has any."""
+    changes = {}
+    for name in run.scene.names("Temperatures"):
+        for body, place in middles(run, grid, bodies_of(run.scene, f"Temperature {name}/Bodies")):
+            change = run.scene.field(f"Temperature {name}/Change", *place, t)
+            if change is not None:
+                changes[body] = (place, changes.get(body, (place, 0.))[1] + change)
+    for place, change in changes.values():
+        if change != 0:
+            axes.text(*moved_point(place), f"{change:+.4g} K", color=HEAT, fontsize=9, fontweight="bold", ha="center", va="bottom",
+                      zorder=6, clip_on=True, bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": HEAT, "alpha": 0.85})
+
+
+def draw_bolts(axes, run, length, moved_point):
+    """Two arrows that meet at the section."""
+    for name in run.scene.names("Pretensions"):
+        section = "Pretension " + name
+        point, direction = (np.array(run.scene.numbers(f"{section}/{key}")) for key in ("Point", "Direction"))
+        if len(point) != 2 or len(direction) != 2 or not np.linalg.norm(direction) > 0:
+            continue
+        along, place = direction / np.linalg.norm(direction), moved_point(point)
+        for side in (1, -1):
+            arrow(axes, place + side * length * along, place, BOLT)
+
+
+def draw_all(axes, run, grid, t, size, moved_point):
+    """@p size of the scene; @p moved_point: where a point is drawn."""
+    draw_obstacles(axes, run, t, size)
+    draw_supports(axes, run, t, 0.02 * size, moved_point)
+    draw_loads(axes, run, t, 0.08 * size, moved_point)
+    draw_body_forces(axes, run, grid, t, 0.06 * size, moved_point)
+    draw_temperatures(axes, run, grid, t, moved_point)
+    draw_bolts(axes, run, 0.06 * size, moved_point)
+
+
 def key(run):
     """Entries of a legend: what the symbols mean."""
     handles = []
@@ -159,6 +260,12 @@ def key(run):
         handles.append(line(marker="^", color=SUPPORT, label="held (open: one direction)"))
     if kinds & {"traction", "point load"}:
         handles.append(line(marker=r"$\downarrow$", color=LOAD, label="load"))
+    if run.scene.names("Body forces"):
+        handles.append(matplotlib.lines.Line2D([], [], color=LOAD, marker="o", markersize=5, linewidth=1.2, label="body force"))
+    if run.scene.names("Temperatures"):
+        handles.append(matplotlib.patches.Patch(facecolor="white", edgecolor=HEAT, label="change of temperature"))
+    if run.scene.names("Pretensions"):
+        handles.append(line(marker=r"$\updownarrow$", color=BOLT, label="pretension"))
     if run.scene.names("Obstacles"):
         handles.append(matplotlib.patches.Patch(facecolor="0.86", edgecolor="0.35", hatch="///", label="rigid obstacle"))
     return handles

@@ -230,7 +230,7 @@ namespace slipstick::app
       Fields with(const Fields &z) const
       {
         const double scale = largest(answer.recovery.u) / largest(z);
-        Fields       sum = answer.recovery.u, difference = answer.recovery.u, product;
+        Fields       sum = solver.elastic_part(answer.recovery.u), difference = sum, product;
         for (unsigned int p = 0; p < z.size(); ++p)
           {
             sum[p] += scale * z[p];

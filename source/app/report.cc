@@ -385,6 +385,7 @@ namespace slipstick::app
     step.contact                 = summary.results.contact;
     step.forces                  = summary.results.forces;
     step.probes                  = summary.results.probes;
+    step.pretensions             = summary.results.pretensions;
     summary.steps                = so_far.steps;
     summary.steps.push_back(std::move(step));
 

@@ -70,6 +70,11 @@ namespace slipstick
       a &x.name &x.is_point &x.points;
     }
     template <class Archive>
+    void serialize(Archive &a, PretensionResult &x, const unsigned int)
+    {
+      a &x.name &x.force &x.shortening &x.is_tightened;
+    }
+    template <class Archive>
     void serialize(Archive &a, NamedResultant &x, const unsigned int)
     {
       a &x.name &x.kind &x.sum;
@@ -83,7 +88,7 @@ namespace slipstick
     void serialize(Archive &a, StepSummary &x, const unsigned int)
     {
       a &x.load_factor &x.hessian_multiplications &x.outer_iterations &x.coulomb_iterations &x.max_displacement &x
-        .strain_energy &x.contact &x.forces &x.probes;
+        .strain_energy &x.contact &x.forces &x.probes &x.pretensions;
     }
     template <class Archive>
     void serialize(Archive &a, SolverSummary &x, const unsigned int)
@@ -112,7 +117,7 @@ namespace slipstick
     void serialize(Archive &a, ResultSummary &x, const unsigned int)
     {
       a &x.max_displacement &x.max_von_mises &x.max_von_mises_at &x.singular &x.probes &x.strain_energy &x.contact &x
-        .forces;
+        .forces &x.pretensions;
       bool                  is_revolved = x.hoop_stress.has_value();
       std::array<double, 2> hoop_stress = x.hoop_stress.value_or(std::array<double, 2>());
       a &is_revolved       &hoop_stress;
@@ -144,7 +149,7 @@ namespace slipstick
     void serialize(Archive &a, StepState &x, const unsigned int)
     {
       a &x.kept_part &x.largest_load &x.history &x.rows &x.labels &x.multipliers &x.reference &x.weighted_reference &x
-        .largest_traction &x.u &x.directions;
+        .largest_traction &x.u &x.directions &x.bolts;
     }
     template <class Archive>
     void serialize(Archive &a, RunState &x, const unsigned int)
@@ -161,7 +166,7 @@ namespace slipstick::app
   {
     const std::string head_name = "restart.bin";
     // Format of the files: another layout gets another number.
-    constexpr unsigned int format_number = 2;
+    constexpr unsigned int format_number = 3;
 
     /// Content of restart.bin: to which run the files belong.
     struct Head

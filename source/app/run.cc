@@ -276,6 +276,11 @@ namespace slipstick::app
     summary.results.forces = forces(solver, *answer, t, about_forces);
     warn(about_forces);
     add_places(solver, stress, summary);
+    for (unsigned int k = 0; k < scene.pretensions.size(); ++k)
+      summary.results.pretensions.push_back({scene.pretensions[k].name,
+                                             solver.tightening().tensions()[k],
+                                             solver.tightening().shortening()[k],
+                                             solver.tightening().is_given(k)});
     summary.results.probes = probe_results(scene, probes, answer->recovery.u, stress);
     write_fields(step, *answer);
     if (scene.has_contact())
@@ -304,7 +309,13 @@ namespace slipstick::app
     print_checks(log, contact.checks, tolerance);
     if (!passes(solution, contact.checks, tolerance))
       print_failure(log, scene, solution, contact.checks, tolerance);
-    warn(answer_warnings(scene, solver.mesh(), solver.spaces(), solver.dual(), solution.free, contact.nodes, u));
+    warn(answer_warnings(scene,
+                         solver.mesh(),
+                         solver.spaces(),
+                         solver.dual(),
+                         solution.free,
+                         contact.nodes,
+                         solver.elastic_part(u)));
     warn(held_node_warnings(scene, solver.held_contacts(), contact, comm));
     if (!solver.unheld().empty())
       warn({{"unresisted", set_to_zero(solver.unheld())}});

@@ -182,6 +182,7 @@ namespace slipstick::app
     state.reference          = the_solution.reference;
     state.weighted_reference = the_solution.weighted_reference;
     state.largest_traction   = the_solution.largest_traction;
+    state.bolts              = bolts_so_far.state();
     for (const auto &part : u)
       state.u.emplace_back(part.data(), part.data() + part.size());
     if (the_solution.directions)
@@ -215,6 +216,7 @@ namespace slipstick::app
     the_solution.reference          = state.reference;
     the_solution.weighted_reference = state.weighted_reference;
     the_solution.largest_traction   = state.largest_traction;
+    bolts_so_far.restore(state.bolts);
     if (state.directions.empty())
       return;
     the_solution.directions =
@@ -228,9 +230,17 @@ namespace slipstick::app
                                                      const std::uint64_t multiplications_before)
   {
     options.tolerance = scene.solver.tolerance;
-    auto answer       = tighten(step,
+    if (bolts)
+      {
+        bolts_so_far.begin(wanted_tensions(scene.load_factors[step]));
+        if (step == 0)
+          reload(scene.load_factors[step]);
+      }
+    auto answer = tighten(step,
                           multiplications_before,
                           checked(solve_step(step, multiplications_before, false), scene.load_factors[step]));
+    if (bolts)
+      answer = tighten_bolts(step, multiplications_before, std::move(answer));
     if (step + 1 < scene.load_factors.size())
       u = answer->recovery.u;
     history.add(answer->contact->checks);
@@ -272,6 +282,16 @@ namespace slipstick::app
     largest_load = std::max(largest_load, size);
   }
 
+  template <int dim>
+  std::vector<Eigen::VectorXd> StepSolver<dim>::loads_at(const double t)
+  {
+    auto loads = mechanics::assemble_loads(scene, *the_mesh, *the_spaces, t);
+    if (bolts)
+      bolts->add_loads(bolts_so_far.shortening(), loads);
+    drop_rounding(loads);
+    return loads;
+  }
+
   // Again for every step if something is not held: the loads of the step may drive it.
   template <int dim>
   void StepSolver<dim>::make_dual(const double t)
@@ -300,14 +320,15 @@ namespace slipstick::app
   {
     clock.enter("assembly");
     if (subdomains)
-      {
-        auto loads = mechanics::assemble_loads(scene, *the_mesh, *the_spaces, t);
-        drop_rounding(loads);
-        subdomains->set_loads(std::move(loads));
-      }
+      subdomains->set_loads(loads_at(t));
     else
       {
-        auto                         matrices = mechanics::assemble(scene, *the_mesh, *the_spaces, t);
+        auto matrices = mechanics::assemble(scene, *the_mesh, *the_spaces, t);
+        if (!scene.pretensions.empty())
+          {
+            bolts.emplace(scene, matrices, comm);
+            bolts_so_far = mechanics::Tightening(bolts->stiffnesses(), bolts->lengths());
+          }
         std::vector<Eigen::VectorXd> loads;
         for (const auto &subdomain : matrices)
           loads.push_back(subdomain.load);
@@ -342,9 +363,8 @@ namespace slipstick::app
   bool StepSolver<dim>::advance(const double t)
   {
     clock.enter("assembly");
-    auto loads = mechanics::assemble_loads(scene, *the_mesh, *the_spaces, t);
-    auto rows  = contact_rows(t);
-    drop_rounding(loads);
+    auto       loads = loads_at(t);
+    auto       rows  = contact_rows(t);
     const bool is_same =
       scene.supports.size() == n_given &&
       dealii::Utilities::MPI::min(rows.active.label == the_dual->constraints().label ? 1 : 0, comm) > 0;
@@ -385,9 +405,12 @@ namespace slipstick::app
                                     law.depends_on_pressure() ? law.bounds(x) : from.slip_bound,
                                     from.free,
                                     scene.bodies.size(),
-                                    history);
+                                    history,
+                                    bolts ? bolts->energies_beside(u, bolts_so_far.shortening(), scene.bodies.size())
+                                                    : std::vector<double>());
     add_held_nodes(scene, *the_dual, held, x, u, *answer.contact);
-    answer.stress = mechanics::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), u, t);
+    answer.stress =
+      mechanics::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), elastic_part(u), t);
   }
 
   template <int dim>

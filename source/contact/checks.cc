@@ -138,7 +138,8 @@ namespace slipstick::contact
                  const std::vector<double>          &slip_bound_,
                  const std::vector<bool>            &free_,
                  const unsigned int                  n_bodies_,
-                 const History                      &history_)
+                 const History                      &history_,
+                 const std::vector<double>          &energies_beside_)
         : dual(dual_)
         , constraints(dual_.constraints())
         , comm(dual_.communicator())
@@ -148,6 +149,7 @@ namespace slipstick::contact
         , free(free_)
         , n_bodies(n_bodies_)
         , history(history_)
+        , energies_beside(energies_beside_)
         , jumps(dual_.jumps(u_))
         , deformed(deformations(dual_, u_))
         , forces(nodal_forces(dual_, deformed))
@@ -199,6 +201,8 @@ namespace slipstick::contact
               Eigen::Map<const Eigen::MatrixXd>(u[p].data(), dim, u[p].size() / dim).colwise().norm().maxCoeff());
             energies[dual.subdomains()[p]->body()] += deformed[p].dot(forces[p] + dual.subdomains()[p]->load());
           }
+        for (std::size_t b = 0; b < energies_beside.size(); ++b)
+          energies[b] += energies_beside[b];
         checks.max_displacement = dealii::Utilities::MPI::max(checks.max_displacement, comm);
         MPI_Allreduce(MPI_IN_PLACE, energies.data(), energies.size(), MPI_DOUBLE, MPI_SUM, comm);
         checks.energy = energies.sum();
@@ -375,6 +379,7 @@ namespace slipstick::contact
       const std::vector<bool>            &free;
       const unsigned int                  n_bodies;
       const History                      &history;
+      const std::vector<double>          &energies_beside; // of this rank's bodies [N mm]; empty: none
 
       const DistributedVector                jumps;
       const std::vector<Eigen::VectorXd>     deformed; // u without rigid motions
@@ -427,8 +432,9 @@ namespace slipstick::contact
                        const std::vector<double>          &slip_bound,
                        const std::vector<bool>            &free,
                        const unsigned int                  n_bodies,
-                       const History                      &history)
+                       const History                      &history,
+                       const std::vector<double>          &energies_beside)
   {
-    return Inspection(dual, multipliers, u, slip_bound, free, n_bodies, history)();
+    return Inspection(dual, multipliers, u, slip_bound, free, n_bodies, history, energies_beside)();
   }
 } // namespace slipstick::contact

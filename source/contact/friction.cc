@@ -121,6 +121,7 @@ namespace slipstick::contact
       Vector feasible_start(const DualSolution *start)
       {
         const auto loads = dual.particular();
+        size_of_loads    = loads.l2_norm();
         tractions.emplace(dual, options.tolerance, loads.linfty_norm(), start ? start->largest_traction : 0.);
         if (start && loads.l2_norm() <= rounding_of_loads * start->reference) // unloaded to zero
           return dual.zero();
@@ -497,16 +498,18 @@ namespace slipstick::contact
           asks = [&](const Vector &step, const Vector &g) {
             return accepts(unshifted(box, bounds_of(set), from, step), g);
           };
-        const auto result = qp::smalbe(dual,
+        // at lower accuracy it goes on all the same
+        const double forces = tolerance <= options.tolerance && size_of_loads > 0 ? size_of_loads : qp::infinity;
+        const auto   result = qp::smalbe(dual,
                                        1.,
                                        load,
                                        set,
                                        reached && *reached ? **reached : qp::SmalbeStart<Vector>{dual.zero()},
-                                       qp::Goal(tolerance, solution.reference),
+                                       qp::Goal(tolerance, solution.reference, forces),
                                        options.smalbe,
                                        with_start,
                                        asks);
-        solution.status   = result.status;
+        solution.status     = result.status;
         solution.counts += result.counts;
         ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
         solution.projected_gradient = result.projected_gradient;
@@ -558,6 +561,7 @@ namespace slipstick::contact
       std::optional<Vector> gradient; // where SMALBE-M ended
       DualSolution          solution;
 
+      double                       size_of_loads = 0; // of the least forces that balance them [N]
       std::optional<TractionError> tractions;
     };
   } // namespace

@@ -29,6 +29,10 @@ namespace slipstick::output
                                              : std::vector<std::string>{" Fx", " Fy", " Fz", " Mx", " My", " Mz"})
             out << ',' << csv_field(one.kind + " " + one.name + column);
       if (!steps.empty())
+        for (const auto &bolt : steps.front().pretensions)
+          out << ',' << csv_field("pretension " + bolt.name + " force") << ','
+              << csv_field("pretension " + bolt.name + " shortening");
+      if (!steps.empty())
         for (const auto &probe : steps.front().probes)
           if (probe.is_point)
             for (unsigned int d = 0; d < dim; ++d)
@@ -44,6 +48,8 @@ namespace slipstick::output
               for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
                 out << ',' << to_text(one.sum.moment[d]);
             }
+          for (const auto &bolt : steps[k].pretensions)
+            out << ',' << to_text(bolt.force) << ',' << to_text(bolt.shortening);
           for (const auto &probe : steps[k].probes)
             if (probe.is_point)
               for (unsigned int d = 0; d < dim; ++d)

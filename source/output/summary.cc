@@ -100,6 +100,17 @@ namespace slipstick::output
       return entry;
     }
 
+    /// Adds the list of bolts, where there are any.
+    Json with(Json entry, const std::vector<PretensionResult> &bolts)
+    {
+      for (const auto &bolt : bolts)
+        entry["pretensions"].push_back({{"pretension", bolt.name},
+                                        {"force", bolt.force},
+                                        {"shortening", bolt.shortening},
+                                        {"tightened", bolt.is_tightened}});
+      return entry;
+    }
+
     Json json(const std::vector<contact::PairResult> &contact, const unsigned int dim)
     {
       Json pairs = Json::array();
@@ -142,30 +153,32 @@ namespace slipstick::output
     {
       Json list = Json::array();
       for (const StepSummary &step : steps)
-        list.push_back(with({{"load_factor", step.load_factor},
-                             {"hessian_multiplications", step.hessian_multiplications},
-                             {"outer_iterations", step.outer_iterations},
-                             {"coulomb_iterations", step.coulomb_iterations},
-                             {"max_displacement", step.max_displacement},
-                             {"strain_energy", step.strain_energy},
-                             {"contact", json(step.contact, dim)},
-                             {"probes", json(step.probes, dim)}},
-                            step.forces,
-                            dim));
+        list.push_back(with(with({{"load_factor", step.load_factor},
+                                  {"hessian_multiplications", step.hessian_multiplications},
+                                  {"outer_iterations", step.outer_iterations},
+                                  {"coulomb_iterations", step.coulomb_iterations},
+                                  {"max_displacement", step.max_displacement},
+                                  {"strain_energy", step.strain_energy},
+                                  {"contact", json(step.contact, dim)},
+                                  {"probes", json(step.probes, dim)}},
+                                 step.forces,
+                                 dim),
+                            step.pretensions));
       return list;
     }
 
     Json json(const ResultSummary &results, const unsigned int dim)
     {
-      Json all = with({{"max_displacement", results.max_displacement},
-                       {"max_von_mises", results.max_von_mises},
-                       {"max_von_mises_at", json(results.max_von_mises_at, dim)},
-                       {"singular", results.singular.empty() ? Json() : Json(results.singular)},
-                       {"strain_energy", results.strain_energy},
-                       {"contact", json(results.contact, dim)},
-                       {"probes", json(results.probes, dim)}},
-                      results.forces,
-                      dim);
+      Json all = with(with({{"max_displacement", results.max_displacement},
+                            {"max_von_mises", results.max_von_mises},
+                            {"max_von_mises_at", json(results.max_von_mises_at, dim)},
+                            {"singular", results.singular.empty() ? Json() : Json(results.singular)},
+                            {"strain_energy", results.strain_energy},
+                            {"contact", json(results.contact, dim)},
+                            {"probes", json(results.probes, dim)}},
+                           results.forces,
+                           dim),
+                      results.pretensions);
       if (results.hoop_stress)
         {
           all["min_hoop_stress"] = (*results.hoop_stress)[0];

@@ -29,6 +29,7 @@ namespace slipstick::scene
     const NamedKind body_force_kind  = {"Body force", "Body forces"};
     const NamedKind point_load_kind  = {"Point load", "Point loads"};
     const NamedKind temperature_kind = {"Temperature", "Temperatures"};
+    const NamedKind pretension_kind  = {"Pretension", "Pretensions"};
     const NamedKind contact_kind     = {"Contact", "Contacts"};
     const NamedKind probe_kind       = {"Probe", "Probes"};
 
@@ -41,6 +42,7 @@ namespace slipstick::scene
                                                 body_force_kind,
                                                 point_load_kind,
                                                 temperature_kind,
+                                                pretension_kind,
                                                 contact_kind,
                                                 probe_kind};
 
@@ -75,6 +77,7 @@ namespace slipstick::scene
       std::vector<BodyForceSection<dim>>   body_forces;
       std::vector<PointLoadSection<dim>>   point_loads;
       std::vector<TemperatureSection<dim>> temperatures;
+      std::vector<PretensionSection<dim>>  pretensions;
       std::vector<ContactSection<dim>>     contacts;
       std::vector<ProbeSection<dim>>       probes;
       ContactSearchSection<dim>            contact_search;
@@ -91,6 +94,7 @@ namespace slipstick::scene
       , body_forces(names.at(body_force_kind.list).begin(), names.at(body_force_kind.list).end())
       , point_loads(names.at(point_load_kind.list).begin(), names.at(point_load_kind.list).end())
       , temperatures(names.at(temperature_kind.list).begin(), names.at(temperature_kind.list).end())
+      , pretensions(names.at(pretension_kind.list).begin(), names.at(pretension_kind.list).end())
       , contacts(names.at(contact_kind.list).begin(), names.at(contact_kind.list).end())
       , probes(names.at(probe_kind.list).begin(), names.at(probe_kind.list).end())
     {
@@ -111,6 +115,7 @@ namespace slipstick::scene
       declare_all(body_forces);
       declare_all(point_loads);
       declare_all(temperatures);
+      declare_all(pretensions);
       declare_all(contacts);
       declare_all(probes);
       contact_search.declare(prm);
@@ -224,6 +229,8 @@ namespace slipstick::scene
         scene.point_loads.push_back(section.read(parameters, scene));
       for (const auto &section : temperatures)
         scene.temperatures.push_back(section.read(parameters, scene));
+      for (const auto &section : pretensions)
+        scene.pretensions.push_back(section.read(parameters, scene));
       for (const auto &section : contacts)
         scene.contacts.push_back(section.read(parameters, scene));
       scene.contact_search = contact_search.read(parameters);
@@ -319,6 +326,7 @@ namespace slipstick::scene
                                                                     {body_force_kind.list, {"gravity"}},
                                                                     {point_load_kind.list, {"pull"}},
                                                                     {temperature_kind.list, {"warm"}},
+                                                                    {pretension_kind.list, {"bolt"}},
                                                                     {contact_kind.list, {"circle"}},
                                                                     {probe_kind.list, {"tip"}}});
     const std::vector<std::pair<std::string, std::string>> must_be_set = {
@@ -338,6 +346,10 @@ namespace slipstick::scene
       {"Point load pull/Point", "10, 10" + z},
       {"Point load pull/Force x", "100"},
       {"Temperature warm/Change", "50"},
+      {"Pretension bolt/Body", "box"},
+      {"Pretension bolt/Point", "5, 5" + z},
+      {"Pretension bolt/Direction", "0, 1" + z},
+      {"Pretension bolt/Force", "1000"},
       {"Material elastic/Density", "7.85e-9"},
       {"Material elastic/Thermal expansion", "1.2e-5"},
       {"Contact circle/Slave", "box/bottom"},

@@ -82,6 +82,18 @@ class FreeMotions(unittest.TestCase):
                 self.assertAlmostEqual(results['contact'][0]['force'][1] / load, -1, delta=1e-3)
                 self.assertAlmostEqual(results['max_displacement'], 0.1, delta=0.02)
 
+    def test_forces_that_are_nothing_beside_the_gap(self):
+        """What the load closes elastically is 1e-10 to 1e-15 of the gap: forces must balance all the same."""
+        smalbe = {'Solver': {'Algorithm': 'smalbe'}}
+        for radius, pressure, where, refinements, ranks, changes in (
+                ('19.9', '5e-5', '1', 1, 1, {}), ('19', '1e-10', '(y<0)', 0, 2, {}), ('19.9', '5e-5', '(y<0)', 0, 1, {}),
+                ('19.9', '5e-5', '(y<0)', 0, 1, smalbe), ('19.999', '5e-5', '(y>0)', 0, 1, smalbe)):
+            result = solve(shaft(radius, {'Traction y': '-{}*{}'.format(pressure, where)}, refinements, young='2.1e11',
+                                 centre_only=False, **changes), ranks=ranks)
+            self.assertEqual(result.status, 0, result)
+            results = result.summary['results']
+            self.assertAlmostEqual(results['contact'][0]['force'][1] / results['loads'][0]['force'][1], -1, delta=1e-3)
+
 
 if __name__ == '__main__':
     unittest.main()

@@ -110,6 +110,31 @@ class Pictures(WithRun):
         bare = self.painter(with_symbols=False).draw(1).axes[0]
         self.assertEqual(len(bare.patches), 0)
 
+    def test_symbols_of_bodies(self):
+        """Weight and heat stand in the middle of the bodies that they act on, bolts at their sections."""
+        run = self.run_of()
+        run.scene.values.update({
+            'Bodies': 'left, right', 'Materials': 'steel', 'Body forces': 'weight, spin', 'Temperatures': 'sun, day',
+            'Pretensions': 'm8', 'Material steel/Density': '2', 'Body left/Material': 'steel', 'Body right/Material': 'steel',
+            'Body force weight/Bodies': 'all', 'Body force weight/Acceleration y': '-10*t', 'Body force weight/Force x': '0',
+            'Body force spin/Bodies': 'left', 'Body force spin/Angular velocity': '3', 'Body force spin/Axis': '0.5, 0.5',
+            'Temperature sun/Bodies': 'right', 'Temperature sun/Change': '50*t', 'Temperature day/Bodies': 'all',
+            'Temperature day/Change': '-10', 'Pretension m8/Point': '0.5, 0.5', 'Pretension m8/Direction': '0, 2'})
+        axes = self.painter(run=run, scale=0).draw(1).axes[0]
+        arrows = [patch for patch in axes.patches if type(patch).__name__ == 'FancyArrowPatch']
+        ends = [[tuple(numpy.round(point, 6)) for point in patch._posA_posB] for patch in arrows]
+        length = 0.06 * 2
+        for tail in ((0.5, 0.5), (1.5, 0.5)):
+            self.assertIn([tail, (tail[0], round(tail[1] - length, 6))], ends)
+        self.assertIn([(0.5, 0.62), (0.5, 0.5)], ends)  # the bolt
+        self.assertIn([(0.5, 0.38), (0.5, 0.5)], ends)
+        self.assertEqual(len(arrows), 2 + 2 + 2 + 1)  # traction and motion, weight, bolt, spin
+        self.assertEqual(sorted((text.get_text(), text.get_position()) for text in axes.texts),
+                         [('+40 K', (1.5, 0.5)), ('-10 K', (0.5, 0.5))])
+        labels = [text.get_text() for text in self.painter(run=run).draw(1).legends[0].get_texts()]
+        for label in ('body force', 'change of temperature', 'pretension'):
+            self.assertIn(label, labels)
+
     def test_nothing_is_cut_or_covered(self):
         for figure in (self.painter().draw(0), contact_plot.ContactPainter(self.run_of()).draw(0)):
             figure.canvas.draw()

@@ -6,7 +6,9 @@
 #include <slipstick/contact/checks.h>
 #include <slipstick/contact/friction.h>
 #include <slipstick/interface/contact_constraints.h>
+#include <slipstick/mechanics/bolts.h>
 #include <slipstick/mechanics/stress.h>
+#include <slipstick/mechanics/tightening.h>
 #include <slipstick/mesh/adaptive_refinement.h>
 #include <slipstick/output/convergence.h>
 #include <slipstick/scene/scene.h>
@@ -100,6 +102,16 @@ namespace slipstick::app
     {
       return the_solution;
     }
+    /// Forces and lengths of the bolts, after the step solved last.
+    const mechanics::Tightening &tightening() const
+    {
+      return bolts_so_far;
+    }
+    /// What of a displacement strains the bodies: all but what bolts are shortened by.
+    std::vector<Eigen::VectorXd> elastic_part(const std::vector<Eigen::VectorXd> &u) const
+    {
+      return bolts ? bolts->elastic_part(u, bolts_so_far.shortening()) : u;
+    }
     /// All steps so far.
     const std::vector<output::ConvergenceRow> &convergence() const
     {
@@ -116,6 +128,20 @@ namespace slipstick::app
     void build_dual(const double t);
     void make_dual(const double t);
     void make_dual_as_it_is(const double t);
+
+    /// Of this rank's subdomains, bolts included, without rounding.
+    std::vector<Eigen::VectorXd> loads_at(const double t);
+
+    /// Solves the step again, with bolts shortened by other amounts, until those that are tightened bear their forces.
+    std::unique_ptr<Answer> tighten_bolts(const unsigned int      step,
+                                          const std::uint64_t     multiplications_before,
+                                          std::unique_ptr<Answer> answer);
+
+    /// The tensions that the scene gives at load factor t.
+    std::vector<std::optional<double>> wanted_tensions(const double t) const;
+
+    /// The loads of the present step once more, with bolts as they are now.
+    void reload(const double t);
 
     /// Sets loads of this rank's subdomains to zero if they are only rounding compared with those of earlier steps.
     void drop_rounding(std::vector<Eigen::VectorXd> &loads);
@@ -168,6 +194,7 @@ namespace slipstick::app
     // the same in all load steps
     std::optional<interface::BodyContacts<dim>> contacts;
     std::shared_ptr<tfeti::Subdomains>          subdomains;
+    std::optional<mechanics::Bolts<dim>>        bolts; // if the scene has any
 
     std::unique_ptr<mesh::Mesh<dim>>        the_mesh;
     std::unique_ptr<mechanics::Spaces<dim>> the_spaces;
@@ -184,6 +211,7 @@ namespace slipstick::app
     std::unique_ptr<Answer>                 accepted; // by the test of accuracy, in the step
     std::vector<Eigen::VectorXd>            u;        // of the last step
     contact::History                        history;  // of the steps before
+    mechanics::Tightening                   bolts_so_far;
     std::vector<output::ConvergenceRow>     rows;
   };
 } // namespace slipstick::app

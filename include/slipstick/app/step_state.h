@@ -26,5 +26,7 @@ namespace slipstick::app
 
     /// Directions that the solver has kept, with their products, oldest first; owned rows.
     std::vector<std::pair<std::vector<double>, std::vector<double>>> directions;
+
+    std::vector<std::vector<double>> bolts; // numbers of Tightening::state()
   };
 } // namespace slipstick::app

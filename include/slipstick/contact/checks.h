@@ -74,6 +74,8 @@ namespace slipstick::contact
   /// @param u displacements of this rank's subdomains [mm].
   /// @param multipliers [N], balanced with u as DualProblem::recover returns them.
   /// @param slip_bound of every owned row [N].
+  /// @param energies_beside of every body, what initial strains add to u'K u for it to be twice its strain energy [N mm]; of
+  /// this rank; empty: none.
   /// @param free owned rows whose multiplier is strictly inside its bounds: tells open from closed, stick from slip.
   /// Collective.
   CheckedContact check(const tfeti::DualProblem           &dual,
@@ -82,5 +84,6 @@ namespace slipstick::contact
                        const std::vector<double>          &slip_bound,
                        const std::vector<bool>            &free,
                        const unsigned int                  n_bodies,
-                       const History                      &before = {});
+                       const History                      &before          = {},
+                       const std::vector<double>          &energies_beside = {});
 } // namespace slipstick::contact

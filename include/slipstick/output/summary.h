@@ -124,6 +124,15 @@ namespace slipstick::output
     std::vector<NamedResultant> loads, supports, foundations;
   };
 
+  /// A bolt that is tightened, or whose length is held.
+  struct PretensionResult
+  {
+    std::string name;
+    double      force        = 0;     // tension [N]
+    double      shortening   = 0;     // of the bolt against its length without force [mm]
+    bool        is_tightened = false; // was the force given?
+  };
+
   struct ResultSummary
   {
     double                   max_displacement = 0; // [mm]
@@ -135,6 +144,7 @@ namespace slipstick::output
     std::optional<std::array<double, 2>> hoop_stress; // smallest and largest, of bodies of revolution [MPa]
     std::vector<contact::PairResult>     contact;
     ForceSummary                         forces;
+    std::vector<PretensionResult>        pretensions;
   };
 
   /// Wall clock of rank 0, including its waiting for other ranks [s]. The stages add up to the total.
@@ -171,6 +181,7 @@ namespace slipstick::output
     std::vector<contact::PairResult> contact;
     ForceSummary                     forces;
     std::vector<ProbeResult>         probes;
+    std::vector<PretensionResult>    pretensions;
   };
 
   /// A figure of the results with the estimate of its discretisation error.

@@ -148,7 +148,7 @@ namespace slipstick::qp
               return Status::stagnated;
             double left = residual + violation / goal.reference;
             if (left <= goal.tolerance)
-              left += norm * imbalance(*face) / goal.reference;
+              left += imbalance(*face);
             if (is_accepted())
               {
                 std::swap(x, y);
@@ -180,15 +180,18 @@ namespace slipstick::qp
         return Status::converged;
       }
 
-      // By how much y, put on its bounds, would have to change for G x = e.
+      // By how much y, put on its bounds, would have to change for G x = e: over the reference, or over y itself, which is
+      // more where the reference is that of gaps, beside which what forces do is next to nothing.
       double imbalance(const Face &face)
       {
         Vector at = y;
         set.put_on_bounds(at);
         Vector balanced = at;
         face.balance(balanced);
+        const double size = qp::norm(balanced, problem.reduction());
         add(-1., at, balanced);
-        return qp::norm(balanced, problem.reduction());
+        const double missing = qp::norm(balanced, problem.reduction());
+        return missing > 0 ? missing * std::max(norm / goal.reference, 1 / size) : 0.;
       }
 
       // M r on the free entries, and how far the others are from their bounds: nearly the error of y.

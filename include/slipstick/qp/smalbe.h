@@ -34,6 +34,11 @@ namespace slipstick::qp
 
   namespace detail
   {
+    // |G x| beyond this part of the forces that balance the loads is too large, whatever the goal ...
+    constexpr double gross_imbalance = 0.01;
+    // ... unless the forces are less than this part of all.
+    constexpr double negligible_forces = 1e-9;
+
     template <typename Vector, typename Problem, typename Set>
     class Smalbe
     {
@@ -68,7 +73,9 @@ namespace slipstick::qp
         reference    = goal.reference;
         if (!(reference > 0))
           reference = s[0] > 0 ? std::sqrt(s[0]) : s[1] > 0 ? norm * std::sqrt(s[1]) : norm;
-        target = goal.tolerance * reference;
+        target      = goal.tolerance * reference;
+        feasible    = target;
+        goal_forces = goal.forces;
       }
 
       SmalbeResult<Vector> run()
@@ -96,16 +103,16 @@ namespace slipstick::qp
             measure();
             if (inner == Status::infeasible)
               return inner;
-            if (gP <= target && feasibility <= target)
+            if (gP <= target && feasibility <= feasible)
               return Status::converged;
             if (accepts && accepts(x, *g))
               return Status::converged;
             if (inner == Status::iteration_limit || counts.outer_iterations >= options.max_outer_iterations)
               return Status::iteration_limit;
-            if (inner == Status::stagnated && feasibility <= std::max(target, noise))
+            if (inner == Status::stagnated && feasibility <= std::max(feasible, noise))
               return Status::stagnated;
             const bool gives_up = stagnates(std::max(gP, feasibility));
-            const bool is_slow  = crawls(feasibility) && feasibility > target;
+            const bool is_slow  = crawls(feasibility) && feasibility > feasible;
             if ((gives_up || is_slow) && is_contradictory())
               return Status::infeasible;
             if (gives_up)
@@ -127,7 +134,7 @@ namespace slipstick::qp
             return false;
           const double residual = norm * qp::norm(A.range_part(), reduction);
           const double balanced = std::min(M * residual, reference);
-          return gradient <= (residual <= target ? std::max(balanced, target) : balanced);
+          return gradient <= (residual <= feasible ? std::max(balanced, target) : balanced);
         };
         auto inner = mpgp(A,
                           inner_norm,
@@ -167,6 +174,9 @@ namespace slipstick::qp
         feasibility = norm * Gx;
         lagrangian  = s[2];
         noise       = options.inner.rounding * norm * std::sqrt(s[5]);
+        // where gaps make the reference, forces may be next to nothing beside it
+        feasible =
+          std::min(target, gross_imbalance * norm * std::max(goal_forces, negligible_forces * std::sqrt(s[5])));
         if (observer)
           observer({counts.outer_iterations,
                     counts.hessian_multiplications,
@@ -224,7 +234,8 @@ namespace slipstick::qp
       std::optional<Vector> g;
       Vector                shift, rhs; // rhs = b - shift
       double                inner_norm, M;
-      double                reference = 0, target = 0;
+      double                reference = 0, target = 0;     // of residuals
+      double                feasible = 0, goal_forces = 0; // of |PFP| |G x|; those that balance the loads
       double                gP = 0, Gx = 0, feasibility = 0, lagrangian = 0, noise = 0;
       std::optional<double> lagrangian_before;
       Counts                counts;

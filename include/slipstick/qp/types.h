@@ -18,6 +18,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 
@@ -67,16 +68,19 @@ namespace slipstick::qp
 
   using Observer = std::function<void(const OuterStep &)>;
 
-  /// Accuracy asked for: residuals <= tolerance * reference; reference 0 means |b|.
+  /// Accuracy asked for: residuals <= tolerance * reference; reference 0 means |b|. Where gaps make the reference, forces
+  /// have a size of their own.
   struct Goal
   {
-    Goal(const double tolerance_, const double reference_ = 0)
+    Goal(const double tolerance_, const double reference_ = 0, const double forces_ = HUGE_VAL)
       : tolerance(tolerance_)
       , reference(reference_)
+      , forces(forces_)
     {}
 
     double tolerance;
     double reference;
+    double forces; // size of those that balance the loads, beside which |G x| must not be gross
   };
 
   /// Reduction of a single process.

@@ -174,6 +174,19 @@ namespace slipstick::scene
     Field<dim>                change; // [K]
   };
 
+  /// A bolt that is tightened: across the section of its body through `point`, normal to `direction`, the two parts
+  /// are drawn together until the bolt bears the force; later the length by which it is shortened is held.
+  template <int dim>
+  struct Pretension
+  {
+    std::string            name;
+    unsigned int           body = 0;            // index into Scene::bodies
+    dealii::Point<dim>     point;               // [mm]
+    dealii::Tensor<1, dim> direction;           // unit length: the axis of the bolt
+    Field<dim>             force;               // [N], >= 0: tension; where it is 0 the length is held
+    double                 tightened_until = 1; // last load factor at which the force is given
+  };
+
   enum class ObstacleShape
   {
     circle,     // bodies are outside; in space a ball
@@ -329,6 +342,7 @@ namespace slipstick::scene
     std::vector<BodyForce<dim>>              body_forces;
     std::vector<PointLoad<dim>>              point_loads;
     std::vector<Temperature<dim>>            temperatures;
+    std::vector<Pretension<dim>>             pretensions;
     std::vector<Obstacle<dim>>               obstacles;
     std::vector<ContactPair<dim>>            contacts;
     ContactSearch<dim>                       contact_search;

@@ -231,6 +231,21 @@ namespace slipstick::scene
     Temperature<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
   };
 
+  template <int dim>
+  struct PretensionSection
+  {
+    explicit PretensionSection(const std::string &name);
+
+    std::string        name;
+    std::string        body;
+    dealii::Point<dim> point, direction;
+    std::string        force = "0";
+    std::string        until = "auto";
+
+    void            declare(dealii::ParameterHandler &prm);
+    Pretension<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
+  };
+
   /// What acts between two sides that touch: of a contact pair and of those that the search finds.
   template <int dim>
   struct ContactLawSection

@@ -1,0 +1,163 @@
+#include <slipstick/mechanics/tightening.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::mechanics
+{
+  namespace
+  {
+    // Of the stiffness of a bolt that of bolt and clamped parts in a row, at first.
+    constexpr double first_part = 0.5;
+    // A bolt with less than this part of the tension wanted is loose: how it stretches tells nothing.
+    constexpr double loose_part = 1e-3;
+    // By how much farther a loose bolt is shortened every time.
+    constexpr double growth = 2;
+    // Stiffnesses that the differences give may be this part of that of the bolt, at least.
+    constexpr double least_part = 1e-3;
+    // Steps keep this part of the way from the nearer of two bounds.
+    constexpr double from_bounds = 0.05;
+  } // namespace
+
+  Tightening::Tightening(const std::vector<double> &stiffnesses, const std::vector<double> &lengths)
+    : length(lengths)
+    , s(stiffnesses.size(), 0.)
+    , N(s)
+    , s_known(s)
+    , N_known(s)
+    , J(Eigen::MatrixXd::Zero(s.size(), s.size()))
+    , wanted(s.size())
+  {
+    for (std::size_t i = 0; i < s.size(); ++i)
+      J(i, i) = first_part * stiffnesses[i];
+  }
+
+  bool Tightening::any_is_given() const
+  {
+    return std::any_of(wanted.begin(), wanted.end(), [](const auto &force) { return force.has_value(); });
+  }
+
+  bool Tightening::is_loose(const unsigned int bolt, const std::vector<double> &tensions) const
+  {
+    return wanted[bolt] && tensions[bolt] < loose_part * *wanted[bolt];
+  }
+
+  void Tightening::begin(std::vector<std::optional<double>> wanted_)
+  {
+    wanted = std::move(wanted_);
+    forget_bounds();
+    if (any_is_given())
+      move();
+    forget_bounds(); // that from the tensions of other loads
+  }
+
+  void Tightening::forget_bounds()
+  {
+    n_loose = 0;
+    low     = -HUGE_VAL;
+    high    = HUGE_VAL;
+  }
+
+  bool Tightening::take(const std::vector<double> &tensions, const double tolerance)
+  {
+    N              = tensions;
+    double largest = 0, missing = 0;
+    for (std::size_t i = 0; i < s.size(); ++i)
+      if (wanted[i])
+        {
+          largest = std::max(largest, *wanted[i]);
+          missing = std::max(missing, std::abs(*wanted[i] - N[i]));
+        }
+    const bool is_right = missing <= tolerance * largest;
+    if (is_right)
+      has_known = false; // loads of the next step change the tensions
+    else
+      learn();
+    return is_right;
+  }
+
+  // J becomes that which explains the last step; rows of bolts that were loose stay, except from the state without any force.
+  void Tightening::learn()
+  {
+    const Eigen::Index    n = s.size();
+    const Eigen::VectorXd step =
+      Eigen::Map<const Eigen::VectorXd>(s.data(), n) - Eigen::Map<const Eigen::VectorXd>(s_known.data(), n);
+    const bool from_nothing = std::all_of(s_known.begin(), s_known.end(), [](const double x) { return x == 0; });
+    if (has_known && step.squaredNorm() > 0)
+      {
+        const Eigen::VectorXd expected = J * step;
+        for (Eigen::Index i = 0; i < n; ++i)
+          if (!is_loose(i, N) && (from_nothing || !is_loose(i, N_known)))
+            {
+              const double          diagonal = J(i, i);
+              const Eigen::VectorXd row =
+                J.row(i).transpose() + (N[i] - N_known[i] - expected[i]) / step.squaredNorm() * step;
+              if (row[i] > least_part * diagonal)
+                J.row(i) = row.transpose();
+            }
+      }
+    s_known   = s;
+    N_known   = N;
+    has_known = true;
+  }
+
+  std::optional<unsigned int> Tightening::move()
+  {
+    std::vector<unsigned int> given;
+    for (unsigned int i = 0; i < s.size(); ++i)
+      if (wanted[i])
+        given.push_back(i);
+    const Eigen::Index m = given.size();
+    Eigen::MatrixXd    stiffness(m, m);
+    Eigen::VectorXd    missing(m);
+    bool               any_loose = false;
+    for (Eigen::Index a = 0; a < m; ++a)
+      {
+        missing[a] = *wanted[given[a]] - N[given[a]];
+        any_loose  = any_loose || (s[given[a]] > 0 && is_loose(given[a], N));
+        for (Eigen::Index b = 0; b < m; ++b)
+          stiffness(a, b) = J(given[a], given[b]);
+      }
+    n_loose                    = any_loose ? n_loose + 1 : 0;
+    const Eigen::VectorXd step = stiffness.partialPivLu().solve(missing);
+    for (Eigen::Index a = 0; a < m; ++a)
+      {
+        const unsigned int i     = given[a];
+        const double       plain = missing[a] / J(i, i);
+        const double       by    = std::isfinite(step[a]) && std::abs(step[a]) <= 4 * std::abs(plain) ? step[a] : plain;
+        if (m == 1)
+          (missing[a] > 0 ? low : high) = s[i];
+        s[i] += is_loose(i, N) && s[i] > 0 ? std::pow(growth, n_loose - 1) * plain : by;
+        if (m == 1)
+          keep_within_bounds(i);
+      }
+    for (const unsigned int i : given)
+      if (s[i] > length[i])
+        return i;
+    return {};
+  }
+
+  void Tightening::keep_within_bounds(const unsigned int i)
+  {
+    if (!std::isfinite(high) || !std::isfinite(low) || !(low < high))
+      return;
+    const double margin = from_bounds * (high - low);
+    if (s[i] < low + margin || s[i] > high - margin)
+      s[i] = (low + high) / 2;
+  }
+
+  std::vector<std::vector<double>> Tightening::state() const
+  {
+    return {s, N, std::vector<double>(J.data(), J.data() + J.size())};
+  }
+
+  void Tightening::restore(const std::vector<std::vector<double>> &state)
+  {
+    if (s.empty())
+      return;
+    s = state[0];
+    N = state[1];
+    std::copy(state[2].begin(), state[2].end(), J.data());
+    has_known = false;
+  }
+} // namespace slipstick::mechanics
