@@ -18,11 +18,6 @@ namespace slipstick::mesh
     // this part of the largest; smaller angles [rad] are those of planes.
     constexpr double share_of_turn = 1. / 3, smallest_turn = 1e-4;
 
-    Point between(const Point &a, const Point &b)
-    {
-      return a + 0.5 * (b - a);
-    }
-
     /// The vertices of the boundary faces, around.
     std::map<Piece::Face, std::vector<unsigned int>> vertices_around(const Piece &piece)
     {

@@ -10,8 +10,6 @@ namespace slipstick::mesh
     // Limit on the sagitta over the height of the cell above that edge: beyond it the map of the cell is no
     // longer nearly linear.
     constexpr double largest_sagitta = 0.3;
-    // The Jacobian of a cell with curved edges at its corners, over that with straight ones, is no less than this.
-    constexpr double smallest_jacobian = 0.2;
 
     /// Whether the corners of a cell stay corners when its edges are parabolas through the middles.
     template <int dim>

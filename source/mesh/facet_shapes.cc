@@ -15,7 +15,7 @@ namespace slipstick::mesh
     }
 
     // Of the nodes of a quadrilateral: which function along s, and which along t.
-    constexpr std::array<std::array<unsigned int, 2>, 9> along = {
+    constexpr std::array<std::array<unsigned int, 2>, 9> functions_of_node = {
       {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}, {{2, 0}}, {{1, 2}}, {{2, 1}}, {{0, 2}}, {{2, 2}}}};
   } // namespace
 
@@ -40,8 +40,8 @@ namespace slipstick::mesh
         return N;
       }
     const auto a = on_interval(s[0]), b = on_interval(s[1]);
-    for (unsigned int i = 0; i < along.size(); ++i)
-      N[i] = a[along[i][0]] * b[along[i][1]];
+    for (unsigned int i = 0; i < functions_of_node.size(); ++i)
+      N[i] = a[functions_of_node[i][0]] * b[functions_of_node[i][1]];
     return N;
   }
 
@@ -52,8 +52,9 @@ namespace slipstick::mesh
       {
         const auto a = on_interval(s[0]), b = on_interval(s[1]), da = derivatives_on_interval(s[0]),
                    db = derivatives_on_interval(s[1]);
-        for (unsigned int i = 0; i < along.size(); ++i)
-          result[i] = {{da[along[i][0]] * b[along[i][1]], a[along[i][0]] * db[along[i][1]]}};
+        for (unsigned int i = 0; i < functions_of_node.size(); ++i)
+          result[i] = {{da[functions_of_node[i][0]] * b[functions_of_node[i][1]],
+                        a[functions_of_node[i][0]] * db[functions_of_node[i][1]]}};
         return result;
       }
     const std::array<double, 3>                    L  = {{1 - s[0] - s[1], s[0], s[1]}};
@@ -72,7 +73,7 @@ namespace slipstick::mesh
   {
     constexpr std::array<double, 3> ends_and_middle = {{0, 1, 0.5}};
     if (n_corners == 4)
-      return {ends_and_middle[along[i][0]], ends_and_middle[along[i][1]]};
+      return {ends_and_middle[functions_of_node[i][0]], ends_and_middle[functions_of_node[i][1]]};
     constexpr std::array<std::array<double, 2>, 6> triangle = {
       {{{0, 0}}, {{1, 0}}, {{0, 1}}, {{0.5, 0}}, {{0.5, 0.5}}, {{0, 0.5}}}};
     return {triangle[i][0], triangle[i][1]};

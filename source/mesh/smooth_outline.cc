@@ -25,7 +25,7 @@ namespace slipstick::mesh
     // at the ends differs by no more than this part from that of an arc.
     constexpr double off_middle = 0.05, other_speed = 0.25;
     // Mid nodes are on the chord when they are no farther from it than this part of its length.
-    constexpr double on_chord = 1e-9;
+    constexpr double on_edge_chord = 1e-9;
 
     dealii::Tensor<1, 2> turned(const dealii::Tensor<1, 2> &v, const double angle)
     {
@@ -222,7 +222,7 @@ namespace slipstick::mesh
       const auto found = mesh.middles.find(face_of_cell<2>(mesh.piece.cells[edge.cell], edge.face));
       const auto start = mesh.piece.vertices[edge.from], end = mesh.piece.vertices[edge.to];
       if (found == mesh.middles.end() ||
-          std::abs(cross(edge.chord, found->second - start)) <= on_chord * edge.length * edge.length)
+          std::abs(cross(edge.chord, found->second - start)) <= on_edge_chord * edge.length * edge.length)
         return {};
       return Curve::parabola(start, found->second, end);
     }

@@ -12,15 +12,8 @@ namespace slipstick::mesh
     using Point  = dealii::Point<3>;
     using Tensor = dealii::Tensor<1, 3>;
 
-    // The Jacobian of a cell with curved edges at its nodes, over that with straight ones, is no less than this.
-    constexpr double smallest_jacobian = 0.2;
     // Middles no farther from the chord than this part of it belong to straight edges, as those along the axis of a cylinder.
     constexpr double on_chord = 1e-12;
-
-    Point between(const Point &a, const Point &b)
-    {
-      return a + 0.5 * (b - a);
-    }
 
     /// Derivatives of the map of degree 2 through three nodes a direction, at such a node.
     double jacobian(const std::array<Point, 27> &x, const std::array<unsigned int, 3> &at)

@@ -7,6 +7,9 @@
 
 namespace slipstick::mesh
 {
+  /// The Jacobian of a cell with curved edges, over that with straight ones, is no less than this.
+  constexpr double smallest_jacobian = 0.2;
+
   /// By vertices in ascending order.
   template <int dim>
   using Middles = std::map<typename MeshPiece<dim>::Face, dealii::Point<dim>>;

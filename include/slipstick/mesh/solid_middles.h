@@ -1,12 +1,19 @@
 // Nodes of degree 2 of solids whose boundary is curved: a manifold that knows them.
 #pragma once
 
+#include <slipstick/mesh/edge_middles.h>
 #include <slipstick/mesh/mesh_piece.h>
 
 #include <deal.II/grid/manifold.h>
 
 namespace slipstick::mesh
 {
+  /// The middle of the straight line between two points.
+  inline dealii::Point<3> between(const dealii::Point<3> &a, const dealii::Point<3> &b)
+  {
+    return a + 0.5 * (b - a);
+  }
+
   /// Where the middles of edges, faces and cells of a piece are: on the curved boundary, elsewhere on Coons' patch of what bounds
   /// them.
   class SolidMiddles
