@@ -121,13 +121,13 @@ namespace slipstick::contact
       Vector feasible_start(const DualSolution *start)
       {
         const auto loads = dual.particular();
-        size_of_loads    = loads.l2_norm();
         tractions.emplace(dual, options.tolerance, loads.linfty_norm(), start ? start->largest_traction : 0.);
         if (start && loads.l2_norm() <= rounding_of_loads * start->reference) // unloaded to zero
           return dual.zero();
         auto point = qp::feasible_point(dual, loads, law.admissible(dual));
         if (point.status == qp::Status::infeasible)
           no_equilibrium(dual, point.certificate);
+        size_of_forces = point.x.l2_norm();
         return std::move(point.x);
       }
 
@@ -499,7 +499,7 @@ namespace slipstick::contact
             return accepts(unshifted(box, bounds_of(set), from, step), g);
           };
         // at lower accuracy it goes on all the same
-        const double forces = tolerance <= options.tolerance && size_of_loads > 0 ? size_of_loads : qp::infinity;
+        const double forces = tolerance <= options.tolerance && size_of_forces > 0 ? size_of_forces : qp::infinity;
         const auto   result = qp::smalbe(dual,
                                        1.,
                                        load,
@@ -561,7 +561,7 @@ namespace slipstick::contact
       std::optional<Vector> gradient; // where SMALBE-M ended
       DualSolution          solution;
 
-      double                       size_of_loads = 0; // of the least forces that balance them [N]
+      double                       size_of_forces = 0; // of the least forces found that balance the loads [N]
       std::optional<TractionError> tractions;
     };
   } // namespace

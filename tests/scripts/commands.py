@@ -24,7 +24,7 @@ ELSEWHERE = {
     r'scripts/setup( --render)?$': 'installs packages; its functions: functions.py',
     r'scripts/verification ': 'takes hours; the same cases on small meshes: tests/verification',
     r'scripts/study ': 'takes minutes; tutorial.py runs a small study, tests/verification/study.py its functions',
-    r'scripts/sanitize ': 'another build of everything',
+    r'scripts/(sanitize|fuzz --coverage) ': 'another build of everything',
     r'benchmarks/': 'takes minutes to hours',
     r'build/tests/random/': 'named in status.md because it fails',
     r'cmake ': 'configures, builds or installs: how these tests came to be; tests/install',
