@@ -207,8 +207,10 @@ namespace slipstick::mesh
   std::vector<std::string> unused_parts(const scene::Scene<dim> &scene, const std::map<std::string, MeshFile> &files)
   {
     std::vector<std::string> remarks;
-    for (const auto &[path, file] : files)
+    for (const auto &of_path : files) // lambdas capture no structured bindings in C++17
       {
+        const std::string &path = of_path.first;
+        const MeshFile    &file = of_path.second;
         std::map<std::string, unsigned int> cells; // by names
         for (const auto &element : file.elements)
           if (element.dim == dim && std::none_of(scene.bodies.begin(), scene.bodies.end(), [&](const auto &body) {
