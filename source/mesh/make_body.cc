@@ -209,8 +209,8 @@ namespace slipstick::mesh
     std::vector<std::string> remarks;
     for (const auto &of_path : files) // lambdas capture no structured bindings in C++17
       {
-        const std::string &path = of_path.first;
-        const MeshFile    &file = of_path.second;
+        const std::string                  &path = of_path.first;
+        const MeshFile                     &file = of_path.second;
         std::map<std::string, unsigned int> cells; // by names
         for (const auto &element : file.elements)
           if (element.dim == dim && std::none_of(scene.bodies.begin(), scene.bodies.end(), [&](const auto &body) {
