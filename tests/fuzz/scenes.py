@@ -154,14 +154,15 @@ def settings_of(path):
 
 
 def check_balance(summary, settings):
-    """All that acts on the bodies from outside, relative to the sum of magnitudes."""
+    """All that acts on the bodies from outside, relative to the sum of magnitudes, and to the rounding of stresses."""
+    rounding = 1e-12 * (summary['results']['max_von_mises'] or 0)  # on 1 mm^2
     outside = [entry['force'] for kind in ('loads', 'supports', 'foundations') for entry in summary['results'].get(kind) or []]
     obstacles = [name.strip() for name in settings.get('Obstacles', '').split(',')]
     for pair in summary['results'].get('contact') or []:
         if settings.get('Contact {}/Master'.format(pair['pair'])) in obstacles:
             outside.append(pair['force'])
     for components in zip(*outside):
-        if abs(sum(components)) > 1e-3 * sum(abs(c) for force in outside for c in force):
+        if abs(sum(components)) > 1e-3 * sum(abs(c) for force in outside for c in force) + rounding:
             return 'forces are out of balance: ' + str(outside)
     return ''
 
