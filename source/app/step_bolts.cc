@@ -11,14 +11,6 @@ namespace slipstick::app
     constexpr unsigned int max_attempts = 40;
     // Tensions are as accurate as the solver is asked to be, but never less than this.
     constexpr double largest_error = 1e-3;
-
-    std::string list_of(const std::vector<std::string> &names)
-    {
-      std::string text;
-      for (const std::string &name : names)
-        text += (text.empty() ? "" : "; ") + name;
-      return text;
-    }
   } // namespace
 
   template <int dim>
@@ -58,15 +50,16 @@ namespace slipstick::app
       }
     for (unsigned int attempt = 1;; ++attempt)
       {
-        const auto               tensions = bolts->tensions(answer->recovery.u, bolts_so_far.shortening(), thermal);
-        const bool               is_right = bolts_so_far.take(tensions, tolerance);
-        std::vector<std::string> texts;
+        const auto  tensions = bolts->tensions(answer->recovery.u, bolts_so_far.shortening(), thermal);
+        const bool  is_right = bolts_so_far.take(tensions, tolerance);
+        std::string text;
         for (unsigned int k = 0; k < tensions.size(); ++k)
-          texts.push_back(format("%s %.6g N, shortened by %.6g mm",
-                                 scene.pretensions[k].name.c_str(),
-                                 tensions[k],
-                                 bolts_so_far.shortening()[k]));
-        log.line("bolts        " + list_of(texts));
+          text += format("%s%s %.6g N, shortened by %.6g mm",
+                         k == 0 ? "" : "; ",
+                         scene.pretensions[k].name.c_str(),
+                         tensions[k],
+                         bolts_so_far.shortening()[k]);
+        log.line("bolts        " + text);
         if (is_right || the_solution.status != qp::Status::converged)
           return answer;
         if (attempt == max_attempts)

@@ -1,3 +1,4 @@
+#include <slipstick/base/cross.h>
 #include <slipstick/interface/surface_pairing.h>
 
 #include <algorithm>
@@ -80,40 +81,29 @@ namespace slipstick::interface
     return parts;
   }
 
+  std::array<dealii::Tensor<1, 2>, 3> ProjectedFacet::linearised(const Facet::Place &s, const dealii::Point<2> &x) const
+  {
+    if (!is_bent)
+      return {{nodes[0] + s[0] * u + s[1] * v + s[0] * s[1] * twist - x, u + s[1] * twist, v + s[0] * twist}};
+    const auto           N  = facet->shape(s);
+    const auto           dN = mesh::FacetShapes::quadratic_derivatives(facet->n_corners(), s);
+    dealii::Tensor<1, 2> off(-1. * x), a, b;
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      {
+        off += N[i] * dealii::Tensor<1, 2>(nodes[i]);
+        a += dN[i][0] * dealii::Tensor<1, 2>(nodes[i]);
+        b += dN[i][1] * dealii::Tensor<1, 2>(nodes[i]);
+      }
+    return {{off, a, b}};
+  }
+
   ProjectedFacet::Facet::Place ProjectedFacet::place_at(const dealii::Point<2> &x) const
   {
     Facet::Place s = facet->middle_place();
-    if (is_bent)
-      return bent_place_at(x);
     for (unsigned int i = 0; i < max_steps; ++i)
       {
-        const auto                 off = nodes[0] + s[0] * u + s[1] * v + s[0] * s[1] * twist - x;
-        const auto                 a = u + s[1] * twist, b = v + s[0] * twist;
-        const double               det = a[0] * b[1] - a[1] * b[0];
-        const dealii::Tensor<1, 2> step({(off[0] * b[1] - off[1] * b[0]) / det, (a[0] * off[1] - a[1] * off[0]) / det});
-        s -= step;
-        if (!(step.norm() > last_step))
-          break;
-      }
-    return s;
-  }
-
-  ProjectedFacet::Facet::Place ProjectedFacet::bent_place_at(const dealii::Point<2> &x) const
-  {
-    Facet::Place s = facet->middle_place();
-    for (unsigned int k = 0; k < max_steps; ++k)
-      {
-        const auto           N  = facet->shape(s);
-        const auto           dN = mesh::FacetShapes::quadratic_derivatives(facet->n_corners(), s);
-        dealii::Tensor<1, 2> off(-1. * x), a, b;
-        for (unsigned int i = 0; i < n_nodes; ++i)
-          {
-            off += N[i] * dealii::Tensor<1, 2>(nodes[i]);
-            a += dN[i][0] * dealii::Tensor<1, 2>(nodes[i]);
-            b += dN[i][1] * dealii::Tensor<1, 2>(nodes[i]);
-          }
-        const double               det = a[0] * b[1] - a[1] * b[0];
-        const dealii::Tensor<1, 2> step({(off[0] * b[1] - off[1] * b[0]) / det, (a[0] * off[1] - a[1] * off[0]) / det});
+        const auto [off, a, b] = linearised(s, x);
+        const dealii::Tensor<1, 2> step({cross(off, b) / cross(a, b), cross(a, off) / cross(a, b)});
         s -= step;
         if (!(step.norm() > last_step))
           break;

@@ -57,28 +57,37 @@ namespace slipstick::mesh
     return x;
   }
 
+  std::array<FaceSurface::Tensor, 2> FaceSurface::tangents(const Place &s) const
+  {
+    const auto            dN = FacetShapes::quadratic_derivatives(n_corners(), s);
+    std::array<Tensor, 2> along;
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      for (unsigned int d = 0; d < 2; ++d)
+        along[d] += dN[i][d] * Tensor(points[i]);
+    return along;
+  }
+
   FaceSurface::Tensor FaceSurface::area_vector(const Place &s) const
   {
-    const auto dN = FacetShapes::quadratic_derivatives(n_corners(), s);
-    Tensor     a, b;
-    for (unsigned int i = 0; i < n_nodes; ++i)
-      {
-        a += dN[i][0] * Tensor(points[i]);
-        b += dN[i][1] * Tensor(points[i]);
-      }
+    const auto [a, b] = tangents(s);
     return cross_product_3d(a, b);
+  }
+
+  FaceSurface::Tensor FaceSurface::axis() const
+  {
+    return (points[1] - points[0]) / (points[1] - points[0]).norm();
+  }
+
+  FaceSurface::Point FaceSurface::foot(const Point &x) const
+  {
+    return kind == Kind::cylinder ? points[0] + ((x - points[0]) * axis()) * axis() : points[0];
   }
 
   FaceSurface::Point FaceSurface::nearest(const Point &x) const
   {
-    Point foot = points[0]; // of the radius
-    if (kind == Kind::cylinder)
-      {
-        const Tensor axis = (points[1] - points[0]) / (points[1] - points[0]).norm();
-        foot += ((x - points[0]) * axis) * axis;
-      }
-    const Tensor arm = x - foot;
-    return foot + radius / arm.norm() * arm;
+    const Point  from = foot(x);
+    const Tensor arm  = x - from;
+    return from + radius / arm.norm() * arm;
   }
 
   FaceSurface FaceSurface::quarter(const unsigned int part) const
@@ -120,13 +129,7 @@ namespace slipstick::mesh
       }
     for (unsigned int k = 0; k < max_steps; ++k)
       {
-        const auto dN = FacetShapes::quadratic_derivatives(n_corners(), result.place);
-        Tensor     a, b;
-        for (unsigned int i = 0; i < n_nodes; ++i)
-          {
-            a += dN[i][0] * Tensor(points[i]);
-            b += dN[i][1] * Tensor(points[i]);
-          }
+        const auto [a, b] = tangents(result.place);
         // a ds + b dt - direction dd = off
         const Tensor off = x + result.distance * direction - point(result.place);
         const Tensor n   = cross_product_3d(a, b);
@@ -157,9 +160,8 @@ namespace slipstick::mesh
     Tensor arm = x - points[0], along = direction;
     if (kind == Kind::cylinder)
       {
-        const Tensor axis = (points[1] - points[0]) / (points[1] - points[0]).norm();
-        arm -= (arm * axis) * axis;
-        along -= (along * axis) * axis;
+        arm -= (arm * axis()) * axis();
+        along -= (along * axis()) * axis();
       }
     // |arm + t along| = radius: the root next to 0, without cancellation
     const double a = along * along, b = arm * along, c = (arm.norm() - radius) * (arm.norm() + radius);
@@ -171,22 +173,17 @@ namespace slipstick::mesh
 
   FaceSurface::Tensor FaceSurface::normal(const Point &x, const Tensor &outward) const
   {
-    Tensor n = outward;
+    const Tensor direction = outward / outward.norm();
+    Tensor       n         = outward;
     if (kind == Kind::patch)
       {
-        if (const Hit at = hit(x, outward / outward.norm()); at.is_found)
+        if (const Hit at = hit(x, direction); at.is_found)
           n = area_vector(at.place);
       }
     else if (kind != Kind::none)
       {
-        const Point on   = x + distance_along(x, outward / outward.norm()) * (outward / outward.norm());
-        Point       foot = points[0];
-        if (kind == Kind::cylinder)
-          {
-            const Tensor axis = (points[1] - points[0]) / (points[1] - points[0]).norm();
-            foot += ((on - points[0]) * axis) * axis;
-          }
-        n = on - foot;
+        const Point on = x + distance_along(x, direction) * direction;
+        n              = on - foot(on);
       }
     return n / (n * outward > 0 ? n.norm() : -n.norm());
   }

@@ -134,8 +134,12 @@ namespace slipstick::mesh
 
   MeshFile read_mesh_file(const std::string &file)
   {
-    const std::string text      = content_of(file);
-    std::string       extension = std::filesystem::path(file).extension().string();
+    return parse_mesh_file(file, content_of(file));
+  }
+
+  MeshFile parse_mesh_file(const std::string &file, const std::string &text)
+  {
+    std::string extension = std::filesystem::path(file).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(), [](const unsigned char c) {
       return std::tolower(c);
     });

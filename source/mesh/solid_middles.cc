@@ -1,7 +1,7 @@
 #include <slipstick/mesh/solid_middles.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 namespace slipstick::mesh
@@ -271,34 +271,29 @@ namespace slipstick::mesh
     std::set<unsigned int> spoilt;
     if (piece.line_middles.empty())
       return 0;
-    for (bool has_changed = true; has_changed;)
+    for (;;)
       {
-        has_changed                    = false;
         const auto            boundary = boundary_by_vertices(piece);
+        const SolidMiddles    middles(piece, boundary);
         std::set<Piece::Line> lost;
-        {
-          const SolidMiddles middles(piece, boundary);
-          for (unsigned int c = 0; c < piece.cells.size(); ++c)
-            if (middles.is_curved(piece.cells[c]) && !middles.keeps_its_shape(piece.cells[c]))
-              {
-                spoilt.insert(c);
-                for (const auto &line : lines_of_cell(piece.cells[c]))
-                  if (piece.line_middles.count(line) > 0)
-                    lost.insert(line);
-              }
-        }
+        for (unsigned int c = 0; c < piece.cells.size(); ++c)
+          if (middles.is_curved(piece.cells[c]) && !middles.keeps_its_shape(piece.cells[c]))
+            {
+              spoilt.insert(c);
+              for (const auto &line : lines_of_cell(piece.cells[c]))
+                if (piece.line_middles.count(line) > 0)
+                  lost.insert(line);
+            }
+        if (lost.empty())
+          return spoilt.size();
         for (const auto &line : lost)
           piece.line_middles.erase(line);
-        if (lost.empty())
-          break;
-        has_changed = true;
         for (auto &face : piece.boundary_faces)
           for (const auto &[a, b] : lost)
             if (std::count(face.vertices.begin(), face.vertices.end(), a) > 0 &&
                 std::count(face.vertices.begin(), face.vertices.end(), b) > 0)
               face.bends_cell = false;
       }
-    return spoilt.size();
   }
 
   SolidManifold::SolidManifold(Lines lines, Faces faces)

@@ -24,7 +24,7 @@ namespace
 
   struct Source
   {
-    std::string name, extension, text;
+    std::string name, text;
   };
 
   std::vector<Source> sources_in(const std::vector<std::string> &folders)
@@ -41,27 +41,23 @@ namespace
           std::ostringstream text;
           text << in.rdbuf();
           if (text.str().size() <= largest_file)
-            sources.push_back({entry.path().filename(), extension, text.str()});
+            sources.push_back({entry.path().filename(), text.str()});
         }
     sources.push_back(
       {"plate.inp",
-       ".inp",
        "*NODE, NSET=ALL\n1, 0, 0\n2, 1, 0\n3, 2, 0\n4, 0, 1\n5, 1, 1\n6, 2, 1\n7, 0, 2\n8, 1, 2\n9, 2, 2\n"
        "*ELEMENT, TYPE=CPS4, ELSET=PLATE\n1, 1,2,5,4\n2, 2,3,6,5\n3, 4,5,8,7\n*ELEMENT, TYPE=CPS3, ELSET=PLATE\n"
        "4, 5,6,9\n5, 5,9,8\n*NSET, NSET=BOTTOM, GENERATE\n1, 3, 1\n*ELSET, ELSET=TOP\n3, 5\n*SURFACE, NAME=UP\n3, S3\n5, S2\n"});
     sources.push_back(
       {"plate.ucd",
-       ".ucd",
        "6 3 0 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 2 0 0\n6 2 1 0\n1 5 quad 1 2 3 4\n2 6 quad 2 5 6 3\n3 7 line 1 2\n"});
     sources.push_back(
       {"cubes.inp",
-       ".inp",
        "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 1, 1, 0\n4, 0, 1, 0\n5, 0, 0, 1\n6, 1, 0, 1\n7, 1, 1, 1\n8, 0, 1, 1\n9, 2, 0, 0\n"
        "10, 2, 1, 0\n11, 2, 0, 1\n12, 2, 1, 1\n*ELEMENT, TYPE=C3D8, ELSET=ALL\n1, 1,2,3,4,5,6,7,8\n2, 2,9,10,3,6,11,12,7\n"
        "*NSET, NSET=FOOT\n1, 2, 3, 4, 9, 10\n*SURFACE, NAME=TOP\n1, S2\n2, S2\n"});
     sources.push_back(
       {"tetrahedra.vtk",
-       ".vtk",
        "# vtk DataFile Version 3.0\ntetrahedra\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0\n1 0 0\n"
        "0 1 0\n0 0 1\n1 1 1\nCELLS 2 10\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 2\n10\n10\n"});
     std::sort(sources.begin(), sources.end(), [](const Source &a, const Source &b) { return a.name < b.name; });
@@ -269,7 +265,7 @@ int main(int argc, char **argv)
       alarm(seconds_per_mesh);
       try
         {
-          const auto file = fuzz::parse(mutation.result.name, mutation.result.extension, mutation.result.text);
+          const auto file = mesh::parse_mesh_file(mutation.result.name, mutation.result.text);
           if (file.dimension() == 3)
             {
               fuzz::whole_body<3>(file);

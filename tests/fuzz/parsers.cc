@@ -6,6 +6,7 @@
 #include <slipstick/scene/prm_file.h>
 #include <slipstick/scene/stl_file.h>
 
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
@@ -17,6 +18,8 @@ namespace
 {
   using namespace slipstick;
 
+  constexpr std::array<const char *, 5> mesh_formats{{"a.msh", "a.inp", "a.vtk", "a.unv", "a.ucd"}}; // as in seeds.py
+
   /// A file of this process with the text.
   std::string file_with(const std::string &text)
   {
@@ -27,15 +30,15 @@ namespace
 
   void read(const unsigned int format, const std::string &text)
   {
-    if (format < fuzz::mesh_formats.size())
+    if (format < mesh_formats.size())
       {
-        const auto file = fuzz::parse("mutant", fuzz::mesh_formats[format], text);
+        const auto file = mesh::parse_mesh_file(mesh_formats[format], text);
         if (file.dimension() == 3)
           fuzz::whole_body<3>(file);
         else
           fuzz::whole_body<2>(file);
       }
-    else if (format == fuzz::mesh_formats.size())
+    else if (format == mesh_formats.size())
       scene::read_stl(file_with(text));
     else
       scene::read_settings(file_with(text), {});
@@ -48,7 +51,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     return 0;
   try
     {
-      read(data[0] % (fuzz::mesh_formats.size() + 2), {reinterpret_cast<const char *>(data) + 1, size - 1});
+      read(data[0] % (mesh_formats.size() + 2), {reinterpret_cast<const char *>(data) + 1, size - 1});
     }
   catch (const InputError &error)
     {

@@ -47,7 +47,8 @@ namespace slipstick::interface
     double height_at(const dealii::Point<2> &x) const;
 
   private:
-    Facet::Place bent_place_at(const dealii::Point<2> &x) const;
+    /// Where the map of the facet has @p s, from x, and its derivatives along both local coordinates.
+    std::array<dealii::Tensor<1, 2>, 3> linearised(const Facet::Place &s, const dealii::Point<2> &x) const;
 
     unsigned int                                   n_nodes;
     std::array<dealii::Point<2>, Facet::max_nodes> nodes;       // corners first

@@ -91,6 +91,15 @@ namespace slipstick::mesh
       bool   is_found = false;
     };
     Hit hit(const Point &x, const Tensor &direction) const;
+
+    /// Of a patch, along both local coordinates.
+    std::array<Tensor, 2> tangents(const Place &s) const;
+
+    /// Of a cylinder, of unit length.
+    Tensor axis() const;
+
+    /// The centre of a ball; the point of the axis of a cylinder at the height of @p x.
+    Point foot(const Point &x) const;
   };
 
   /// What the boundary faces of a body stand for.

@@ -121,6 +121,9 @@ namespace slipstick::mesh
   /// @throws InputError that names the file, what is wrong with it and a remedy.
   MeshFile read_mesh_file(const std::string &file);
 
+  /// The same from @p text, the whole content of @p file.
+  MeshFile parse_mesh_file(const std::string &file, const std::string &text);
+
   /// Gmsh's format from @p text, the whole content of @p file.
   MeshFile parse_gmsh(const std::string &file, const std::string &text);
 
