@@ -6,8 +6,10 @@
 #include <boost/geometry/index/rtree.hpp>
 #include <boost/geometry/strategies/strategies.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace slipstick::mesh
 {
@@ -18,6 +20,8 @@ namespace slipstick::mesh
     constexpr double on_edge = 1e-4;
     // Sine of the angle below which edges from one place run along each other.
     constexpr double along = 1e-3;
+    // Distance of two nodes in space that are one, over the size of the body.
+    constexpr double same_place = 1e-9;
 
     class OutlineCheck
     {
@@ -25,7 +29,7 @@ namespace slipstick::mesh
       using Fault = ConformityFault<2>;
       using Kind  = Fault::Kind;
 
-      OutlineCheck(const MeshPiece<2> &piece, const std::set<MeshPiece<2>::Face> &named);
+      explicit OutlineCheck(const MeshPiece<2> &piece);
 
       std::optional<Fault> run();
 
@@ -78,9 +82,13 @@ namespace slipstick::mesh
       boost::geometry::index::rtree<Value, boost::geometry::index::rstar<8>> tree;
     };
 
-    OutlineCheck::OutlineCheck(const MeshPiece<2> &the_piece, const std::set<MeshPiece<2>::Face> &named)
+    OutlineCheck::OutlineCheck(const MeshPiece<2> &the_piece)
       : piece(the_piece)
     {
+      std::set<MeshPiece<2>::Face> named;
+      for (const auto &face : piece.boundary_faces)
+        if (face.id != 0)
+          named.insert(face.vertices);
       const auto faces = faces_with_cells(piece);
       for (std::size_t k = 0; k < faces.size(); ++k)
         {
@@ -226,15 +234,58 @@ namespace slipstick::mesh
           return fault(Kind::overlap, x(edges[e].from) + .5 * direction(edges[e]), e, e);
       return {};
     }
+
+    std::optional<ConformityFault<3>> twin_nodes(const MeshPiece<3> &piece)
+    {
+      std::set<unsigned int> outline, unnamed; // vertices
+      for (const auto &face : piece.boundary_faces)
+        for (const unsigned int v : face.vertices)
+          if (v != MeshPiece<3>::no_vertex)
+            {
+              outline.insert(v);
+              if (face.id == 0)
+                unnamed.insert(v);
+            }
+      const auto               &x = piece.vertices;
+      std::vector<unsigned int> by_x(outline.begin(), outline.end());
+      dealii::Point<3>          low = x[by_x[0]], high = low;
+      for (const unsigned int v : by_x)
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            low[d]  = std::min(low[d], x[v][d]);
+            high[d] = std::max(high[d], x[v][d]);
+          }
+      const double tolerance = same_place * low.distance(high);
+      std::sort(by_x.begin(), by_x.end(), [&](const unsigned int a, const unsigned int b) {
+        return x[a][0] < x[b][0];
+      });
+      const auto cell_at = [&](const unsigned int v) -> unsigned int {
+        return std::find_if(piece.cells.begin(),
+                            piece.cells.end(),
+                            [&](const auto &cell) { return std::count(cell.begin(), cell.end(), v) > 0; }) -
+               piece.cells.begin();
+      };
+      for (std::size_t i = 0; i < by_x.size(); ++i)
+        for (std::size_t k = i + 1; k < by_x.size() && x[by_x[k]][0] - x[by_x[i]][0] <= tolerance; ++k)
+          if (x[by_x[i]].distance(x[by_x[k]]) <= tolerance &&
+              (unnamed.count(by_x[i]) > 0 || unnamed.count(by_x[k]) > 0))
+            return ConformityFault<3>{ConformityFault<3>::Kind::twin_nodes,
+                                      x[by_x[i]],
+                                      cell_at(by_x[i]),
+                                      cell_at(by_x[k])};
+      return {};
+    }
   } // namespace
 
-  template <int dim>
-  std::optional<ConformityFault<dim>> find_fault(const MeshPiece<dim>                          &piece,
-                                                 const std::set<typename MeshPiece<dim>::Face> &named)
+  template <>
+  std::optional<ConformityFault<2>> find_fault(const MeshPiece<2> &piece)
   {
-    static_assert(dim == 2, "outlines are curves");
-    return OutlineCheck(piece, named).run();
+    return OutlineCheck(piece).run();
   }
 
-  template std::optional<ConformityFault<2>> find_fault(const MeshPiece<2> &, const std::set<MeshPiece<2>::Face> &);
+  template <>
+  std::optional<ConformityFault<3>> find_fault(const MeshPiece<3> &piece)
+  {
+    return twin_nodes(piece);
+  }
 } // namespace slipstick::mesh

@@ -4,7 +4,6 @@
 #include <slipstick/mesh/mesh_piece.h>
 
 #include <optional>
-#include <set>
 
 namespace slipstick::mesh
 {
@@ -24,11 +23,11 @@ namespace slipstick::mesh
     unsigned int       first_cell, second_cell;
   };
 
-  /// The first fault of a piece whose cells are all counterclockwise, with no more than two at an edge. As the number
-  /// of cells above a point is the winding number of the outline around it, only the edges of the outline are examined:
-  /// none may lie on, cross or touch another, and none may have a cell on both sides. The two flanks of a slit may lie
-  /// on each other where all their edges are among @p named.
+  /// The first fault of a piece whose cells are all right-handed, with no more than two at a face. In the plane, as the
+  /// number of cells above a point is the winding number of the outline around it, only the edges of the outline are
+  /// examined: none may lie on, cross or touch another, and none may have a cell on both sides. In space only nodes of the
+  /// outline at one place are found. The two flanks of a slit may lie on each other where all their faces have names
+  /// (an id other than 0).
   template <int dim>
-  std::optional<ConformityFault<dim>> find_fault(const MeshPiece<dim>                          &piece,
-                                                 const std::set<typename MeshPiece<dim>::Face> &named);
+  std::optional<ConformityFault<dim>> find_fault(const MeshPiece<dim> &piece);
 } // namespace slipstick::mesh
