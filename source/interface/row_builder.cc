@@ -1,5 +1,4 @@
 #include <slipstick/interface/held_contact.h>
-#include <slipstick/interface/obstacle.h>
 #include <slipstick/interface/row_builder.h>
 #include <slipstick/tfeti/dense.h>
 
@@ -12,11 +11,6 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Normals are parallel when their product is above this.
-    constexpr double parallel_cosine = 1 - 1e-8;
-    // Tractions are forces over no less than this part of the tributary length: a node at the end of a boundary has
-    // half of that of the others.
-    constexpr double smallest_covered_part = 0.5;
     // In space tangents are held when supports leave less than this of their rows (the slave's part is 1): at the edge of a pair on a
     // plane of symmetry the weights of master nodes off the plane all but vanish, and such rows are nearly those of the supports.
     template <int dim>
@@ -48,51 +42,11 @@ namespace slipstick::interface
       return v;
     }
 
-    /// Unit vectors across the normal and each other. In space the first is nearest to the axis that is most across.
-    template <int dim>
-    std::array<dealii::Tensor<1, dim>, dim - 1> tangents_of(const dealii::Tensor<1, dim> &normal)
-    {
-      std::array<dealii::Tensor<1, dim>, dim - 1> tangents;
-      if constexpr (dim == 2)
-        {
-          tangents[0][0] = -normal[1];
-          tangents[0][1] = normal[0];
-        }
-      else
-        {
-          unsigned int axis = 0;
-          for (unsigned int d = 1; d < dim; ++d)
-            if (std::abs(normal[d]) < std::abs(normal[axis]))
-              axis = d;
-          tangents[0][axis] = 1;
-          tangents[0] -= normal[axis] * normal;
-          tangents[0] /= tangents[0].norm();
-          tangents[1] = cross_product_3d(normal, tangents[0]);
-        }
-      return tangents;
-    }
-
     // What tells the names of the rows along both tangents of a node apart.
     constexpr std::uint64_t second_tangent = std::uint64_t(1) << 48;
 
     // Sums below this part of their terms are rounding.
     constexpr double rounding_of_sums = 1e-12;
-    // Gaps of the geometry below this part of the coordinates are their rounding.
-    constexpr double rounding_of_gaps = 16 * std::numeric_limits<double>::epsilon();
-
-    /// Gap of a pair at a node: of the geometry or given, and the offset.
-    template <int dim>
-    double gap_of(const scene::ContactPair<dim> &pair,
-                  const dealii::Point<dim>      &x,
-                  const double                   of_geometry,
-                  const double                   t)
-    {
-      double largest = 0;
-      for (unsigned int d = 0; d < dim; ++d)
-        largest = std::max(largest, std::abs(x[d]));
-      const double without_rounding = std::abs(of_geometry) <= rounding_of_gaps * largest ? 0. : of_geometry;
-      return (pair.gap ? pair.gap->value(x, t) : without_rounding) + pair.offset.value(x, t);
-    }
   } // namespace
 
   template <int dim>
@@ -103,18 +57,10 @@ namespace slipstick::interface
                               tfeti::Constraints                    &constraints)
     : scene(scene)
     , nodes(nodes)
-    , t(t)
+    , touches(scene, nodes, contacts, t)
     , constraints(constraints)
     , limits(scene.contacts.size(), std::numeric_limits<double>::infinity())
-  {
-    for (unsigned int i = 0; i < nodes.size(); ++i)
-      if (nodes[i].is_paired)
-        number[nodes[i].key] = i;
-    for (unsigned int k = 0; k < contacts.rows.size(); ++k)
-      for (const auto &row : contacts.rows[k])
-        if (number.count(row.slave) != 0)
-          pairs_of[row.slave].emplace_back(k, &row);
-  }
+  {}
 
   template <int dim>
   void RowBuilder<dim>::build()
@@ -124,21 +70,6 @@ namespace slipstick::interface
       add(i);
     if (!scene.foundations.empty())
       constraints.compliance.resize(constraints.kind.size(), 0.);
-  }
-
-  template <int dim>
-  std::vector<PairExtent> RowBuilder<dim>::extents() const
-  {
-    std::vector<PairExtent> result(scene.contacts.size());
-    for (unsigned int i = 0; i < nodes.size(); ++i)
-      for (const Touch &touch : touches_of(i))
-        {
-          auto &extent = result[touch.pair];
-          extent.gap   = std::min(extent.gap, touch.point.gap);
-          extent.length += touch.point.length;
-          ++extent.n_nodes;
-        }
-    return result;
   }
 
   template <int dim>
@@ -263,126 +194,7 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  bool RowBuilder<dim>::touch_obstacle(const unsigned int i,
-                                       const unsigned int pair,
-                                       const Tributary   &area,
-                                       Touch             &touch) const
-  {
-    return !scene.contacts[pair].law.is_bonded && place_on_obstacle(i, pair, area, touch);
-  }
-
-  template <int dim>
-  bool RowBuilder<dim>::place_on_obstacle(const unsigned int i,
-                                          const unsigned int pair,
-                                          const Tributary   &area,
-                                          Touch             &touch) const
-  {
-    const auto &node    = nodes[i];
-    const auto &where   = scene.contacts[pair];
-    const auto  contact = contact_with(scene.obstacles[where.obstacle], node.point(), t);
-    touch.point.gap     = gap_of(where, node.point(), contact.gap, t);
-    if (where.reach && touch.point.gap > *where.reach)
-      return false;
-    touch.pair                  = pair;
-    touch.normal                = contact.normal;
-    touch.slave                 = {{i, 1.}};
-    touch.point.area            = area.area;
-    touch.point.length          = area.length;
-    touch.point.traction_area   = area.area;
-    touch.point.traction_length = area.length;
-    return area.area > 0;
-  }
-
-  template <int dim>
-  bool RowBuilder<dim>::touch_body(const unsigned int    i,
-                                   const unsigned int    pair,
-                                   const MortarRow<dim> &row,
-                                   Touch                &touch) const
-  {
-    const auto &where = scene.contacts[pair];
-    touch.pair        = pair;
-    touch.side        = row.side;
-    touch.normal      = row.normal;
-    for (const auto &[key, weight] : row.slave_weights)
-      touch.slave.emplace_back(number.at(key), weight);
-    for (const auto &[key, weight] : row.master_weights)
-      touch.master.emplace_back(number.at(key), weight);
-    auto &point       = touch.point;
-    point.has_master  = true;
-    point.master_body = where.master->body;
-    for (unsigned int d = 0; d < dim; ++d)
-      point.master_position[d] = row.master_position[d];
-    point.gap    = gap_of(where, nodes[i].point(), row.gap, t);
-    point.length = row.length;
-    const double thickness =
-      std::min(scene.bodies[where.slave.body].thickness, scene.bodies[where.master->body].thickness);
-    point.area            = row.measure * thickness;
-    point.traction_area   = std::max(row.measure, smallest_covered_part * row.full_measure) * thickness;
-    point.traction_length = std::max(row.length, smallest_covered_part * row.full_length);
-    return true;
-  }
-
-  template <int dim>
-  std::vector<typename RowBuilder<dim>::Touch> RowBuilder<dim>::touches_of(const unsigned int i) const
-  {
-    const auto        &node = nodes[i];
-    std::vector<Touch> touches;
-    for (const auto &[pair, area] : node.areas)
-      if (Touch touch; touch_obstacle(i, pair, area, touch))
-        touches.push_back(touch);
-    if (const auto found = pairs_of.find(node.key); found != pairs_of.end())
-      for (const auto &[pair, row] : found->second)
-        if (Touch touch; touch_body(i, pair, *row, touch))
-          touches.push_back(touch);
-    for (auto &touch : touches)
-      complete(i, touch);
-    // of obstacles in the same direction the nearest
-    std::vector<Touch> kept;
-    for (unsigned int a = 0; a < touches.size(); ++a)
-      {
-        bool is_nearest = true;
-        for (unsigned int b = 0; b < touches.size(); ++b)
-          if (a != b && touches[a].master.empty() && touches[b].master.empty() &&
-              touches[a].normal * touches[b].normal > parallel_cosine &&
-              std::make_pair(touches[b].point.gap, b) < std::make_pair(touches[a].point.gap, a))
-            is_nearest = false;
-        if (is_nearest)
-          kept.push_back(touches[a]);
-      }
-    return kept;
-  }
-
-  template <int dim>
-  void RowBuilder<dim>::complete(const unsigned int i, Touch &touch) const
-  {
-    touch.point.pair          = touch.pair;
-    touch.point.slave_body    = nodes[i].body;
-    touch.point.key           = nodes[i].key;
-    touch.point.interface_dof = dim * i;
-    touch.has_tangent         = scene.contacts[touch.pair].law.has_tangential_row();
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        touch.point.position[d] = nodes[i].position[d];
-        touch.point.normal[d]   = touch.normal[d];
-      }
-    if constexpr (dim == 3)
-      for (unsigned int k = 0; k + 1 < dim; ++k)
-        for (unsigned int d = 0; d < dim; ++d)
-          touch.point.tangents[k][d] = tangents_of<dim>(touch.normal)[k][d];
-  }
-
-  template <int dim>
-  void RowBuilder<dim>::choose_tangents(std::vector<Touch> &touches) const
-  {
-    for (unsigned int a = 0; a < touches.size(); ++a)
-      for (unsigned int b = 0; b < a; ++b)
-        if (touches[a].has_tangent && touches[b].has_tangent && touches[a].master == touches[b].master &&
-            touches[a].slave == touches[b].slave)
-          (touches[a].point.gap < touches[b].point.gap ? touches[b] : touches[a]).has_tangent = false;
-  }
-
-  template <int dim>
-  typename RowBuilder<dim>::Vector RowBuilder<dim>::jump(const Touch &touch, const Tensor &direction) const
+  typename RowBuilder<dim>::Vector RowBuilder<dim>::jump(const Touch<dim> &touch, const Tensor &direction) const
   {
     Vector row;
     for (unsigned int c = 0; c < dim; ++c)
@@ -396,7 +208,7 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  typename RowBuilder<dim>::Vector RowBuilder<dim>::bond(const Touch &touch, const unsigned int direction) const
+  typename RowBuilder<dim>::Vector RowBuilder<dim>::bond(const Touch<dim> &touch, const unsigned int direction) const
   {
     return jump(touch, direction == 0 ? touch.normal : tangents_of<dim>(touch.normal)[direction - 1]);
   }
@@ -421,17 +233,7 @@ namespace slipstick::interface
   template <int dim>
   void RowBuilder<dim>::find_bonds()
   {
-    // pairs in the order of the scene, so that the result does not depend on the numbers of the nodes
-    std::vector<std::vector<std::pair<unsigned int, Touch>>> by_pair(scene.contacts.size());
-    for (const auto &[key, list] : pairs_of)
-      for (const auto &[pair, row] : list)
-        if (scene.contacts[pair].law.is_bonded)
-          {
-            Touch touch;
-            touch_body(number.at(key), pair, *row, touch);
-            by_pair[pair].emplace_back(number.at(key), std::move(touch));
-          }
-    for (const auto &list : by_pair)
+    for (const auto &list : touches.bonds_between_bodies())
       for (const auto &[i, touch] : list)
         for (unsigned int d = 0; d < dim; ++d)
           if (bonds.add(free_part(bond(touch, d)), held_direction_tolerance, dim * i, dim * (i + 1)))
@@ -441,11 +243,10 @@ namespace slipstick::interface
   template <int dim>
   void RowBuilder<dim>::add_contact(const unsigned int i)
   {
-    auto touches = touches_of(i);
-    choose_tangents(touches);
-    const auto &key     = nodes[i].key;
-    const auto  is_free = [](const Vector &left) { return norm(left) > held_direction_tolerance; };
-    for (Touch &touch : touches)
+    auto        touching = touches.of(i);
+    const auto &key      = nodes[i].key;
+    const auto  is_free  = [](const Vector &left) { return norm(left) > held_direction_tolerance; };
+    for (Touch<dim> &touch : touching)
       if (scene.contacts[touch.pair].law.is_bonded)
         {
           for (unsigned int d = 0; d < dim; ++d)
@@ -461,7 +262,7 @@ namespace slipstick::interface
           if (touch.point.normal_row != tfeti::invalid_row || touch.point.tangential_row != tfeti::invalid_row)
             constraints.bonded_points.push_back(touch.point);
         }
-    for (Touch &touch : touches)
+    for (Touch<dim> &touch : touching)
       {
         if (scene.contacts[touch.pair].law.is_bonded)
           continue;
@@ -503,7 +304,8 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  std::vector<typename RowBuilder<dim>::Vector> RowBuilder<dim>::free_tangents(Touch &touch, const Vector &left) const
+  std::vector<typename RowBuilder<dim>::Vector> RowBuilder<dim>::free_tangents(Touch<dim>   &touch,
+                                                                               const Vector &left) const
   {
     const auto free_of = [&](const Vector &row) {
       auto free = bonds.reduce(free_part(row));
@@ -542,7 +344,7 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  void RowBuilder<dim>::add_held(const unsigned int i, const Touch &touch, const Vector &coefficients)
+  void RowBuilder<dim>::add_held(const unsigned int i, const Touch<dim> &touch, const Vector &coefficients)
   {
     tfeti::HeldContacts::Point point;
     point.contact = touch.point;
@@ -573,25 +375,22 @@ namespace slipstick::interface
   template <int dim>
   void RowBuilder<dim>::add_bonds_to_obstacles(const unsigned int i)
   {
-    for (const auto &[k, area] : nodes[i].areas)
-      if (const auto &pair = scene.contacts[k]; pair.law.is_bonded)
-        if (Touch touch; place_on_obstacle(i, k, area, touch))
-          {
-            complete(i, touch);
-            add_held(i, touch, jump(touch, touch.normal));
-            held.points.back().is_bonded = true;
-            held.points.back().holder    = scene.supports.size() + scene.foundations.size() + k;
-          }
+    for (const auto &touch : touches.bonds_to_obstacles(i))
+      {
+        add_held(i, touch, jump(touch, touch.normal));
+        held.points.back().is_bonded = true;
+        held.points.back().holder    = scene.supports.size() + scene.foundations.size() + touch.pair;
+      }
   }
 
   template <int dim>
-  bool RowBuilder<dim>::is_pruned(const Touch &touch) const
+  bool RowBuilder<dim>::is_pruned(const Touch<dim> &touch) const
   {
     return touch.point.gap > limits[touch.pair] && scene.contacts[touch.pair].law.acts_where_closed_alone();
   }
 
   template <int dim>
-  void RowBuilder<dim>::add_pruned(const Touch &touch, const Vector &coefficients)
+  void RowBuilder<dim>::add_pruned(const Touch<dim> &touch, const Vector &coefficients)
   {
     fill(pruned.c.size(), coefficients, pruned_entries);
     pruned.kind.push_back(tfeti::RowKind::normal);

@@ -3,9 +3,8 @@
 
 #include <slipstick/interface/echelon.h>
 #include <slipstick/interface/interface_nodes.h>
-#include <slipstick/tfeti/constraints.h>
+#include <slipstick/interface/touches.h>
 
-#include <limits>
 #include <set>
 
 namespace slipstick::interface
@@ -24,14 +23,6 @@ namespace slipstick::interface
     {
       archive &index &subdomain &dof &value &is_row;
     }
-  };
-
-  /// Of one contact pair: smallest gap, length of the slave boundary and number of its nodes.
-  struct PairExtent
-  {
-    double        gap     = std::numeric_limits<double>::infinity(); // [mm]
-    double        length  = 0;                                       // [mm]
-    std::uint64_t n_nodes = 0;
   };
 
   /// Makes the rows of interface nodes: contact, bonds, supports, foundations, gluing.
@@ -54,7 +45,10 @@ namespace slipstick::interface
                tfeti::Constraints                    &constraints);
 
     /// Of every pair, as far as this rank owns its slave nodes.
-    std::vector<PairExtent> extents() const;
+    std::vector<PairExtent> extents() const
+    {
+      return touches.extents();
+    }
 
     /// Nodes of pair k with a gap above limits[k] get no rows (where ContactLaw::acts_where_closed_alone()); they go to
     /// `pruned`.
@@ -74,49 +68,30 @@ namespace slipstick::interface
     using Tensor = dealii::Tensor<1, dim>;
     using Vector = Echelon::Vector; // by dim * node + component
 
-    /// One other side that a slave node may touch.
-    struct Touch
-    {
-      unsigned int                                 pair = 0, side = 0;
-      Tensor                                       normal;
-      std::vector<std::pair<unsigned int, double>> slave, master; // nodes and weights
-      tfeti::ContactPoint                          point;
-      bool                                         has_tangent = false;
-    };
-
     void add(const unsigned int node);
 
-    std::vector<Touch> touches_of(const unsigned int node) const;
-    bool touch_obstacle(const unsigned int node, const unsigned int pair, const Tributary &area, Touch &touch) const;
-    /// Gap, normal and area, of bonds too; false beyond the Reach, and on the axis of revolution for nodes without
-    /// area.
-    bool place_on_obstacle(const unsigned int node, const unsigned int pair, const Tributary &area, Touch &touch) const;
-    /// Properties of the node itself, the same for each of its contacts.
-    void complete(const unsigned int node, Touch &touch) const;
-    bool touch_body(const unsigned int node, const unsigned int pair, const MortarRow<dim> &row, Touch &touch) const;
     void add_contact(const unsigned int node);
     void find_bonds();
     /// Row of a bond along the normal (0) or the tangent (1).
-    Vector bond(const Touch &touch, const unsigned int direction) const;
-    bool   is_pruned(const Touch &touch) const;
+    Vector bond(const Touch<dim> &touch, const unsigned int direction) const;
+    bool   is_pruned(const Touch<dim> &touch) const;
     /// Rows along the tangents that supports, bonds and @p left, what they leave of the normal row, do not hold.
-    std::vector<Vector> free_tangents(Touch &touch, const Vector &left) const;
+    std::vector<Vector> free_tangents(Touch<dim> &touch, const Vector &left) const;
     /// Do supports hold it apart, and does its law act where contact is closed alone?
     bool is_held_open(const tfeti::HeldContacts::Point &point) const;
     /// Adds @p coefficients to @p to as row @p row.
     void fill(const unsigned int row, const Vector &coefficients, std::vector<RowEntry> &to) const;
-    void add_pruned(const Touch &touch, const Vector &coefficients);
-    void add_held(const unsigned int node, const Touch &touch, const Vector &coefficients);
+    void add_pruned(const Touch<dim> &touch, const Vector &coefficients);
+    void add_held(const unsigned int node, const Touch<dim> &touch, const Vector &coefficients);
     void add_bonds_to_obstacles(const unsigned int node);
     void add_held_rows(const unsigned int node);
     void add_reaction(const unsigned int               node,
                       const unsigned int               row,
                       const Tensor                    &direction,
                       const std::vector<unsigned int> &holders);
-    void choose_tangents(std::vector<Touch> &touches) const;
 
     /// Jump of the displacement along @p direction, slave less master.
-    Vector jump(const Touch &touch, const Tensor &direction) const;
+    Vector jump(const Touch<dim> &touch, const Tensor &direction) const;
 
     /// The part of a row that supports leave free.
     Vector free_part(const Vector &row) const;
@@ -127,15 +102,12 @@ namespace slipstick::interface
                          const std::uint64_t       which);
     void         fill(const unsigned int row, const Vector &coefficients);
 
-    const scene::Scene<dim>                   &scene;
-    const std::vector<InterfaceNode<dim>>     &nodes;
-    const double                               t;
-    tfeti::Constraints                        &constraints;
-    std::vector<double>                        limits; // gaps, by pair [mm]
-    std::map<mechanics::NodeKey, unsigned int> number;
-    Echelon                                    bonds;      // their free parts
-    std::set<std::array<unsigned int, 4>>      kept_bonds; // node, pair, side, direction of those that no others imply
-    std::map<mechanics::NodeKey, std::vector<std::pair<unsigned int, const MortarRow<dim> *>>>
-      pairs_of; // of slave nodes
+    const scene::Scene<dim>               &scene;
+    const std::vector<InterfaceNode<dim>> &nodes;
+    const Touches<dim>                     touches;
+    tfeti::Constraints                    &constraints;
+    std::vector<double>                    limits;     // gaps, by pair [mm]
+    Echelon                                bonds;      // their free parts
+    std::set<std::array<unsigned int, 4>>  kept_bonds; // node, pair, side, direction of those that no others imply
   };
 } // namespace slipstick::interface

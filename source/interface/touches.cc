@@ -1,0 +1,229 @@
+#include <slipstick/interface/obstacle.h>
+#include <slipstick/interface/touches.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slipstick::interface
+{
+  namespace
+  {
+    // Normals are parallel when their product is above this.
+    constexpr double parallel_cosine = 1 - 1e-8;
+    // Tractions are forces over no less than this part of the tributary length: a node at the end of a boundary has
+    // half of that of the others.
+    constexpr double smallest_covered_part = 0.5;
+    // Gaps of the geometry below this part of the coordinates are their rounding.
+    constexpr double rounding_of_gaps = 16 * std::numeric_limits<double>::epsilon();
+
+    /// Gap of a pair at a node: of the geometry or given, and the offset.
+    template <int dim>
+    double gap_of(const scene::ContactPair<dim> &pair,
+                  const dealii::Point<dim>      &x,
+                  const double                   of_geometry,
+                  const double                   t)
+    {
+      double largest = 0;
+      for (unsigned int d = 0; d < dim; ++d)
+        largest = std::max(largest, std::abs(x[d]));
+      const double without_rounding = std::abs(of_geometry) <= rounding_of_gaps * largest ? 0. : of_geometry;
+      return (pair.gap ? pair.gap->value(x, t) : without_rounding) + pair.offset.value(x, t);
+    }
+  } // namespace
+
+  template <int dim>
+  std::array<dealii::Tensor<1, dim>, dim - 1> tangents_of(const dealii::Tensor<1, dim> &normal)
+  {
+    std::array<dealii::Tensor<1, dim>, dim - 1> tangents;
+    if constexpr (dim == 2)
+      {
+        tangents[0][0] = -normal[1];
+        tangents[0][1] = normal[0];
+      }
+    else
+      {
+        unsigned int axis = 0;
+        for (unsigned int d = 1; d < dim; ++d)
+          if (std::abs(normal[d]) < std::abs(normal[axis]))
+            axis = d;
+        tangents[0][axis] = 1;
+        tangents[0] -= normal[axis] * normal;
+        tangents[0] /= tangents[0].norm();
+        tangents[1] = cross_product_3d(normal, tangents[0]);
+      }
+    return tangents;
+  }
+
+  template <int dim>
+  Touches<dim>::Touches(const scene::Scene<dim>               &scene,
+                        const std::vector<InterfaceNode<dim>> &nodes,
+                        const BodyContacts<dim>               &contacts,
+                        const double                           t)
+    : scene(scene)
+    , nodes(nodes)
+    , t(t)
+  {
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      if (nodes[i].is_paired)
+        number[nodes[i].key] = i;
+    for (unsigned int k = 0; k < contacts.rows.size(); ++k)
+      for (const auto &row : contacts.rows[k])
+        if (number.count(row.slave) != 0)
+          pairs_of[row.slave].emplace_back(k, &row);
+  }
+
+  template <int dim>
+  std::vector<Touch<dim>> Touches<dim>::of(const unsigned int i) const
+  {
+    auto touches = nearest_of(i);
+    for (unsigned int a = 0; a < touches.size(); ++a)
+      for (unsigned int b = 0; b < a; ++b)
+        if (touches[a].has_tangent && touches[b].has_tangent && touches[a].master == touches[b].master &&
+            touches[a].slave == touches[b].slave)
+          (touches[a].point.gap < touches[b].point.gap ? touches[b] : touches[a]).has_tangent = false;
+    return touches;
+  }
+
+  template <int dim>
+  std::vector<Touch<dim>> Touches<dim>::nearest_of(const unsigned int i) const
+  {
+    const auto             &node = nodes[i];
+    std::vector<Touch<dim>> touches;
+    for (const auto &[pair, area] : node.areas)
+      if (Touch<dim> touch; !scene.contacts[pair].law.is_bonded && place_on_obstacle(i, pair, area, touch))
+        touches.push_back(touch);
+    if (const auto found = pairs_of.find(node.key); found != pairs_of.end())
+      for (const auto &[pair, row] : found->second)
+        touches.push_back(touch_body(i, pair, *row));
+    for (auto &touch : touches)
+      complete(i, touch);
+    // of obstacles in the same direction the nearest
+    std::vector<Touch<dim>> kept;
+    for (unsigned int a = 0; a < touches.size(); ++a)
+      {
+        bool is_nearest = true;
+        for (unsigned int b = 0; b < touches.size(); ++b)
+          if (a != b && touches[a].master.empty() && touches[b].master.empty() &&
+              touches[a].normal * touches[b].normal > parallel_cosine &&
+              std::make_pair(touches[b].point.gap, b) < std::make_pair(touches[a].point.gap, a))
+            is_nearest = false;
+        if (is_nearest)
+          kept.push_back(touches[a]);
+      }
+    return kept;
+  }
+
+  template <int dim>
+  bool Touches<dim>::place_on_obstacle(const unsigned int i,
+                                       const unsigned int pair,
+                                       const Tributary   &area,
+                                       Touch<dim>        &touch) const
+  {
+    const auto &node    = nodes[i];
+    const auto &where   = scene.contacts[pair];
+    const auto  contact = contact_with(scene.obstacles[where.obstacle], node.point(), t);
+    touch.point.gap     = gap_of(where, node.point(), contact.gap, t);
+    if (where.reach && touch.point.gap > *where.reach)
+      return false;
+    touch.pair                  = pair;
+    touch.normal                = contact.normal;
+    touch.slave                 = {{i, 1.}};
+    touch.point.area            = area.area;
+    touch.point.length          = area.length;
+    touch.point.traction_area   = area.area;
+    touch.point.traction_length = area.length;
+    return area.area > 0;
+  }
+
+  template <int dim>
+  Touch<dim> Touches<dim>::touch_body(const unsigned int i, const unsigned int pair, const MortarRow<dim> &row) const
+  {
+    Touch<dim>  touch;
+    const auto &where = scene.contacts[pair];
+    touch.pair        = pair;
+    touch.side        = row.side;
+    touch.normal      = row.normal;
+    for (const auto &[key, weight] : row.slave_weights)
+      touch.slave.emplace_back(number.at(key), weight);
+    for (const auto &[key, weight] : row.master_weights)
+      touch.master.emplace_back(number.at(key), weight);
+    auto &point       = touch.point;
+    point.has_master  = true;
+    point.master_body = where.master->body;
+    for (unsigned int d = 0; d < dim; ++d)
+      point.master_position[d] = row.master_position[d];
+    point.gap    = gap_of(where, nodes[i].point(), row.gap, t);
+    point.length = row.length;
+    const double thickness =
+      std::min(scene.bodies[where.slave.body].thickness, scene.bodies[where.master->body].thickness);
+    point.area            = row.measure * thickness;
+    point.traction_area   = std::max(row.measure, smallest_covered_part * row.full_measure) * thickness;
+    point.traction_length = std::max(row.length, smallest_covered_part * row.full_length);
+    return touch;
+  }
+
+  template <int dim>
+  std::vector<Touch<dim>> Touches<dim>::bonds_to_obstacles(const unsigned int i) const
+  {
+    std::vector<Touch<dim>> touches;
+    for (const auto &[pair, area] : nodes[i].areas)
+      if (Touch<dim> touch; scene.contacts[pair].law.is_bonded && place_on_obstacle(i, pair, area, touch))
+        {
+          complete(i, touch);
+          touches.push_back(touch);
+        }
+    return touches;
+  }
+
+  template <int dim>
+  std::vector<std::vector<std::pair<unsigned int, Touch<dim>>>> Touches<dim>::bonds_between_bodies() const
+  {
+    std::vector<std::vector<std::pair<unsigned int, Touch<dim>>>> by_pair(scene.contacts.size());
+    for (const auto &[key, list] : pairs_of)
+      for (const auto &[pair, row] : list)
+        if (scene.contacts[pair].law.is_bonded)
+          by_pair[pair].emplace_back(number.at(key), touch_body(number.at(key), pair, *row));
+    return by_pair;
+  }
+
+  template <int dim>
+  void Touches<dim>::complete(const unsigned int i, Touch<dim> &touch) const
+  {
+    touch.point.pair          = touch.pair;
+    touch.point.slave_body    = nodes[i].body;
+    touch.point.key           = nodes[i].key;
+    touch.point.interface_dof = dim * i;
+    touch.has_tangent         = scene.contacts[touch.pair].law.has_tangential_row();
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        touch.point.position[d] = nodes[i].position[d];
+        touch.point.normal[d]   = touch.normal[d];
+      }
+    if constexpr (dim == 3)
+      for (unsigned int k = 0; k + 1 < dim; ++k)
+        for (unsigned int d = 0; d < dim; ++d)
+          touch.point.tangents[k][d] = tangents_of<dim>(touch.normal)[k][d];
+  }
+
+  template <int dim>
+  std::vector<PairExtent> Touches<dim>::extents() const
+  {
+    std::vector<PairExtent> result(scene.contacts.size());
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      for (const auto &touch : nearest_of(i))
+        {
+          auto &extent = result[touch.pair];
+          extent.gap   = std::min(extent.gap, touch.point.gap);
+          extent.length += touch.point.length;
+          ++extent.n_nodes;
+        }
+    return result;
+  }
+
+  template std::array<dealii::Tensor<1, 2>, 1> tangents_of(const dealii::Tensor<1, 2> &);
+  template std::array<dealii::Tensor<1, 3>, 2> tangents_of(const dealii::Tensor<1, 3> &);
+
+  template class Touches<2>;
+  template class Touches<3>;
+} // namespace slipstick::interface
