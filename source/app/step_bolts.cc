@@ -14,29 +14,12 @@ namespace slipstick::app
   } // namespace
 
   template <int dim>
-  std::vector<std::optional<double>> StepSolver<dim>::wanted_tensions(const double t) const
-  {
-    std::vector<std::optional<double>> wanted;
-    for (const auto &bolt : scene.pretensions)
-      {
-        const double force = t <= bolt.tightened_until ? bolt.force.value(bolt.point, t) : 0.;
-        wanted.push_back(force > 0 ? std::optional(force) : std::nullopt);
-      }
-    return wanted;
-  }
-
-  template <int dim>
-  void StepSolver<dim>::reload(const double t)
-  {
-    clock.enter("assembly");
-    the_dual->set_step(loads_at(t), the_dual->constraints().c);
-  }
-
-  template <int dim>
   std::unique_ptr<StepAnswer> StepSolver<dim>::tighten_bolts(const unsigned int      step,
                                                              const std::uint64_t     multiplications_before,
                                                              std::unique_ptr<Answer> answer)
   {
+    const auto                  &scene     = discrete_scene();
+    auto                        &so_far    = problem.tightening();
     const double                 t         = scene.load_factors[step];
     const double                 tolerance = std::min(scene.solver.tolerance, largest_error);
     std::vector<Eigen::VectorXd> thermal;
@@ -46,19 +29,19 @@ namespace slipstick::app
         heat.tractions.clear();
         heat.body_forces.clear();
         heat.point_loads.clear();
-        thermal = mechanics::assemble_loads(heat, *the_mesh, *the_spaces, t);
+        thermal = mechanics::assemble_loads(heat, mesh(), spaces(), t);
       }
     for (unsigned int attempt = 1;; ++attempt)
       {
-        const auto  tensions = bolts->tensions(answer->recovery.u, bolts_so_far.shortening(), thermal);
-        const bool  is_right = bolts_so_far.take(tensions, tolerance);
+        const auto  tensions = problem.bolts()->tensions(answer->recovery.u, so_far.shortening(), thermal);
+        const bool  is_right = so_far.take(tensions, tolerance);
         std::string text;
         for (unsigned int k = 0; k < tensions.size(); ++k)
           text += format("%s%s %.6g N, shortened by %.6g mm",
                          k == 0 ? "" : "; ",
                          scene.pretensions[k].name.c_str(),
                          tensions[k],
-                         bolts_so_far.shortening()[k]);
+                         so_far.shortening()[k]);
         log.line("bolts        " + text);
         if (is_right || the_solution.status != qp::Status::converged)
           return answer;
@@ -68,28 +51,24 @@ namespace slipstick::app
             the_solution.status = qp::Status::iteration_limit;
             return answer;
           }
-        if (const auto longest = bolts_so_far.move())
+        if (const auto longest = so_far.move())
           throw NoEquilibrium(
             format(
               "Pretension %s: shortened by the length of the bolt, it bears %.3g N in place of the force that is given",
               scene.pretensions[*longest].name.c_str(),
               tensions[*longest]),
             "let supports or contact hold both ends of the bolt against what it is to clamp");
-        reload(t);
+        problem.reload(t);
         options.tolerance        = scene.solver.tolerance;
         the_solution.multipliers = answer->recovery.multipliers;
         answer = tighten(step, multiplications_before, checked(solve_step(step, multiplications_before, true), t));
       }
   }
 
-  template std::vector<std::optional<double>> StepSolver<2>::wanted_tensions(const double) const;
-  template std::vector<std::optional<double>> StepSolver<3>::wanted_tensions(const double) const;
-  template void                               StepSolver<2>::reload(const double);
-  template void                               StepSolver<3>::reload(const double);
-  template std::unique_ptr<StepAnswer>        StepSolver<2>::tighten_bolts(const unsigned int,
+  template std::unique_ptr<StepAnswer> StepSolver<2>::tighten_bolts(const unsigned int,
                                                                     const std::uint64_t,
                                                                     std::unique_ptr<StepAnswer>);
-  template std::unique_ptr<StepAnswer>        StepSolver<3>::tighten_bolts(const unsigned int,
+  template std::unique_ptr<StepAnswer> StepSolver<3>::tighten_bolts(const unsigned int,
                                                                     const std::uint64_t,
                                                                     std::unique_ptr<StepAnswer>);
 } // namespace slipstick::app

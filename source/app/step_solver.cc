@@ -5,13 +5,6 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/contact/refinement.h>
-#include <slipstick/interface/contact_search.h>
-#include <slipstick/interface/pair_checks.h>
-#include <slipstick/interface/shared_sides.h>
-#include <slipstick/mechanics/assembly.h>
-#include <slipstick/mechanics/loads.h>
-#include <slipstick/mechanics/still_points.h>
-#include <slipstick/mesh/decomposition.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -23,14 +16,6 @@ namespace slipstick::app
   namespace
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-
-    // At first contact nodes get multipliers if their gap exceeds the smallest gap of the pair by less than this
-    // fraction of the slave boundary's length ...
-    constexpr double first_kept_part = 0.1;
-    // ... more of them, by this factor, when others would penetrate ...
-    constexpr double growth_of_kept_part = 4;
-    // ... and all beyond this part.
-    constexpr double largest_kept_part = 1;
 
     // A solution whose checks fail is continued at most this many times ...
     constexpr unsigned int max_tightenings = 4;
@@ -55,20 +40,14 @@ namespace slipstick::app
     constexpr double allowed_part = 0.3;
 
     template <int dim>
-    std::vector<std::string> names_of(const std::vector<scene::Body<dim>> &bodies)
+    scene::SolverOptions resolved_options(const scene::Scene<dim> &scene, const bool solves_adjoints)
     {
-      std::vector<std::string> names;
-      for (const auto &body : bodies)
-        names.push_back(body.name);
-      return names;
-    }
-
-    std::string in_words(const std::vector<tfeti::RigidMotion> &motions, const std::vector<std::string> &body_names)
-    {
-      std::string text;
-      for (const auto &motion : tfeti::disentangled(motions))
-        text += (text.empty() ? "" : ", nor ") + tfeti::describe(motion, body_names);
-      return text;
+      auto options = contact::resolved_options(scene);
+      // these apply K+ more often than a single recovery does
+      options.dual.keeps_factors = solves_adjoints || scene.load_factors.size() > 1 ||
+                                   options.stops_at_discretization_error ||
+                                   options.dual.operator_precision == tfeti::Precision::single_precision;
+      return options;
     }
 
     std::vector<double> values_of(const tfeti::DistributedVector &x)
@@ -133,56 +112,36 @@ namespace slipstick::app
                               const MPI_Comm           comm_,
                               const bool               solves_adjoints,
                               mesh::Refinement        *refinement)
-    : scene(scene_)
-    , log(log_)
+    : log(log_)
     , clock(clock_)
     , comm(comm_)
-    , options(contact::resolved_options(scene_))
-    , n_given(scene_.supports.size())
-    , kept_part(first_kept_part)
+    , options(resolved_options(scene_, solves_adjoints))
+    , problem(scene_, log, clock, comm, options, refinement)
     , discretization_error(infinity)
-  {
-    // these apply K+ more often than a single recovery does
-    options.dual.keeps_factors = solves_adjoints || scene.load_factors.size() > 1 ||
-                                 options.stops_at_discretization_error ||
-                                 options.dual.operator_precision == tfeti::Precision::single_precision;
-    print_header(log, scene, comm);
-    clock.enter("mesh");
-    the_mesh   = std::make_unique<mesh::Mesh<dim>>(mesh::make_mesh(scene, comm, refinement));
-    the_spaces = std::make_unique<mechanics::Spaces<dim>>(*the_mesh, scene.discretization.degree);
-    print_mesh(log, scene, *the_mesh, *the_spaces);
-    for (auto &pair : interface::find_contacts(scene, *the_mesh, *the_spaces))
-      {
-        log.line("contact      found between " + pair.name);
-        scene.contacts.push_back(std::move(pair));
-      }
-    interface::check_overlap(scene, *the_mesh, *the_spaces);
-    interface::check_obstacle_pairs(scene, *the_mesh, *the_spaces);
-    interface::check_shared_sides(scene, *the_mesh, *the_spaces);
-  }
+  {}
 
   template <int dim>
   void StepSolver<dim>::build()
   {
-    const double t = scene.load_factors.front();
-    build_dual(t);
-    contact::SlipLaw(scene, *the_dual, t); // refuses bounds
+    const double t = discrete_scene().load_factors.front();
+    problem.build(t);
+    contact::SlipLaw(discrete_scene(), dual(), t); // refuses bounds
   }
 
   template <int dim>
   StepState StepSolver<dim>::state() const
   {
     StepState state;
-    state.kept_part          = kept_part;
-    state.largest_load       = largest_load;
+    state.kept_part          = problem.kept_part();
+    state.largest_load       = problem.largest_load();
     state.history            = history;
     state.rows               = rows;
-    state.labels             = the_dual->constraints().label;
+    state.labels             = dual().constraints().label;
     state.multipliers        = values_of(the_solution.multipliers);
     state.reference          = the_solution.reference;
     state.weighted_reference = the_solution.weighted_reference;
     state.largest_traction   = the_solution.largest_traction;
-    state.bolts              = bolts_so_far.state();
+    state.bolts              = tightening().state();
     for (const auto &part : u)
       state.u.emplace_back(part.data(), part.data() + part.size());
     if (the_solution.directions)
@@ -197,51 +156,49 @@ namespace slipstick::app
   template <int dim>
   void StepSolver<dim>::resume(const unsigned int step, const StepState &state)
   {
-    kept_part    = state.kept_part;
-    largest_load = state.largest_load;
-    history      = state.history;
-    rows         = state.rows;
-    build_dual(scene.load_factors[step]);
+    history = state.history;
+    rows    = state.rows;
+    problem.restore(state.kept_part, state.largest_load);
+    problem.build(discrete_scene().load_factors[step]);
     collectively(comm, [&] {
-      bool fits = state.labels == the_dual->constraints().label && state.u.size() == the_dual->subdomains().size();
+      bool fits = state.labels == dual().constraints().label && state.u.size() == dual().subdomains().size();
       for (std::size_t p = 0; fits && p < state.u.size(); ++p)
-        fits = state.u[p].size() == the_dual->subdomains()[p]->n_unknowns();
+        fits = state.u[p].size() == dual().subdomains()[p]->n_unknowns();
       if (!fits)
         throw InputError("--resume: meshes or contact differ from those of the run to be continued",
                          "omit --resume to start from the first load step");
     });
     for (const auto &part : state.u)
       u.push_back(Eigen::Map<const Eigen::VectorXd>(part.data(), part.size()));
-    the_solution.multipliers        = vector_of(state.multipliers, *the_dual);
+    the_solution.multipliers        = vector_of(state.multipliers, dual());
     the_solution.reference          = state.reference;
     the_solution.weighted_reference = state.weighted_reference;
     the_solution.largest_traction   = state.largest_traction;
-    bolts_so_far.restore(state.bolts);
+    problem.tightening().restore(state.bolts);
     if (state.directions.empty())
       return;
     the_solution.directions =
       std::make_shared<qp::DirectionStore<tfeti::DistributedVector>>(options.newton.n_directions);
     for (const auto &[p, Fp] : state.directions)
-      the_solution.directions->push(vector_of(p, *the_dual), vector_of(Fp, *the_dual), the_dual->reduction());
+      the_solution.directions->push(vector_of(p, dual()), vector_of(Fp, dual()), dual().reduction());
   }
 
   template <int dim>
   std::unique_ptr<StepAnswer> StepSolver<dim>::solve(const unsigned int  step,
                                                      const std::uint64_t multiplications_before)
   {
-    options.tolerance = scene.solver.tolerance;
-    if (bolts)
+    const double t    = discrete_scene().load_factors[step];
+    options.tolerance = discrete_scene().solver.tolerance;
+    if (problem.bolts())
       {
-        bolts_so_far.begin(wanted_tensions(scene.load_factors[step]));
+        problem.begin_bolts(t);
         if (step == 0)
-          reload(scene.load_factors[step]);
+          problem.reload(t);
       }
-    auto answer = tighten(step,
-                          multiplications_before,
-                          checked(solve_step(step, multiplications_before, false), scene.load_factors[step]));
-    if (bolts)
+    auto answer = tighten(step, multiplications_before, checked(solve_step(step, multiplications_before, false), t));
+    if (problem.bolts())
       answer = tighten_bolts(step, multiplications_before, std::move(answer));
-    if (step + 1 < scene.load_factors.size())
+    if (step + 1 < discrete_scene().load_factors.size())
       u = answer->recovery.u;
     history.add(answer->contact->checks);
     the_solution.multipliers = answer->recovery.multipliers;
@@ -249,168 +206,25 @@ namespace slipstick::app
   }
 
   template <int dim>
-  void StepSolver<dim>::build_dual(const double t)
-  {
-    if (options.prune_contact && kept_part < infinity)
-      try
-        {
-          make_dual(t);
-          return;
-        }
-      catch (const NoEquilibrium &) // on all ranks alike
-        {
-          if (pruned.rows->size() == 0)
-            throw;
-          kept_part = infinity;
-        }
-    kept_part = infinity;
-    make_dual(t);
-  }
-
-  // A load history that returns to zero leaves rounding errors of its formulas.
-  template <int dim>
-  void StepSolver<dim>::drop_rounding(std::vector<Eigen::VectorXd> &loads)
-  {
-    constexpr double rounding = 1e-12; // of the largest load so far
-    double           square   = 0;
-    for (const auto &load : loads)
-      square += load.squaredNorm();
-    const double size = std::sqrt(dealii::Utilities::MPI::sum(square, comm));
-    if (size <= rounding * largest_load)
-      for (auto &load : loads)
-        load.setZero();
-    largest_load = std::max(largest_load, size);
-  }
-
-  template <int dim>
-  std::vector<Eigen::VectorXd> StepSolver<dim>::loads_at(const double t)
-  {
-    auto loads = mechanics::assemble_loads(scene, *the_mesh, *the_spaces, t);
-    if (bolts)
-      bolts->add_loads(bolts_so_far.shortening(), loads);
-    drop_rounding(loads);
-    return loads;
-  }
-
-  // Again for every step if something is not held: the loads of the step may drive it.
-  template <int dim>
-  void StepSolver<dim>::make_dual(const double t)
-  {
-    scene.supports.erase(scene.supports.begin() + n_given, scene.supports.end());
-    try
-      {
-        make_dual_as_it_is(t);
-      }
-    catch (const tfeti::UnheldMotions &unheld) // on all ranks alike
-      {
-        if (pruned.rows->size() > 0) // perhaps held by contact nodes that were left out
-          throw;
-        unheld_motions = in_words(unheld.motions, names_of(scene.bodies));
-        std::vector<Eigen::VectorXd> motions;
-        for (const auto &motion : unheld.motions)
-          motions.push_back(motion.amplitudes);
-        for (auto &support : mechanics::still_points(*the_mesh, *the_spaces, motions, unheld.motions.front().frames))
-          scene.supports.push_back(std::move(support));
-        make_dual_as_it_is(t);
-      }
-  }
-
-  template <int dim>
-  void StepSolver<dim>::make_dual_as_it_is(const double t)
-  {
-    clock.enter("assembly");
-    if (subdomains)
-      subdomains->set_loads(loads_at(t));
-    else
-      {
-        auto matrices = mechanics::assemble(scene, *the_mesh, *the_spaces, t);
-        if (!scene.pretensions.empty())
-          {
-            bolts.emplace(scene, matrices, comm);
-            bolts_so_far = mechanics::Tightening(bolts->stiffnesses(), bolts->lengths());
-          }
-        std::vector<Eigen::VectorXd> loads;
-        for (const auto &subdomain : matrices)
-          loads.push_back(subdomain.load);
-        drop_rounding(loads); // the first ones: the measure of later ones
-        subdomains = std::make_shared<tfeti::Subdomains>(std::move(matrices));
-      }
-    auto rows = contact_rows(t);
-    pruned    = std::move(rows.pruned);
-    held      = std::move(rows.held);
-    interface::refuse_held_penetration(scene, held, comm);
-    print_constraints(log, rows.active);
-
-    clock.enter("dual setup");
-    the_dual.reset();
-    the_dual = std::make_unique<tfeti::DualProblem>(subdomains,
-                                                    std::move(rows.active),
-                                                    options.dual,
-                                                    names_of(scene.bodies),
-                                                    comm);
-    factorization += the_dual->factorization_seconds();
-    print_dual(log, *the_dual);
-  }
-
-  template <int dim>
-  interface::ContactRows StepSolver<dim>::contact_rows(const double t) {
-    if (!contacts)
-      contacts = interface::pair_bodies(scene, *the_mesh, *the_spaces);
-    return interface::contact_rows(scene, *the_mesh, *the_spaces, *contacts, t, kept_part);
-  }
-
-  template <int dim>
-  bool StepSolver<dim>::advance(const double t)
-  {
-    clock.enter("assembly");
-    auto       loads = loads_at(t);
-    auto       rows  = contact_rows(t);
-    const bool is_same =
-      scene.supports.size() == n_given &&
-      dealii::Utilities::MPI::min(rows.active.label == the_dual->constraints().label ? 1 : 0, comm) > 0;
-    if (is_same) // gaps that follow the load factor may prune other nodes
-      {
-        pruned = std::move(rows.pruned);
-        held   = std::move(rows.held);
-        interface::refuse_held_penetration(scene, held, comm);
-        clock.enter("dual setup");
-        the_dual->set_step(std::move(loads), std::move(rows.active.c));
-      }
-    else
-      make_dual(t);
-    start_slip_from_here();
-    return is_same;
-  }
-
-  template <int dim>
-  void StepSolver<dim>::start_slip_from_here()
-  {
-    auto       c     = the_dual->constraints().c;
-    const auto jumps = the_dual->jumps(u);
-    for (unsigned int r = 0; r < c.size(); ++r)
-      if (the_dual->constraints().kind[r] == tfeti::RowKind::tangential)
-        c[r] = jumps.local_element(r);
-    the_dual->set_right_hand_side(std::move(c));
-  }
-
-  template <int dim>
   void StepSolver<dim>::evaluate(Answer &answer, const contact::DualSolution &from, const double t) const
   {
-    const contact::SlipLaw law(scene, *the_dual, t);
+    const auto            &scene = discrete_scene();
+    const contact::SlipLaw law(scene, dual(), t);
     const auto            &x = answer.recovery.multipliers;
     const auto            &u = answer.recovery.u;
-    answer.contact           = contact::check(*the_dual,
-                                    x,
-                                    u,
-                                    law.depends_on_pressure() ? law.bounds(x) : from.slip_bound,
-                                    from.free,
-                                    scene.bodies.size(),
-                                    history,
-                                    bolts ? bolts->energies_beside(u, bolts_so_far.shortening(), scene.bodies.size())
-                                                    : std::vector<double>());
-    add_held_nodes(scene, *the_dual, held, x, u, *answer.contact);
-    answer.stress =
-      mechanics::recover_stress(scene, *the_mesh, *the_spaces, the_dual->constraints(), elastic_part(u), t);
+    answer.contact =
+      contact::check(dual(),
+                     x,
+                     u,
+                     law.depends_on_pressure() ? law.bounds(x) : from.slip_bound,
+                     from.free,
+                     scene.bodies.size(),
+                     history,
+                     problem.bolts()
+                       ? problem.bolts()->energies_beside(u, tightening().shortening(), scene.bodies.size())
+                       : std::vector<double>());
+    add_held_nodes(scene, dual(), held_contacts(), x, u, *answer.contact);
+    answer.stress = mechanics::recover_stress(scene, mesh(), spaces(), dual().constraints(), elastic_part(u), t);
   }
 
   template <int dim>
@@ -421,7 +235,7 @@ namespace slipstick::app
     try
       {
         Answer answer;
-        answer.recovery = the_dual->recover(iterate.multipliers, iterate.free);
+        answer.recovery = dual().recover(iterate.multipliers, iterate.free);
         evaluate(answer, iterate, t);
         const auto &checks           = answer.contact->checks;
         discretization_error         = std::sqrt(answer.stress->error_squared);
@@ -445,8 +259,8 @@ namespace slipstick::app
                                                           const std::uint64_t multiplications_before,
                                                           const bool          goes_on)
   {
-    const double t         = scene.load_factors[step];
-    bool         is_warm   = goes_on || (step > 0 && advance(t));
+    const double t         = discrete_scene().load_factors[step];
+    bool         is_warm   = goes_on || (step > 0 && problem.advance(t, u));
     qp::Counts   discarded = goes_on ? the_solution.counts : qp::Counts();
     discretization_error   = infinity;
     contact::AccuracyTest test;
@@ -462,10 +276,10 @@ namespace slipstick::app
             clock.enter("solve");
             accepted.reset();
             the_solution =
-              contact::solve_refined(*the_dual,
-                                     contact::SlipLaw(scene, *the_dual, t),
+              contact::solve_refined(problem.dual(),
+                                     contact::SlipLaw(discrete_scene(), dual(), t),
                                      options,
-                                     scene.friction,
+                                     discrete_scene().friction,
                                      convergence_observer(log,
                                                           options,
                                                           step,
@@ -482,22 +296,21 @@ namespace slipstick::app
                 answer           = std::make_unique<Answer>();
                 answer->recovery = recovered();
               }
-            const double penetration = interface::largest_penetration(pruned, answer->recovery.u, comm);
+            const double penetration = problem.penetration_of_pruned(answer->recovery.u);
             if (!(penetration > 0))
               return answer;
             reason = format("contact nodes without multipliers would penetrate by %.3g mm", penetration);
           }
         catch (const NoEquilibrium &) // on all ranks alike
           {
-            if (pruned.rows->size() == 0)
+            if (!problem.is_pruned())
               throw;
             reason = "no equilibrium without the contact nodes that are far apart";
           }
-        kept_part = kept_part < largest_kept_part ? growth_of_kept_part * kept_part : infinity;
         log.line("pruning      " + reason + ": solving again with more of them");
-        make_dual(t);
+        problem.keep_more(t);
         if (step > 0)
-          start_slip_from_here();
+          problem.start_slip_from(u);
       }
   }
 
@@ -509,7 +322,7 @@ namespace slipstick::app
     try
       {
         // motions that nothing resists and no load drives are kept at zero
-        return the_dual->recover(the_solution.multipliers, the_solution.free, true);
+        return dual().recover(the_solution.multipliers, the_solution.free, true);
       }
     catch (const UndeterminedPosition &)
       {
@@ -517,9 +330,9 @@ namespace slipstick::app
       }
     catch (const NoEquilibrium &) // on all ranks alike
       {
-        if (the_solution.status == qp::Status::converged || pruned.rows->size() > 0)
+        if (the_solution.status == qp::Status::converged || problem.is_pruned())
           throw;
-        return the_dual->recover(the_solution.multipliers, std::vector<bool>(the_solution.free.size(), true));
+        return dual().recover(the_solution.multipliers, std::vector<bool>(the_solution.free.size(), true));
       }
   }
 
@@ -536,7 +349,7 @@ namespace slipstick::app
                                                        const std::uint64_t     multiplications_before,
                                                        std::unique_ptr<Answer> answer)
   {
-    const double limit = check_limit(tolerance_of(scene.solver, the_solution));
+    const double limit = check_limit(tolerance_of(discrete_scene().solver, the_solution));
     for (unsigned int n = 0; n < max_tightenings && the_solution.status == qp::Status::converged; ++n)
       {
         const auto   worst = answer->contact->checks.worst_entry();
@@ -557,11 +370,12 @@ namespace slipstick::app
                         limit,
                         options.tolerance));
         const auto   before      = the_solution;
-        const double kept        = kept_part;
+        const double kept        = problem.kept_part();
         the_solution.multipliers = answer->recovery.multipliers;
-        auto next                = checked(solve_step(step, multiplications_before, true), scene.load_factors[step]);
-        if (kept_part != kept || (the_solution.status == qp::Status::converged &&
-                                  (worst.value > of_no_answer || next->contact->checks.worst().second < worst.value)))
+        auto next = checked(solve_step(step, multiplications_before, true), discrete_scene().load_factors[step]);
+        if (problem.kept_part() != kept ||
+            (the_solution.status == qp::Status::converged &&
+             (worst.value > of_no_answer || next->contact->checks.worst().second < worst.value)))
           answer = std::move(next); // the first: it got rows for more contact nodes
         else
           { // it did converge to the tolerance requested
@@ -582,8 +396,8 @@ namespace slipstick::app
       {
         Answer next;
         next.recovery = answer.recovery;
-        the_solution.counts += contact::close_gaps(*the_dual, the_solution.free, options.pcpg, next.recovery);
-        evaluate(next, the_solution, scene.load_factors[step]);
+        the_solution.counts += contact::close_gaps(problem.dual(), the_solution.free, options.pcpg, next.recovery);
+        evaluate(next, the_solution, discrete_scene().load_factors[step]);
         const double left = next.contact->checks.worst().second;
         log.line(
           format("checks       gaps closed by a correction of the displacement: largest %.1e, was %.1e", left, worst));

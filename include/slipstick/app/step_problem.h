@@ -1,0 +1,179 @@
+// The mesh of a scene and the dual problem of a load step: what changes with the step, and what is made once.
+#pragma once
+
+#include <slipstick/base/log.h>
+#include <slipstick/interface/contact_constraints.h>
+#include <slipstick/mechanics/bolts.h>
+#include <slipstick/mechanics/tightening.h>
+#include <slipstick/mesh/adaptive_refinement.h>
+#include <slipstick/scene/scene.h>
+#include <slipstick/tfeti/dual_problem.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace slipstick::app
+{
+  /// K_p, B and F of the load steps, one after another, with rows for the contact nodes that may touch: at first for those
+  /// whose gap is small, for more when others would penetrate. Motions that nothing holds and no load drives are held where
+  /// the scene has no support. Members are collective, except those that only return known values.
+  template <int dim>
+  class StepProblem
+  {
+  public:
+    /// Makes the mesh, and finds the contact pairs that the scene leaves to a search.
+    /// @param refinement of single cells, if any.
+    /// @throws InputError for meshes and pairs that do not fit.
+    StepProblem(const scene::Scene<dim>    &scene,
+                const Log                  &log,
+                StageClock                 &clock,
+                const MPI_Comm              comm,
+                const scene::SolverOptions &options,
+                mesh::Refinement           *refinement);
+
+    /// At load factor t. @throws InputError, NoEquilibrium.
+    void build(const double t);
+
+    /// Loads and right-hand sides of a later step; slip starts at @p u, where the previous step ended.
+    /// @return whether the rows are those of the previous step, so that its multipliers fit.
+    bool advance(const double t, const std::vector<Eigen::VectorXd> &u);
+
+    /// Rows for more contact nodes, as others penetrate or nothing holds the bodies without them.
+    void keep_more(const double t);
+
+    /// Slip is measured from @p u.
+    void start_slip_from(const std::vector<Eigen::VectorXd> &u);
+
+    /// The loads of the present step once more, with bolts as they are now.
+    void reload(const double t);
+
+    /// Bolts are tightened to what the scene gives at load factor t.
+    void begin_bolts(const double t);
+
+    /// Penetration of contact nodes that have no rows [mm].
+    double penetration_of_pruned(const std::vector<Eigen::VectorXd> &u) const;
+
+    /// Have contact nodes been left out?
+    bool is_pruned() const
+    {
+      return pruned.rows->size() > 0;
+    }
+
+    /// Goes on from a run that ended with these: kept_part(), largest_load().
+    void restore(const double part, const double load)
+    {
+      the_kept_part    = part;
+      the_largest_load = load;
+    }
+
+    /// Contact nodes get rows if their gap exceeds the smallest gap of the pair by less than this fraction of the slave
+    /// boundary's length.
+    double kept_part() const
+    {
+      return the_kept_part;
+    }
+    /// Of the steps so far [N].
+    double largest_load() const
+    {
+      return the_largest_load;
+    }
+    /// With the contact pairs that were found.
+    const scene::Scene<dim> &discrete_scene() const
+    {
+      return scene;
+    }
+    const mesh::Mesh<dim> &mesh() const
+    {
+      return *the_mesh;
+    }
+    const mechanics::Spaces<dim> &spaces() const
+    {
+      return *the_spaces;
+    }
+    tfeti::DualProblem &dual()
+    {
+      return *the_dual;
+    }
+    const tfeti::DualProblem &dual() const
+    {
+      return *the_dual;
+    }
+    /// Contact nodes of this rank whose gap supports prescribe.
+    const tfeti::HeldContacts &held_contacts() const
+    {
+      return held;
+    }
+    /// Number of supports in the scene as given; supports after these hold motions that nothing else holds.
+    unsigned int n_given_supports() const
+    {
+      return n_given;
+    }
+    /// Motions that nothing holds and no load drives, in words (empty: none); they are set to zero.
+    const std::string &unheld() const
+    {
+      return unheld_motions;
+    }
+    /// Null where the scene has none.
+    const mechanics::Bolts<dim> *bolts() const
+    {
+      return the_bolts ? &*the_bolts : nullptr;
+    }
+    mechanics::Tightening &tightening()
+    {
+      return bolts_so_far;
+    }
+    const mechanics::Tightening &tightening() const
+    {
+      return bolts_so_far;
+    }
+    /// What of a displacement strains the bodies: all but what bolts are shortened by.
+    std::vector<Eigen::VectorXd> elastic_part(const std::vector<Eigen::VectorXd> &u) const
+    {
+      return the_bolts ? the_bolts->elastic_part(u, bolts_so_far.shortening()) : u;
+    }
+    /// Of all load steps so far [s].
+    double factorization_seconds() const
+    {
+      return factorization;
+    }
+
+  private:
+    /// Without the rows of pruned contact nodes unless a body is held by them.
+    void make_dual(const double t);
+    void make_dual_as_it_is(const double t);
+
+    /// Of this rank's subdomains, bolts included, without rounding.
+    std::vector<Eigen::VectorXd> loads_at(const double t);
+
+    /// Sets loads of this rank's subdomains to zero if they are only rounding compared with those of earlier steps.
+    void drop_rounding(std::vector<Eigen::VectorXd> &loads);
+
+    /// The contact rows at load factor t, except pruned ones.
+    interface::ContactRows contact_rows(const double t);
+
+    scene::Scene<dim>        scene;
+    const Log               &log;
+    StageClock              &clock;
+    const MPI_Comm           comm;
+    const bool               prunes;
+    const tfeti::DualOptions dual_options;
+
+    // the same in all load steps
+    std::unique_ptr<mesh::Mesh<dim>>            the_mesh;
+    std::unique_ptr<mechanics::Spaces<dim>>     the_spaces;
+    std::optional<interface::BodyContacts<dim>> contacts;
+    std::shared_ptr<tfeti::Subdomains>          subdomains;
+    std::optional<mechanics::Bolts<dim>>        the_bolts;
+
+    std::unique_ptr<tfeti::DualProblem> the_dual;
+    tfeti::Constraints                  pruned;  // normal rows of the contact nodes without multipliers
+    tfeti::HeldContacts                 held;    // contact nodes whose gap supports prescribe
+    unsigned int                        n_given; // supports
+    std::string                         unheld_motions;
+    mechanics::Tightening               bolts_so_far;
+    double                              the_kept_part;
+    double                              the_largest_load = 0; // [N]
+    double                              factorization    = 0; // [s]
+  };
+} // namespace slipstick::app

@@ -1,0 +1,261 @@
+#include <slipstick/app/names.h>
+#include <slipstick/app/report.h>
+#include <slipstick/app/step_problem.h>
+#include <slipstick/base/exceptions.h>
+#include <slipstick/interface/contact_search.h>
+#include <slipstick/interface/held_contact.h>
+#include <slipstick/interface/pair_checks.h>
+#include <slipstick/interface/shared_sides.h>
+#include <slipstick/mechanics/assembly.h>
+#include <slipstick/mechanics/loads.h>
+#include <slipstick/mechanics/still_points.h>
+#include <slipstick/mesh/decomposition.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <cmath>
+#include <limits>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    // At first contact nodes get multipliers if their gap exceeds the smallest gap of the pair by less than this
+    // fraction of the slave boundary's length ...
+    constexpr double first_kept_part = 0.1;
+    // ... more of them, by this factor, when others would penetrate ...
+    constexpr double growth_of_kept_part = 4;
+    // ... and all beyond this part.
+    constexpr double largest_kept_part = 1;
+
+    constexpr double all_kept = std::numeric_limits<double>::infinity();
+
+    template <int dim>
+    std::vector<std::string> names_of(const std::vector<scene::Body<dim>> &bodies)
+    {
+      std::vector<std::string> names;
+      for (const auto &body : bodies)
+        names.push_back(body.name);
+      return names;
+    }
+
+    std::string in_words(const std::vector<tfeti::RigidMotion> &motions, const std::vector<std::string> &body_names)
+    {
+      std::string text;
+      for (const auto &motion : tfeti::disentangled(motions))
+        text += (text.empty() ? "" : ", nor ") + tfeti::describe(motion, body_names);
+      return text;
+    }
+  } // namespace
+
+  template <int dim>
+  StepProblem<dim>::StepProblem(const scene::Scene<dim>    &scene_,
+                                const Log                  &log_,
+                                StageClock                 &clock_,
+                                const MPI_Comm              comm_,
+                                const scene::SolverOptions &options,
+                                mesh::Refinement           *refinement)
+    : scene(scene_)
+    , log(log_)
+    , clock(clock_)
+    , comm(comm_)
+    , prunes(options.prune_contact)
+    , dual_options(options.dual)
+    , n_given(scene_.supports.size())
+    , the_kept_part(first_kept_part)
+  {
+    print_header(log, scene, comm);
+    clock.enter("mesh");
+    the_mesh   = std::make_unique<mesh::Mesh<dim>>(mesh::make_mesh(scene, comm, refinement));
+    the_spaces = std::make_unique<mechanics::Spaces<dim>>(*the_mesh, scene.discretization.degree);
+    print_mesh(log, scene, *the_mesh, *the_spaces);
+    for (auto &pair : interface::find_contacts(scene, *the_mesh, *the_spaces))
+      {
+        log.line("contact      found between " + pair.name);
+        scene.contacts.push_back(std::move(pair));
+      }
+    interface::check_overlap(scene, *the_mesh, *the_spaces);
+    interface::check_obstacle_pairs(scene, *the_mesh, *the_spaces);
+    interface::check_shared_sides(scene, *the_mesh, *the_spaces);
+  }
+
+  template <int dim>
+  void StepProblem<dim>::build(const double t)
+  {
+    if (prunes && the_kept_part < all_kept)
+      try
+        {
+          make_dual(t);
+          return;
+        }
+      catch (const NoEquilibrium &) // on all ranks alike
+        {
+          if (pruned.rows->size() == 0)
+            throw;
+          the_kept_part = all_kept;
+        }
+    the_kept_part = all_kept;
+    make_dual(t);
+  }
+
+  // A load history that returns to zero leaves rounding errors of its formulas.
+  template <int dim>
+  void StepProblem<dim>::drop_rounding(std::vector<Eigen::VectorXd> &loads)
+  {
+    constexpr double rounding = 1e-12; // of the largest load so far
+    double           square   = 0;
+    for (const auto &load : loads)
+      square += load.squaredNorm();
+    const double size = std::sqrt(dealii::Utilities::MPI::sum(square, comm));
+    if (size <= rounding * the_largest_load)
+      for (auto &load : loads)
+        load.setZero();
+    the_largest_load = std::max(the_largest_load, size);
+  }
+
+  template <int dim>
+  std::vector<Eigen::VectorXd> StepProblem<dim>::loads_at(const double t)
+  {
+    auto loads = mechanics::assemble_loads(scene, *the_mesh, *the_spaces, t);
+    if (the_bolts)
+      the_bolts->add_loads(bolts_so_far.shortening(), loads);
+    drop_rounding(loads);
+    return loads;
+  }
+
+  // Again for every step if something is not held: the loads of the step may drive it.
+  template <int dim>
+  void StepProblem<dim>::make_dual(const double t)
+  {
+    scene.supports.erase(scene.supports.begin() + n_given, scene.supports.end());
+    try
+      {
+        make_dual_as_it_is(t);
+      }
+    catch (const tfeti::UnheldMotions &unheld) // on all ranks alike
+      {
+        if (pruned.rows->size() > 0) // perhaps held by contact nodes that were left out
+          throw;
+        unheld_motions = in_words(unheld.motions, names_of(scene.bodies));
+        std::vector<Eigen::VectorXd> motions;
+        for (const auto &motion : unheld.motions)
+          motions.push_back(motion.amplitudes);
+        for (auto &support : mechanics::still_points(*the_mesh, *the_spaces, motions, unheld.motions.front().frames))
+          scene.supports.push_back(std::move(support));
+        make_dual_as_it_is(t);
+      }
+  }
+
+  template <int dim>
+  void StepProblem<dim>::make_dual_as_it_is(const double t)
+  {
+    clock.enter("assembly");
+    if (subdomains)
+      subdomains->set_loads(loads_at(t));
+    else
+      {
+        auto matrices = mechanics::assemble(scene, *the_mesh, *the_spaces, t);
+        if (!scene.pretensions.empty())
+          {
+            the_bolts.emplace(scene, matrices, comm);
+            bolts_so_far = mechanics::Tightening(the_bolts->stiffnesses(), the_bolts->lengths());
+          }
+        std::vector<Eigen::VectorXd> loads;
+        for (const auto &subdomain : matrices)
+          loads.push_back(subdomain.load);
+        drop_rounding(loads); // the first ones: the measure of later ones
+        subdomains = std::make_shared<tfeti::Subdomains>(std::move(matrices));
+      }
+    auto rows = contact_rows(t);
+    pruned    = std::move(rows.pruned);
+    held      = std::move(rows.held);
+    interface::refuse_held_penetration(scene, held, comm);
+    print_constraints(log, rows.active);
+
+    clock.enter("dual setup");
+    the_dual.reset();
+    the_dual = std::make_unique<tfeti::DualProblem>(subdomains,
+                                                    std::move(rows.active),
+                                                    dual_options,
+                                                    names_of(scene.bodies),
+                                                    comm);
+    factorization += the_dual->factorization_seconds();
+    print_dual(log, *the_dual);
+  }
+
+  template <int dim>
+  interface::ContactRows StepProblem<dim>::contact_rows(const double t) {
+    if (!contacts)
+      contacts = interface::pair_bodies(scene, *the_mesh, *the_spaces);
+    return interface::contact_rows(scene, *the_mesh, *the_spaces, *contacts, t, the_kept_part);
+  }
+
+  template <int dim>
+  bool StepProblem<dim>::advance(const double t, const std::vector<Eigen::VectorXd> &u)
+  {
+    clock.enter("assembly");
+    auto       loads = loads_at(t);
+    auto       rows  = contact_rows(t);
+    const bool is_same =
+      scene.supports.size() == n_given &&
+      dealii::Utilities::MPI::min(rows.active.label == the_dual->constraints().label ? 1 : 0, comm) > 0;
+    if (is_same) // gaps that follow the load factor may prune other nodes
+      {
+        pruned = std::move(rows.pruned);
+        held   = std::move(rows.held);
+        interface::refuse_held_penetration(scene, held, comm);
+        clock.enter("dual setup");
+        the_dual->set_step(std::move(loads), std::move(rows.active.c));
+      }
+    else
+      make_dual(t);
+    start_slip_from(u);
+    return is_same;
+  }
+
+  template <int dim>
+  void StepProblem<dim>::start_slip_from(const std::vector<Eigen::VectorXd> &u)
+  {
+    auto       c     = the_dual->constraints().c;
+    const auto jumps = the_dual->jumps(u);
+    for (unsigned int r = 0; r < c.size(); ++r)
+      if (the_dual->constraints().kind[r] == tfeti::RowKind::tangential)
+        c[r] = jumps.local_element(r);
+    the_dual->set_right_hand_side(std::move(c));
+  }
+
+  template <int dim>
+  void StepProblem<dim>::keep_more(const double t)
+  {
+    the_kept_part = the_kept_part < largest_kept_part ? growth_of_kept_part * the_kept_part : all_kept;
+    make_dual(t);
+  }
+
+  template <int dim>
+  double StepProblem<dim>::penetration_of_pruned(const std::vector<Eigen::VectorXd> &u) const
+  {
+    return interface::largest_penetration(pruned, u, comm);
+  }
+
+  template <int dim>
+  void StepProblem<dim>::reload(const double t)
+  {
+    clock.enter("assembly");
+    the_dual->set_step(loads_at(t), the_dual->constraints().c);
+  }
+
+  template <int dim>
+  void StepProblem<dim>::begin_bolts(const double t)
+  {
+    std::vector<std::optional<double>> wanted;
+    for (const auto &bolt : scene.pretensions)
+      {
+        const double force = t <= bolt.tightened_until ? bolt.force.value(bolt.point, t) : 0.;
+        wanted.push_back(force > 0 ? std::optional(force) : std::nullopt);
+      }
+    bolts_so_far.begin(wanted);
+  }
+
+  template class StepProblem<2>;
+  template class StepProblem<3>;
+} // namespace slipstick::app
