@@ -1,5 +1,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/interface/body_contact.h>
+#include <slipstick/interface/held_slaves.h>
 #include <slipstick/interface/pair_checks.h>
 
 #include <algorithm>
@@ -65,6 +66,8 @@ namespace slipstick::interface
       if (rows.empty())
         refuse_pair(scene, pair, sides, reach);
       check_sides(scene, mesh, pair, sides, all, rows);
+      if constexpr (dim == 3)
+        give_held_rows_to_neighbours(scene, mesh, all, sides.slave, rows);
       return rows;
     }
 

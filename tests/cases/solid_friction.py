@@ -77,6 +77,31 @@ class Fallback(unittest.TestCase):
                 self.assertEqual(pairs[1][name], pairs[0][name])
 
 
+class HeldSlave(unittest.TestCase):
+    """A clamped end that the ring reaches, on the finer side: 32 nodes there would have rows that move 20 nodes of the ring."""
+
+    def fit(self, slave, master):
+        return converged(solid(
+            'fit', 8, 1,
+            bodies={'shaft': {'Shape': 'cylinder', 'Radius': '20.02', 'Length': '8', 'Cells around': '32',
+                              'Cells along axis': '3', 'Material': 'steel'},
+                    'ring': {'Shape': 'tube', 'Radius': '40', 'Inner radius': '20', 'Length': '5', 'Center': '0, 0, 1.5',
+                             'Cells around': '20', 'Cells along axis': '3', 'Material': 'steel'}},
+            supports={'back': {'Boundary': 'shaft/back', **HELD}, 'front': {'Boundary': 'ring/front', 'Displacement z': '0.01'}},
+            contacts={'joint': {'Slave': slave, 'Master': master, 'Law': 'Coulomb', 'Friction coefficient': '0.3'}}))
+
+    def test_ring_drawn_over_a_clamped_end(self):
+        result, exchanged = self.fit('shaft/side', 'ring/inner'), self.fit('ring/inner', 'shaft/side')
+        pair, other = (run.summary['results']['contact'][0] for run in (result, exchanged))
+        self.assertAlmostEqual(pair['normal_force'] / other['normal_force'], 1, delta=0.01)  # 1.024 with these rows
+        self.assertLess(pair['max_pressure'], 200)  # 587 with these rows
+        self.assertTrue(all(row['z'] > 0 for row in result.contact))
+        self.assertLess(result.summary['solver']['hessian_multiplications'], 300)  # 1271 with these rows
+        for run, of_pair in ((result, pair), (exchanged, other)):
+            force_z = [entry for entry in run.summary['results']['supports'] if entry['support'] == 'front'][0]['force'][2]
+            self.assertAlmostEqual(force_z / (0.3 * of_pair['normal_force']), 1, delta=1e-3)  # all of it slips
+
+
 class Rollers(unittest.TestCase):
 
     def test_discs_beside_intervals(self):
