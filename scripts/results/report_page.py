@@ -113,12 +113,30 @@ def pairs_table(results):
     return table(("pair", *(name for _, name in keys)), rows) if rows else "<p>The scene has no contact.</p>"
 
 
+def bolts_table(run):
+    """What was asked of every bolt when it was last tightened, and what it bears."""
+    steps, rows = run.summary.get("steps", []), []
+    for number_of_bolt, now in enumerate(run.summary.get("results", {}).get("pretensions", [])):
+        section = "Pretension " + now["pretension"]
+        point = run.scene.numbers(section + "/Point")
+        tightened = [(step["load_factor"], step["pretensions"][number_of_bolt]) for step in steps
+                     if step["pretensions"][number_of_bolt]["tightened"]]
+        t, then = tightened[-1] if tightened else (None, {})
+        asked = run.scene.field(section + "/Force", *point[:2], t) if tightened and len(point) > 1 else None
+        rows.append((now["pretension"], run.scene.get(section + "/Body"), run.scene.get(section + "/Point"),
+                     run.scene.get(section + "/Direction"), number(t), number(asked, 7), number(then.get("force"), 7),
+                     number(now["force"], 7), number(now["shortening"])))
+    head = ("bolt", "body", "section at [mm]", "axis", "tightened until t", "tension asked [N]", "reached [N]",
+            "tension at the end [N]", "shortened by [mm]")
+    return table(head, rows) if rows else ""
+
+
 def history_plot(run):
-    """Resultants over the load factor."""
+    """Resultants, and tensions of bolts, over the load factor."""
     rows = run.table("history.csv")
     if len(rows) < 2:
         return ""
-    columns = [name for name in rows[0] if name.endswith((" Fx", " Fy", " Fz")) and any(abs(float(row[name] or 0)) > 0 for row in rows)]
+    columns = [name for name in rows[0] if name.endswith((" Fx", " Fy", " Fz", " force")) and any(abs(float(row[name] or 0)) > 0 for row in rows)]
     figure, axes = plt.subplots(figsize=(8, 4.2), layout="constrained")
     for name in columns:
         axes.plot([float(row["t"]) for row in rows], [float(row[name]) for row in rows], marker=".", label=name)
@@ -168,7 +186,7 @@ def page(run, options=None):
     sections = [("Scene", scene(run)),
                 ("Results", figures(run)), ("Warnings", warnings(run)),
                 ("Balance of loads and reactions" + (", last load step" if len(run.factors) > 1 else ""), balance_table(run, results)),
-                ("Contact pairs", pairs_table(results)), ("Load steps", history_plot(run)), ("Pictures", drawings(run, options)),
+                ("Contact pairs", pairs_table(results)), ("Bolts", bolts_table(run)), ("Load steps", history_plot(run)), ("Pictures", drawings(run, options)),
                 ("Time and memory", costs(run))]
     body = heading(run) + "".join(f"<h2>{html.escape(name)}</h2>{text}" for name, text in sections if text)
     title = html.escape(run.summary.get("case", "run"))

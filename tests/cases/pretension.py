@@ -157,6 +157,17 @@ class Pretension(unittest.TestCase):
             thread = [pair for pair in first['contact'] if pair['pair'] == 'thread'][0]
             self.assertAlmostEqual(thread['normal_force'], 800, delta=1e-3)
 
+    def test_beside_larger_loads(self):
+        """The solver measures its error by all loads; the tension is found to its own tolerance."""
+        content = scenes.text(materials=MATERIALS, bodies={'bar': block(0, 2, 0, 6, '4, 10')},
+                              supports={end: {'Boundary': 'bar/' + end, **CLAMPED} for end in ('bottom', 'top')},
+                              tractions={'side': {'Boundary': 'bar/left', 'Traction x': '1000', 'Traction y': '300*y'}},
+                              **{'Decomposition': {'Method': 'METIS', 'Subdomains': '4'}})
+        path = new_path('small.prm')
+        path.write_text(with_bolts(content, {'m1': {'Body': 'bar', 'Point': '1, 3.1', 'Direction': '0, 1', 'Force': '5'}}))
+        bolt = self.solved(path).summary['results']['pretensions'][0]
+        self.assertAlmostEqual(bolt['force'] / 5, 1, delta=1.01e-4)
+
     def test_heat_counts(self):
         """A bolt that is heated before it is tightened bears its force all the same; cooled it bears more."""
         content = joint(factors='1, 2').read_text().replace('set Young modulus = 1e5', 'set Thermal expansion = 1e-5\n  set Young modulus = 1e5')

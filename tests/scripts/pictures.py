@@ -176,6 +176,19 @@ class Report(WithRun):
             self.assertIn(row.split(), rows)
         self.assertIn('5 %', text)  # the estimated error
 
+    def test_bolts(self):
+        run = self.run_of()
+        self.assertNotIn('Bolts', report_page.page(run))
+        run.scene.values.update({'Pretensions': 'm8', 'Pretension m8/Body': 'left', 'Pretension m8/Point': '0.5, 0.25',
+                                 'Pretension m8/Direction': '0, 2', 'Pretension m8/Force': '4000*t*(y > 0.2 ? 1 : 0)'})
+        tensions = ((1999.9, True), (2100, False))  # asked for at t = 0.5, then held
+        for step, (force, is_tightened) in zip(run.summary['steps'], tensions):
+            step['pretensions'] = [{'pretension': 'm8', 'force': force, 'shortening': 0.0125, 'tightened': is_tightened}]
+        run.summary['results']['pretensions'] = run.summary['steps'][-1]['pretensions']
+        text = report_page.page(run)
+        self.assertIn('<h2>Bolts</h2>', text)
+        self.assertIn('m8 left 0.5, 0.25 0, 2 0.5 2000 1999.9 2100 0.0125'.split(), self.rows(text))
+
     def test_forces_that_do_not_balance_show(self):
         run = self.run_of()
         run.summary['results']['supports'][0]['force'][0] = -59
