@@ -24,19 +24,28 @@ namespace slipstick::output
       return result;
     }
 
+    /// Of the bodies, and of places in loads_in_bodies() that are not farther from them than they are large.
     template <int dim>
-    View view_of(const std::vector<mechanics::BoundaryPart<dim>> &outlines)
+    View view_of(const std::vector<mechanics::BoundaryPart<dim>> &outlines, const std::vector<LoadPlace<dim>> &places)
     {
       const Projection<dim> project;
       auto                  low = project(outlines.front().node(0)), high = low;
+      const auto            show = [&](const dealii::Point<2> &point) {
+        for (unsigned int d = 0; d < 2; ++d)
+          {
+            low[d]  = std::min(low[d], point[d]);
+            high[d] = std::max(high[d], point[d]);
+          }
+      };
       for (const auto &part : outlines)
         for (unsigned int i = 0; i < part.n_nodes; ++i)
-          for (unsigned int d = 0; d < 2; ++d)
-            {
-              const double x = project(part.node(i))[d];
-              low[d]         = std::min(low[d], x);
-              high[d]        = std::max(high[d], x);
-            }
+          show(project(part.node(i)));
+      const auto   middle = low + (high - low) / 2;
+      const double size   = low.distance(high);
+      for (const auto &place : places)
+        for (const auto &end : place.ends)
+          if (project(end).distance(middle) <= size)
+            show(project(end));
       return View(low, high);
     }
 
@@ -216,7 +225,7 @@ namespace slipstick::output
     const auto        nodes  = named_nodes(scene, mesh, spaces);
 
     directory.write_from_root(file, [&](std::ostream &out) {
-      const View   view = view_of<dim>(outlines);
+      const View   view = view_of<dim>(outlines, places);
       ScenePicture picture(out,
                            view,
                            scene.supports.size() + scene.foundations.size() + scene.tractions.size() +

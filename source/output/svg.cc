@@ -15,6 +15,8 @@ namespace slipstick::output
     // Length of the longest arrow of a load, and radius of one that turns [pixels].
     constexpr double arrow_length = 45, turning_radius = 24;
 
+    // Of a label above its place [pixels].
+    constexpr double label_distance = 10;
     // So that what is behind shows through.
     constexpr double fill_opacity = 0.3;
 
@@ -155,7 +157,7 @@ namespace slipstick::output
         << title(kind, name)
         << format("<text class=\"label\" text-anchor=\"middle\" font-weight=\"bold\" x=\"%.2f\" y=\"%.2f\">",
                   view.x(point),
-                  view.y(point))
+                  view.y(point) - label_distance)
         << escaped(text) << "</text></g>\n";
   }
 

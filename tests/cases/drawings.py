@@ -112,14 +112,14 @@ class Drawings(unittest.TestCase):
             self.assertEqual(len(drawn['turning']), 1)
             self.assertEqual(len(drawn['body force']), 2)  # dots in both bodies
             pixels = 900 / 23  # a mm: from x = 1 to 24
-            bar = (40 + pixels, 40 + pixels * 3)  # the middle at (2, 3), below the top at y = 6
+            bar = (40 + pixels, 40 + pixels * 5)  # the middle at (2, 3), below the axis of rotation at y = 8
             dot = drawn['body force'][0]
             self.assertAlmostEqual(float(dot.get('cx')), bar[0], delta=0.02)
             self.assertAlmostEqual(float(dot.get('cy')), bar[1], delta=0.02)
             arrows = [self.ends(element) for element in drawn['arrow']]
             down = [arrow for arrow in arrows if arrow[0][1] < arrow[1][1] and abs(arrow[0][1] - bar[1]) < 0.02]
             self.assertEqual(len(down), 1)  # begins at the dot
-            section_y = 40 + pixels * 2.7
+            section_y = 40 + pixels * 4.7
             meeting = [arrow for arrow in arrows if abs(arrow[1][1] - section_y) < 0.02 and abs(arrow[1][0] - bar[0]) < 0.02]
             self.assertEqual(sorted(round(arrow[0][1] - section_y) for arrow in meeting), [-45, 45])
             lines = [self.ends(element) for element in drawn['pretension']]
