@@ -12,7 +12,7 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / 'scripts'
 sys.path.insert(0, str(SCRIPTS))
 try:
     import numpy
-    from results import contact_plot, fields, film, folder, formula, pictures, report_page
+    from results import contact_plot, fields, film, folder, formula, painters, pictures, report_page
 except ImportError as error:
     print('skipped: {}; scripts/setup --render'.format(error))
     sys.exit(77)
@@ -160,6 +160,26 @@ class Films(WithRun):
         files, remark = film.make(painter, 2, self.place / 'film')
         self.assertEqual([file.name for file in files], ['film.gif'])
         self.assertIn('ffmpeg', remark)
+
+
+class Solids(WithRun):
+    def painter(self, name):
+        run = folder.Run(run_folder.write_solid(self.place / 'run'))
+        return painters.field_painter(run, name, pictures.Options(), painters.grids(run))
+
+    def test_every_step_is_drawn(self):
+        painter = self.painter('von_mises')
+        self.assertEqual(painter.limits, [5, 11])
+        for step, largest in ((0, '5.5'), (1, '11')):
+            painter.draw(step)
+            first, second, _ = painter.lines_of_title(step)
+            self.assertIn('step {} (0 to 1), t = {:g}'.format(step, run_folder.FACTORS[step]), first)
+            self.assertIn('largest magnitude {} MPa'.format(largest), second)
+
+    def test_a_constant_has_a_scale_that_can_be_read(self):
+        low, high = self.painter('principal_stress_1').limits
+        self.assertAlmostEqual(low, 6.93, delta=0.001)
+        self.assertAlmostEqual(high, 7.07, delta=0.001)
 
 
 class Report(WithRun):
