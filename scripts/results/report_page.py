@@ -19,6 +19,7 @@ tr.sum td { border-top: 2px solid #888; font-weight: 600; } img { max-width: 100
 .good { color: #0a6b2d; } .bad { color: #b00020; } .warning { background: #fff4d6; border-left: 4px solid #e0a800; padding: .4rem .8rem; margin: .4rem 0; }
 .bar { display: inline-block; height: .8em; background: #4a7ebb; vertical-align: middle; } figure { margin: .8rem 0; } .small { color: #666; font-size: .9em; }
 """
+MOST_LOOPS = 8  # curves of forces over displacements
 CLOSED_BALANCE = 1e-6  # of the largest force: less than this is called zero
 
 
@@ -147,6 +148,42 @@ def history_plot(run):
     return picture(figure, "forces over the load factor")
 
 
+def moved_by(run, rows):
+    """What moves, in the order of interest: name, displacement in every row, axis; of probed points and of supports that are moved."""
+    found = []
+    for axis in "xyz":
+        for column in (name for name in rows[0] if name.startswith("probe ") and name.endswith(" u" + axis)):
+            found.append((column, [float(row[column]) for row in rows], axis))
+        for name in run.scene.names("Supports"):
+            values = [run.scene.field(f"Support {name}/Displacement {axis}", 0., 0., float(row["t"])) for row in rows]
+            if None not in values:
+                found.append((f"support {name} u{axis}", values, axis))
+    return [entry for entry in found if max(entry[1]) > min(entry[1])]
+
+
+def loop_plot(run):
+    """Forces over displacements: stiffness, and what friction takes in a cycle. A support's own reaction over its motion; loads over the
+    probed points."""
+    rows = run.table("history.csv")
+    curves = []
+    for what, displacement, axis in moved_by(run, rows) if len(rows) > 1 else ():
+        for column in rows[0]:
+            own = column == f"{what[:-3]} F{axis}"
+            if own or what.startswith("probe ") and column.startswith(("traction ", "point load ", "support ")) and column.endswith(f" F{axis}"):
+                force = [float(row[column]) for row in rows]
+                if max(force) > min(force):
+                    curves.append((column, what, displacement, force))
+    if not curves:
+        return ""
+    figure, axes = plt.subplots(figsize=(8, 4.2), layout="constrained")
+    for column, what, displacement, force in curves[:MOST_LOOPS]:
+        axes.plot(displacement, force, marker=".", label=f"{column} over {what}")
+    axes.set(xlabel="displacement [mm]", ylabel="[N]", title="forces over displacements")
+    axes.grid(True, color="0.9")
+    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.15), frameon=False)
+    return picture(figure, "forces over displacements")
+
+
 def drawings(run, options):
     text = ""
     grids = painters.grids(run)
@@ -186,7 +223,7 @@ def page(run, options=None):
     sections = [("Scene", scene(run)),
                 ("Results", figures(run)), ("Warnings", warnings(run)),
                 ("Balance of loads and reactions" + (", last load step" if len(run.factors) > 1 else ""), balance_table(run, results)),
-                ("Contact pairs", pairs_table(results)), ("Bolts", bolts_table(run)), ("Load steps", history_plot(run)), ("Pictures", drawings(run, options)),
+                ("Contact pairs", pairs_table(results)), ("Bolts", bolts_table(run)), ("Load steps", history_plot(run) + loop_plot(run)), ("Pictures", drawings(run, options)),
                 ("Time and memory", costs(run))]
     body = heading(run) + "".join(f"<h2>{html.escape(name)}</h2>{text}" for name, text in sections if text)
     title = html.escape(run.summary.get("case", "run"))

@@ -99,8 +99,10 @@ TEST(Shapes, vertices_of_arcs_lie_on_the_arc)
       };
       for (const auto &face : mesh.piece.boundary_faces)
         if (face.curve)
-          for (const unsigned int v : face.vertices)
-            EXPECT_NEAR(mesh.piece.vertices[v].distance(body.center), radius(face.id), 1e-13);
+          {
+            for (const unsigned int v : face.vertices)
+              EXPECT_NEAR(mesh.piece.vertices[v].distance(body.center), radius(face.id), 1e-13);
+          }
     }
 }
 

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / 'scripts'
 sys.path.insert(0, str(SCRIPTS))
@@ -189,12 +190,25 @@ class Report(WithRun):
     def test_everything_is_on_the_page(self):
         text = report_page.page(self.run_of())
         self.assertEqual(re.findall('(?:src|href)="(?!data:image/png;base64,)', text), [])  # no other file
-        self.assertEqual(text.count('<img '), 5)  # scene, history, two fields, contact
+        self.assertEqual(text.count('<img '), 5)  # scene, history, two fields, contact; the tip has no force
         self.assertIn('Contact joint: &lt;something&gt; &amp; more', text)
         rows = self.rows(text)
         for row in ('traction pull 60 0 -42', 'support wall -60 0 42', 'sum 0 0 0', 'joint 100 5 100 1 2 2 0 0', 'solve 0.75 s'):
             self.assertIn(row.split(), rows)
         self.assertIn('5 %', text)  # the estimated error
+
+    def test_forces_over_displacements(self):
+        """Of a support that is moved its reaction, of a probe the loads along the same axis."""
+        run = self.run_of()
+        (run.folder / 'history.csv').write_text('t,traction pull Fx,traction pull Fy,support wall Fx,support tip Fy,probe end ux,probe end uy\n'
+                                                '0.5,30,0,-30,7,0.1,0\n1,60,0,-60,5,0.2,0\n')
+        curves = []
+        with unittest.mock.patch.object(report_page, 'picture', lambda figure, alt: curves.extend(
+                (line.get_label(), list(line.get_xdata()), list(line.get_ydata())) for line in figure.axes[0].lines) or alt):
+            self.assertEqual(report_page.loop_plot(run), 'forces over displacements')
+        self.assertEqual(curves, [('traction pull Fx over probe end ux', [0.1, 0.2], [30, 60]),
+                                  ('support wall Fx over probe end ux', [0.1, 0.2], [-30, -60]),
+                                  ('support tip Fy over support tip uy', [0.005, 0.01], [7, 5])])
 
     def test_bolts(self):
         run = self.run_of()
