@@ -14,6 +14,8 @@ DRAWN_DISPLACEMENT = 0.04  # of the size of the scene
 CLIPPED_SHARE = 0.001  # of the points may lie above the colour bar: corner singularities would swallow it
 WIDTH = 7  # inches of the longer side of the drawing
 DPI = 150
+ROUNDING = 1e-6  # fields that vary by less than this part are constant: files have single precision ...
+MARGIN = 0.01  # ... and have this part of them above and below in the colour bar
 
 
 class Options:
@@ -78,8 +80,8 @@ class Painter:
         if self.options.limits:
             self.limits = list(self.options.limits)
             self.clipped_below, self.clipped_above = low < self.limits[0], high > self.limits[1]
-        if self.limits[1] - self.limits[0] <= 1e-12 * max(abs(self.limits[0]), abs(self.limits[1]), 1e-300):  # one colour
-            margin = max(1e-4 * abs(self.limits[0]), 1e-12)
+        if self.limits[1] - self.limits[0] <= ROUNDING * max(abs(self.limits[0]), abs(self.limits[1]), 1e-300):  # one colour
+            margin = max(MARGIN * abs(self.limits[0]), 1e-12)
             self.limits = [self.limits[0] - margin, self.limits[1] + margin]
 
     def find_view(self):

@@ -19,6 +19,7 @@ tr.sum td { border-top: 2px solid #888; font-weight: 600; } img { max-width: 100
 .good { color: #0a6b2d; } .bad { color: #b00020; } .warning { background: #fff4d6; border-left: 4px solid #e0a800; padding: .4rem .8rem; margin: .4rem 0; }
 .bar { display: inline-block; height: .8em; background: #4a7ebb; vertical-align: middle; } figure { margin: .8rem 0; } .small { color: #666; font-size: .9em; }
 """
+MOST_LOOPS = 8  # curves of forces over displacements
 CLOSED_BALANCE = 1e-6  # of the largest force: less than this is called zero
 
 
@@ -113,12 +114,30 @@ def pairs_table(results):
     return table(("pair", *(name for _, name in keys)), rows) if rows else "<p>The scene has no contact.</p>"
 
 
+def bolts_table(run):
+    """What was asked of every bolt when it was last tightened, and what it bears."""
+    steps, rows = run.summary.get("steps", []), []
+    for number_of_bolt, now in enumerate(run.summary.get("results", {}).get("pretensions", [])):
+        section = "Pretension " + now["pretension"]
+        point = run.scene.numbers(section + "/Point")
+        tightened = [(step["load_factor"], step["pretensions"][number_of_bolt]) for step in steps
+                     if step["pretensions"][number_of_bolt]["tightened"]]
+        t, then = tightened[-1] if tightened else (None, {})
+        asked = run.scene.field(section + "/Force", *point[:2], t) if tightened and len(point) > 1 else None
+        rows.append((now["pretension"], run.scene.get(section + "/Body"), run.scene.get(section + "/Point"),
+                     run.scene.get(section + "/Direction"), number(t), number(asked, 7), number(then.get("force"), 7),
+                     number(now["force"], 7), number(now["shortening"])))
+    head = ("bolt", "body", "section at [mm]", "axis", "tightened until t", "tension asked [N]", "reached [N]",
+            "tension at the end [N]", "shortened by [mm]")
+    return table(head, rows) if rows else ""
+
+
 def history_plot(run):
-    """Resultants over the load factor."""
+    """Resultants, and tensions of bolts, over the load factor."""
     rows = run.table("history.csv")
     if len(rows) < 2:
         return ""
-    columns = [name for name in rows[0] if name.endswith((" Fx", " Fy", " Fz")) and any(abs(float(row[name] or 0)) > 0 for row in rows)]
+    columns = [name for name in rows[0] if name.endswith((" Fx", " Fy", " Fz", " force")) and any(abs(float(row[name] or 0)) > 0 for row in rows)]
     figure, axes = plt.subplots(figsize=(8, 4.2), layout="constrained")
     for name in columns:
         axes.plot([float(row["t"]) for row in rows], [float(row[name]) for row in rows], marker=".", label=name)
@@ -127,6 +146,42 @@ def history_plot(run):
     if columns:
         axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
     return picture(figure, "forces over the load factor")
+
+
+def moved_by(run, rows):
+    """What moves, in the order of interest: name, displacement in every row, axis; of probed points and of supports that are moved."""
+    found = []
+    for axis in "xyz":
+        for column in (name for name in rows[0] if name.startswith("probe ") and name.endswith(" u" + axis)):
+            found.append((column, [float(row[column]) for row in rows], axis))
+        for name in run.scene.names("Supports"):
+            values = [run.scene.field(f"Support {name}/Displacement {axis}", 0., 0., float(row["t"])) for row in rows]
+            if None not in values:
+                found.append((f"support {name} u{axis}", values, axis))
+    return [entry for entry in found if max(entry[1]) > min(entry[1])]
+
+
+def loop_plot(run):
+    """Forces over displacements: stiffness, and what friction takes in a cycle. A support's own reaction over its motion; loads over the
+    probed points."""
+    rows = run.table("history.csv")
+    curves = []
+    for what, displacement, axis in moved_by(run, rows) if len(rows) > 1 else ():
+        for column in rows[0]:
+            own = column == f"{what[:-3]} F{axis}"
+            if own or what.startswith("probe ") and column.startswith(("traction ", "point load ", "support ")) and column.endswith(f" F{axis}"):
+                force = [float(row[column]) for row in rows]
+                if max(force) > min(force):
+                    curves.append((column, what, displacement, force))
+    if not curves:
+        return ""
+    figure, axes = plt.subplots(figsize=(8, 4.2), layout="constrained")
+    for column, what, displacement, force in curves[:MOST_LOOPS]:
+        axes.plot(displacement, force, marker=".", label=f"{column} over {what}")
+    axes.set(xlabel="displacement [mm]", ylabel="[N]", title="forces over displacements")
+    axes.grid(True, color="0.9")
+    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.15), frameon=False)
+    return picture(figure, "forces over displacements")
 
 
 def drawings(run, options):
@@ -168,7 +223,7 @@ def page(run, options=None):
     sections = [("Scene", scene(run)),
                 ("Results", figures(run)), ("Warnings", warnings(run)),
                 ("Balance of loads and reactions" + (", last load step" if len(run.factors) > 1 else ""), balance_table(run, results)),
-                ("Contact pairs", pairs_table(results)), ("Load steps", history_plot(run)), ("Pictures", drawings(run, options)),
+                ("Contact pairs", pairs_table(results)), ("Bolts", bolts_table(run)), ("Load steps", history_plot(run) + loop_plot(run)), ("Pictures", drawings(run, options)),
                 ("Time and memory", costs(run))]
     body = heading(run) + "".join(f"<h2>{html.escape(name)}</h2>{text}" for name, text in sections if text)
     title = html.escape(run.summary.get("case", "run"))

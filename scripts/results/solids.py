@@ -99,7 +99,7 @@ class SolidGrid:
         return self.point_fields["displacement"]
 
     def surface(self):
-        """Faces of one cell only, as points in order around them, seen from outside."""
+        """Faces of one cell only, as points in order around them, seen from outside; numbers of points, the same at the same place."""
         low, size = self.points.min(axis=0), max(np.ptp(self.points, axis=0))
         rounded = np.floor((self.points - low) / size * 2**20 + 0.3).astype(np.int64)
         names = np.unique(rounded, axis=0, return_inverse=True)[1].reshape(-1)
@@ -107,8 +107,7 @@ class SolidGrid:
         keys[self.faces[:, 3] == self.faces[:, 2], 3] = -1  # of a triangle, whichever corner comes twice
         keys = np.sort(keys, axis=1)
         _, first, n = np.unique(keys, axis=0, return_index=True, return_counts=True)
-        self.names = names
-        return self.faces[first[n == 1]]
+        return self.faces[first[n == 1]], names
 
 
 class SolidPainter:
@@ -120,12 +119,13 @@ class SolidPainter:
         self.run, self.grids, self.options = run, grids, options
         self.title, self.unit, _ = fields.FIELDS[name]
         self.values = [fields.values(name, grid) for grid in grids]
-        self.faces = grids[0].surface()
+        self.faces, self.names = grids[0].surface()  # those of all steps
         self.factor = pictures.magnification(run, grids, options.scale)
         shown = np.concatenate([values[np.unique(self.faces)] for values in self.values])
         self.limits = list(options.limits) if options.limits else [shown.min(), shown.max()]
-        if self.limits[1] - self.limits[0] <= 1e-12 * max(map(abs, self.limits + [1e-300])):
-            self.limits[1] += max(1e-4 * abs(self.limits[1]), 1e-12)
+        if self.limits[1] - self.limits[0] <= pictures.ROUNDING * max(map(abs, self.limits + [1e-300])):  # one colour
+            margin = max(pictures.MARGIN * abs(self.limits[0]), 1e-12)
+            self.limits = [self.limits[0] - margin, self.limits[1] + margin]
 
     def draw(self, step):
         """A figure of the step, which the caller closes."""
@@ -147,7 +147,7 @@ class SolidPainter:
         image = axes.tripcolor(matplotlib.tri.Triangulation(flat[:, 0], flat[:, 1], triangles), values, shading="gouraud",
                                cmap="turbo" if self.limits[0] >= 0 else "coolwarm", vmin=self.limits[0], vmax=self.limits[1],
                                rasterized=True)
-        edges = self.sharp_edges(grid, visible, normal)
+        edges = self.sharp_edges(visible, normal)
         is_hidden = [hidden(flat[of].mean(axis=1), depth[of].mean(axis=1), flat[triangles], depth[triangles])
                      for of in (faces, edges)]
         axes.add_collection(matplotlib.collections.PolyCollection(flat[faces[~is_hidden[0]]], facecolors="none", edgecolors=(0, 0, 0, 0.18),
@@ -160,14 +160,14 @@ class SolidPainter:
         bands.add(figure, self.lines_of_title(step), [])
         return figure
 
-    def sharp_edges(self, grid, visible, normal):
+    def sharp_edges(self, visible, normal):
         """Edges between visible faces that meet at an angle, or of one visible face alone."""
         faces = self.faces[visible]
         edges = np.concatenate([faces[:, [i, (i + 1) % 4]] for i in range(4)])
         owner = np.tile(visible, 4)
         real = edges[:, 0] != edges[:, 1]  # of triangles three
         edges, owner = edges[real], owner[real]
-        keys = np.sort(grid.names[edges], axis=1)
+        keys = np.sort(self.names[edges], axis=1)
         order = np.lexsort((keys[:, 1], keys[:, 0]))
         same = (keys[order][1:] == keys[order][:-1]).all(axis=1)
         alone = ~np.append(same, False) & ~np.append(False, same)

@@ -7,6 +7,7 @@
 #include <slipstick/app/run.h>
 #include <slipstick/base/memory.h>
 #include <slipstick/output/conditions.h>
+#include <slipstick/output/contact_displacement.h>
 #include <slipstick/output/fields.h>
 #include <slipstick/output/history.h>
 #include <slipstick/output/probes.h>
@@ -287,7 +288,15 @@ namespace slipstick::app
       {
         contact_steps.push_back(gather_contact(solver, contact, total_slip));
         contact_steps.back().step = step;
-        output::write_contact_vtp(directory, contact_steps.back(), dim);
+        output::write_contact_vtp(directory,
+                                  contact_steps.back(),
+                                  dim,
+                                  output::contact_displacement(scene,
+                                                               solver.mesh(),
+                                                               solver.spaces(),
+                                                               answer->recovery.u,
+                                                               contact_steps.back().nodes));
+        output::write_contact_pvd(directory, {scene.load_factors.begin(), scene.load_factors.begin() + step + 1});
         summary.results.contact = contact::pair_results(contact_steps.back().nodes, contact_names(scene).pairs, dim);
       }
     drop_moments(scene, summary.results);

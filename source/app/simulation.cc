@@ -10,9 +10,6 @@ namespace slipstick::app
   template <int dim>
   void check_scene(const scene::Scene<dim> &scene, const std::string &picture, const Log &log, const MPI_Comm comm)
   {
-    if (dim == 3 && !picture.empty())
-      throw InputError("--draw: scenes in space (Dimension = 3) cannot be drawn yet",
-                       "use --check, or look at the meshes in ParaView after a run");
     StageClock      clock;
     StepSolver<dim> solver(scene, log, clock, comm);
     mechanics::Probes<dim>(scene, solver.mesh(), solver.spaces());
@@ -23,15 +20,12 @@ namespace slipstick::app
              (solver.unheld().empty() ? ", every body is held by supports or contact" : ""));
     if (picture.empty())
       return;
-    if constexpr (dim == 2)
-      {
-        auto as_given = solver.discrete_scene();
-        as_given.supports.resize(solver.n_given_supports());
-        const std::filesystem::path   file(picture);
-        const output::OutputDirectory directory(file.has_parent_path() ? file.parent_path().string() : ".", comm);
-        output::write_scene_picture(directory, file.filename().string(), as_given, solver.mesh(), solver.spaces());
-        log.line("picture of the scene: " + picture);
-      }
+    auto as_given = solver.discrete_scene();
+    as_given.supports.resize(solver.n_given_supports());
+    const std::filesystem::path   file(picture);
+    const output::OutputDirectory directory(file.has_parent_path() ? file.parent_path().string() : ".", comm);
+    output::write_scene_picture(directory, file.filename().string(), as_given, solver.mesh(), solver.spaces());
+    log.line("picture of the scene: " + picture);
   }
 
   template <int dim>

@@ -1,5 +1,6 @@
 #include <slipstick/base/printable.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <sstream>

@@ -1,5 +1,6 @@
 #include <slipstick/interface/echelon.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 

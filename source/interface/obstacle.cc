@@ -3,6 +3,7 @@
 #include <slipstick/scene/triangulated_surface.h>
 
 #include <cmath>
+#include <limits>
 
 namespace slipstick::interface
 {

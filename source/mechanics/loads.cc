@@ -393,6 +393,52 @@ namespace slipstick::mechanics
           }
       return all;
     }
+
+    /// Of tractions, then of body forces, over all ranks. (A function of its own, since a lambda that captures a type of
+    /// this namespace would be flagged in a public function.)
+    template <int dim>
+    std::vector<LoadResultant> spread_resultants(const scene::Scene<dim> &scene,
+                                                 const mesh::Mesh<dim>   &mesh,
+                                                 const Spaces<dim>       &spaces,
+                                                 const double             t)
+    {
+      const unsigned int                               n_spread = scene.tractions.size() + scene.body_forces.size();
+      std::vector<LoadResultant>                       sums(n_spread);
+      std::vector<typename SubdomainLoad<dim>::Misfit> misfits(scene.body_forces.size());
+      collectively(mesh.comm, [&] {
+        for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+          {
+            SubdomainLoad<dim> load(scene, mesh, spaces, p, t);
+            const auto         own_misfits = load.misfits_of_body_forces();
+            for (unsigned int k = 0; k < misfits.size(); ++k)
+              {
+                misfits[k].size += own_misfits[k].size;
+                misfits[k].difference += own_misfits[k].difference;
+                if (own_misfits[k].largest > misfits[k].largest)
+                  {
+                    misfits[k].largest = own_misfits[k].largest;
+                    misfits[k].at      = own_misfits[k].at;
+                  }
+              }
+            for (unsigned int k = 0; k < n_spread; ++k)
+              {
+                const auto &own = load.resultants()[k];
+                sums[k].sum += own.sum;
+                if (!sums[k].unresolved)
+                  sums[k].unresolved = own.unresolved;
+              }
+          }
+      });
+      for (unsigned int k = 0; k < misfits.size(); ++k)
+        {
+          const double size       = dealii::Utilities::MPI::sum(misfits[k].size, mesh.comm);
+          const double difference = dealii::Utilities::MPI::sum(misfits[k].difference, mesh.comm);
+          const double largest    = dealii::Utilities::MPI::max(misfits[k].largest, mesh.comm);
+          if (difference > allowed_misfit * size && misfits[k].largest == largest)
+            sums[scene.tractions.size() + k].unresolved = misfits[k].at;
+        }
+      return over_all_ranks(sums, mesh.comm);
+    }
   } // namespace
 
   template <int dim>
@@ -421,42 +467,7 @@ namespace slipstick::mechanics
                                              const Spaces<dim>       &spaces,
                                              const double             t)
   {
-    const unsigned int                               n_spread = scene.tractions.size() + scene.body_forces.size();
-    std::vector<LoadResultant>                       sums(n_spread);
-    std::vector<typename SubdomainLoad<dim>::Misfit> misfits(scene.body_forces.size());
-    collectively(mesh.comm, [&] {
-      for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
-        {
-          SubdomainLoad<dim> load(scene, mesh, spaces, p, t);
-          const auto         own_misfits = load.misfits_of_body_forces();
-          for (unsigned int k = 0; k < misfits.size(); ++k)
-            {
-              misfits[k].size += own_misfits[k].size;
-              misfits[k].difference += own_misfits[k].difference;
-              if (own_misfits[k].largest > misfits[k].largest)
-                {
-                  misfits[k].largest = own_misfits[k].largest;
-                  misfits[k].at      = own_misfits[k].at;
-                }
-            }
-          for (unsigned int k = 0; k < n_spread; ++k)
-            {
-              const auto &own = load.resultants()[k];
-              sums[k].sum += own.sum;
-              if (!sums[k].unresolved)
-                sums[k].unresolved = own.unresolved;
-            }
-        }
-    });
-    for (unsigned int k = 0; k < misfits.size(); ++k)
-      {
-        const double size       = dealii::Utilities::MPI::sum(misfits[k].size, mesh.comm);
-        const double difference = dealii::Utilities::MPI::sum(misfits[k].difference, mesh.comm);
-        const double largest    = dealii::Utilities::MPI::max(misfits[k].largest, mesh.comm);
-        if (difference > allowed_misfit * size && misfits[k].largest == largest)
-          sums[scene.tractions.size() + k].unresolved = misfits[k].at;
-      }
-    sums = over_all_ranks(sums, mesh.comm);
+    auto sums = spread_resultants(scene, mesh, spaces, t);
     for_each_point_load(scene, mesh, spaces, [&](const unsigned int k, const PointNode<dim> &at) {
       const auto &force = scene.point_loads[k].force;
       sums.emplace_back();

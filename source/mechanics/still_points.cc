@@ -6,6 +6,7 @@
 #include <boost/serialization/vector.hpp>
 
 #include <cmath>
+#include <tuple>
 
 namespace slipstick::mechanics
 {

@@ -58,9 +58,8 @@ namespace slipstick::mechanics
     high    = HUGE_VAL;
   }
 
-  bool Tightening::take(const std::vector<double> &tensions, const double tolerance)
+  double Tightening::miss() const
   {
-    N              = tensions;
     double largest = 0, missing = 0;
     for (std::size_t i = 0; i < s.size(); ++i)
       if (wanted[i])
@@ -68,7 +67,13 @@ namespace slipstick::mechanics
           largest = std::max(largest, *wanted[i]);
           missing = std::max(missing, std::abs(*wanted[i] - N[i]));
         }
-    const bool is_right = missing <= tolerance * largest;
+    return largest > 0 ? missing / largest : 0.;
+  }
+
+  bool Tightening::take(const std::vector<double> &tensions, const double tolerance)
+  {
+    N                   = tensions;
+    const bool is_right = miss() <= tolerance;
     if (is_right)
       has_known = false; // loads of the next step change the tensions
     else

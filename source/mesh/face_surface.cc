@@ -1,5 +1,6 @@
 #include <slipstick/mesh/face_surface.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

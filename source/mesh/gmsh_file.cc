@@ -5,6 +5,7 @@
 #include <slipstick/mesh/solid_nodes.h>
 
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <limits>

@@ -3,6 +3,7 @@
 #include <slipstick/mesh/mesh_file.h>
 #include <slipstick/mesh/word_reader.h>
 
+#include <cmath>
 #include <optional>
 #include <set>
 #include <unordered_map>

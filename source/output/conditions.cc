@@ -2,6 +2,7 @@
 #include <slipstick/mechanics/surface_facet.h>
 #include <slipstick/output/conditions.h>
 #include <slipstick/output/csv.h>
+#include <slipstick/output/load_places.h>
 
 #include <algorithm>
 #include <ostream>
@@ -65,6 +66,77 @@ namespace slipstick::output
         text += "," + to_text(point[d]);
       return text;
     }
+
+    template <int dim>
+    void write_rows(std::ostream                                    &out,
+                    const scene::Scene<dim>                         &scene,
+                    const mesh::Mesh<dim>                           &mesh,
+                    const std::vector<NamedBoundary>                &boundaries,
+                    const std::vector<mechanics::BoundaryPart<dim>> &parts,
+                    const std::vector<NamedPoint<dim>>              &named,
+                    const std::vector<mechanics::PointNode<dim>>    &nodes,
+                    const std::vector<LoadPlace<dim>>               &places)
+    {
+      constexpr unsigned int n_ends = dim == 2 ? 2 : 4;
+      // Scenes without such loads have the columns that they always had.
+      const std::string no_value = places.empty() ? "" : ",";
+      const auto        row =
+        [&](const std::string &kind, const std::string &name, const std::string &side, const unsigned int body) {
+          out << csv_field(kind) << ',' << csv_field(name) << ',' << side << ',' << csv_field(scene.bodies[body].name);
+        };
+      out << (dim == 2 ? "kind,name,side,body,x1,y1,x2,y2" : "kind,name,side,body,x1,y1,z1,x2,y2,z2,x3,y3,z3,x4,y4,z4")
+          << (places.empty() ? "\n" : ",value\n");
+      for (const auto &boundary : boundaries)
+        for (const auto &part : mechanics::parts_on(mesh, parts, boundary.where))
+          {
+            row(boundary.kind, boundary.name, boundary.side, boundary.where.body);
+            for (unsigned int i = 0; i < n_ends; ++i)
+              out << at(part.node(std::min(i, part.n_corners() - 1)));
+            out << no_value << '\n';
+          }
+      for (unsigned int k = 0; k < named.size(); ++k)
+        {
+          row(named[k].kind, named[k].name, "", named[k].where.body);
+          for (unsigned int i = 0; i < n_ends; ++i)
+            out << at(nodes[k].position);
+          out << no_value << '\n';
+        }
+      for (const auto &place : places)
+        {
+          row(place.kind, place.name, place.side, place.body);
+          for (std::size_t i = 0; i < n_ends; ++i)
+            out << at(place.ends[std::min(i, place.ends.size() - 1)]);
+          out << ',' << to_text(place.value) << '\n';
+        }
+    }
+
+    template <int dim>
+    void write_table(const OutputDirectory        &directory,
+                     const scene::Scene<dim>      &scene,
+                     const mesh::Mesh<dim>        &mesh,
+                     const mechanics::Spaces<dim> &spaces)
+    {
+      const auto        boundaries = boundaries_of(scene);
+      std::vector<bool> wanted(scene.bodies.size());
+      for (const auto &boundary : boundaries)
+        wanted[boundary.where.body] = true;
+      const auto parts = mechanics::outlines(mesh, spaces, wanted);
+
+      const auto                         named = points_of(scene);
+      std::vector<scene::PointName<dim>> points;
+      std::vector<std::string>           owners;
+      for (const auto &point : named)
+        {
+          points.push_back(point.where);
+          owners.push_back(point.kind + " " + point.name);
+        }
+      const auto nodes  = mechanics::nodes_at(scene, mesh, spaces, points, owners);
+      const auto places = load_places(scene, mesh);
+
+      directory.write_from_root("conditions.csv", [&](std::ostream &out) {
+        write_rows<dim>(out, scene, mesh, boundaries, parts, named, nodes, places);
+      });
+    }
   } // namespace
 
   template <int dim>
@@ -73,46 +145,7 @@ namespace slipstick::output
                         const mesh::Mesh<dim>        &mesh,
                         const mechanics::Spaces<dim> &spaces)
   {
-    const auto        boundaries = boundaries_of(scene);
-    std::vector<bool> wanted(scene.bodies.size());
-    for (const auto &boundary : boundaries)
-      wanted[boundary.where.body] = true;
-    const auto             parts  = mechanics::outlines(mesh, spaces, wanted);
-    constexpr unsigned int n_ends = dim == 2 ? 2 : 4;
-
-    const auto                         named = points_of(scene);
-    std::vector<scene::PointName<dim>> points;
-    std::vector<std::string>           owners;
-    for (const auto &point : named)
-      {
-        points.push_back(point.where);
-        owners.push_back(point.kind + " " + point.name);
-      }
-    const auto nodes = mechanics::nodes_at(scene, mesh, spaces, points, owners);
-
-    directory.write_from_root("conditions.csv", [&](std::ostream &out) {
-      const auto row =
-        [&](const std::string &kind, const std::string &name, const std::string &side, const unsigned int body) {
-          out << csv_field(kind) << ',' << csv_field(name) << ',' << side << ',' << csv_field(scene.bodies[body].name);
-        };
-      out << (dim == 2 ? "kind,name,side,body,x1,y1,x2,y2\n"
-                       : "kind,name,side,body,x1,y1,z1,x2,y2,z2,x3,y3,z3,x4,y4,z4\n");
-      for (const auto &boundary : boundaries)
-        for (const auto &part : mechanics::parts_on(mesh, parts, boundary.where))
-          {
-            row(boundary.kind, boundary.name, boundary.side, boundary.where.body);
-            for (unsigned int i = 0; i < n_ends; ++i)
-              out << at(part.node(std::min(i, part.n_corners() - 1)));
-            out << '\n';
-          }
-      for (unsigned int k = 0; k < named.size(); ++k)
-        {
-          row(named[k].kind, named[k].name, "", named[k].where.body);
-          for (unsigned int i = 0; i < n_ends; ++i)
-            out << at(nodes[k].position);
-          out << '\n';
-        }
-    });
+    write_table(directory, scene, mesh, spaces);
   }
 
   template void write_conditions<2>(const OutputDirectory &,

@@ -1,6 +1,7 @@
 #include <slipstick/output/contact_line.h>
 #include <slipstick/output/csv.h>
 
+#include <deal.II/base/data_out_base.h>
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/utilities.h>
 
@@ -8,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <numeric>
 #include <ostream>
 #include <tuple>
 
@@ -104,7 +106,11 @@ namespace slipstick::output
       return values;
     }
 
-    void write_point_data(std::ostream &out, const std::vector<ContactNode> &nodes, const unsigned int dim)
+    /// @param displacement of the nodes, x, y, z in turn; empty: none.
+    void write_point_data(std::ostream                   &out,
+                          const std::vector<ContactNode> &nodes,
+                          const unsigned int              dim,
+                          const std::vector<double>      &displacement)
     {
       out << "<PointData Scalars=\"pressure\">\n";
       write_scalar(out, "pair", nodes, [](const ContactNode &node) { return std::int64_t(node.pair); });
@@ -120,6 +126,8 @@ namespace slipstick::output
         return static_cast<std::int64_t>(node.status);
       });
       write_array(out, "normal", components(nodes, &ContactNode::normal), 3);
+      if (!displacement.empty())
+        write_array(out, "displacement", displacement, 3);
       if (dim == 3)
         {
           write_array(out, "tangential_traction_vector", components(nodes, &ContactNode::traction), 3);
@@ -181,7 +189,30 @@ namespace slipstick::output
           }
     }
 
-    void write_polydata(std::ostream &out, const ContactStep &step, const unsigned int dim)
+    /// In the order of along_the_arc().
+    std::vector<double> along_the_arc(const std::vector<ContactNode>           &nodes,
+                                      const std::vector<std::array<double, 3>> &vectors)
+    {
+      std::vector<std::size_t> order(nodes.size());
+      std::iota(order.begin(), order.end(), 0);
+      std::stable_sort(order.begin(), order.end(), [&nodes](const std::size_t a, const std::size_t b) {
+        return std::tie(nodes[a].pair, nodes[a].arc_length) < std::tie(nodes[b].pair, nodes[b].arc_length);
+      });
+      std::vector<double> values;
+      for (const std::size_t k : order)
+        values.insert(values.end(), vectors[k].begin(), vectors[k].end());
+      return values;
+    }
+
+    std::string vtp_name(const unsigned int step)
+    {
+      return "contact_" + dealii::Utilities::int_to_string(step, 3) + ".vtp";
+    }
+
+    void write_polydata(std::ostream                             &out,
+                        const ContactStep                        &step,
+                        const unsigned int                        dim,
+                        const std::vector<std::array<double, 3>> &displacement)
     {
       const auto nodes = dim == 2 ? along_the_arc(step.nodes) : step.nodes;
       Cells      lines, vertices, polygons;
@@ -194,7 +225,10 @@ namespace slipstick::output
           << "<Piece NumberOfPoints=\"" << nodes.size() << "\" NumberOfVerts=\"" << vertices.offsets.size()
           << "\" NumberOfLines=\"" << lines.offsets.size() << "\" NumberOfStrips=\"0\" NumberOfPolys=\""
           << polygons.offsets.size() << "\">\n";
-      write_point_data(out, nodes, dim);
+      write_point_data(out,
+                       nodes,
+                       dim,
+                       displacement.empty() ? std::vector<double>() : along_the_arc(step.nodes, displacement));
       out << "<Points>\n";
       write_array(out, "Points", components(nodes, &ContactNode::position), 3);
       out << "</Points>\n";
@@ -221,9 +255,22 @@ namespace slipstick::output
     });
   }
 
-  void write_contact_vtp(const OutputDirectory &directory, const ContactStep &step, const unsigned int dim)
+  void write_contact_vtp(const OutputDirectory                    &directory,
+                         const ContactStep                        &step,
+                         const unsigned int                        dim,
+                         const std::vector<std::array<double, 3>> &displacement)
   {
-    const std::string name = "contact_" + dealii::Utilities::int_to_string(step.step, 3) + ".vtp";
-    directory.write_from_root(name, [&](std::ostream &out) { write_polydata(out, step, dim); });
+    directory.write_from_root(vtp_name(step.step),
+                              [&](std::ostream &out) { write_polydata(out, step, dim, displacement); });
+  }
+
+  void write_contact_pvd(const OutputDirectory &directory, const std::vector<double> &load_factors)
+  {
+    directory.write_from_root("contact.pvd", [&](std::ostream &out) {
+      std::vector<std::pair<double, std::string>> records;
+      for (unsigned int step = 0; step < load_factors.size(); ++step)
+        records.emplace_back(load_factors[step], vtp_name(step));
+      dealii::DataOutBase::write_pvd_record(out, records);
+    });
   }
 } // namespace slipstick::output

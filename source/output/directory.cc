@@ -30,7 +30,7 @@ namespace slipstick::output
     }
 
     const std::string result_names =
-      "solution\\.pvd|solution_\\d+\\.pvtu|subdomain_\\d+_\\d+\\.vtu|contact_\\d+\\.vtp|contact\\.csv|"
+      "solution\\.pvd|solution_\\d+\\.pvtu|subdomain_\\d+_\\d+\\.vtu|contact_\\d+\\.vtp|contact\\.pvd|contact\\.csv|"
       "conditions\\.csv|convergence\\.csv|history\\.csv|probes\\.csv|summary\\.json|parameters\\.prm|"
       "restart\\.bin|restart_\\d+_\\d+\\.bin";
 

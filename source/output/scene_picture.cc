@@ -1,346 +1,275 @@
 #include <slipstick/base/log.h>
 #include <slipstick/mechanics/points.h>
-#include <slipstick/mechanics/surface.h>
+#include <slipstick/output/drawn_bodies.h>
+#include <slipstick/output/load_places.h>
 #include <slipstick/output/scene_picture.h>
 
-#include <deal.II/base/mpi.h>
-
 #include <algorithm>
-#include <cmath>
 #include <ostream>
 
 namespace slipstick::output
 {
   namespace
   {
-    using Point = dealii::Point<2>;
-
-    // Of the drawing [pixels]: longer side, border, width of the legend and distance of its lines.
-    constexpr double drawing_size = 900, border = 40, legend_width = 320, line_distance = 20;
-    // Meshes with more cells would be drawn black.
-    constexpr unsigned int max_drawn_cells = 20000;
-    // Arrows a load, about, and the length of the longest one [pixels].
+    // Arrows a load, about.
     constexpr unsigned int arrows_of_load = 12;
-    constexpr double       arrow_length   = 45;
-    // A height function is drawn by this many pieces.
-    constexpr unsigned int pieces_of_function = 200;
 
-    struct Style
+    template <int dim, class LoadAt>
+    dealii::Tensor<1, dim> largest(const std::vector<double> &load_factors, const LoadAt &load_at)
     {
-      const char *kind, *colour;
-      double      width;   // [pixels]
-      const char *pattern; // dashes
-    };
-    constexpr std::array<Style, 6> styles = {{{"support", "#1a7f37", 4, ""},
-                                              {"foundation", "#0b7285", 4, "2 4"},
-                                              {"traction", "#d1242f", 4, ""},
-                                              {"point load", "#d1242f", 4, ""},
-                                              {"contact, slave", "#bc6c00", 2.5, ""},
-                                              {"contact, master", "#8250df", 6, ""}}};
-
-    const Style &style_of(const std::string &kind)
-    {
-      return *std::find_if(styles.begin(), styles.end(), [&kind](const Style &style) { return kind == style.kind; });
-    }
-
-    std::string escaped(const std::string &text)
-    {
-      std::string result;
-      for (const char c : text)
-        result += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
-      return result;
-    }
-
-    /// From the scene [mm] to the picture [pixels], y downwards.
-    struct View
-    {
-      Point  low, high;
-      double scale;
-
-      explicit View(const std::vector<mechanics::SurfaceEdge<2>> &outlines)
-        : low(outlines.front().node(0))
-        , high(low)
-      {
-        for (const auto &edge : outlines)
-          for (unsigned int i = 0; i < edge.n_nodes; ++i)
-            for (unsigned int d = 0; d < 2; ++d)
-              {
-                low[d]  = std::min(low[d], edge.at[i][d]);
-                high[d] = std::max(high[d], edge.at[i][d]);
-              }
-        scale = drawing_size / std::max(high[0] - low[0], high[1] - low[1]);
-      }
-
-      double x(const Point &p) const
-      {
-        return border + (p[0] - low[0]) * scale;
-      }
-      double y(const Point &p) const
-      {
-        return border + (high[1] - p[1]) * scale;
-      }
-      std::string at(const Point &p) const
-      {
-        return format("%.2f %.2f", x(p), y(p));
-      }
-      double width() const
-      {
-        return 2 * border + (high[0] - low[0]) * scale;
-      }
-      double height() const
-      {
-        return 2 * border + (high[1] - low[1]) * scale;
-      }
-    };
-
-    std::string path_of(const mechanics::SurfaceEdge<2> &edge, const View &view)
-    {
-      std::string text = "M" + view.at(edge.node(0));
-      if (edge.n_nodes == 3)
-        text += "L" + view.at(edge.node(2));
-      return text + "L" + view.at(edge.node(1));
-    }
-
-    /// Corners of the cells of all ranks on rank 0; nothing where there are too many.
-    std::vector<std::vector<Point>> cells_of(const mesh::Mesh<2> &mesh)
-    {
-      std::vector<std::vector<Point>> cells;
-      if (mesh.n_cells > max_drawn_cells)
-        return cells;
-      std::vector<double> own; // number of corners, then these
-      for (const auto &subdomain : mesh.subdomains)
-        for (const auto &cell : subdomain->triangulation.active_cell_iterators())
-          {
-            constexpr std::array<unsigned int, 4> around = {{0, 1, 3, 2}};
-            const unsigned int                    n      = cell->n_vertices();
-            own.push_back(n);
-            for (unsigned int k = 0; k < n; ++k)
-              for (unsigned int d = 0; d < 2; ++d)
-                own.push_back(cell->vertex(n == 4 ? around[k] : k)[d]);
-          }
-      for (const auto &of_rank : dealii::Utilities::MPI::gather(mesh.comm, own))
-        for (auto next = of_rank.begin(); next != of_rank.end();)
-          {
-            cells.emplace_back();
-            for (double n = *next++; n > 0; --n, next += 2)
-              cells.back().emplace_back(next[0], next[1]);
-          }
-      return cells;
-    }
-
-    /// A load at a place: where it is largest among the load steps.
-    struct Arrow
-    {
-      Point                tip;
-      dealii::Tensor<1, 2> load;
-    };
-
-    template <class LoadAt>
-    dealii::Tensor<1, 2> largest(const std::vector<double> &load_factors, const LoadAt &load_at)
-    {
-      dealii::Tensor<1, 2> result;
+      dealii::Tensor<1, dim> result;
       for (const double t : load_factors)
         if (const auto load = load_at(t); load.norm() > result.norm())
           result = load;
       return result;
     }
 
-    class Picture
+    /// Of the bodies, and of places in loads_in_bodies() that are not farther from them than they are large.
+    template <int dim>
+    View view_of(const std::vector<mechanics::BoundaryPart<dim>> &outlines, const std::vector<LoadPlace<dim>> &places)
+    {
+      const Projection<dim> project;
+      auto                  low = project(outlines.front().node(0)), high = low;
+      const auto            show = [&](const dealii::Point<2> &point) {
+        for (unsigned int d = 0; d < 2; ++d)
+          {
+            low[d]  = std::min(low[d], point[d]);
+            high[d] = std::max(high[d], point[d]);
+          }
+      };
+      for (const auto &part : outlines)
+        for (unsigned int i = 0; i < part.n_nodes; ++i)
+          show(project(part.node(i)));
+      const auto   middle = low + (high - low) / 2;
+      const double size   = low.distance(high);
+      for (const auto &place : places)
+        for (const auto &end : place.ends)
+          if (project(end).distance(middle) <= size)
+            show(project(end));
+      return View(low, high);
+    }
+
+    /// What acts on boundaries, at points and in bodies, over the bodies.
+    template <int dim>
+    class Conditions
     {
     public:
-      Picture(std::ostream &out_, const View &view_)
-        : out(out_)
+      using Point = dealii::Point<dim>;
+      using Parts = std::vector<mechanics::BoundaryPart<dim>>;
+
+      Conditions(const scene::Scene<dim> &scene_,
+                 const mesh::Mesh<dim>   &mesh_,
+                 const Parts             &outlines_,
+                 const View              &view_,
+                 ScenePicture            &picture_)
+        : scene(scene_)
+        , mesh(mesh_)
+        , outlines(outlines_)
         , view(view_)
+        , picture(picture_)
       {}
 
-      void named(const std::string &kind, const std::string &name, const std::vector<mechanics::SurfaceEdge<2>> &edges)
+      void boundary(const std::string &kind, const std::string &name, const scene::BoundaryName &where)
       {
-        const Style &style = style_of(kind);
-        out << "<path class=\"" << kind << "\" fill=\"none\" stroke-linecap=\"round\" stroke=\"" << style.colour
-            << "\" stroke-width=\"" << style.width << "\" stroke-dasharray=\"" << style.pattern << "\" d=\"";
-        for (const auto &edge : edges)
-          out << path_of(edge, view);
-        out << "\"><title>" << escaped(kind + " " + name) << "</title></path>\n";
-        legend.emplace_back(&style, kind + " " + name);
+        std::string path;
+        for (const auto &part : mechanics::parts_on(mesh, outlines, where))
+          path += view.path(seen(part)) + (dim == 2 ? "" : "z");
+        if (dim == 2)
+          picture.lines(kind, name, path);
+        else
+          picture.areas(kind, name, path);
+        picture.in_legend(kind, name);
       }
 
-      void named(const std::string &kind, const std::string &name, const Point &point)
+      void point(const std::string &kind, const std::string &name, const Point &where)
       {
-        const Style &style = style_of(kind);
-        out << "<circle class=\"" << kind << "\" r=\"6\" fill=\"" << style.colour
-            << format("\" cx=\"%.2f\" cy=\"%.2f\"", view.x(point), view.y(point)) << "><title>"
-            << escaped(kind + " " + name) << "</title></circle>\n";
-        legend.emplace_back(&style, kind + " " + name);
+        picture.dot(kind, name, project(where));
+        picture.in_legend(kind, name);
       }
 
-      /// All of one kind of load, in proportion to each other.
-      void arrows(const std::vector<Arrow> &all)
+      void tractions()
       {
-        double longest = 0;
-        for (const auto &arrow : all)
-          longest = std::max(longest, arrow.load.norm());
-        for (const auto &arrow : all)
-          if (arrow.load.norm() > 0)
-            {
-              const auto   along = arrow_length / longest * arrow.load;
-              const double x = view.x(arrow.tip), y = view.y(arrow.tip);
-              out << format("<path class=\"arrow\" stroke=\"#d1242f\" stroke-width=\"1.5\" marker-end=\"url(#tip)\" "
-                            "d=\"M%.2f %.2fL%.2f %.2f\"/>\n",
-                            x - along[0],
-                            y + along[1],
-                            x,
-                            y);
-            }
-      }
-
-      void write_legend() const
-      {
-        double y = border;
-        for (const auto &[style, text] : legend)
+        std::vector<LoadArrow> arrows;
+        for (const auto &traction : scene.tractions)
           {
-            out << format("<path stroke=\"%s\" stroke-width=\"4\" stroke-dasharray=\"%s\" d=\"M%.2f %.2fh24\"/>",
-                          style->colour,
-                          style->pattern,
-                          view.width(),
-                          y)
-                << format("<text x=\"%.2f\" y=\"%.2f\">", view.width() + 32, y + 5) << escaped(text) << "</text>\n";
-            y += line_distance;
+            boundary("traction", traction.name, traction.where);
+            const auto        parts  = mechanics::parts_on(mesh, outlines, traction.where);
+            const std::size_t stride = 1 + parts.size() / arrows_of_load;
+            for (std::size_t k = stride / 2; k < parts.size(); k += stride)
+              {
+                const auto place  = parts[k].middle();
+                const auto normal = mechanics::middle_normal(parts[k]);
+                arrows.push_back(arrow(place, largest<dim>(scene.load_factors, [&](const double t) {
+                                         dealii::Tensor<1, dim> load = -traction.pressure.value(place, t) * normal;
+                                         for (unsigned int c = 0; c < dim; ++c)
+                                           load[c] += traction.components[c].value(place, t);
+                                         return load;
+                                       })));
+              }
           }
+        picture.arrows("traction", arrows);
+      }
+
+      /// @param nodes of them.
+      void point_loads(const mechanics::PointNode<dim> *nodes)
+      {
+        std::vector<LoadArrow> arrows;
+        for (const auto &load : scene.point_loads)
+          {
+            const auto place = nodes++->position;
+            point("point load", load.name, place);
+            arrows.push_back(arrow(place, largest<dim>(scene.load_factors, [&](const double t) {
+                                     dealii::Tensor<1, dim> force;
+                                     for (unsigned int c = 0; c < dim; ++c)
+                                       force[c] = load.force[c].value(place, t);
+                                     return force;
+                                   })));
+          }
+        picture.arrows("point load", arrows);
+      }
+
+      void loads_in_bodies(const std::vector<LoadPlace<dim>> &places)
+      {
+        std::vector<LoadArrow> forces, tensions;
+        for (const auto &place : places)
+          {
+            std::vector<dealii::Point<2>> ends;
+            for (const auto &end : place.ends)
+              ends.push_back(project(end));
+            picture.in_legend(place.kind, place.name);
+            if (place.kind == "temperature")
+              picture.label(place.kind, place.name, ends.front(), format("%+.4g K", place.value));
+            else if (place.side.empty())
+              {
+                if (place.value == 0)
+                  continue; // a formula that is 0 there
+                picture.dot(place.kind, place.name, ends.front(), dot_radius);
+                forces.push_back(arrow(place.ends.front(), place.force));
+                forces.back().begins_there = true;
+              }
+            else if (ends.size() == 1)
+              picture.turning(place.kind, place.name, ends.front());
+            else
+              picture.lines(place.kind, place.name, view.path(ends) + (ends.size() > 2 ? "z" : ""));
+            if (place.kind == "pretension" && place.side == "axis")
+              for (const double side : {-1., 1.}) // the arrows meet at the section
+                {
+                  const auto along = place.ends.back() - place.ends.front();
+                  tensions.push_back(arrow(section_of(places, place.name), side * place.value / along.norm() * along));
+                }
+          }
+        picture.arrows("body force", forces);
+        picture.arrows("pretension", tensions);
       }
 
     private:
-      std::ostream                                      &out;
-      const View                                        &view;
-      std::vector<std::pair<const Style *, std::string>> legend;
+      // Where the arrow of a body force begins [pixels].
+      static constexpr double dot_radius = 3.5;
+
+      LoadArrow arrow(const Point &place, const dealii::Tensor<1, dim> &load) const
+      {
+        return {project(place), project.along(load), load.norm(), false};
+      }
+
+      /// Its middle.
+      static Point section_of(const std::vector<LoadPlace<dim>> &places, const std::string &bolt)
+      {
+        Point middle;
+        for (const auto &place : places)
+          if (place.kind == "pretension" && place.side == "section" && place.name == bolt)
+            for (const auto &end : place.ends)
+              middle += 1. / place.ends.size() * end;
+        return middle;
+      }
+
+      const scene::Scene<dim> &scene;
+      const mesh::Mesh<dim>   &mesh;
+      const Parts             &outlines;
+      const View              &view;
+      ScenePicture            &picture;
+      Projection<dim>          project;
     };
 
-    void draw(std::ostream &out, const View &view, const scene::Obstacle<2> &obstacle, const double t)
+    template <int dim>
+    std::vector<mechanics::PointNode<dim>> named_nodes(const scene::Scene<dim>      &scene,
+                                                       const mesh::Mesh<dim>        &mesh,
+                                                       const mechanics::Spaces<dim> &spaces)
     {
-      const std::string look = "class=\"obstacle\" fill=\"none\" stroke=\"#57606a\" stroke-width=\"3\"";
-      std::string       path;
-      if (obstacle.shape == scene::ObstacleShape::circle || obstacle.shape == scene::ObstacleShape::hole)
-        {
-          out << "<circle " << look
-              << format(" cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\"/>\n",
-                        view.x(obstacle.center),
-                        view.y(obstacle.center),
-                        obstacle.radius * view.scale);
-          return;
-        }
-      if (obstacle.shape == scene::ObstacleShape::half_plane)
-        {
-          const dealii::Tensor<1, 2> along =
-            view.low.distance(view.high) * Point(-obstacle.normal[1], obstacle.normal[0]);
-          path = "M" + view.at(obstacle.center - along) + "L" + view.at(obstacle.center + along);
-        }
-      for (const auto &point : obstacle.points)
-        path += (path.empty() ? "M" : "L") + view.at(point);
-      if (obstacle.shape == scene::ObstacleShape::function)
-        for (unsigned int k = 0; k <= pieces_of_function; ++k)
+      std::vector<scene::PointName<dim>> points;
+      std::vector<std::string>           owners;
+      for (const auto &support : scene.supports)
+        if (support.point)
           {
-            const double x = view.low[0] + (view.high[0] - view.low[0]) * k / pieces_of_function;
-            path += (k == 0 ? "M" : "L") + view.at(Point(x, obstacle.height.value(Point(x, 0), t)));
+            points.push_back(*support.point);
+            owners.push_back("Support " + support.name);
           }
-      out << "<path " << look << " d=\"" << path << "\"/>\n";
+      for (const auto &load : scene.point_loads)
+        {
+          points.push_back(load.where);
+          owners.push_back("Point load " + load.name);
+        }
+      return mechanics::nodes_at(scene, mesh, spaces, points, owners);
     }
   } // namespace
 
-  void write_scene_picture(const OutputDirectory      &directory,
-                           const std::string          &file,
-                           const scene::Scene<2>      &scene,
-                           const mesh::Mesh<2>        &mesh,
-                           const mechanics::Spaces<2> &spaces)
+  template <int dim>
+  void write_scene_picture(const OutputDirectory        &directory,
+                           const std::string            &file,
+                           const scene::Scene<dim>      &scene,
+                           const mesh::Mesh<dim>        &mesh,
+                           const mechanics::Spaces<dim> &spaces)
   {
-    const auto outlines = mechanics::outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
-    const auto cells    = cells_of(mesh);
-
-    std::vector<scene::PointName<2>> points;
-    std::vector<std::string>         owners;
-    for (const auto &support : scene.supports)
-      if (support.point)
-        {
-          points.push_back(*support.point);
-          owners.push_back("Support " + support.name);
-        }
-    for (const auto &load : scene.point_loads)
-      {
-        points.push_back(load.where);
-        owners.push_back("Point load " + load.name);
-      }
-    const auto nodes = mechanics::nodes_at(scene, mesh, spaces, points, owners);
+    const auto        outlines = mechanics::outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
+    const DrawnBodies bodies(mesh, outlines);
+    const auto        places = load_places(scene, mesh);
+    const auto        nodes  = named_nodes(scene, mesh, spaces);
 
     directory.write_from_root(file, [&](std::ostream &out) {
-      const View        view(outlines);
-      const std::size_t n_lines = scene.supports.size() + scene.foundations.size() + scene.tractions.size() +
-                                  scene.point_loads.size() + 2 * scene.contacts.size();
-      const auto on = [&](const scene::BoundaryName &where) { return mechanics::edges_on(mesh, outlines, where); };
-      out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
-          << "font-family=\"sans-serif\" font-size=\"14\" "
-          << format("width=\"%.0f\" height=\"%.0f\">\n",
-                    view.width() + legend_width,
-                    std::max(view.height(), 2 * border + line_distance * n_lines))
-          << "<defs><marker id=\"tip\" orient=\"auto\" markerWidth=\"8\" markerHeight=\"8\" refX=\"7\" refY=\"4\">"
-          << "<path d=\"M0 1L8 4L0 7z\" fill=\"#d1242f\"/></marker></defs>\n"
-          << "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
-          << "<path class=\"mesh\" fill=\"#eaeef2\" stroke=\"#c0c8d0\" stroke-width=\"0.5\" d=\"";
-      for (const auto &cell : cells)
-        {
-          for (std::size_t k = 0; k < cell.size(); ++k)
-            out << (k == 0 ? "M" : "L") << view.at(cell[k]);
-          out << 'z';
-        }
-      out << "\"/>\n<path class=\"outline\" fill=\"none\" stroke=\"#24292f\" stroke-width=\"1.5\" d=\"";
-      for (const auto &edge : outlines)
-        out << path_of(edge, view);
-      out << "\"/>\n";
+      const View   view = view_of<dim>(outlines, places);
+      ScenePicture picture(out,
+                           view,
+                           scene.supports.size() + scene.foundations.size() + scene.tractions.size() +
+                             scene.point_loads.size() + 2 * scene.contacts.size() + scene.body_forces.size() +
+                             scene.temperatures.size() + scene.pretensions.size());
+      if (dim == 2)
+        bodies.write(out, view);
+      picture.begin_clipped();
       for (const auto &obstacle : scene.obstacles)
-        draw(out, view, obstacle, scene.load_factors.front());
+        draw_obstacle(out, view, obstacle, scene.load_factors.front());
+      picture.end_clipped();
+      if (dim == 3) // in front of obstacles
+        bodies.write(out, view);
 
-      Picture picture(out, view);
+      Conditions<dim> draw(scene, mesh, outlines, view, picture);
       for (const auto &pair : scene.contacts)
         {
           if (pair.master) // below: the two often coincide
-            picture.named("contact, master", pair.name, on(*pair.master));
-          picture.named("contact, slave", pair.name, on(pair.slave));
+            draw.boundary("contact, master", pair.name, *pair.master);
+          draw.boundary("contact, slave", pair.name, pair.slave);
         }
-      unsigned int next = 0;
+      auto next = nodes.data();
       for (const auto &support : scene.supports)
         if (support.point)
-          picture.named("support", support.name, nodes[next++].position);
+          draw.point("support", support.name, next++->position);
         else
-          picture.named("support", support.name, on(support.where));
+          draw.boundary("support", support.name, support.where);
       for (const auto &foundation : scene.foundations)
-        picture.named("foundation", foundation.name, on(foundation.where));
-      std::vector<Arrow> arrows;
-      for (const auto &traction : scene.tractions)
-        {
-          const auto edges = on(traction.where);
-          picture.named("traction", traction.name, edges);
-          const std::size_t stride = 1 + edges.size() / arrows_of_load;
-          for (std::size_t k = stride / 2; k < edges.size(); k += stride)
-            {
-              const auto place = edges[k].point(0.5);
-              arrows.push_back({place, largest(scene.load_factors, [&](const double t) {
-                                  return Point(traction.components[0].value(place, t),
-                                               traction.components[1].value(place, t)) -
-                                         traction.pressure.value(place, t) * edges[k].normal(0.5);
-                                })});
-            }
-        }
-      picture.arrows(arrows);
-      arrows.clear();
-      for (const auto &load : scene.point_loads)
-        {
-          const auto place = nodes[next++].position;
-          picture.named("point load", load.name, place);
-          arrows.push_back({place, largest(scene.load_factors, [&](const double t) {
-                              return dealii::Tensor<1, 2>(
-                                Point(load.force[0].value(place, t), load.force[1].value(place, t)));
-                            })});
-        }
-      picture.arrows(arrows);
-      picture.write_legend();
-      out << "</svg>\n";
+        draw.boundary("foundation", foundation.name, foundation.where);
+      draw.tractions();
+      draw.point_loads(next);
+      draw.loads_in_bodies(places);
+      picture.finish();
     });
   }
+
+  template void write_scene_picture(const OutputDirectory &,
+                                    const std::string &,
+                                    const scene::Scene<2> &,
+                                    const mesh::Mesh<2> &,
+                                    const mechanics::Spaces<2> &);
+  template void write_scene_picture(const OutputDirectory &,
+                                    const std::string &,
+                                    const scene::Scene<3> &,
+                                    const mesh::Mesh<3> &,
+                                    const mechanics::Spaces<3> &);
 } // namespace slipstick::output

@@ -370,8 +370,8 @@ namespace slipstick::tfeti
       }
     const Eigen::VectorXd slips = shares * a;
     std::vector<double>   result(t.size(), 0.);
-    for (const unsigned int r : own)
-      result[r] = slips[place_of[r]];
+    for (const unsigned int row : own)
+      result[row] = slips[place_of[row]];
     return result;
   }
 } // namespace slipstick::tfeti

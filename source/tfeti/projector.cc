@@ -8,12 +8,14 @@
 #include <boost/serialization/vector.hpp>
 
 #include <array>
+#include <map>
 #include <numeric>
 #include <set>
+#include <tuple>
 
 namespace slipstick::tfeti
 {
-  namespace
+  namespace projection // not without a name: a member of Projector::Motions is of a type in it
   {
     constexpr unsigned int most_motions = 6; // rigid ones of a solid in space
 
@@ -31,6 +33,11 @@ namespace slipstick::tfeti
         archive &row &first &size &values;
       }
     };
+  } // namespace projection
+
+  namespace
+  {
+    using projection::ColumnPart;
 
     /// Sums of outer products of columns of G, as dense blocks: one for every two subdomains that share a row.
     class Gram
@@ -252,11 +259,11 @@ namespace slipstick::tfeti
       return {parts.begin() + first_part[row], parts.begin() + first_part[row + 1]};
     }
 
-    std::vector<Block>        blocks;
-    unsigned int              n_motions = 0; // of this rank
-    std::vector<ColumnPart>   parts;         // of the owned rows, row by row
-    std::vector<unsigned int> first_part;    // of every owned row
-    std::vector<unsigned int> staying, changing;
+    std::vector<Block>                  blocks;
+    unsigned int                        n_motions = 0; // of this rank
+    std::vector<projection::ColumnPart> parts;         // of the owned rows, row by row
+    std::vector<unsigned int>           first_part;    // of every owned row
+    std::vector<unsigned int>           staying, changing;
 
   private:
     void find_changing_motions(const Partitioner &rows)

@@ -6,8 +6,10 @@
 
 #include <boost/serialization/vector.hpp>
 
+#include <cstdint>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
 
 namespace slipstick::tfeti

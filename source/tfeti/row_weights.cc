@@ -5,6 +5,8 @@
 
 #include <boost/serialization/vector.hpp>
 
+#include <cstdint>
+#include <map>
 #include <numeric>
 
 namespace slipstick::tfeti

@@ -2,6 +2,9 @@
 #include <slipstick/base/log.h>
 #include <slipstick/tfeti/subdomain_system.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <random>
 #include <set>
 

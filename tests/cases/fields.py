@@ -43,6 +43,17 @@ def read_vtu(path):
     return arrays
 
 
+def read_vtp(path):
+    """The same of contact_NNN.vtp, whose arrays are not compressed."""
+    arrays = {}
+    for attributes, content in ARRAY.findall(path.read_text()):
+        letter, size = FORMATS[attribute(attributes, 'type')]
+        n, data = int(attribute(attributes, 'NumberOfComponents', '1')), base64.b64decode(content)[8:]
+        values = struct.unpack('<{}{}'.format(len(data) // size, letter), data)
+        arrays[attribute(attributes, 'Name')] = [values[i:i + n] for i in range(0, len(values), n)]
+    return arrays
+
+
 def pieces(directory):
     """The files that solution.pvd leads to, in their order."""
     pvd = (directory / 'solution.pvd').read_text()

@@ -68,7 +68,7 @@ class Outputs(unittest.TestCase):
             self.assertEqual(isinstance(value, bool), expected is FLAG, path)
 
     def test_all_files_are_there_and_nothing_else(self):
-        expected = ['conditions.csv', 'contact.csv', 'contact_000.vtp', 'convergence.csv', 'history.csv', 'parameters.prm',
+        expected = ['conditions.csv', 'contact.csv', 'contact.pvd', 'contact_000.vtp', 'convergence.csv', 'history.csv', 'parameters.prm',
                     'solution.pvd', 'solution_000.pvtu', 'summary.json'] + ['subdomain_000_{:04}.vtu'.format(i) for i in range(16)]
         self.assertEqual(box().files(), sorted(expected))
 
@@ -162,9 +162,24 @@ class Outputs(unittest.TestCase):
                 self.assertEqual(stress[1], stress[3])
                 self.assertAlmostEqual((one * one + two * two - one * two - mises * mises) / scale ** 2, 0, places=5)
 
+    def test_contact_lines_move_with_their_bodies(self):
+        """contact.pvd leads to lines (in space faces) whose displacement is that of the slave body."""
+        cube = {'Decomposition/Blocks': 2, 'Decomposition/Cells per block': 2}
+        for result in (box(), converged(shipped('box_on_circle'), {**SMALL, 'Discretization/Degree': 2}),
+                       converged(shipped('cube_on_sphere'), cube, ranks=2)):
+            self.assertEqual(re.findall('file="([^"]*)"', (result.directory / 'contact.pvd').read_text()), ['contact_000.vtp'])
+            line = fields.read_vtp(result.directory / 'contact_000.vtp')
+            of_body = fields.field(result.directory, 'displacement')
+            size = fields.largest(of_body)
+            self.assertGreater(len(line['Points']), 12)
+            for position, displacement in zip(line['Points'], line['displacement']):
+                expected = of_body[tuple(round(x, 4) + 0. for x in position)][0]
+                for found, other in zip(displacement, expected):
+                    self.assertAlmostEqual(found, other, delta=1e-5 * size)  # of single precision, between copies of the node
+
     def test_fields_may_be_left_away(self):
         result = converged(shipped('box_on_circle'), {**SMALL, 'Output/VTU': 'false'}, ranks=2)
-        self.assertEqual(result.files(), ['conditions.csv', 'contact.csv', 'contact_000.vtp', 'convergence.csv',
+        self.assertEqual(result.files(), ['conditions.csv', 'contact.csv', 'contact.pvd', 'contact_000.vtp', 'convergence.csv',
                                           'history.csv', 'parameters.prm', 'summary.json'])
 
     def test_parameters_run_again_give_the_same_result(self):

@@ -5,7 +5,7 @@ import math
 import unittest
 
 import scenes
-from program import new_path, run, solve
+from program import converged, new_path, run, shipped, solve
 
 YOUNG, LENGTH, PRELOAD = 1e5, 20., 1000.
 PULLS = (0, 400, 800, 2000)  # in the load steps t = 1, 2, 3, 4
@@ -157,6 +157,17 @@ class Pretension(unittest.TestCase):
             thread = [pair for pair in first['contact'] if pair['pair'] == 'thread'][0]
             self.assertAlmostEqual(thread['normal_force'], 800, delta=1e-3)
 
+    def test_beside_larger_loads(self):
+        """The solver measures its error by all loads; the tension is found to its own tolerance."""
+        content = scenes.text(materials=MATERIALS, bodies={'bar': block(0, 2, 0, 6, '4, 10')},
+                              supports={end: {'Boundary': 'bar/' + end, **CLAMPED} for end in ('bottom', 'top')},
+                              tractions={'side': {'Boundary': 'bar/left', 'Traction x': '1000', 'Traction y': '300*y'}},
+                              **{'Decomposition': {'Method': 'METIS', 'Subdomains': '4'}})
+        path = new_path('small.prm')
+        path.write_text(with_bolts(content, {'m1': {'Body': 'bar', 'Point': '1, 3.1', 'Direction': '0, 1', 'Force': '5'}}))
+        bolt = self.solved(path).summary['results']['pretensions'][0]
+        self.assertAlmostEqual(bolt['force'] / 5, 1, delta=1.01e-4)
+
     def test_heat_counts(self):
         """A bolt that is heated before it is tightened bears its force all the same; cooled it bears more."""
         content = joint(factors='1, 2').read_text().replace('set Young modulus = 1e5', 'set Thermal expansion = 1e-5\n  set Young modulus = 1e5')
@@ -181,6 +192,24 @@ class Pretension(unittest.TestCase):
         resumed = run(case, '--resume', '--output', directory, directory=directory)
         self.assertEqual(resumed.status, 0, resumed)
         self.assertEqual(resumed.summary['steps'], whole.summary['steps'])
+
+    def test_shipped_joint(self):
+        """The figures in the header of prm/bolted_joint.prm, with cells twice as high: equilibrium, joint diagram of VDI 2230."""
+        coarse = {'Body {}/Cells'.format(name): '{}, {}'.format(*cells) for name, cells in (
+            ('shank', (12, 40)), ('head', (18, 8)), ('nut', (18, 8)), ('upper plate', (47, 20)), ('lower plate', (47, 20)))}
+        steps = converged(shipped('bolted_joint'), {**coarse, 'Output/VTU': 'false'}).summary['steps']
+        spread = 0.362 + 0.032 * math.log(40 / 18 / 2) + 0.153 * math.log(60 / 18)
+        plates = 2 * math.log((18 + 13) * (18 + 40 * spread - 13) / ((18 - 13) * (18 + 40 * spread + 13))) / (2.1e5 * math.pi * 13 * spread)
+        bolt = (40 + 0.5 * 12 + 0.4 * 12) / (2.1e5 * math.pi * 6**2)
+        preload, share = 4e4, plates / (plates + bolt)
+        self.assertAlmostEqual(steps[0]['pretensions'][0]['shortening'] / (preload * (plates + bolt)), 1, delta=0.04)
+        for pull, step in zip((0, 15e3, 30e3, 60e3), steps):
+            tension = step['pretensions'][0]['force']
+            self.assertAlmostEqual(step['contact'][4]['normal_force'], tension - pull, delta=1e-4 * preload)
+            if pull < preload:
+                self.assertAlmostEqual(tension - preload, share * pull, delta=0.02 * share * pull + 1e-4 * preload)
+        self.assertAlmostEqual(tension, 60e3, delta=1)
+        self.assertEqual(step['contact'][4]['contact_nodes'], 0)
 
     def refused(self, status, words, state='plane stress', **changes):
         bolt = {'Body': 'bolt', 'Point': '0, 9.1', 'Direction': '0, 1', 'Force': PRELOAD, **changes}

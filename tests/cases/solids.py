@@ -356,7 +356,6 @@ class Refused(Solids):
                 ('Traction pressed/Pressure', '500*w', 'z', 't')):
             with self.subTest(name):
                 self.refused(cube, {name: value}, *words)
-        self.refused(cube, {}, '--draw', options=('--draw', 'scene.svg'))
         self.refused(shipped('box_on_circle'), {'Support held/Displacement z': 0}, 'space (Dimension = 3) only')
         self.assertEqual(run('--list-parameters', 'text', '--set', 'Dimension=3').stdout.count('Traction pressed/Traction z'), 1)
 

@@ -130,7 +130,9 @@ TEST(AdaptiveRefinement, cells_of_subdomains_are_found_by_their_vertices)
         EXPECT_EQ(body, subdomain->body);
         n_of_b += body;
         if (path.size() > 1)
-          EXPECT_LT(cell->diameter(), .6);
+          {
+            EXPECT_LT(cell->diameter(), .6);
+          }
       }
   EXPECT_EQ(mesh.n_cells, refinement.cells.size());
   EXPECT_EQ(mesh.n_cells - n_of_b, 12u);

@@ -257,9 +257,11 @@ TEST(MeshFiles, refinement_towards_named_lines)
       const auto id = mesh.boundary_ids.at("interface");
       for (const auto &face : mesh.piece.boundary_faces) // four edges of length 0.5 there
         if (face.id == id)
-          EXPECT_NEAR(mesh.piece.vertices[face.vertices[0]].distance(mesh.piece.vertices[face.vertices[1]]),
-                      b == 0 ? .5 / 9 : .5 / 4,
-                      1e-9);
+          {
+            EXPECT_NEAR(mesh.piece.vertices[face.vertices[0]].distance(mesh.piece.vertices[face.vertices[1]]),
+                        b == 0 ? .5 / 9 : .5 / 4,
+                        1e-9);
+          }
     }
 }
 

@@ -99,8 +99,10 @@ TEST(Shapes, vertices_of_arcs_lie_on_the_arc)
       };
       for (const auto &face : mesh.piece.boundary_faces)
         if (face.curve)
-          for (const unsigned int v : face.vertices)
-            EXPECT_NEAR(mesh.piece.vertices[v].distance(body.center), radius(face.id), 1e-13);
+          {
+            for (const unsigned int v : face.vertices)
+              EXPECT_NEAR(mesh.piece.vertices[v].distance(body.center), radius(face.id), 1e-13);
+          }
     }
 }
 
@@ -122,7 +124,9 @@ TEST(Shapes, boundaries_have_their_lengths)
           EXPECT_NEAR(at("inner") / (turn * 2), 1, .01);
         }
       if (shape == Shape::half_disc)
-        EXPECT_NEAR(at("flat"), 10, 1e-13);
+        {
+          EXPECT_NEAR(at("flat"), 10, 1e-13);
+        }
       if (shape == Shape::quarter_disc)
         {
           EXPECT_NEAR(at("flat"), 5, 1e-13);
@@ -149,9 +153,13 @@ TEST(Shapes, half_disc_hangs_below_its_centre_and_quarter_ring_lies_between_the_
   for (const auto &face : ring.piece.boundary_faces)
     for (const unsigned int v : face.vertices)
       if (face.id == ring.boundary_ids.at("start"))
-        EXPECT_EQ(ring.piece.vertices[v][1], -2);
+        {
+          EXPECT_EQ(ring.piece.vertices[v][1], -2);
+        }
       else if (face.id == ring.boundary_ids.at("end"))
-        EXPECT_EQ(ring.piece.vertices[v][0], 3);
+        {
+          EXPECT_EQ(ring.piece.vertices[v][0], 3);
+        }
 }
 
 TEST(Shapes, disc_and_half_disc_have_a_vertex_at_the_lowest_point)

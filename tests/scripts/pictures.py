@@ -7,12 +7,13 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / 'scripts'
 sys.path.insert(0, str(SCRIPTS))
 try:
     import numpy
-    from results import contact_plot, fields, film, folder, formula, pictures, report_page
+    from results import contact_plot, fields, film, folder, formula, painters, pictures, report_page
 except ImportError as error:
     print('skipped: {}; scripts/setup --render'.format(error))
     sys.exit(77)
@@ -162,6 +163,26 @@ class Films(WithRun):
         self.assertIn('ffmpeg', remark)
 
 
+class Solids(WithRun):
+    def painter(self, name):
+        run = folder.Run(run_folder.write_solid(self.place / 'run'))
+        return painters.field_painter(run, name, pictures.Options(), painters.grids(run))
+
+    def test_every_step_is_drawn(self):
+        painter = self.painter('von_mises')
+        self.assertEqual(painter.limits, [5, 11])
+        for step, largest in ((0, '5.5'), (1, '11')):
+            painter.draw(step)
+            first, second, _ = painter.lines_of_title(step)
+            self.assertIn('step {} (0 to 1), t = {:g}'.format(step, run_folder.FACTORS[step]), first)
+            self.assertIn('largest magnitude {} MPa'.format(largest), second)
+
+    def test_a_constant_has_a_scale_that_can_be_read(self):
+        low, high = self.painter('principal_stress_1').limits
+        self.assertAlmostEqual(low, 6.93, delta=0.001)
+        self.assertAlmostEqual(high, 7.07, delta=0.001)
+
+
 class Report(WithRun):
     def rows(self, text):
         return [re.sub('<[^>]*>', ' ', row).split() for row in re.findall('<tr.*?</tr>', text)]
@@ -169,12 +190,38 @@ class Report(WithRun):
     def test_everything_is_on_the_page(self):
         text = report_page.page(self.run_of())
         self.assertEqual(re.findall('(?:src|href)="(?!data:image/png;base64,)', text), [])  # no other file
-        self.assertEqual(text.count('<img '), 5)  # scene, history, two fields, contact
+        self.assertEqual(text.count('<img '), 5)  # scene, history, two fields, contact; the tip has no force
         self.assertIn('Contact joint: &lt;something&gt; &amp; more', text)
         rows = self.rows(text)
         for row in ('traction pull 60 0 -42', 'support wall -60 0 42', 'sum 0 0 0', 'joint 100 5 100 1 2 2 0 0', 'solve 0.75 s'):
             self.assertIn(row.split(), rows)
         self.assertIn('5 %', text)  # the estimated error
+
+    def test_forces_over_displacements(self):
+        """Of a support that is moved its reaction, of a probe the loads along the same axis."""
+        run = self.run_of()
+        (run.folder / 'history.csv').write_text('t,traction pull Fx,traction pull Fy,support wall Fx,support tip Fy,probe end ux,probe end uy\n'
+                                                '0.5,30,0,-30,7,0.1,0\n1,60,0,-60,5,0.2,0\n')
+        curves = []
+        with unittest.mock.patch.object(report_page, 'picture', lambda figure, alt: curves.extend(
+                (line.get_label(), list(line.get_xdata()), list(line.get_ydata())) for line in figure.axes[0].lines) or alt):
+            self.assertEqual(report_page.loop_plot(run), 'forces over displacements')
+        self.assertEqual(curves, [('traction pull Fx over probe end ux', [0.1, 0.2], [30, 60]),
+                                  ('support wall Fx over probe end ux', [0.1, 0.2], [-30, -60]),
+                                  ('support tip Fy over support tip uy', [0.005, 0.01], [7, 5])])
+
+    def test_bolts(self):
+        run = self.run_of()
+        self.assertNotIn('Bolts', report_page.page(run))
+        run.scene.values.update({'Pretensions': 'm8', 'Pretension m8/Body': 'left', 'Pretension m8/Point': '0.5, 0.25',
+                                 'Pretension m8/Direction': '0, 2', 'Pretension m8/Force': '4000*t*(y > 0.2 ? 1 : 0)'})
+        tensions = ((1999.9, True), (2100, False))  # asked for at t = 0.5, then held
+        for step, (force, is_tightened) in zip(run.summary['steps'], tensions):
+            step['pretensions'] = [{'pretension': 'm8', 'force': force, 'shortening': 0.0125, 'tightened': is_tightened}]
+        run.summary['results']['pretensions'] = run.summary['steps'][-1]['pretensions']
+        text = report_page.page(run)
+        self.assertIn('<h2>Bolts</h2>', text)
+        self.assertIn('m8 left 0.5, 0.25 0, 2 0.5 2000 1999.9 2100 0.0125'.split(), self.rows(text))
 
     def test_forces_that_do_not_balance_show(self):
         run = self.run_of()

@@ -95,3 +95,25 @@ def write(folder, statuses=('stick', 'stick'), strain=0.1):
         'results': {**forces(1), 'max_von_mises': 12}, 'steps': [{'load_factor': t, **forces(t)} for t in FACTORS],
         'time_s': {'total': 1.5, 'mesh': 0.5, 'solve': 0.75, 'other': 0.25}, 'memory_mb': {'peak_rank_max': 170, 'peak_total': 170}}))
     return folder
+
+
+def write_solid(folder):
+    """A cube of 1 mm in two load steps: the displacement along x is 0.1 t x, von Mises stress t (10 + y), principal stress 1 is 7 but for
+    rounding."""
+    folder.mkdir(parents=True, exist_ok=True)
+    points = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    flat = lambda rows: [number for row in rows for number in row]
+    (folder / 'parameters.prm').write_text('set Dimension = 3\n')
+    for step, t in enumerate(FACTORS):
+        (folder / 'step{}.vtu'.format(step)).write_text(
+            '<VTKFile type="UnstructuredGrid" version="0.1"><UnstructuredGrid><Piece NumberOfPoints="8" NumberOfCells="1">\n'
+            '<Points>' + array('', flat(points), 3) + '</Points>\n<Cells>' + array('connectivity', range(8), kind='Int32') +
+            array('offsets', (8,), kind='Int32') + array('types', (12,), kind='UInt8') + '</Cells>\n<PointData>' +
+            array('displacement', flat((0.1 * t * x, 0, 0) for x, y, z in points), 3) +
+            array('von_mises', [t * (10 + y) for x, y, z in points]) + array('principal_stress_1', [7 + 1e-7 * y for x, y, z in points]) +
+            '</PointData>\n<CellData>' + array('body', (0,)) + '</CellData>\n</Piece></UnstructuredGrid></VTKFile>\n')
+    (folder / 'solution.pvd').write_text('<VTKFile type="Collection"><Collection>{}</Collection></VTKFile>'.format(''.join(
+        '<DataSet timestep="{}" file="step{}.vtu"/>'.format(t, step) for step, t in enumerate(FACTORS))))
+    (folder / 'summary.json').write_text(json.dumps({
+        'case': 'cube', 'problem': {'dimension': 3}, 'steps': [{'load_factor': t} for t in FACTORS]}))
+    return folder

@@ -45,6 +45,9 @@ namespace slipstick::mechanics
       return N;
     }
 
+    /// By how much the tensions of take() miss those that are wanted, over the largest of these.
+    double miss() const;
+
     /// What later steps go by, as numbers.
     std::vector<std::vector<double>> state() const;
     void                             restore(const std::vector<std::vector<double>> &state);

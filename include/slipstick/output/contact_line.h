@@ -5,6 +5,7 @@
 #include <slipstick/contact/result.h>
 #include <slipstick/output/directory.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -38,5 +39,12 @@ namespace slipstick::output
   /// Writes contact_NNN.vtp (NNN: the step) from rank 0, whose arguments count: one line a pair along the arc length (a
   /// vertex for a pair of one node), in space the faces and a vertex for every other node; the node values as point data,
   /// status 0 open, 1 stick, 2 slip. Collective.
-  void write_contact_vtp(const OutputDirectory &directory, const ContactStep &step, const unsigned int dim = 2);
+  /// @param displacement of the nodes, in their order in the step [mm]; empty: unknown.
+  void write_contact_vtp(const OutputDirectory                    &directory,
+                         const ContactStep                        &step,
+                         const unsigned int                        dim          = 2,
+                         const std::vector<std::array<double, 3>> &displacement = {});
+
+  /// Writes contact.pvd over the files contact_NNN.vtp, with the load factor of each step as its time. Collective.
+  void write_contact_pvd(const OutputDirectory &directory, const std::vector<double> &load_factors);
 } // namespace slipstick::output

@@ -7,11 +7,13 @@
 namespace slipstick::output
 {
   /// Writes an SVG file of name @p file from rank 0: meshes (outlines alone where there are many cells), supports,
-  /// loads, contact pairs and obstacles with a legend of their names; arrows of loads in the load step in which they
-  /// are largest. Collective.
-  void write_scene_picture(const OutputDirectory      &directory,
-                           const std::string          &file,
-                           const scene::Scene<2>      &scene,
-                           const mesh::Mesh<2>        &mesh,
-                           const mechanics::Spaces<2> &spaces);
+  /// loads, temperatures, bolts, contact pairs and obstacles with a legend of their names; arrows of loads in the load step in
+  /// which they are largest. Solids are seen from the front, right and above; what is named on their far side shows through,
+  /// and obstacles of a height function or a file are left out. Collective.
+  template <int dim>
+  void write_scene_picture(const OutputDirectory        &directory,
+                           const std::string            &file,
+                           const scene::Scene<dim>      &scene,
+                           const mesh::Mesh<dim>        &mesh,
+                           const mechanics::Spaces<dim> &spaces);
 } // namespace slipstick::output
