@@ -4,8 +4,6 @@
 #include <slipstick/contact/result.h>
 #include <slipstick/mechanics/spaces.h>
 
-#include <Eigen/Dense>
-
 #include <array>
 #include <vector>
 
