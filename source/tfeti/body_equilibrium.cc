@@ -22,9 +22,6 @@ namespace slipstick::tfeti
     constexpr unsigned int most_search_steps = 50;
     // A step must lower what is out of balance by this part times its length, or is halved, down to the shortest.
     constexpr double search_decrease = 1e-4, shortest_search_step = 1e-6;
-    // Of a line search with discs: the longest step, over the first, and bisections.
-    constexpr double       longest_step   = 1e12;
-    constexpr unsigned int max_bisections = 50;
     // Rounds of Newton's method with bounds as they are, then with bounds that follow.
     constexpr unsigned int max_rounds = 5;
     // Forces are out of balance by less than this part of all of them: rounding.
@@ -93,39 +90,29 @@ namespace slipstick::tfeti
                                                               const std::vector<double>                  &k,
                                                               const qp::AdmissibleSet<DistributedVector> &bounds) const
   {
-    constexpr unsigned int width = 10;
+    constexpr unsigned int width = 9;
     std::vector<double>    numbers;
     for (const unsigned int r : own)
       {
         const double l = bounds.box.lower.local_element(r), u = bounds.box.upper.local_element(r);
-        numbers.insert(numbers.end(), {double(place_of[r]), t[r], k[r], l, u, -1., 0., 0., 0., -1.});
+        numbers.insert(numbers.end(), {double(place_of[r]), t[r], k[r], l, u, -1., 0., 0., 0.});
       }
     for (const auto &bound : bounds.pressure_bounds)
-      for (const std::size_t entry : {bound.tangential, bound.second})
-        if (entry != qp::no_entry && place_of[entry] >= 0)
-          {
-            const auto i   = std::lower_bound(own.begin(), own.end(), entry) - own.begin();
-            double    *row = numbers.data() + width * i;
-            if (bound.is_disc())
-              {
-                row[4] = bound.forces.closed_radius(0);
-                row[3] = -row[4];
-                row[9] = place_of[entry == bound.second ? bound.tangential : bound.second];
-              }
-            if (bound.normal == qp::no_entry || place_of[bound.normal] < 0)
-              continue;
-            row[5] = place_of[bound.normal];
-            row[6] = bound.forces.fixed;
-            row[7] = bound.forces.coefficient;
-            row[8] = bound.forces.cap;
-          }
+      if (place_of[bound.tangential] >= 0 && bound.normal != qp::no_entry && place_of[bound.normal] >= 0)
+        {
+          double *row =
+            numbers.data() + width * (std::lower_bound(own.begin(), own.end(), bound.tangential) - own.begin());
+          row[5] = place_of[bound.normal];
+          row[6] = bound.forces.fixed;
+          row[7] = bound.forces.coefficient;
+          row[8] = bound.forces.cap;
+        }
     std::vector<Row> result(shares.rows());
     for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
       for (std::size_t i = 0; i < of_rank.size(); i += width)
         {
-          const double *n = of_rank.data() + i;
-          result[static_cast<std::size_t>(n[0])] =
-            {n[1], n[2], n[3], n[4], static_cast<int>(n[5]), {n[6], n[7], n[8]}, static_cast<int>(n[9])};
+          const double *n                        = of_rank.data() + i;
+          result[static_cast<std::size_t>(n[0])] = {n[1], n[2], n[3], n[4], static_cast<int>(n[5]), {n[6], n[7], n[8]}};
         }
     return result;
   }
@@ -147,50 +134,17 @@ namespace slipstick::tfeti
   {
     Eigen::VectorXd forces(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
-      if (const int j = rows[i].partner; j < 0)
-        forces[i] = qp::clip(moved[i], rows[i].lower, rows[i].upper);
-      else
-        {
-          const double size = std::hypot(moved[i], moved[j]);
-          forces[i]         = size > rows[i].upper ? moved[i] * (rows[i].upper / size) : moved[i];
-        }
+      forces[i] = qp::clip(moved[i], rows[i].lower, rows[i].upper);
     return forces;
   }
 
   // Derivative of clipped() by what is moved, times k; bounds do not follow.
-  Eigen::SparseMatrix<double> BodyEquilibrium::stiffness_of(const std::vector<Row> &rows, const Eigen::VectorXd &moved)
+  Eigen::VectorXd BodyEquilibrium::stiffness_of(const std::vector<Row> &rows, const Eigen::VectorXd &moved)
   {
-    std::vector<Eigen::Triplet<double>> entries;
+    Eigen::VectorXd stiffness(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
-      if (const int j = rows[i].partner; j < 0)
-        entries.emplace_back(i, i, moved[i] > rows[i].lower && moved[i] < rows[i].upper ? rows[i].k : 0.);
-      else
-        {
-          const double size = std::hypot(moved[i], moved[j]);
-          if (size < rows[i].upper)
-            entries.emplace_back(i, i, rows[i].k);
-          else if (size > 0) // across the force alone
-            {
-              const double c = moved[i] / size, s = moved[j] / size, part = rows[i].k * rows[i].upper / size;
-              entries.emplace_back(i, i, part * s * s);
-              entries.emplace_back(i, j, -part * s * c);
-            }
-        }
-    Eigen::SparseMatrix<double> result(rows.size(), rows.size());
-    result.setFromTriplets(entries.begin(), entries.end());
-    return result;
-  }
-
-  double BodyEquilibrium::slope_along(const std::vector<Row> &rows,
-                                      const Eigen::VectorXd  &slips,
-                                      const Eigen::VectorXd  &along,
-                                      const double            load,
-                                      const double            s)
-  {
-    Eigen::VectorXd moved(rows.size());
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      moved[i] = rows[i].t - rows[i].k * (slips[i] + s * along[i]);
-    return load - along.dot(clipped(rows, moved));
+      stiffness[i] = moved[i] > rows[i].lower && moved[i] < rows[i].upper ? rows[i].k : 0.;
+    return stiffness;
   }
 
   // Along a + s p: the slope is sum_i -S_i p clip(t_i - k_i (slip_i + s along_i)) + L'p, which grows with s.
@@ -199,19 +153,6 @@ namespace slipstick::tfeti
                                        const Eigen::VectorXd  &along,
                                        const double            load) const
   {
-    if (std::any_of(rows.begin(), rows.end(), [](const Row &row) { return row.partner >= 0; }))
-      { // not piecewise linear: bisection
-        double low = 0, high = 1;
-        for (; slope_along(rows, slips, along, load, high) < 0; high *= 4)
-          if (low = high; high > longest_step)
-            return HUGE_VAL; // nothing resists any more
-        for (unsigned int k = 0; k < max_bisections; ++k)
-          {
-            const double middle                                              = (low + high) / 2;
-            (slope_along(rows, slips, along, load, middle) < 0 ? low : high) = middle;
-          }
-        return high;
-      }
     const auto slope = [&](const double s) {
       double sum = load;
       for (std::size_t i = 0; i < rows.size(); ++i)
@@ -262,7 +203,7 @@ namespace slipstick::tfeti
         size                         = std::max(size, sum_of_magnitudes(loads, forces));
         if (slope.norm() <= balanced * size)
           return true;
-        Eigen::SparseMatrix<double> H = by_columns.transpose() * stiffness_of(rows, moved) * by_columns;
+        Eigen::SparseMatrix<double> H = by_columns.transpose() * stiffness_of(rows, moved).asDiagonal() * by_columns;
         for (Eigen::Index m = 0; m < a.size(); ++m)
           H.coeffRef(m, m) += least[m] + std::numeric_limits<double>::min();
         const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(H);
@@ -302,14 +243,15 @@ namespace slipstick::tfeti
         for (std::size_t i = 0; i < rows.size(); ++i)
           if (const int n = rows[i].follows; n >= 0 && forces[n] > 0)
             {
-              const int    j      = rows[i].partner;
-              const double length = j < 0 ? std::abs(moved[i]) : std::hypot(moved[i], moved[j]);
+              const double length = std::abs(moved[i]);
               if (length >= rows[i].upper && length > 0)
                 entries.emplace_back(i, n, -moved[i] / length * rows[i].forces.slope(rows[i].upper) * rows[n].k);
             }
         Eigen::SparseMatrix<double> by_slips(rows.size(), rows.size());
         by_slips.setFromTriplets(entries.begin(), entries.end());
-        by_slips -= stiffness_of(rows, moved);
+        const Eigen::VectorXd stiffness = stiffness_of(rows, moved);
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          by_slips.coeffRef(i, i) -= stiffness[i];
         *derivative = -(by_columns.transpose() * by_slips * by_columns);
       }
     return loads - shares.transpose() * forces;

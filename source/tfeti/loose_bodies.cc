@@ -204,6 +204,11 @@ namespace slipstick::tfeti
     return result;
   }
 
+  bool DualProblem::has_loose_bodies() const
+  {
+    return !held_by_contact->empty() && !bodies->are_solids();
+  }
+
   void DualProblem::balance_bodies(const std::vector<double>                  &stiffness,
                                    const qp::AdmissibleSet<DistributedVector> &bounds,
                                    const double                                tolerated,

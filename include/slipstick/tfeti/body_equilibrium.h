@@ -8,10 +8,10 @@ namespace slipstick::tfeti
 {
   /// The motions of bodies which no equality row resists, and the least of
   /// sum_i psi_i(t_i - k_i S_i a) + L'a,   psi_i' = clip to the bounds of row i, over k_i, S_i the jumps of the motions
-  /// in row i (in space psi_i' is the nearest point of the disc), L the loads along them: there S'z = L with z = clip(t - k S a), so that the forces z, which a projected
+  /// in row i, L the loads along them: there S'z = L with z = clip(t - k S a), so that the forces z, which a projected
   /// gradient step t = x - k g gives after the motion a, balance the loads up to a part of all forces (only the rest of L
   /// is balanced). Bounds that depend on normal forces follow these. The function is convex and piecewise quadratic;
-  /// Newton's method with an exact line search.
+  /// Newton's method with an exact line search. Tangential forces are intervals: discs are not known here.
   class BodyEquilibrium
   {
   public:
@@ -40,7 +40,6 @@ namespace slipstick::tfeti
       double      t, k, lower, upper;
       int         follows = -1; // the row that its bounds follow
       qp::NodeSet forces;       // its admissible forces
-      int         partner = -1; // in space the row along the other tangent: both forces are in a disc of radius `upper`
     };
 
     std::vector<Row>       gathered(const std::vector<double>                  &t,
@@ -54,13 +53,8 @@ namespace slipstick::tfeti
                                      Eigen::SparseMatrix<double> *derivative) const;
     bool                   follow(const Eigen::VectorXd &loads, std::vector<Row> &rows, Eigen::VectorXd &a) const;
     static Eigen::VectorXd clipped(const std::vector<Row> &rows, const Eigen::VectorXd &moved);
-    static Eigen::SparseMatrix<double> stiffness_of(const std::vector<Row> &rows, const Eigen::VectorXd &moved);
-    static double                      slope_along(const std::vector<Row> &rows,
-                                                   const Eigen::VectorXd  &slips,
-                                                   const Eigen::VectorXd  &along,
-                                                   const double            load,
-                                                   const double            s);
-    double sum_of_magnitudes(const Eigen::VectorXd &loads, const Eigen::VectorXd &forces) const;
+    static Eigen::VectorXd stiffness_of(const std::vector<Row> &rows, const Eigen::VectorXd &moved);
+    double                 sum_of_magnitudes(const Eigen::VectorXd &loads, const Eigen::VectorXd &forces) const;
     bool   minimise(const Eigen::VectorXd &loads, const std::vector<Row> &rows, Eigen::VectorXd &a) const;
     double line_minimum(const std::vector<Row> &rows,
                         const Eigen::VectorXd  &slips,

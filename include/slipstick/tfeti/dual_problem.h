@@ -168,11 +168,9 @@ namespace slipstick::tfeti
                         const double                                tolerated,
                         std::vector<double>                        &moved) const;
 
-    /// Are there bodies held by contact alone?
-    bool has_loose_bodies() const
-    {
-      return !held_by_contact->empty();
-    }
+    /// Are there bodies held by contact alone, whose motion tells which points touch? In the plane: in space sets are told
+    /// better without (doc/decisions/0089).
+    bool has_loose_bodies() const;
 
     /// |P F P| [mm/N].
     double norm() const

@@ -63,6 +63,12 @@ namespace slipstick::tfeti
     /// Displacements of subdomain p of this rank under a motion, all unknowns.
     Eigen::VectorXd displacements(const unsigned int p, const Eigen::VectorXd &amplitudes) const;
 
+    /// Are the bodies solids, in space?
+    bool are_solids() const
+    {
+      return is_solid(motions_of_body);
+    }
+
   private:
     struct Share
     {
