@@ -26,6 +26,24 @@ namespace slipstick::qp
     // Across a slipping force that yields by more than this times what its entry does, over the norm of F, the entry is held.
     constexpr double rigid_compliance = 1e3;
 
+    // s of the natural map over the stiffness of a point whose neighbours are held: they yield with it, and the diagonal of
+    // F is some ten times the inverse of that stiffness (doc/decisions/0087).
+    constexpr double yielding_neighbours = 0.1;
+
+    /// s times the norm of F, of an entry of weight 1: by the stiffness of single points, where the problem tells it.
+    template <typename Problem>
+    auto step_of_points(const Problem &problem, const double otherwise, int) -> decltype(problem.point_stiffness())
+    {
+      const double stiffness = problem.point_stiffness();
+      return stiffness > 0 ? std::max(1., yielding_neighbours * stiffness)
+                           : otherwise; // points are stiffer than bodies
+    }
+    template <typename Problem>
+    double step_of_points(const Problem &, const double otherwise, long)
+    {
+      return otherwise;
+    }
+
     /// `balance_bodies` of problems that have it; others have no bodies that contact alone holds.
     template <typename Problem, typename Set>
     auto balance_bodies(const Problem             &problem,
@@ -57,7 +75,8 @@ namespace slipstick::qp
     }
 
     /// The natural map x -> proj(x - s g) of an admissible set, and the set of entries that it puts on bounds. s: `step`
-    /// over the norm of F, times the weight of the entry, so that s g is a force of the size that closes g. Bodies that
+    /// over the norm of F, times the weight of the entry, so that s g is a force of the size that closes g: the stiffness of
+    /// a point. The residual then counts a force beyond its bound as the gap that it closes. Bodies that
     /// contact alone holds move until s g balances their loads. How far they move depends on s, which should then be the
     /// stiffness of the points that touch: the norm of F on these entries grows with their number. On stiff points bodies rest on
     /// few, so s falls where that leads astray, never below that of all entries.
@@ -70,7 +89,7 @@ namespace slipstick::qp
         : problem(problem_)
         , norm(norm_)
         , balances(has_loose_bodies(problem_, 0))
-        , step(balances ? 1 : step_)
+        , step(balances ? 1 : step_of_points(problem_, step_, 0))
         , set(std::move(set_))
         , weights(residual_weights(problem_, 0))
         , active(local_size(set.box.lower))

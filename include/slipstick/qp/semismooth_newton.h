@@ -19,7 +19,8 @@
 //       `is_regular()`          false when the free entries alone do not determine a
 //   `hold(free, gaps, well, turns) const`   the free entries and as many others, with small gaps, as make the face regular if that
 //       can be; or, if that is asked for, far from singular
-// It may have `has_loose_bodies() const` and
+// It may have `point_stiffness() const`, |PFP| times the stiffness of an entry of weight 1 whose neighbours are held (active_set.h), and
+//     `has_loose_bodies() const` and
 //     `balance_bodies(stiffness, set, tolerated, moved) const`, which moves bodies that nothing but entries with bounds holds,
 //       moved -= stiffness times their jumps, so that proj(moved) balances their loads, up to the part `tolerated` of all
 //       forces: the least of the potential of the projected forces. So sets are predicted that can bear the loads.
@@ -268,7 +269,8 @@ namespace slipstick::qp
           store,
           [this](const Vector &p) { return set.conditions(p, ties); },
           options.face,
-          set.turns());
+          set.turns(),
+          ties);
         const double first = solver.start(std::move(y), std::move(Fy));
         const double target =
           std::max(options.last_forcing * tolerance * goal.reference, options.forcing * std::min(first, merits.back()));

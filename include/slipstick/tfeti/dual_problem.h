@@ -121,6 +121,12 @@ namespace slipstick::tfeti
       return metric;
     }
 
+    /// |P F P| times the stiffness of the row of weight 1, its neighbours held; 0 without a preconditioner.
+    double point_stiffness() const
+    {
+      return preconditioner ? norm_PFP * least_stiffness : 0.;
+    }
+
     /// Norm of the part of a residual (such as d - F x over norm()) that multipliers can change, with its weights.
     double residual_norm(const DistributedVector &r) const;
 
