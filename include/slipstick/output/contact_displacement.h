@@ -2,9 +2,7 @@
 #pragma once
 
 #include <slipstick/contact/result.h>
-#include <slipstick/mechanics/spaces.h>
-
-#include <Eigen/Dense>
+#include <slipstick/mechanics/stress.h>
 
 #include <array>
 #include <vector>
