@@ -138,8 +138,8 @@ namespace slipstick::output
               ends.push_back(project(end));
             picture.in_legend(place.kind, place.name);
             if (place.kind == "temperature")
-              picture.label(place.kind, place.name, ends.front(), format("%+.4g K", place.value));
-            else if (place.side.empty())
+              continue; // below
+            if (place.side.empty())
               {
                 if (place.value == 0)
                   continue; // a formula that is 0 there
@@ -160,6 +160,9 @@ namespace slipstick::output
           }
         picture.arrows("body force", forces);
         picture.arrows("pretension", tensions);
+        for (const auto &place : places)
+          if (place.kind == "temperature")
+            picture.label(place.kind, place.name, project(place.ends.front()), format("%+.4g K", place.value));
       }
 
     private:

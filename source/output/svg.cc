@@ -15,7 +15,7 @@ namespace slipstick::output
     // Length of the longest arrow of a load, and radius of one that turns [pixels].
     constexpr double arrow_length = 45, turning_radius = 24;
 
-    // Of a label above its place [pixels].
+    // Of a label above and to the right of its place [pixels].
     constexpr double label_distance = 10;
     // So that what is behind shows through.
     constexpr double fill_opacity = 0.3;
@@ -155,8 +155,8 @@ namespace slipstick::output
                   kind.c_str(),
                   drawing_style(kind).colour)
         << title(kind, name)
-        << format("<text class=\"label\" text-anchor=\"middle\" font-weight=\"bold\" x=\"%.2f\" y=\"%.2f\">",
-                  view.x(point),
+        << format("<text class=\"label\" font-weight=\"bold\" x=\"%.2f\" y=\"%.2f\">",
+                  view.x(point) + label_distance,
                   view.y(point) - label_distance)
         << escaped(text) << "</text></g>\n";
   }
@@ -166,17 +166,17 @@ namespace slipstick::output
     const double x = view.x(axis), y = view.y(axis), r = turning_radius, half = r * std::sqrt(0.5);
     out
       << format("<path class=\"turning\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.5\" marker-end=\"url(#tip-%s)\" "
-                "d=\"M%.2f %.2fA%g %g 0 1 0 %.2f %.2fM%.2f %.2fh10m-5 -5v10\">",
+                "d=\"M%.2f %.2fh10m-5 -5v10M%.2f %.2fA%g %g 0 1 0 %.2f %.2f\">",
                 drawing_style(kind).colour,
                 drawing_style(kind).colour + 1,
+                x - 5,
+                y,
                 x + half,
                 y + half,
                 r,
                 r,
                 x - half,
-                y + half,
-                x - 5,
-                y)
+                y + half)
       << title(kind, name) << "</path>\n";
   }
 

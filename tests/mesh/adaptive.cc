@@ -4,6 +4,7 @@
 #include <slipstick/mesh/adaptive_refinement.h>
 #include <slipstick/mesh/decomposition.h>
 
+#include <array>
 #include <random>
 
 using namespace slipstick;
@@ -113,7 +114,7 @@ TEST(AdaptiveRefinement, cells_of_subdomains_are_found_by_their_vertices)
       scene.bodies.back().name   = x > 0 ? "b" : "a";
       scene.bodies.back().origin = {x, 0};
       scene.bodies.back().size   = {4, 3};
-      scene.bodies.back().cells  = {{4, 3}};
+      scene.bodies.back().cells  = std::array<unsigned int, 2>{{4, 3}};
     }
   scene.decomposition.subdomains = 5;
   mesh::Refinement refinement;

@@ -10,6 +10,8 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_q.h>
 
+#include <array>
+
 using namespace slipstick;
 using namespace slipstick::test;
 using scene::Shape;
@@ -214,7 +216,7 @@ TEST(Shapes, degree_two_follows_the_arc)
 TEST(Placement, mirror_turn_and_move_in_this_order)
 {
   auto body                       = body_of(Shape::rectangle);
-  body.cells                      = {{1, 1}};
+  body.cells                      = std::array<unsigned int, 2>{{1, 1}};
   body.origin                     = Point(1, 2);
   body.placement.mirror_x         = true;
   body.placement.rotation         = 90;
@@ -233,7 +235,7 @@ TEST(Placement, keeps_areas_and_names_for_blocks_and_metis)
     {
       Scene scene;
       auto  body                 = body_of(Shape::rectangle);
-      body.cells                 = {{8, 4}};
+      body.cells                 = std::array<unsigned int, 2>{{8, 4}};
       body.placement.mirror_y    = true;
       body.placement.rotation    = 30;
       body.placement.translation = Point(-3, 1);
@@ -269,7 +271,7 @@ TEST(Refinement, towards_a_boundary_conforms_and_keeps_area_lengths_and_quality)
         {
           auto body = body_of(shape);
           if (shape == Shape::rectangle)
-            body.cells = {{6, 4}};
+            body.cells = std::array<unsigned int, 2>{{6, 4}};
           const auto coarse         = make(body);
           body.refined_boundaries   = {name};
           body.boundary_refinements = levels;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <slipstick/contact/result.h>
-#include <slipstick/mechanics/spaces.h>
+#include <slipstick/mechanics/stress.h>
 
 #include <array>
 #include <vector>
