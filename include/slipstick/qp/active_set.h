@@ -30,18 +30,17 @@ namespace slipstick::qp
     // F is some ten times the inverse of that stiffness (doc/decisions/0087).
     constexpr double yielding_neighbours = 0.1;
 
-    /// s times the norm of F, of an entry of weight 1: by the stiffness of single points, where the problem tells it.
+    /// s times the norm of F, of an entry of weight 1: by the stiffness of single points, where the problem tells it, but never
+    /// less than bodies need.
     template <typename Problem>
-    auto step_of_points(const Problem &problem, const double otherwise, int) -> decltype(problem.point_stiffness())
+    auto step_of_points(const Problem &problem, const double least, int) -> decltype(problem.point_stiffness())
     {
-      const double stiffness = problem.point_stiffness();
-      return stiffness > 0 ? std::max(1., yielding_neighbours * stiffness)
-                           : otherwise; // points are stiffer than bodies
+      return std::max(least, yielding_neighbours * problem.point_stiffness());
     }
     template <typename Problem>
-    double step_of_points(const Problem &, const double otherwise, long)
+    double step_of_points(const Problem &, const double least, long)
     {
-      return otherwise;
+      return least;
     }
 
     /// `balance_bodies` of problems that have it; others have no bodies that contact alone holds.
