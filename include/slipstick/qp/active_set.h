@@ -27,7 +27,7 @@ namespace slipstick::qp
     constexpr double rigid_compliance = 1e3;
 
     // s of the natural map over the stiffness of a point whose neighbours are held: they yield with it, and the diagonal of
-    // F is some ten times the inverse of that stiffness (doc/decisions/0087).
+    // F is some ten times the inverse of that stiffness (doc/decisions/0090).
     constexpr double yielding_neighbours = 0.1;
 
     /// s times the norm of F, of an entry of weight 1: by the stiffness of single points, where the problem tells it, but never
