@@ -121,10 +121,11 @@ namespace slipstick::tfeti
       return metric;
     }
 
-    /// |P F P| times the stiffness of the row of weight 1, its neighbours held; 0 without a preconditioner.
+    /// |P F P| times the stiffness of the row of weight 1, its neighbours held; 0 where it is not known (without a
+    /// preconditioner) or tells sets no better (solids; doc/decisions/0090).
     double point_stiffness() const
     {
-      return preconditioner ? norm_PFP * least_stiffness : 0.;
+      return preconditioner && !bodies->are_solids() ? norm_PFP * least_stiffness : 0.;
     }
 
     /// Norm of the part of a residual (such as d - F x over norm()) that multipliers can change, with its weights.
