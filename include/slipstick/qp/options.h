@@ -79,7 +79,7 @@ namespace slipstick::qp
   {
     double            start_tolerance = 0.3;  // of the SMALBE steps that give the first active set
     double            set_step        = 3;    // least s of the natural residual, times norm over weight
-    double            forcing         = 0.3;  // residual that faces are solved to, over the natural residual
+    double            forcing         = 0.1;  // residual that faces are solved to, over the natural residual
     double            last_forcing    = 0.6;  // times the tolerance: never below
     double            tightening      = 0.1;  // of the residual reached, where the goal is met and x is not right ...
     double            least_part      = 1e-5; // ... down to this part of the goal

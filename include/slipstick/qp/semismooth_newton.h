@@ -77,9 +77,6 @@ namespace slipstick::qp
     // Of a step along M r: eigenvalues of F M are 1 to some 5 (first steps of conjugate gradients there: 0.15 to 0.5).
     constexpr double descent_step = 0.3;
 
-    // Once a step had to be cut, faces are solved to this part of the natural residual at most: sets tell more of well solved ones.
-    constexpr double careful_forcing = 0.1;
-
     template <typename Vector, typename Problem>
     class SemismoothNewton
     {
@@ -113,7 +110,6 @@ namespace slipstick::qp
         , y(zero_like(d_))
         , Fy(zero_like(d_))
         , gy(zero_like(d_))
-        , forcing(options_.forcing)
         , is_rough(start.is_rough)
       {
         set.predict(x, g);
@@ -277,7 +273,7 @@ namespace slipstick::qp
           ties);
         const double first = solver.start(std::move(y), std::move(Fy));
         const double target =
-          std::max(options.last_forcing * tolerance * goal.reference, forcing * std::min(first, merits.back()));
+          std::max(options.last_forcing * tolerance * goal.reference, options.forcing * std::min(first, merits.back()));
         auto result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
         counts += result.counts;
         y  = std::move(result.x);
@@ -378,7 +374,6 @@ namespace slipstick::qp
         while (!(merit <= (1 - options.sufficient_decrease * t) * reference))
           {
             t *= options.backtracking;
-            forcing = std::min(forcing, careful_forcing);
             if (t < options.shortest_step)
               return 0;
             combine(t, y, 0., xt);
@@ -453,7 +448,6 @@ namespace slipstick::qp
       std::vector<double>   merits;    // natural residuals of all x so far
       std::optional<Vector> best;      // where the natural residual is least
       double                residual = HUGE_VAL;
-      double                forcing;          // residual that faces are solved to, over the natural residual
       bool                  is_stuck = false; // the last step did not lower the residual
       bool                  is_rough;         // the start, and no step was made yet in spite of the residual
       Counts                counts;
