@@ -83,10 +83,15 @@ namespace slipstick::qp
     class ActiveSet
     {
     public:
-      /// @param problem is referred to. @param norm |PFP|.
-      ActiveSet(const Problem &problem_, const double norm_, AdmissibleSet<Vector> set_, const double step_)
+      /// @param problem is referred to. @param norm |PFP|. @param noise of gradients: smaller ones move nothing.
+      ActiveSet(const Problem        &problem_,
+                const double          norm_,
+                AdmissibleSet<Vector> set_,
+                const double          step_,
+                const double          noise_ = 0)
         : problem(problem_)
         , norm(norm_)
+        , noise(noise_)
         , balances(has_loose_bodies(problem_, 0))
         , step(balances ? 1 : step_of_points(problem_, step_, 0))
         , set(std::move(set_))
@@ -422,7 +427,7 @@ namespace slipstick::qp
         for (std::size_t i = 0; i < active.size(); ++i)
           {
             stiffness[i] = step / norm * weight(i);
-            moved[i]     = x.begin()[i] - stiffness[i] * g.begin()[i];
+            moved[i]     = x.begin()[i] - (std::abs(g.begin()[i]) > noise ? stiffness[i] * g.begin()[i] : 0.);
           }
         if (balances)
           balance_bodies(problem, stiffness, set, imbalance, moved, 0);
@@ -464,7 +469,7 @@ namespace slipstick::qp
       }
 
       const Problem             &problem;
-      const double               norm;
+      const double               norm, noise;
       const bool                 balances;
       double                     step;
       double                     softening = 1;                 // of s, <= 1

@@ -32,6 +32,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -100,7 +101,7 @@ namespace slipstick::qp
         , accepts(accepts_)
         , is_right(is_right_)
         , tolerance(goal_.tolerance)
-        , set(problem_, norm_, std::move(admissible), options.set_step)
+        , set(problem_, norm_, std::move(admissible), options.set_step, noise_of(problem_, d_))
         , directions(start.directions ? std::move(start.directions)
                                       : std::make_shared<DirectionStore<Vector>>(options_.n_directions))
         , store(*directions)
@@ -130,6 +131,16 @@ namespace slipstick::qp
 
     private:
       using Face = decltype(std::declval<Problem>().face(std::vector<bool>(), std::vector<Tie>(), std::vector<Turn>()));
+
+      // Gradients are differences of entries of d and F x.
+      static double noise_of(const Problem &problem, const Vector &d)
+      {
+        constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+        double           largest  = 0;
+        for (const double value : d)
+          largest = std::max(largest, std::abs(value));
+        return -rounding * problem.reduction().min(-largest);
+      }
 
       Status iterate()
       {
