@@ -42,7 +42,7 @@ namespace
       };
       const FaceSolverOptions                options;
       const Vector                           x = start(free, ties);
-      FaceSolver<Vector, FacedProblem::Face> solver(face, d, store, conditions, options, {}, ties);
+      FaceSolver<Vector, FacedProblem::Face> solver(face, d, store, conditions, options);
       solver.start(x, problem.F * x);
       return ties.empty() ? solver.solve_symmetric(target) : solver.solve_unsymmetric(target);
     }
@@ -221,21 +221,6 @@ TEST(FaceSolver, a_face_with_few_other_entries_costs_fewer_multiplications_than_
           << seed << ", ties " << ties.size();
         EXPECT_LT(distance(reused.x, p.exact({0, 8, 20, 30}, ties)), 1e-8) << seed;
       }
-}
-
-// What rounding leaves of a tie would cost later faces a direction each.
-TEST(FaceSolver, ties_hold_to_the_last_bit_in_the_directions_kept)
-{
-  for (unsigned int seed = 0; seed < 20; ++seed)
-    {
-      const Held             p(seed, 40, 2);
-      DirectionStore<Vector> store(100);
-      p.solve({0, 7, 8}, tied, store);
-      p.solve({0, 8, 20}, tied, store);
-      for (std::size_t j = 0; j < store.size(); ++j)
-        for (const Tie &tie : tied)
-          EXPECT_EQ(store[j].p[tie.tied], tie.factor * store[j].p[tie.to]) << seed << ", direction " << j;
-    }
 }
 
 // What is left of them is rounding, in energies too.

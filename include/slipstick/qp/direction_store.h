@@ -88,7 +88,7 @@ namespace slipstick::qp
                                        const Conditions             &conditions,
                                        const Reduction              &reduction)
   {
-    // A remainder below this part of the violation counts as none ...
+    // A remainder below this part of the directions that were summed is what their rounding leaves of none ...
     constexpr double rounding = 1e-13;
     // ... and one below this part is too small to correct others with.
     constexpr double least_pivot = 1e-4;
@@ -136,7 +136,10 @@ namespace slipstick::qp
                 pivots.push_back({std::move(v), std::move(coefficients)});
                 continue;
               }
-            if (left > rounding * std::sqrt(squares[n + j]))
+            double summed = 0;
+            for (std::size_t k = 0; k < n; ++k)
+              summed += coefficients[k] * coefficients[k] * squares[n + k];
+            if (left > rounding * std::sqrt(summed))
               continue;
           }
         result.push_back(std::move(coefficients));

@@ -118,21 +118,19 @@ namespace slipstick::qp
   {
   public:
     /// @param face, d, store, options are referred to. @param conditions as in admissible_combinations().
-    /// @param turns_ those of the face, whose compliances C count as part of F. @param ties_ those of the face.
+    /// @param turns_ those of the face, whose compliances C count as part of F.
     template <typename Conditions>
     FaceSolver(const Face              &face_,
                const Vector            &d_,
                DirectionStore<Vector>  &store_,
                const Conditions        &conditions,
                const FaceSolverOptions &options_,
-               std::vector<Turn>        turns_ = {},
-               std::vector<Tie>         ties_  = {})
+               std::vector<Turn>        turns_ = {})
       : face(face_)
       , d(d_)
       , store(store_)
       , options(options_)
       , turns(std::move(turns_))
-      , ties(std::move(ties_))
       , reduction(face_.reduction())
       , yields(reduction.min(turns.empty() ? 1. : 0.) < 1)
       , weights(residual_weights(face_, 0))
@@ -306,7 +304,6 @@ namespace slipstick::qp
             return ended(Status::stagnated);
           for (Vector *v : {&p, &Fp, &q})
             combine(1. / length, *v, 0., *v);
-          tie(p);
           const double rq = dot(weighted(r), q, reduction);
           add(rq, p, x);
           add(rq, Fp, Fx);
@@ -335,18 +332,6 @@ namespace slipstick::qp
     void keep(Vector p, Vector Fp)
     {
       made.emplace_back(std::move(p), std::move(Fp));
-    }
-
-    // Ties to the last bit: what rounding left of them would count as a violation, each of which costs later faces a
-    // direction of the store.
-    void tie(Vector &p) const
-    {
-      if (ties.empty())
-        return;
-      turn(turns, p);
-      for (const Tie &one : ties)
-        p.begin()[one.tied] = one.factor * p.begin()[one.to];
-      turn_back(turns, p);
     }
 
     bool stagnates(const double before)
@@ -479,7 +464,6 @@ namespace slipstick::qp
     DirectionStore<Vector>  &store;
     const FaceSolverOptions &options;
     const std::vector<Turn>  turns;
-    const std::vector<Tie>   ties;
     const ReductionType     &reduction;
     const bool               yields; // turns on any process
     const double            *weights;

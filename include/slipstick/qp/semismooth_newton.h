@@ -280,8 +280,7 @@ namespace slipstick::qp
           store,
           [this](const Vector &p) { return set.conditions(p, ties); },
           options.face,
-          set.turns(),
-          ties);
+          set.turns());
         const double first = solver.start(std::move(y), std::move(Fy));
         const double target =
           std::max(options.last_forcing * tolerance * goal.reference, options.forcing * std::min(first, merits.back()));
