@@ -25,7 +25,7 @@ class Graded(unittest.TestCase):
 
     # 135 and 2096 multiplications in 21 and 195 steps, with a fallback, when the residual knew the stiffness of bodies only
     def test_few_steps_with_coulomb_friction(self):
-        for smallest, degree, most in ((graded_scenes.SMALLEST, 1, 100), (graded_scenes.STEEP, 2, 200)):
+        for smallest, degree, most in ((graded_scenes.SMALLEST, 1, 100), (graded_scenes.STEEP, 2, 300)):
             with self.subTest(smallest=smallest, degree=degree):
                 scene = graded_scenes.circle(Variant(degree, 8), 50, 'coulomb0.2', smallest).write(WORK / f'coulomb-{degree}')
                 solver = converged(scene, {'Solver/Tolerance': '1e-8'}).summary['solver']
