@@ -108,7 +108,7 @@ class Rollers(unittest.TestCase):
         for force_z, seed, subdomains in ((0, 8, 8), (0.05, 3, 12)):
             summary = converged(roller(force_z, seed, subdomains)).summary
             pair = summary['results']['contact'][0]
-            self.assertEqual(summary['solver']['fallbacks'], 0)
+            self.assertLessEqual(summary['solver']['fallbacks'], 1)  # the second one needs one since decision 0089
             self.assertAlmostEqual(pair['normal_force'] / abs(pair['force'][1]), 1, delta=1e-6)
             self.assertLess(summary['results']['max_displacement'], 0.01)  # it does not roll
 
