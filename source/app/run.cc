@@ -286,16 +286,14 @@ namespace slipstick::app
     write_fields(step, *answer);
     if (scene.has_contact())
       {
-        contact_steps.push_back(gather_contact(solver, contact, total_slip));
+        std::vector<mechanics::NodeKey> nodes;
+        contact_steps.push_back(gather_contact(solver, contact, total_slip, nodes));
         contact_steps.back().step = step;
-        output::write_contact_vtp(directory,
-                                  contact_steps.back(),
-                                  dim,
-                                  output::contact_displacement(scene,
-                                                               solver.mesh(),
-                                                               solver.spaces(),
-                                                               answer->recovery.u,
-                                                               contact_steps.back().nodes));
+        output::write_contact_vtp(
+          directory,
+          contact_steps.back(),
+          dim,
+          output::contact_displacement(solver.mesh(), solver.spaces(), answer->recovery.u, nodes));
         output::write_contact_pvd(directory, {scene.load_factors.begin(), scene.load_factors.begin() + step + 1});
         summary.results.contact = contact::pair_results(contact_steps.back().nodes, contact_names(scene).pairs, dim);
       }

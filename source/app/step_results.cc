@@ -167,9 +167,10 @@ namespace slipstick::app
   }
 
   template <int dim>
-  output::ContactStep gather_contact(const StepSolver<dim>         &solver,
-                                     const contact::CheckedContact &own,
-                                     TotalSlip                     &total_slip)
+  output::ContactStep gather_contact(const StepSolver<dim>           &solver,
+                                     const contact::CheckedContact   &own,
+                                     TotalSlip                       &total_slip,
+                                     std::vector<mechanics::NodeKey> &keys_of_nodes)
   {
     const auto &scene = solver.discrete_scene();
     const auto  nodes = dealii::Utilities::MPI::gather(solver.mesh().comm, own.nodes);
@@ -211,6 +212,9 @@ namespace slipstick::app
           }
         step.faces = contact_faces(scene, solver.mesh(), solver.spaces(), number);
       }
+    keys_of_nodes.clear();
+    for (const auto &[node, key] : all)
+      keys_of_nodes.push_back(key.second);
     return step;
   }
 
@@ -233,14 +237,20 @@ namespace slipstick::app
                                                           const mechanics::Probes<2> &,
                                                           const std::vector<Eigen::VectorXd> &,
                                                           const mechanics::StressResult &);
-  template output::ContactStep  gather_contact(const StepSolver<2> &, const contact::CheckedContact &, TotalSlip &);
-  template output::ContactNames contact_names(const scene::Scene<2> &);
-  template output::ForceSummary forces(const StepSolver<3> &, const StepAnswer &, const double, Warnings &);
-  template void                 add_places(const StepSolver<3> &, const mechanics::StressResult &, output::Summary &);
+  template output::ContactStep              gather_contact(const StepSolver<2> &,
+                                                           const contact::CheckedContact &,
+                                                           TotalSlip &,
+                                                           std::vector<mechanics::NodeKey> &);
+  template output::ContactNames             contact_names(const scene::Scene<2> &);
+  template output::ForceSummary             forces(const StepSolver<3> &, const StepAnswer &, const double, Warnings &);
+  template void add_places(const StepSolver<3> &, const mechanics::StressResult &, output::Summary &);
   template std::vector<output::ProbeResult> probe_results(const scene::Scene<3> &,
                                                           const mechanics::Probes<3> &,
                                                           const std::vector<Eigen::VectorXd> &,
                                                           const mechanics::StressResult &);
-  template output::ContactStep  gather_contact(const StepSolver<3> &, const contact::CheckedContact &, TotalSlip &);
-  template output::ContactNames contact_names(const scene::Scene<3> &);
+  template output::ContactStep              gather_contact(const StepSolver<3> &,
+                                                           const contact::CheckedContact &,
+                                                           TotalSlip &,
+                                                           std::vector<mechanics::NodeKey> &);
+  template output::ContactNames             contact_names(const scene::Scene<3> &);
 } // namespace slipstick::app

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -36,10 +38,11 @@ namespace slipstick::interface
       return held;
     }
 
+    /// Along its normal.
     bool is_held(const Row &row, const std::map<mechanics::NodeKey, std::array<bool, 3>> &held)
     {
       const auto found = held.find(row.slave);
-      if (found == held.end() || row.master_weights.size() < 2)
+      if (found == held.end())
         return false;
       double squares = 0;
       for (unsigned int c = 0; c < 3; ++c)
@@ -71,6 +74,39 @@ namespace slipstick::interface
       row.full_measure += part * held.full_measure;
       row.full_length += part * held.full_length;
     }
+
+    /// Of nodes whose rows go: the nodes of the same facets.
+    std::map<mechanics::NodeKey, std::set<mechanics::NodeKey>> neighbours_of(
+      const std::vector<Row>                     &rows,
+      const std::vector<bool>                    &goes,
+      const std::vector<mechanics::SurfaceFacet> &slave)
+    {
+      std::map<mechanics::NodeKey, std::set<mechanics::NodeKey>> neighbours;
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        if (goes[i])
+          neighbours[rows[i].slave];
+      for (const auto &facet : slave)
+        for (unsigned int i = 0; i < facet.n_nodes; ++i)
+          if (const auto found = neighbours.find(facet.keys[i]); found != neighbours.end())
+            found->second.insert(facet.keys.begin(), facet.keys.begin() + facet.n_nodes);
+      return neighbours;
+    }
+
+    /// Of the candidates those that are nearest to a row.
+    std::vector<std::size_t> nearest(const std::vector<Row>         &rows,
+                                     const Row                      &row,
+                                     const std::vector<std::size_t> &candidates)
+    {
+      const auto distance = [&](const std::size_t k) { return rows[k].position.distance(row.position); };
+      double     least    = std::numeric_limits<double>::infinity();
+      for (const std::size_t k : candidates)
+        least = std::min(least, distance(k));
+      std::vector<std::size_t> result;
+      std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(result), [&](const std::size_t k) {
+        return distance(k) <= (1 + equally_near) * least;
+      });
+      return result;
+    }
   } // namespace
 
   void give_held_rows_to_neighbours(const scene::Scene<3>                      &scene,
@@ -81,52 +117,35 @@ namespace slipstick::interface
   {
     if (rows.empty() || slave.empty())
       return;
-    const auto held = held_components(scene, mesh, all, slave.front().body);
-    std::map<std::pair<mechanics::NodeKey, unsigned int>, std::size_t> place; // of rows that stay
-    std::vector<bool>                                                  goes(rows.size());
+    const auto        held = held_components(scene, mesh, all, slave.front().body);
+    std::vector<bool> goes(rows.size());
+    std::map<std::pair<mechanics::NodeKey, unsigned int>, std::size_t> place; // of rows that are not held
     for (std::size_t i = 0; i < rows.size(); ++i)
-      if (goes[i] = is_held(rows[i], held); !goes[i])
+      if (!is_held(rows[i], held))
         place[{rows[i].slave, rows[i].side}] = i;
-    std::map<mechanics::NodeKey, std::set<mechanics::NodeKey>> neighbours; // of nodes whose rows go
-    std::set<mechanics::NodeKey>                               going;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      if (goes[i])
-        going.insert(rows[i].slave);
-    if (going.empty())
+      else
+        goes[i] = rows[i].master_weights.size() > 1;
+    if (std::find(goes.begin(), goes.end(), true) == goes.end())
       return;
-    for (const auto &facet : slave)
-      for (unsigned int i = 0; i < facet.n_nodes; ++i)
-        if (going.count(facet.keys[i]) > 0)
-          neighbours[facet.keys[i]].insert(facet.keys.begin(), facet.keys.begin() + facet.n_nodes);
+    const auto neighbours = neighbours_of(rows, goes, slave);
 
     const std::vector<Row> given = rows;
-    std::vector<bool>      left(rows.size(), true);
+    std::vector<Row>       kept;
     for (std::size_t i = 0; i < given.size(); ++i)
       if (goes[i])
         {
-          std::vector<std::pair<double, std::size_t>> near; // distance, row
-          for (const auto &key : neighbours[given[i].slave])
+          std::vector<std::size_t> candidates;
+          for (const auto &key : neighbours.at(given[i].slave))
             if (const auto found = place.find({key, given[i].side}); found != place.end())
-              near.emplace_back(given[found->second].position.distance(given[i].position), found->second);
-          if (near.empty())
-            continue;
-          const double least = std::min_element(near.begin(), near.end())->first;
-          near.erase(std::remove_if(near.begin(),
-                                    near.end(),
-                                    [least](const auto &other) { return other.first > (1 + equally_near) * least; }),
-                     near.end());
-          for (const auto &[distance, k] : near)
-            take(given[i], 1. / near.size(), rows[k]);
-          left[i] = false;
+              candidates.push_back(found->second);
+          const auto takers = nearest(given, given[i], candidates);
+          for (const std::size_t k : takers)
+            take(given[i], 1. / takers.size(), rows[k]);
+          goes[i] = !takers.empty();
         }
-    std::size_t kept = 0;
     for (std::size_t i = 0; i < rows.size(); ++i)
-      if (left[i])
-        {
-          if (kept < i)
-            rows[kept] = std::move(rows[i]);
-          ++kept;
-        }
-    rows.resize(kept);
+      if (!goes[i])
+        kept.push_back(std::move(rows[i]));
+    rows = std::move(kept);
   }
 } // namespace slipstick::interface

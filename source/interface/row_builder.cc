@@ -1,3 +1,4 @@
+#include <slipstick/base/across.h>
 #include <slipstick/interface/held_contact.h>
 #include <slipstick/interface/row_builder.h>
 #include <slipstick/tfeti/dense.h>
@@ -210,7 +211,7 @@ namespace slipstick::interface
   template <int dim>
   typename RowBuilder<dim>::Vector RowBuilder<dim>::bond(const Touch<dim> &touch, const unsigned int direction) const
   {
-    return jump(touch, direction == 0 ? touch.normal : tangents_of<dim>(touch.normal)[direction - 1]);
+    return jump(touch, direction == 0 ? touch.normal : across(touch.normal)[direction - 1]);
   }
 
   template <int dim>
@@ -311,7 +312,7 @@ namespace slipstick::interface
       auto free = bonds.reduce(free_part(row));
       return left.empty() ? free : without(free, left);
     };
-    auto                tangents = tangents_of<dim>(touch.normal);
+    auto                tangents = across(touch.normal);
     std::vector<Vector> rows;
     if constexpr (dim == 3)
       { // where supports hold a tangent the force is along the other one: the disc becomes an interval

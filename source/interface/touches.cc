@@ -1,3 +1,4 @@
+#include <slipstick/base/across.h>
 #include <slipstick/interface/obstacle.h>
 #include <slipstick/interface/touches.h>
 
@@ -31,29 +32,6 @@ namespace slipstick::interface
       return (pair.gap ? pair.gap->value(x, t) : without_rounding) + pair.offset.value(x, t);
     }
   } // namespace
-
-  template <int dim>
-  std::array<dealii::Tensor<1, dim>, dim - 1> tangents_of(const dealii::Tensor<1, dim> &normal)
-  {
-    std::array<dealii::Tensor<1, dim>, dim - 1> tangents;
-    if constexpr (dim == 2)
-      {
-        tangents[0][0] = -normal[1];
-        tangents[0][1] = normal[0];
-      }
-    else
-      {
-        unsigned int axis = 0;
-        for (unsigned int d = 1; d < dim; ++d)
-          if (std::abs(normal[d]) < std::abs(normal[axis]))
-            axis = d;
-        tangents[0][axis] = 1;
-        tangents[0] -= normal[axis] * normal;
-        tangents[0] /= tangents[0].norm();
-        tangents[1] = cross_product_3d(normal, tangents[0]);
-      }
-    return tangents;
-  }
 
   template <int dim>
   Touches<dim>::Touches(const scene::Scene<dim>               &scene,
@@ -201,9 +179,12 @@ namespace slipstick::interface
         touch.point.normal[d]   = touch.normal[d];
       }
     if constexpr (dim == 3)
-      for (unsigned int k = 0; k + 1 < dim; ++k)
-        for (unsigned int d = 0; d < dim; ++d)
-          touch.point.tangents[k][d] = tangents_of<dim>(touch.normal)[k][d];
+      {
+        const auto tangents = across(touch.normal);
+        for (unsigned int k = 0; k + 1 < dim; ++k)
+          for (unsigned int d = 0; d < dim; ++d)
+            touch.point.tangents[k][d] = tangents[k][d];
+      }
   }
 
   template <int dim>
@@ -220,9 +201,6 @@ namespace slipstick::interface
         }
     return result;
   }
-
-  template std::array<dealii::Tensor<1, 2>, 1> tangents_of(const dealii::Tensor<1, 2> &);
-  template std::array<dealii::Tensor<1, 3>, 2> tangents_of(const dealii::Tensor<1, 3> &);
 
   template class Touches<2>;
   template class Touches<3>;

@@ -196,16 +196,15 @@ namespace slipstick::mesh
         const Element &cell = chosen[c];
         const auto     edge = [&](const unsigned int k) {
           const auto d = file.nodes[cell.corners[(k + 1) % cell.n]] - file.nodes[cell.corners[k % cell.n]];
-          return std::array<double, 2>{{d[0], d[1]}};
+          return dealii::Tensor<1, 2>(dealii::Point<2>(d[0], d[1]));
         };
         unsigned int left = 0, right = 0;
         for (unsigned int k = 0; k < cell.n; ++k)
           {
             const auto   a = edge(k), b = edge(k + 1);
-            const double cross = a[0] * b[1] - a[1] * b[0];
-            const double scale = std::hypot(a[0], a[1]) * std::hypot(b[0], b[1]);
-            left += cross > least_sine * scale;
-            right += cross < -least_sine * scale;
+            const double area = cross(a, b), smallest = least_sine * a.norm() * b.norm();
+            left += area > smallest;
+            right += area < -smallest;
           }
         if (left != cell.n && right != cell.n)
           fail(std::string("has a degenerate cell: ") + cell_text(c) + " " +

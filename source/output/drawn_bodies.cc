@@ -1,3 +1,4 @@
+#include <slipstick/base/across.h>
 #include <slipstick/base/log.h>
 #include <slipstick/output/drawn_bodies.h>
 
@@ -30,16 +31,19 @@ namespace slipstick::output
       Vector right, up, towards; // the eye; unit vectors
     };
 
-    Axes axes_in_space()
+    const Axes &axes_in_space()
     {
-      Axes   axes;
-      Vector vertical;
-      vertical[1]  = 1;
-      axes.towards = dealii::Point<3>(0.55, 0.45, 1); // that of scripts/results/solids.py
-      axes.towards /= axes.towards.norm();
-      axes.right = dealii::cross_product_3d(vertical, axes.towards);
-      axes.right /= axes.right.norm();
-      axes.up = dealii::cross_product_3d(axes.towards, axes.right);
+      static const Axes axes = [] {
+        Axes   made;
+        Vector vertical;
+        vertical[1]  = 1;
+        made.towards = dealii::Point<3>(0.55, 0.45, 1); // that of scripts/results/solids.py
+        made.towards /= made.towards.norm();
+        made.right = dealii::cross_product_3d(vertical, made.towards);
+        made.right /= made.right.norm();
+        made.up = dealii::cross_product_3d(made.towards, made.right);
+        return made;
+      }();
       return axes;
     }
 
@@ -154,7 +158,7 @@ namespace slipstick::output
 
   DrawnBodies::DrawnBodies(const mesh::Mesh<3> &, const std::vector<mechanics::SurfaceFacet> &outlines)
   {
-    const Axes                                                      axes = axes_in_space();
+    const Axes                                                     &axes = axes_in_space();
     std::vector<std::pair<double, const mechanics::SurfaceFacet *>> shown;
     for (const auto &facet : outlines)
       if (mechanics::middle_normal(facet) * axes.towards > 0)
@@ -228,12 +232,10 @@ namespace slipstick::output
     if (!is_plane && obstacle.shape != ObstacleShape::cylinder && obstacle.shape != ObstacleShape::bore)
       return false;
     // A disc of the plane, as large as the scene, or both ends of as much of the cylinder.
-    const double size = view.low.distance(view.high) / 2;
-    const Vector other =
-      std::abs(obstacle.normal[0]) < 0.9 ? Vector(dealii::Point<3>(1, 0, 0)) : Vector(dealii::Point<3>(0, 1, 0));
-    Vector first = dealii::cross_product_3d(obstacle.normal, other);
-    first *= (is_plane ? size : obstacle.radius) / first.norm();
-    const Vector second = dealii::cross_product_3d(obstacle.normal, first);
+    const double size   = view.low.distance(view.high) / 2;
+    const double radius = is_plane ? size : obstacle.radius;
+    const auto   sides  = across(obstacle.normal);
+    const Vector first = radius * sides[0], second = radius * sides[1];
     if (is_plane)
       {
         write_path(out, view.path(circle(obstacle.center, first, second)));

@@ -1,3 +1,4 @@
+#include <slipstick/base/across.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/output/load_places.h>
 
@@ -192,28 +193,6 @@ namespace slipstick::output
       if (along.norm() == 0)
         along[dim - 1] = 1;
       return line_through(mesh, body, load.axis, along / along.norm());
-    }
-
-    /// Unit vectors across a direction.
-    template <int dim>
-    std::vector<dealii::Tensor<1, dim>> across(const dealii::Tensor<1, dim> &along)
-    {
-      std::vector<dealii::Tensor<1, dim>> result(dim - 1);
-      if constexpr (dim == 2)
-        result[0] = dealii::cross_product_2d(along);
-      else
-        {
-          unsigned int axis = 0;
-          for (unsigned int d = 1; d < dim; ++d)
-            if (std::abs(along[d]) < std::abs(along[axis]))
-              axis = d;
-          dealii::Tensor<1, dim> other;
-          other[axis] = 1;
-          result[0]   = dealii::cross_product_3d(along, other);
-          result[0] /= result[0].norm();
-          result[1] = dealii::cross_product_3d(along, result[0]);
-        }
-      return result;
     }
 
     /// Where the section of a bolt cuts the edges of its cells: in the plane the ends of the cut, in space the corners

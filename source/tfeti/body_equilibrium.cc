@@ -239,8 +239,11 @@ namespace slipstick::tfeti
     size                         = sum_of_magnitudes(loads, forces);
     if (derivative)
       {
-        std::vector<Eigen::Triplet<double>> entries; // of the forces by the slips, where bounds follow
+        const Eigen::VectorXd               stiffness = stiffness_of(rows, moved);
+        std::vector<Eigen::Triplet<double>> entries; // of the forces by the slips
         for (std::size_t i = 0; i < rows.size(); ++i)
+          entries.emplace_back(i, i, -stiffness[i]);
+        for (std::size_t i = 0; i < rows.size(); ++i) // where bounds follow
           if (const int n = rows[i].follows; n >= 0 && forces[n] > 0)
             {
               const double length = std::abs(moved[i]);
@@ -249,9 +252,6 @@ namespace slipstick::tfeti
             }
         Eigen::SparseMatrix<double> by_slips(rows.size(), rows.size());
         by_slips.setFromTriplets(entries.begin(), entries.end());
-        const Eigen::VectorXd stiffness = stiffness_of(rows, moved);
-        for (std::size_t i = 0; i < rows.size(); ++i)
-          by_slips.coeffRef(i, i) -= stiffness[i];
         *derivative = -(by_columns.transpose() * by_slips * by_columns);
       }
     return loads - shares.transpose() * forces;

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""The shipped scenes and random ones on 1 to 8 ranks: the same exit status, and answers that agree. A tool, not a ctest:
-26 shipped scenes and 60 random ones on 2, 3, 4, 5 and 8 ranks take half an hour of two cores.
+"""The shipped scenes and random ones on 1 to 8 ranks: the same exit status, and answers that agree. A tool, not a ctest.
 
     tests/random/ranks.py [--first SEED] [--scenes N] [--solids N] [--ranks 2,3,4,8] [--tolerance 1e-11] [--limit 1e-8]
 

@@ -36,11 +36,13 @@ namespace slipstick::app
                                                  const mechanics::StressResult      &stress);
 
   /// Contact nodes of all ranks on rank 0, with their arc lengths; in space with the faces between them. Collective.
-  /// @param total_slip gets the slip of this step added, on rank 0.
+  /// @param total_slip gets the slip of this step added, on rank 0. @param keys_of_nodes gets those of the contact nodes, in
+  /// their order, on rank 0.
   template <int dim>
-  output::ContactStep gather_contact(const StepSolver<dim>         &solver,
-                                     const contact::CheckedContact &own,
-                                     TotalSlip                     &total_slip);
+  output::ContactStep gather_contact(const StepSolver<dim>           &solver,
+                                     const contact::CheckedContact   &own,
+                                     TotalSlip                       &total_slip,
+                                     std::vector<mechanics::NodeKey> &keys_of_nodes);
 
   template <int dim>
   output::ContactNames contact_names(const scene::Scene<dim> &scene);

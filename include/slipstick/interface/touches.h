@@ -8,10 +8,6 @@
 
 namespace slipstick::interface
 {
-  /// Unit vectors across the normal and each other. In space the first is nearest to the axis that is most across.
-  template <int dim>
-  std::array<dealii::Tensor<1, dim>, dim - 1> tangents_of(const dealii::Tensor<1, dim> &normal);
-
   /// One other side that a slave node may touch.
   template <int dim>
   struct Touch
