@@ -19,9 +19,10 @@ namespace slipstick::qp
     using Sides = std::vector<signed char>;
 
     // Forces out of balance by less than this part of all of them move no body: faces tell what is left, better than points on
-    // springs. Without it a body 1e6 times softer than its base cycles; with 0.1 the lap joint tightened by cooling takes 300
-    // multiplications in place of 70.
-    constexpr double largest_imbalance = 0.01;
+    // springs (doc/decisions/0100). ...
+    constexpr double tolerated_imbalance = 0.1;
+    // ... After a step that failed less is tolerated, and no more than the natural residual.
+    constexpr double fine_imbalance = 0.01;
 
     // Across a slipping force that yields by more than this times what its entry does, over the norm of F, the entry is held.
     constexpr double rigid_compliance = 1e3;
@@ -160,6 +161,15 @@ namespace slipstick::qp
         turn_back(turned, g);
       }
 
+      /// From now on bodies move until their loads are balanced finely. @return whether they were not before.
+      bool balance_finely()
+      {
+        if (!balances || is_fine)
+          return false;
+        is_fine = true;
+        return true;
+      }
+
       /// Halve s where bodies rest on s g. @return whether it is smaller.
       bool soften()
       {
@@ -170,11 +180,11 @@ namespace slipstick::qp
         return true;
       }
 
-      /// Near the solution bodies are balanced better: what is left may decide which of a few small forces reach their bounds.
+      /// Near the solution a fine balance is finer: what is left may decide which of a few small forces reach their bounds.
       /// @param residual the natural one, over that of no forces at all.
       void approach(const double residual)
       {
-        imbalance = std::min(imbalance, residual);
+        finest_imbalance = std::min(finest_imbalance, residual);
       }
 
       /// The set becomes that of x - s g. @return whether it is another one, on any process.
@@ -418,6 +428,26 @@ namespace slipstick::qp
         set.box.upper.begin()[bound.second] = is_held ? 0. : HUGE_VAL;
       }
 
+      // moved -= stiffness times the jumps of the motions of bodies at which the forces, cut to their bounds, balance the loads.
+      // An entry that its gradient takes off its bound does not count as more than the bound there: what it will bear the face
+      // tells, and it must not push a body off the others that bear its loads.
+      void move_bodies(const Vector &x, const std::vector<double> &stiffness, std::vector<double> &moved) const
+      {
+        std::vector<double> forces(moved);
+        for (std::size_t i = 0; i < forces.size(); ++i)
+          if (bounded[i] && !in_disc[i])
+            {
+              if (const double l = set.box.lower.begin()[i]; x.begin()[i] <= l)
+                forces[i] = std::min(forces[i], l);
+              if (const double u = set.box.upper.begin()[i]; x.begin()[i] >= u)
+                forces[i] = std::max(forces[i], u);
+            }
+        const std::vector<double> before(forces);
+        balance_bodies(problem, stiffness, set, is_fine ? finest_imbalance : tolerated_imbalance, forces, 0);
+        for (std::size_t i = 0; i < moved.size(); ++i)
+          moved[i] += forces[i] - before[i];
+      }
+
       // The set, and action(i, x_i, proj(x - s g)_i, (x - s g)_i) for all entries with bounds. Normal entries come first: bounds of
       // others follow the projected ones.
       template <typename Action>
@@ -430,7 +460,7 @@ namespace slipstick::qp
             moved[i]     = x.begin()[i] - (std::abs(g.begin()[i]) > noise ? stiffness[i] * g.begin()[i] : 0.);
           }
         if (balances)
-          balance_bodies(problem, stiffness, set, imbalance, moved, 0);
+          move_bodies(x, stiffness, moved);
         const auto place = [&](const std::size_t i) {
           const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i];
           active[i]    = moved[i] <= l ? -1 : moved[i] >= u ? 1 : 0;
@@ -472,8 +502,9 @@ namespace slipstick::qp
       const double               norm, noise;
       const bool                 balances;
       double                     step;
-      double                     softening = 1;                 // of s, <= 1
-      double                     imbalance = largest_imbalance; // of forces that moves no body
+      double                     softening        = 1;              // of s, <= 1
+      double                     finest_imbalance = fine_imbalance; // of forces that moves no body, ...
+      bool                       is_fine          = false;          // ... after a step that failed
       AdmissibleSet<Vector>      set;
       const double              *weights;
       std::vector<bool>          bounded;

@@ -345,15 +345,16 @@ namespace slipstick::qp
         return true;
       }
 
-      // From the set of x itself, which is told with softer points where that is possible. @return whether it was not tried yet.
+      // From the set of x itself, with bodies balanced finely, then also on softer points, where that is possible. @return whether it
+      // was not tried yet.
       bool restart()
       {
-        const bool is_softer = set.soften(), is_first = !is_stuck;
+        const bool is_changed = set.balance_finely() || set.soften(), is_first = !is_stuck;
         is_stuck = true;
-        if (is_softer)
+        if (is_changed)
           merits = {set.natural_residual(x, g)};
         set.predict(x, g);
-        return is_softer || is_first;
+        return is_changed || is_first;
       }
 
       // Once from a rough start the whole step all the same (watchdog technique: Chamberlain, Powell, Lemarechal, Pedersen
