@@ -19,7 +19,7 @@ namespace slipstick::qp
     using Sides = std::vector<signed char>;
 
     // Forces out of balance by less than this part of all of them move no body: faces tell what is left, better than points on
-    // springs (doc/decisions/0100). ...
+    // springs (doc/decisions/0091). ...
     constexpr double tolerated_imbalance = 0.1;
     // ... After a step that failed less is tolerated, and no more than the natural residual.
     constexpr double fine_imbalance = 0.01;
