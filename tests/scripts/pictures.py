@@ -13,7 +13,7 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / 'scripts'
 sys.path.insert(0, str(SCRIPTS))
 try:
     import numpy
-    from results import contact_plot, fields, film, folder, formula, painters, pictures, report_page
+    from results import contact_plot, fields, film, folder, formula, painters, pictures, probe_plot, report_page, scene_drawing
 except ImportError as error:
     print('skipped: {}; scripts/setup --render'.format(error))
     sys.exit(77)
@@ -95,6 +95,7 @@ class Pictures(WithRun):
         self.assertIn('step 0 (0 to 1), t = 0.5', first)
         self.assertEqual(second, 'largest 6 MPa at (2, 0)')
         self.assertEqual(third, 'displacements in true scale')
+        self.assertEqual(fields.place(numpy.array([-1e-17, 0.25])), '(0, 0.25)')
 
     def test_box_is_of_the_scene_before_loading(self):
         painter = self.painter(box=[-0.1, 1.1, -0.1, 1.1])
@@ -163,6 +164,40 @@ class Films(WithRun):
         self.assertIn('ffmpeg', remark)
 
 
+class Probes(WithRun):
+    def run_with_probes(self):
+        run = self.run_of()
+        (run.folder / 'probes.csv').write_text(run_folder.PROBES)
+        return run
+
+    def test_values_along_lines_and_over_steps(self):
+        """Lines show their step, points all steps; rounding is left out; the axes are those of all steps."""
+        painter = probe_plot.ProbePainter(self.run_with_probes())
+        for step, t in enumerate(run_folder.FACTORS):
+            axes = painter.draw(step).axes
+            curves = [{line.get_label(): (list(line.get_xdata()), list(line.get_ydata())) for line in one.lines
+                       if not line.get_label().startswith('_')} for one in axes]
+            self.assertEqual(curves[0], {'u_x': ([0, 1, 2], [0, 0.1 * t, 0.2 * t])})
+            self.assertEqual(sorted(curves[1]), ['stress_xx', 'stress_yy', 'von_mises'])
+            self.assertEqual(curves[1]['stress_xx'][1], [100 * t] * 3)
+            self.assertEqual(curves[2], {'u_x': ([0.5, 1], [0.1, 0.2])})
+            self.assertGreater(axes[1].get_ylim()[1], 100)
+            self.assertIn('across, from (0, 0.5) to (2, 0.5)', axes[0].get_title())
+            self.assertIn('end, at (2, 0.5)', axes[2].get_title())
+
+    def test_they_are_in_the_scene_and_in_the_report(self):
+        run = self.run_with_probes()
+        figure = scene_drawing.draw(run)
+        self.assertIn('probe', [text.get_text() for text in figure.legends[0].get_texts()])
+        self.assertEqual([text.get_text() for text in figure.axes[0].texts], ['across', 'end'])
+        self.assertIn([[0, 0.5], [2, 0.5]], [line.get_xydata().tolist() for line in figure.axes[0].lines])
+        self.assertEqual(report_page.page(run).count('<img '), 6)
+
+    def test_runs_without_probes(self):
+        painter = probe_plot.ProbePainter(self.run_of())
+        self.assertEqual((painter.probes, painter.draw(0)), ({}, None))
+
+
 class Solids(WithRun):
     def painter(self, name):
         run = folder.Run(run_folder.write_solid(self.place / 'run'))
@@ -201,7 +236,7 @@ class Report(WithRun):
         """Of a support that is moved its reaction, of a probe the loads along the same axis."""
         run = self.run_of()
         (run.folder / 'history.csv').write_text('t,traction pull Fx,traction pull Fy,support wall Fx,support tip Fy,probe end ux,probe end uy\n'
-                                                '0.5,30,0,-30,7,0.1,0\n1,60,0,-60,5,0.2,0\n')
+                                                '0.5,30,0,-30,7,0.1,0\n1,60,1e-12,-60,5,0.2,1e-15\n')
         curves = []
         with unittest.mock.patch.object(report_page, 'picture', lambda figure, alt: curves.extend(
                 (line.get_label(), list(line.get_xdata()), list(line.get_ydata())) for line in figure.axes[0].lines) or alt):
@@ -254,10 +289,11 @@ class CommandLine(WithRun):
 
     def test_pictures_and_messages(self):
         run = run_folder.write(self.place / 'run')
+        (run / 'probes.csv').write_text(run_folder.PROBES)
         result = self.render(run, self.place / 'png', '--field', 'hoop,displacement_x', '--centre', '0,0.5')
         self.assertEqual(result.returncode, 0, result)
         self.assertEqual(sorted(file.name for file in (self.place / 'png').iterdir()),
-                         ['contact.png', 'displacement_x.png', 'hoop.png'])
+                         ['contact.png', 'displacement_x.png', 'hoop.png', 'probes.png'])
         for arguments, message in ((['--field', 'nothing'], "no field 'nothing'"), (['--step', '7'], 'steps 0 to 1'),
                                    (['--pairs', 'x'], "no pair 'x'"), (['--box', '1,0,0,1'], 'X0 < X1')):
             result = self.render(run, self.place / 'png', *arguments)
