@@ -245,8 +245,18 @@ namespace slipstick::app
           "or raise Friction/Max iterations; with a large friction coefficient there may be no or many solutions");
         return;
       }
-    const bool        limit   = solution.status == qp::Status::iteration_limit;
-    const double      reached = std::max(solution.projected_gradient, solution.equality);
+    const bool   limit   = solution.status == qp::Status::iteration_limit;
+    const double reached = std::max(solution.projected_gradient, solution.equality);
+    if (reached <= tolerance) // no tolerance would help
+      {
+        log.warning(
+          format("not converged: friction and normal forces do not come to agree (residuals of %.1e of |Pd|)",
+                 reached) +
+          largest +
+          "; the results are not a solution\n  remedy: support bodies that friction alone holds, press them together (before they are "
+          "loaded along the contact: Load steps/Factors), or lower the load");
+        return;
+      }
     const std::string raise =
       is_tolerance(rounded_up(reached))
         ? format("set Solver/Tolerance to %g or more, and look at the residuals in convergence.csv",

@@ -115,7 +115,7 @@ namespace slipstick::mesh
             "write it again (.unv with data sets 2411 and 2412, elements of first or second order), or save it as .msh "
             "in Gmsh")
       {
-        mesh.file        = file;
+        mesh.file = file;
         mesh.about_names =
           "; Gmsh writes blanks in names as _ and leaves points out of .unv files: save as .msh in Gmsh for both";
       }
@@ -167,7 +167,7 @@ namespace slipstick::mesh
           if (type >= 11 && type <= 32) // rods, beams and pipes: orientation and cross-sections
             for (unsigned int k = 0; k < 3; ++k)
               in.integer();
-          const FeType known = fe_type(type);
+          const FeType known   = fe_type(type);
           const bool   of_gmsh = is_of_gmsh(known, n_nodes);
           if (known.n_nodes > 0 ? n_nodes != known.n_nodes && !of_gmsh : known.dim == 0 && n_nodes > 2)
             in.fail("element " + std::to_string(number) + " of type " + std::to_string(type) + " with " +
@@ -209,8 +209,7 @@ namespace slipstick::mesh
     }
 
     /// Corners, and middles of edges.
-    void
-    UnvReader::take_nodes(const FeType &type, MeshFile::Element &element, const std::vector<unsigned int> &nodes)
+    void UnvReader::take_nodes(const FeType &type, MeshFile::Element &element, const std::vector<unsigned int> &nodes)
     {
       for (unsigned int k = 0; k < nodes.size(); ++k)
         if (const auto around = corners_around(type, k); around.size() == 1)

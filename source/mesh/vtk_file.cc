@@ -68,9 +68,10 @@ namespace slipstick::mesh
             "write it again (legacy .vtk in ASCII with an unstructured grid of triangles, quadrilaterals, tetrahedra and "
             "hexahedra of first or second order), or save it as .msh in Gmsh")
       {
-        mesh.file        = file;
-        mesh.about_names = "; .vtk files have numbers in place of names (Gmsh's those of the physical groups, of several at an element "
-                           "the first): save as .msh in Gmsh for the names";
+        mesh.file = file;
+        mesh.about_names =
+          "; .vtk files have numbers in place of names (Gmsh's those of the physical groups, of several at an element "
+          "the first): save as .msh in Gmsh for the names";
       }
 
       MeshFile read();
@@ -175,9 +176,9 @@ namespace slipstick::mesh
             in.fail("cell " + std::to_string(c) + " of type " + std::to_string(type) + " has " +
                     std::to_string(corners[c].size()) + " corners");
           MeshFile::Element element;
-          element.dim    = known.dim;
-          element.n      = known.n_corners;
-          element.number = c;
+          element.dim          = known.dim;
+          element.n            = known.n_corners;
+          element.number       = c;
           const auto &of_solid = middles_of_solid(NodeOrder::vtk, known.dim == 3 ? known.n_nodes : 0);
           for (unsigned int k = 0; k < known.n_nodes; ++k)
             if (k < known.n_corners)

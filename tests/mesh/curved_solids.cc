@@ -38,14 +38,9 @@ namespace
         of_cube = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}},
         of_tetrahedron = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
       auto with_faces  = of_cube; // of VTK
-      with_faces.insert(with_faces.end(),
-                        {{0, 3, 4, 7},
-                         {1, 2, 5, 6},
-                         {0, 1, 4, 5},
-                         {2, 3, 6, 7},
-                         {0, 1, 2, 3},
-                         {4, 5, 6, 7},
-                         {0, 1, 2, 3, 4, 5, 6, 7}});
+      with_faces.insert(
+        with_faces.end(),
+        {{0, 3, 4, 7}, {1, 2, 5, 6}, {0, 1, 4, 5}, {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 2, 3, 4, 5, 6, 7}});
       return {{"C3D20R", cube, of_cube},
               {"C3D10", tetrahedron, of_tetrahedron},
               {"vtk 24", tetrahedron, of_tetrahedron},

@@ -587,7 +587,8 @@ TEST(MeshFiles, numbers_in_vtk_and_unv_are_checked)
   EXPECT_SAYS(refusal_of(".unv", unv, "1 2 3 4", "1 2 3 5"), "cell 1 has corner 5");
   EXPECT_SAYS(refusal_of(".unv", unv, "0 1 1\n1 2", "0 1 1\n1 9"), "cell 2 has corner 9");
   EXPECT_SAYS(refusal_of(".unv", unv, "4 1 1 11", "3 1 1 11"), "node 3 occurs twice");
-  EXPECT_SAYS(refusal_of(".unv", unv, "1 44 2 1 7 4\n1 2 3 4", "1 44 2 1 7 5\n1 2 3 4 1"), "with 5 nodes is not supported");
+  EXPECT_SAYS(refusal_of(".unv", unv, "1 44 2 1 7 4\n1 2 3 4", "1 44 2 1 7 5\n1 2 3 4 1"),
+              "with 5 nodes is not supported");
   EXPECT_SAYS(refusal_of(".unv", unv, "1 44 2 1 7 4", "1 84 2 1 7 4"), "5 elements"); // axisymmetric
 
   const std::string ids = "CELL_DATA 3\nSCALARS MaterialID int 1\nLOOKUP_TABLE default\n7 7 4\n";
@@ -757,7 +758,8 @@ TEST(MeshFiles, names_that_other_formats_lack_are_said_to_be_in_msh)
     std::map<std::string, mesh::MeshFile> files;
     return refusal([&] { mesh::make_body(scene, 0, files); });
   };
-  for (const auto &said : {refused("gmsh.vtk", "block", "foot"), refused("gmsh.vtk", "3", "foot"), refused("gmsh.vtk", "3", "1")})
+  for (const auto &said :
+       {refused("gmsh.vtk", "block", "foot"), refused("gmsh.vtk", "3", "foot"), refused("gmsh.vtk", "3", "1")})
     EXPECT_SAYS(said, "save as .msh in Gmsh for the names");
   EXPECT_SAYS(refused("gmsh.vtk", "block", "foot"), "has no part 'block'");
   EXPECT_SAYS(refused("gmsh.vtk", "3", "foot"), "no boundary 'foot'");
