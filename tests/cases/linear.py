@@ -81,6 +81,17 @@ class Linear(unittest.TestCase):
             self.uniform(converged(bar(NU, supports, {}), {'Discretization/Degree': degree}, ranks=2), 1e-3, 2e-3,
                          factor * (1e-3 + NU * 2e-3), factor * (2e-3 + NU * 1e-3))
 
+    def test_loads_on_held_boundaries_alone_strain_nothing(self):
+        """What rounding leaves of the displacement is no reason to doubt the answer."""
+        disc = {'disc': {'Shape': 'disc', 'Radius': '1', 'Cells along arc': '24', 'Material': 'elastic'}}
+        case = scenes.box(materials={'elastic': {'Young modulus': '2.1e5', 'Poisson ratio': NU}}, bodies=disc,
+                          supports={'rim': {'Boundary': 'disc/arc', 'Displacement x': '0', 'Displacement y': '0'}},
+                          tractions={'down': {'Boundary': 'disc/arc', 'Traction y': '-10'}}, Decomposition={'Method': 'METIS'})
+        for subdomains in (1, 2, 5):
+            results = converged(case, {'Decomposition/Subdomains': subdomains}).summary['results']
+            self.assertLess(results['max_displacement'], 1e-15)
+            self.assertAlmostEqual(results['supports'][0]['force'][1] / -results['loads'][0]['force'][1], 1, delta=1e-12)
+
     def test_no_load_gives_no_displacement(self):
         results = converged(bar(NU, CLAMPED, {}), ranks=2).summary['results']
         self.assertEqual([results['max_displacement'], results['strain_energy']], [0, 0])

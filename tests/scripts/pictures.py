@@ -1,5 +1,6 @@
 """scripts/render and scripts/report on the folder of a small run. Status 77 (skipped) where what it needs is not installed."""
 
+import os
 import pathlib
 import re
 import shutil
@@ -280,6 +281,41 @@ class Report(WithRun):
                                 text=True, timeout=120)
         self.assertIn('Balance of loads and reactions', result.stdout)
         self.assertEqual(result.stdout.count('</table>'), 4)  # none is left open
+
+
+class Needs(WithRun):
+    """With a Matplotlib that cannot be imported until scripts/setup, a stand-in, has run."""
+
+    def render(self, setup, **environment):
+        run, scripts, lacking = run_folder.write(self.place / 'run'), self.place / 'scripts', self.place / 'lacking'
+        shutil.copytree(SCRIPTS / 'results', scripts / 'results', ignore=shutil.ignore_patterns('__pycache__'))
+        shutil.copy(SCRIPTS / 'render', scripts / 'render')
+        lacking.mkdir()
+        (lacking / 'matplotlib.py').write_text('raise ImportError("no matplotlib here")\n')
+        (scripts / 'setup').write_text('#!/bin/bash\necho "$*" >>{0}/asked\n{1}\n'.format(self.place, setup.format(lacking)))
+        (scripts / 'setup').chmod(0o755)
+        return subprocess.run([sys.executable, str(scripts / 'render'), str(run), '--field', 'von_mises'], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True, timeout=120,
+                              env={**os.environ, 'PYTHONPATH': str(lacking), 'PYTHONDONTWRITEBYTECODE': '1', **environment})
+
+    def asked(self):
+        file = self.place / 'asked'
+        return file.read_text().splitlines() if file.is_file() else []
+
+    def test_they_are_installed_once_and_the_pictures_drawn(self):
+        result = self.render('rm {}/matplotlib.py', SLIPSTICK_NO_SETUP='')
+        self.assertEqual((result.returncode, self.asked()), (0, ['--render']), result)
+        self.assertTrue((self.place / 'run' / 'von_mises.png').is_file())
+
+    def test_what_setup_does_not_mend_ends(self):
+        result = self.render('true', SLIPSTICK_NO_SETUP='')
+        self.assertEqual((result.returncode, self.asked()), (10, ['--render']), result)
+        self.assertIn('scripts/setup --render', result.stderr)
+
+    def test_nothing_is_installed_where_that_is_not_wanted(self):
+        result = self.render('true', SLIPSTICK_NO_SETUP='1')
+        self.assertEqual((result.returncode, self.asked()), (10, []), result)
+        self.assertIn('no matplotlib here', result.stderr)
 
 
 class CommandLine(WithRun):
