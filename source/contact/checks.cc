@@ -305,19 +305,19 @@ namespace slipstick::contact
       /// @param largest_force nodal: largest load, contact force or reaction.
       Scales find_scales(const double largest_force) const
       {
-        const double way       = std::max(largest_gap, result.checks.max_displacement);
-        const double before    = part_of_history * history.displacement;
+        const double way    = std::max(largest_gap, result.checks.max_displacement);
+        const double before = part_of_history * history.displacement;
+        // supports may bear all loads where they act: what is left then is rounding
+        const double rounding  = tfeti::force_rounding * largest_force;
         const double no_length = std::max(negligible_part * way, before);
         Scales       scales;
         scales.no_strain = std::max(negligible_deformation * way, before);
         scales.no_force  = std::max(scales.no_strain / dual.norm(), part_of_history * history.force);
-        scales.length    = std::max(result.checks.max_displacement, no_length);
+        scales.length    = std::max({result.checks.max_displacement, no_length, rounding * dual.norm()});
         scales.force     = std::max(largest_contact, scales.no_force);
         const double energy_before =
           part_of_history * part_of_history * std::accumulate(history.energies.begin(), history.energies.end(), 0.);
-        // supports may bear all loads where they act: what is left then is rounding
-        const double rounding = tfeti::force_rounding * largest_force;
-        scales.no_energy      = std::max(scales.no_force * scales.no_strain, rounding * rounding * dual.norm());
+        scales.no_energy = std::max(scales.no_force * scales.no_strain, rounding * rounding * dual.norm());
         scales.energy =
           std::max({result.checks.energy, scales.no_energy, all_bounds * scales.no_strain, energy_before});
         return scales;

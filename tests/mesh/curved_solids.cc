@@ -26,7 +26,7 @@ namespace
       std::string                            kind; // of Abaqus, Gmsh's number, or number in .vtk or .unv
       std::vector<Point>                     corners;
       std::vector<std::vector<unsigned int>> between;
-      std::vector<unsigned int>              order; // of the nodes in the file, from 1; empty: this
+      std::vector<unsigned int>              order = {}; // of the nodes in the file, from 1; empty: this
     };
 
     static std::vector<Cell> cells()
