@@ -60,3 +60,9 @@ def values(name, grid: Grid, centre=(0., 0.)):
         return np.asarray(FIELDS[name][2](grid, centre), dtype=float)
     except KeyError as missing:
         raise ValueError(f"the files of the run have no field {missing} to draw {name} from")
+
+
+def place(point):
+    """(1, 2); what is rounding beside the largest coordinate is 0."""
+    rounded = np.where(np.abs(point) <= 1e-9 * np.abs(point).max(), 0., point)
+    return "(" + ", ".join(f"{x:.5g}" for x in rounded) + ")"

@@ -119,9 +119,8 @@ class Painter:
         if several:
             lines[0] += f", step {step} (0 to {len(self.grids) - 1}), t = {t:g}"
         if found:
-            x, y = found[1] + 0.0
             signed = self.limits[0] < 0
-            lines.append(f"{'largest magnitude' if signed else 'largest'} {found[0]:.5g} {self.unit} at ({x:.5g}, {y:.5g})")
+            lines.append(f"{'largest magnitude' if signed else 'largest'} {found[0]:.5g} {self.unit} at {fields.place(found[1])}")
         lines.append("displacements in true scale" if self.factor == 1 else f"displacements drawn {self.factor:g} times")
         return lines
 

@@ -8,7 +8,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-from . import painters, pictures, scene_drawing
+from . import painters, pictures, probe_plot, scene_drawing
 
 STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 1.5rem auto; padding: 0 1rem; }
@@ -21,6 +21,7 @@ tr.sum td { border-top: 2px solid #888; font-weight: 600; } img { max-width: 100
 """
 MOST_LOOPS = 8  # curves of forces over displacements
 CLOSED_BALANCE = 1e-6  # of the largest force: less than this is called zero
+ROUNDING = 1e-9  # of the largest force or displacement: curves below it are not drawn
 
 
 def number(value, digits=5):
@@ -132,12 +133,24 @@ def bolts_table(run):
     return table(head, rows) if rows else ""
 
 
+def largest_of(rows, names):
+    """Magnitude in the columns of history.csv."""
+    return max((abs(float(row[name] or 0)) for row in rows for name in names), default=0.)
+
+
+def force_columns(rows, ends):
+    """Columns of history.csv with forces of these components that are more than rounding."""
+    forces = [name for name in rows[0] if name.endswith((" Fx", " Fy", " Fz", " force"))]
+    least = ROUNDING * largest_of(rows, forces)
+    return [name for name in forces if name.endswith(ends) and largest_of(rows, [name]) > least]
+
+
 def history_plot(run):
     """Resultants, and tensions of bolts, over the load factor."""
     rows = run.table("history.csv")
     if len(rows) < 2:
         return ""
-    columns = [name for name in rows[0] if name.endswith((" Fx", " Fy", " Fz", " force")) and any(abs(float(row[name] or 0)) > 0 for row in rows)]
+    columns = force_columns(rows, (" Fx", " Fy", " Fz", " force"))
     figure, axes = plt.subplots(figsize=(8, 4.2), layout="constrained")
     for name in columns:
         axes.plot([float(row["t"]) for row in rows], [float(row[name]) for row in rows], marker=".", label=name)
@@ -158,7 +171,8 @@ def moved_by(run, rows):
             values = [run.scene.field(f"Support {name}/Displacement {axis}", 0., 0., float(row["t"])) for row in rows]
             if None not in values:
                 found.append((f"support {name} u{axis}", values, axis))
-    return [entry for entry in found if max(entry[1]) > min(entry[1])]
+    least = ROUNDING * max((max(map(abs, values)) for _, values, _ in found), default=0.)
+    return [entry for entry in found if max(entry[1]) > min(entry[1]) and max(map(abs, entry[1])) > least]
 
 
 def loop_plot(run):
@@ -167,9 +181,9 @@ def loop_plot(run):
     rows = run.table("history.csv")
     curves = []
     for what, displacement, axis in moved_by(run, rows) if len(rows) > 1 else ():
-        for column in rows[0]:
+        for column in force_columns(rows, f" F{axis}"):
             own = column == f"{what[:-3]} F{axis}"
-            if own or what.startswith("probe ") and column.startswith(("traction ", "point load ", "support ")) and column.endswith(f" F{axis}"):
+            if own or what.startswith("probe ") and column.startswith(("traction ", "point load ", "support ")):
                 force = [float(row[column]) for row in rows]
                 if max(force) > min(force):
                     curves.append((column, what, displacement, force))
@@ -195,6 +209,9 @@ def drawings(run, options):
         figure = painter.draw(painter.steps[-1])
         if figure:
             text += picture(figure, "tractions along the contact boundaries")
+    probes = probe_plot.ProbePainter(run)
+    if probes.probes:
+        text += picture(probes.draw(probes.steps[-1]), "values at the probes")
     return text or "<p>The run wrote no fields (Output/VTU) and has no contact nodes.</p>"
 
 

@@ -49,8 +49,9 @@ def draw(run, step=0):
             handles.append(matplotlib.lines.Line2D([], [], color=colour, linewidth=2.4, label="contact " + name))
     t = run.factor(len(run.factors) - 1)
     symbols.draw_all(axes, run, grid, t, painter.size, lambda point: point)
+    symbols.draw_probes(axes, run, lambda point: point)
     axes.set_xlabel("x [mm]")
     axes.set_ylabel("y [mm]")
     loads = f", loads at t = {t:g}" if len(run.factors) > 1 else ""
-    bands.add(figure, [f"{run.summary.get('case', 'the scene')} before loading{loads}"], handles + symbols.key(run))
+    bands.add(figure, [f"{run.summary.get('case', 'the scene')} before loading{loads}"], handles + symbols.key(run) + symbols.key_of_probes(run))
     return figure

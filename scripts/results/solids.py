@@ -189,8 +189,7 @@ class SolidPainter:
         if len(self.grids) > 1:
             line += f", step {step} (0 to {len(self.grids) - 1}), t = {self.run.factor(step):g}"
         k = int(np.argmax(np.abs(self.values[step])))
-        place = ", ".join(f"{x:.5g}" for x in self.grids[step].points[k] + 0.0)
-        return [line, f"largest magnitude {self.values[step][k]:.5g} {self.unit} at ({place})",
+        return [line, f"largest magnitude {self.values[step][k]:.5g} {self.unit} at {fields.place(self.grids[step].points[k])}",
                 "displacements in true scale" if self.factor == 1 else f"displacements drawn {self.factor:g} times"]
 
     def save(self, step, file):

@@ -6,7 +6,7 @@ import matplotlib.collections
 import matplotlib.patches
 import numpy as np
 
-LOAD, SUPPORT, MOVED, HEAT, BOLT = "crimson", "darkgreen", "royalblue", "darkorange", "purple"
+LOAD, SUPPORT, MOVED, HEAT, BOLT, PROBE = "crimson", "darkgreen", "royalblue", "darkorange", "purple", "black"
 MOST_SYMBOLS = 12  # a boundary
 SMALL = 1e-9  # part of the largest traction that is drawn as none
 
@@ -241,6 +241,24 @@ def draw_bolts(axes, run, length, moved_point):
             arrow(axes, place + side * length * along, place, BOLT)
 
 
+def probes_of(run):
+    """Name -> the ends of its line, or its point, before loading."""
+    ends = {}
+    for row in run.table("probes.csv"):
+        if int(row["step"]) == 0:
+            ends.setdefault(row["probe"], []).append(np.array([float(row["x"]), float(row["y"])]))
+    return {name: points[:1] + points[1:][-1:] for name, points in ends.items()}
+
+
+def draw_probes(axes, run, moved_point):
+    """Crosses with names, joined by dotted lines."""
+    for name, ends in probes_of(run).items():
+        places = np.array([moved_point(end) for end in ends])
+        axes.plot(places[:, 0], places[:, 1], marker="x", linestyle=":", linewidth=1.2, markersize=6, color=PROBE, zorder=6)
+        axes.annotate(name, places[0], xytext=(4, 4), textcoords="offset points", fontsize=8, color=PROBE, zorder=6,
+                      annotation_clip=True)
+
+
 def draw_all(axes, run, grid, t, size, moved_point):
     """@p size of the scene; @p moved_point: where a point is drawn."""
     draw_obstacles(axes, run, t, size)
@@ -269,3 +287,7 @@ def key(run):
     if run.scene.names("Obstacles"):
         handles.append(matplotlib.patches.Patch(facecolor="0.86", edgecolor="0.35", hatch="///", label="rigid obstacle"))
     return handles
+
+
+def key_of_probes(run):
+    return [matplotlib.lines.Line2D([], [], color=PROBE, marker="x", linestyle=":", label="probe")] if probes_of(run) else []

@@ -313,12 +313,13 @@ namespace slipstick::app
     {
       const MPI_Comm comm = solver.mesh().comm;
       GoalError      goal;
-      goal.quantity = "strain_energy";
-      goal.unit     = "N mm";
-      goal.value    = answer.contact->checks.energy / 2;
-      if (!solver.discrete_scene().temperatures.empty())
+      goal.quantity        = "strain_energy";
+      goal.unit            = "N mm";
+      goal.value           = answer.contact->checks.energy / 2;
+      const bool has_bolts = !solver.discrete_scene().pretensions.empty();
+      if (has_bolts || !solver.discrete_scene().temperatures.empty())
         {
-          goal.reason = "not estimated with changes of temperature";
+          goal.reason = std::string("not estimated with ") + (has_bolts ? "bolts" : "changes of temperature");
           return goal;
         }
       for (const auto &part : answer.stress->subdomains)

@@ -29,6 +29,19 @@ namespace slipstick::app
       return format("%-12s ", stage) + text;
     }
 
+    /// "(1, 2)"; what is rounding beside the largest component is 0.
+    std::string rounded_place(std::array<double, 3> x, const unsigned int dim)
+    {
+      constexpr double rounding = 1e-12;
+      double           largest  = 0;
+      for (const double component : x)
+        largest = std::max(largest, std::abs(component));
+      for (double &component : x)
+        if (std::abs(component) <= rounding * largest)
+          component = 0;
+      return point_text(x, dim);
+    }
+
     /// " at (1, 2) of body box, contact joint"
     template <int dim>
     std::string place(const scene::Scene<dim> &scene, const contact::Place &place)
@@ -232,8 +245,18 @@ namespace slipstick::app
           "or raise Friction/Max iterations; with a large friction coefficient there may be no or many solutions");
         return;
       }
-    const bool        limit   = solution.status == qp::Status::iteration_limit;
-    const double      reached = std::max(solution.projected_gradient, solution.equality);
+    const bool   limit   = solution.status == qp::Status::iteration_limit;
+    const double reached = std::max(solution.projected_gradient, solution.equality);
+    if (reached <= tolerance) // no tolerance would help
+      {
+        log.warning(
+          format("not converged: friction and normal forces do not come to agree (residuals of %.1e of |Pd|)",
+                 reached) +
+          largest +
+          "; the results are not a solution\n  remedy: support bodies that friction alone holds, press them together (before they are "
+          "loaded along the contact: Load steps/Factors), or lower the load");
+        return;
+      }
     const std::string raise =
       is_tolerance(rounded_up(reached))
         ? format("set Solver/Tolerance to %g or more, and look at the residuals in convergence.csv",
@@ -311,7 +334,7 @@ namespace slipstick::app
     log.line("");
     for (const auto &pair : summary.results.contact)
       log.line(format(
-        "contact %s: largest pressure %.6g MPa; %u nodes in contact, %u open; %u stick, %u slip%s; force %.6g N normal, %.6g N tangential",
+        "contact %s: largest pressure %.6g MPa; %u nodes in contact, %u open; %u stick, %u slip%s; forces summed along it %.6g N normal, %.6g N tangential",
         pair.pair.c_str(),
         pair.max_pressure,
         pair.contact_nodes,
@@ -342,12 +365,12 @@ namespace slipstick::app
     log.line(format("von Mises stress is largest in body %s at %s%s; the cell with the largest error, %.2g %% of the "
                     "square of all, is at %s of body %s",
                     peak.body.c_str(),
-                    point_text(peak.position, dim).c_str(),
+                    rounded_place(peak.position, dim).c_str(),
                     summary.results.singular.empty()
                       ? ""
                       : (", " + summary.results.singular + ", where it grows without limit under refinement").c_str(),
                     100 * summary.error.largest_part,
-                    point_text(error.position, dim).c_str(),
+                    rounded_place(error.position, dim).c_str(),
                     error.body.c_str()));
     log.line(format("%s after %llu F-multiplications in %u outer steps; equilibrium error %.1e; %.2f s, %.0f MB",
                     output::to_string(summary.status).c_str(),

@@ -126,6 +126,7 @@ namespace slipstick::contact
     {
       double length, force, energy; // of this answer, or what rounding leaves of it [mm], [N], [N mm]
       double no_force, no_strain;   // what counts as zero [N], [mm]
+      double no_energy;             // [N mm]
     };
 
     /// One answer under inspection. The order of the largest values is that of Checks::entries().
@@ -161,8 +162,8 @@ namespace slipstick::contact
         const auto error_energies = check_rows();
         collect_nodes();
         check_nodes();
-        const Scales scales    = find_scales();
         const auto   on_bodies = balance(dual, u, forces, multipliers, n_bodies, largest[nodal_equilibrium]);
+        const Scales scales    = find_scales(on_bodies.largest);
         check_balance(on_bodies, scales);
         check_energies(error_energies, on_bodies, scales);
         for (unsigned int i = 0; i < Checks::n_entries; ++i)
@@ -301,20 +302,24 @@ namespace slipstick::contact
                             node.traction[2] * node.slip_vector[2]);
       }
 
-      Scales find_scales() const
+      /// @param largest_force nodal: largest load, contact force or reaction.
+      Scales find_scales(const double largest_force) const
       {
-        const double way       = std::max(largest_gap, result.checks.max_displacement);
-        const double before    = part_of_history * history.displacement;
+        const double way    = std::max(largest_gap, result.checks.max_displacement);
+        const double before = part_of_history * history.displacement;
+        // supports may bear all loads where they act: what is left then is rounding
+        const double rounding  = tfeti::force_rounding * largest_force;
         const double no_length = std::max(negligible_part * way, before);
         Scales       scales;
         scales.no_strain = std::max(negligible_deformation * way, before);
         scales.no_force  = std::max(scales.no_strain / dual.norm(), part_of_history * history.force);
-        scales.length    = std::max(result.checks.max_displacement, no_length);
+        scales.length    = std::max({result.checks.max_displacement, no_length, rounding * dual.norm()});
         scales.force     = std::max(largest_contact, scales.no_force);
         const double energy_before =
           part_of_history * part_of_history * std::accumulate(history.energies.begin(), history.energies.end(), 0.);
-        scales.energy = std::max(
-          {result.checks.energy, scales.no_force * scales.no_strain, all_bounds * scales.no_strain, energy_before});
+        scales.no_energy = std::max(scales.no_force * scales.no_strain, rounding * rounding * dual.norm());
+        scales.energy =
+          std::max({result.checks.energy, scales.no_energy, all_bounds * scales.no_strain, energy_before});
         return scales;
       }
 
@@ -342,7 +347,7 @@ namespace slipstick::contact
             const double share = least_load > 0 ? std::min(1., on_bodies.scale[b] / least_load) : 1.;
             const double error = std::max(error_energies.of_body[b], 0.);
             const double least =
-              std::max(scales.no_force * scales.no_strain,
+              std::max(scales.no_energy,
                        history.energies.empty() ? 0. : part_of_history * part_of_history * history.energies[b]);
             const double energy = std::max(result.checks.energies[b], least);
             if (largest[energy_norm].take(share * std::sqrt(relative(error, energy)), Place()))

@@ -31,6 +31,7 @@ namespace slipstick::mesh
 
       BodyMesh<dim> run()
       {
+        mesh.about_names = file.about_names;
         add_cells();
         check_faces();
         const NamesOfFile<dim> names(file, vertex_of_node, n_cells_at);
@@ -41,7 +42,7 @@ namespace slipstick::mesh
         check_conformity();
         if (file.is_curved && mesh.middles.empty() && mesh.piece.line_middles.empty())
           mesh.remarks.push_back("body " + body.name + ": only the corners of the curved cells in " + file.file +
-                                 " are used (mid nodes are kept only for second-order cells in Gmsh and Abaqus files)");
+                                 " are used (mid nodes are kept of cells of second order alone)");
         return std::move(mesh);
       }
 

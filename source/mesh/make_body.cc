@@ -170,13 +170,15 @@ namespace slipstick::mesh
         if (where.body == b && where.boundary != "*" && mesh.boundary_ids.count(where.boundary) == 0)
           throw InputError(user + ": body '" + body.name + "' has no boundary '" + where.boundary + "'" + from,
                            suggest_name(where.boundary, boundaries) +
-                             (boundaries.empty() ? "; name lines of its outline in the mesh (Physical Curve)" : ""));
+                             (boundaries.empty() ? "; name lines of its outline in the mesh (Physical Curve)" : "") +
+                             mesh.about_names);
       };
       const auto point = [&](const std::string &user, const scene::PointName<dim> &where) {
         if (where.body == b && !where.point.empty() && mesh.points.count(where.point) == 0)
           throw InputError(user + ": body '" + body.name + "' has no point '" + where.point + "'" + from,
                            suggest_name(where.point, points) +
-                             (points.empty() ? "; name one in the mesh (Physical Point), or give coordinates" : ""));
+                             (points.empty() ? "; name one in the mesh (Physical Point), or give coordinates" : "") +
+                             mesh.about_names);
         if (const auto several = mesh.ambiguous_points.find(where.point);
             where.body == b && several != mesh.ambiguous_points.end())
           throw InputError(user + ": point '" + where.point + "' of body '" + body.name + "'" + from +

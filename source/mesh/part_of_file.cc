@@ -82,7 +82,8 @@ namespace slipstick::mesh
            suggest_name(body.part, std::vector<std::string>(parts.begin(), parts.end())) +
              (parts.empty() ? std::string(dim == 2 ? "; name its surfaces (" : "; name its volumes (") +
                                 Words<dim>::physical + "), or omit Part to take all cells"
-                            : ""));
+                            : "") +
+             file.about_names);
     for (const Element &cell : chosen)
       if (dim == 3 && cell.n != 4 && cell.n != 8)
         fail("has a " + std::string(cell.n == 6 ? "wedge" : "pyramid") + ", cell " + std::to_string(cell.number),

@@ -1,10 +1,10 @@
 // I-deas' universal file format: http://www.sdrl.uc.edu/sdrl/referenceinfo/universalfileformats, data sets 2411, 2412, 2467.
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/mesh_file.h>
+#include <slipstick/mesh/solid_nodes.h>
 #include <slipstick/mesh/word_reader.h>
 
 #include <cmath>
-#include <optional>
 #include <set>
 #include <unordered_map>
 
@@ -75,19 +75,34 @@ namespace slipstick::mesh
       return {type >= 101 && type <= 118 ? 3u : 0u, 0, 0};
     }
 
-    /// The corner that node @p k of an element is, if it is one.
-    std::optional<unsigned int> corner_at(const FeType &type, const unsigned int k)
+    /// Gmsh writes quadrilaterals of 9 and hexahedra of 27 nodes with the numbers of those of first order, nodes in its own order.
+    bool is_of_gmsh(const FeType &type, const unsigned int n_nodes)
+    {
+      return type.n_nodes == type.n_corners && type.n_corners > 0 &&
+             ((type.dim == 2 && type.n_corners == 4 && n_nodes == 9) ||
+              (type.dim == 3 && type.n_corners == 8 && n_nodes == 27));
+    }
+
+    /// Which corners node @p k of an element lies between; one: it is that corner; none: unknown.
+    std::vector<unsigned int> corners_around(const FeType &type, const unsigned int k)
     {
       if (type.n_nodes == 0)
         return {};
       if (type.n_nodes == type.n_corners)
-        return k;
+        return {k};
       const unsigned int n_below = type.dim < 3 ? type.n_corners : type.n_corners == 4 ? 3 : 4; // corners at the bottom
       if (k < 2 * n_below)
-        return k % 2 == 0 ? std::optional<unsigned int>(k / 2) : std::nullopt;
-      if (k < 3 * n_below || (k - 3 * n_below) % 2 != 0)
-        return {};
-      return n_below + (k - 3 * n_below) / 2;
+        {
+          if (k % 2 == 0)
+            return {k / 2};
+          return {k / 2, (k / 2 + 1) % n_below};
+        }
+      const unsigned int n_above = type.n_corners - n_below, rising = k - 2 * n_below, above = k - 3 * n_below;
+      if (k < 3 * n_below)
+        return {rising, n_below + (n_above == 1 ? 0 : rising)};
+      if (above % 2 == 0)
+        return {n_below + above / 2};
+      return {n_below + above / 2, n_below + (above / 2 + 1) % n_above};
     }
 
     class UnvReader
@@ -97,10 +112,12 @@ namespace slipstick::mesh
         : in(
             file,
             text,
-            "write it again (.unv with data sets 2411 and 2412, lines, triangles and quadrilaterals), or convert it to "
-            "Gmsh's .msh")
+            "write it again (.unv with data sets 2411 and 2412, elements of first or second order), or save it as .msh "
+            "in Gmsh")
       {
         mesh.file = file;
+        mesh.about_names =
+          "; Gmsh writes blanks in names as _ and leaves points out of .unv files: save as .msh in Gmsh for both";
       }
 
       MeshFile read();
@@ -108,6 +125,8 @@ namespace slipstick::mesh
     private:
       void read_nodes();
       void read_elements();
+      void take_nodes(const FeType &type, MeshFile::Element &element, const std::vector<unsigned int> &nodes);
+      void take_nodes_of_gmsh(MeshFile::Element &element, const std::vector<unsigned int> &nodes);
       void read_groups();
       void skip_set(const std::string &number);
       void make_groups();
@@ -148,17 +167,16 @@ namespace slipstick::mesh
           if (type >= 11 && type <= 32) // rods, beams and pipes: orientation and cross-sections
             for (unsigned int k = 0; k < 3; ++k)
               in.integer();
-          if (type >= 81 && type <= 85)
-            in.fail("element " + std::to_string(number) + " is axisymmetric (type " + std::to_string(type) +
-                    "), which is not supported");
-          const FeType known = fe_type(type);
-          if (known.n_nodes > 0 ? n_nodes != known.n_nodes : known.dim == 0 && n_nodes > 2)
+          const FeType known   = fe_type(type);
+          const bool   of_gmsh = is_of_gmsh(known, n_nodes);
+          if (known.n_nodes > 0 ? n_nodes != known.n_nodes && !of_gmsh : known.dim == 0 && n_nodes > 2)
             in.fail("element " + std::to_string(number) + " of type " + std::to_string(type) + " with " +
                     std::to_string(n_nodes) + " nodes is not supported");
           MeshFile::Element element;
           element.dim    = known.dim;
           element.n      = known.n_corners;
           element.number = number;
+          std::vector<unsigned int> nodes;
           for (unsigned int k = 0; k < n_nodes; ++k)
             {
               const auto node  = in.integer();
@@ -166,9 +184,9 @@ namespace slipstick::mesh
               if (found == node_index.end())
                 in.fail("cell " + std::to_string(number) + " has corner " + std::to_string(node) +
                         ", which is not in the file");
-              if (const auto corner = corner_at(known, k))
-                element.corners[*corner] = found->second;
+              nodes.push_back(found->second);
             }
+          of_gmsh ? take_nodes_of_gmsh(element, nodes) : take_nodes(known, element, nodes);
           if (!element_index.emplace(number, mesh.elements.size()).second)
             in.fail("element " + std::to_string(number) + " occurs twice");
           if (type >= 41 && type <= 45)
@@ -177,7 +195,7 @@ namespace slipstick::mesh
             mesh.plane_strain_types.insert("type " + std::to_string(type));
           if (type >= 81 && type <= 85)
             mesh.axisymmetric_types.insert("type " + std::to_string(type));
-          mesh.is_curved = mesh.is_curved || (known.dim >= 2 && known.n_nodes > known.n_corners);
+          mesh.is_curved = mesh.is_curved || (known.dim >= 2 && known.n_nodes > 0 && n_nodes > known.n_corners);
           if (known.n_nodes == 0 && known.dim == 0) // springs, masses
             {
               if (ignored_types.insert(type).second)
@@ -188,6 +206,30 @@ namespace slipstick::mesh
             }
           mesh.elements.push_back(element);
         }
+    }
+
+    /// Corners, and middles of edges.
+    void UnvReader::take_nodes(const FeType &type, MeshFile::Element &element, const std::vector<unsigned int> &nodes)
+    {
+      for (unsigned int k = 0; k < nodes.size(); ++k)
+        if (const auto around = corners_around(type, k); around.size() == 1)
+          element.corners[around[0]] = nodes[k];
+      if (type.dim >= 2)
+        for (unsigned int k = 0; k < nodes.size(); ++k)
+          if (const auto around = corners_around(type, k); around.size() == 2)
+            mesh.keep_middle_of_solid(element, around, nodes[k]);
+    }
+
+    void UnvReader::take_nodes_of_gmsh(MeshFile::Element &element, const std::vector<unsigned int> &nodes)
+    {
+      const auto &of_solid = middles_of_solid(NodeOrder::gmsh, element.dim == 3 ? nodes.size() : 0);
+      for (unsigned int k = 0; k < nodes.size(); ++k)
+        if (k < element.n)
+          element.corners[k] = nodes[k];
+        else if (element.dim == 2)
+          mesh.keep_middle(element, k, nodes[k]);
+        else if (k - element.n < of_solid.size())
+          mesh.keep_middle_of_solid(element, of_solid[k - element.n], nodes[k]);
     }
 
     int UnvReader::physical_of(const std::string &name)

@@ -1,6 +1,7 @@
 // VTK's legacy format: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, "Simple legacy formats".
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/mesh_file.h>
+#include <slipstick/mesh/solid_nodes.h>
 #include <slipstick/mesh/word_reader.h>
 
 #include <algorithm>
@@ -64,10 +65,13 @@ namespace slipstick::mesh
         : in(
             file,
             text,
-            "write it again (legacy .vtk in ASCII with an unstructured grid of triangles, quadrilaterals, tetrahedra and hexahedra), or convert it "
-            "to Gmsh's .msh")
+            "write it again (legacy .vtk in ASCII with an unstructured grid of triangles, quadrilaterals, tetrahedra and "
+            "hexahedra of first or second order), or save it as .msh in Gmsh")
       {
         mesh.file = file;
+        mesh.about_names =
+          "; .vtk files have numbers in place of names (Gmsh's those of the physical groups, of several at an element "
+          "the first): save as .msh in Gmsh for the names";
       }
 
       MeshFile read();
@@ -172,11 +176,17 @@ namespace slipstick::mesh
             in.fail("cell " + std::to_string(c) + " of type " + std::to_string(type) + " has " +
                     std::to_string(corners[c].size()) + " corners");
           MeshFile::Element element;
-          element.dim    = known.dim;
-          element.n      = known.n_corners;
-          element.number = c;
-          for (unsigned int k = 0; k < known.n_corners; ++k)
-            element.corners[k] = corners[c][k];
+          element.dim          = known.dim;
+          element.n            = known.n_corners;
+          element.number       = c;
+          const auto &of_solid = middles_of_solid(NodeOrder::vtk, known.dim == 3 ? known.n_nodes : 0);
+          for (unsigned int k = 0; k < known.n_nodes; ++k)
+            if (k < known.n_corners)
+              element.corners[k] = corners[c][k];
+            else if (known.dim == 2)
+              mesh.keep_middle(element, k, corners[c][k]);
+            else if (known.dim == 3 && k - known.n_corners < of_solid.size())
+              mesh.keep_middle_of_solid(element, of_solid[k - known.n_corners], corners[c][k]);
           mesh.is_curved = mesh.is_curved || (known.dim >= 2 && known.n_nodes > known.n_corners);
           mesh.elements.push_back(element);
         }

@@ -166,8 +166,7 @@ namespace slipstick::output
     }
 
     /// Computes the fields for users from displacement and stress components.
-    /// @param stress nodes x 4: xx, yy, xy, zz [MPa]; of bodies of revolution zz is the hoop stress, and part of the
-    /// tensor. In space x 6: xz, yz besides.
+    /// @param stress nodes x 4: xx, yy, xy, zz [MPa]; of bodies of revolution zz is the hoop stress. In space x 6: xz, yz besides.
     template <int dim>
     std::vector<Field> nodal_fields(const Eigen::VectorXd &u, const Eigen::MatrixXd &stress, const bool has_hoop_stress)
     {
@@ -207,7 +206,7 @@ namespace slipstick::output
             }
           const double mean = (xx + yy) / 2, radius = std::hypot((xx - yy) / 2, xy);
           add(0, {u[2 * node], u[2 * node + 1], 0.});
-          add(1, {xx, xy, 0., xy, yy, 0., 0., 0., has_hoop_stress ? zz : 0.}); // of the plane
+          add(1, {xx, xy, 0., xy, yy, 0., 0., 0., zz});
           add(2, {zz});
           add(3, {mechanics::von_mises(xx, yy, xy, zz)});
           add(4, {mean + radius});

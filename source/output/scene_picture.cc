@@ -1,5 +1,6 @@
 #include <slipstick/base/log.h>
 #include <slipstick/mechanics/points.h>
+#include <slipstick/mechanics/probes.h>
 #include <slipstick/output/drawn_bodies.h>
 #include <slipstick/output/load_places.h>
 #include <slipstick/output/scene_picture.h>
@@ -165,8 +166,18 @@ namespace slipstick::output
             picture.label(place.kind, place.name, project(place.ends.front()), format("%+.4g K", place.value));
       }
 
+      void probe(const std::string &name, const std::vector<mechanics::ProbePoint<dim>> &points)
+      {
+        const auto first = project(points.front().position), last = project(points.back().position);
+        if (points.size() == 1)
+          picture.dot("probe", name, first, dot_radius);
+        else
+          picture.lines("probe", name, view.path({first, last}));
+        picture.in_legend("probe", name);
+      }
+
     private:
-      // Where the arrow of a body force begins [pixels].
+      // Radius of a probed point, and where the arrow of a body force begins [pixels].
       static constexpr double dot_radius = 3.5;
 
       LoadArrow arrow(const Point &place, const dealii::Tensor<1, dim> &load) const
@@ -227,13 +238,14 @@ namespace slipstick::output
     const auto        places = load_places(scene, mesh);
     const auto        nodes  = named_nodes(scene, mesh, spaces);
 
+    const mechanics::Probes<dim> probes(scene, mesh, spaces);
     directory.write_from_root(file, [&](std::ostream &out) {
       const View   view = view_of<dim>(outlines, places);
       ScenePicture picture(out,
                            view,
                            scene.supports.size() + scene.foundations.size() + scene.tractions.size() +
                              scene.point_loads.size() + 2 * scene.contacts.size() + scene.body_forces.size() +
-                             scene.temperatures.size() + scene.pretensions.size());
+                             scene.temperatures.size() + scene.pretensions.size() + scene.probes.size());
       if (dim == 2)
         bodies.write(out, view);
       picture.begin_clipped();
@@ -261,6 +273,8 @@ namespace slipstick::output
       draw.tractions();
       draw.point_loads(next);
       draw.loads_in_bodies(places);
+      for (unsigned int k = 0; k < scene.probes.size(); ++k)
+        draw.probe(scene.probes[k].name, probes.positions()[k]);
       picture.finish();
     });
   }

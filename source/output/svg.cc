@@ -20,15 +20,16 @@ namespace slipstick::output
     // So that what is behind shows through.
     constexpr double fill_opacity = 0.3;
 
-    constexpr std::array<DrawingStyle, 9> styles = {{{"support", "#1a7f37", 4, ""},
-                                                     {"foundation", "#0b7285", 4, "2 4"},
-                                                     {"traction", "#d1242f", 4, ""},
-                                                     {"point load", "#d1242f", 4, ""},
-                                                     {"body force", "#d1242f", 2, "6 3"},
-                                                     {"temperature", "#e8590c", 4, ""},
-                                                     {"pretension", "#bf3989", 2, "10 3 2 3"},
-                                                     {"contact, slave", "#bc6c00", 2.5, ""},
-                                                     {"contact, master", "#8250df", 6, ""}}};
+    constexpr std::array<DrawingStyle, 10> styles = {{{"support", "#1a7f37", 4, ""},
+                                                      {"foundation", "#0b7285", 4, "2 4"},
+                                                      {"traction", "#d1242f", 4, ""},
+                                                      {"point load", "#d1242f", 4, ""},
+                                                      {"body force", "#d1242f", 2, "6 3"},
+                                                      {"temperature", "#e8590c", 4, ""},
+                                                      {"pretension", "#bf3989", 2, "10 3 2 3"},
+                                                      {"contact, slave", "#bc6c00", 2.5, ""},
+                                                      {"contact, master", "#8250df", 6, ""},
+                                                      {"probe", "#24292f", 1.5, "2 3"}}};
 
     std::string escaped(const std::string &text)
     {

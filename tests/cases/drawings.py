@@ -125,6 +125,14 @@ class Drawings(unittest.TestCase):
             lines = [self.ends(element) for element in drawn['pretension']]
             self.assertEqual(sorted(abs(line[0][0] - line[1][0]) > 1 for line in lines), [False, True])  # axis, section
 
+    def test_probes(self):
+        probes = {'middle': {'Body': 'box', 'Point': '5, 5'}, 'cut': {'Body': 'box', 'From': '0, 2', 'To': '10, 4'}}
+        drawn = self.drawn(scenes.box(supports={'held': scenes.HELD}, probes=probes), ranks=2)
+        self.assertEqual(self.legend(drawn), ['support held', 'probe middle', 'probe cut'])
+        dot, line = sorted(drawn['probe'], key=lambda element: element.tag)
+        self.assertEqual([float(dot.get(name)) for name in ('cx', 'cy')], [490, 490])  # 900 pixels, a border of 40
+        self.assertEqual(self.ends(line), [(40, 760), (940, 580)])
+
     def test_solids(self):
         cube = shipped('cube_on_sphere')
         small = ('--set', 'Decomposition/Blocks=2', '--set', 'Decomposition/Cells per block=2')

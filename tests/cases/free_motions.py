@@ -71,6 +71,24 @@ class FreeMotions(unittest.TestCase):
         self.assertEqual(result.status, 4, result)
         self.assertEqual(len(result.summary['steps']), 1)
 
+    def test_a_torque_across_a_clearance(self):
+        """Nothing presses the hub on the shaft: no tolerance would make friction hold it."""
+        torque = {'Traction x': '-y/400', 'Traction y': 'x/400'}
+        result = solve(shaft('19.9', torque, centre_only=False))
+        self.assertIn(result.status, (3, 4), result)
+        self.assertNotIn('Tolerance', result.stderr)
+        self.assertRegex(result.stderr, 'remedy: (support bodies that friction alone holds|raise the friction coefficient)')
+
+    def test_rotation_held_by_friction_takes_few_multiplications(self):
+        """11195 and 22742 of degree 2 once; 15 to 23 now."""
+        for radius in ('20', '20.02'):
+            for load in ({'Traction y': '-1*(y>0)'}, {'Traction x': '-y/400', 'Traction y': 'x/400'}):
+                if radius == '20.02' or 'Traction x' not in load:
+                    result = solve(shaft(radius, load, centre_only=False), {'Discretization/Degree': 2})
+                    self.assertEqual(result.status, 0, result)
+                    self.assertLess(result.summary['solver']['hessian_multiplications'], 100)
+                    self.assertEqual(result.summary['solver']['fallbacks'], 0)
+
     def test_a_small_load_across_a_clearance(self):
         """The plate hangs on one node: it rocks freely about it."""
         for young, pressures in (('2.1e5', ('1e-3', '5e-5', '1e-7')), ('2.1e11', ('10', ))):

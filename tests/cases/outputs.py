@@ -162,6 +162,22 @@ class Outputs(unittest.TestCase):
                 self.assertEqual(stress[1], stress[3])
                 self.assertAlmostEqual((one * one + two * two - one * two - mises * mises) / scale ** 2, 0, places=5)
 
+    def test_the_stress_tensor_has_its_zz(self):
+        """In plane strain and on bodies of revolution (there the hoop stress): its von Mises stress is that of the file."""
+        small = {'Discretization/Refinements': 0, 'Decomposition/Method': 'none'}
+        for case, state, has_zz in (('patch_gmsh', 'plane stress', False), ('patch_gmsh', 'plane strain', True),
+                                    ('circular_punch', 'axisymmetric', True)):
+            with self.subTest(state=state):
+                arrays = fields.read_vtu(fields.pieces(converged(shipped(case), {**small, 'Plane state': state}).directory)[0])
+                self.assertEqual('hoop_stress' in arrays, state == 'axisymmetric')
+                self.assertEqual(any(zz for (zz,) in arrays['stress_zz']), has_zz)
+                self.assertEqual([stress[8] for stress in arrays['stress']], [zz for (zz,) in arrays['stress_zz']])
+                self.assertEqual(arrays.get('hoop_stress', arrays['stress_zz']), arrays['stress_zz'])
+                for s, (mises,) in zip(arrays['stress'], arrays['von_mises']):
+                    xx, yy, zz = s[0], s[4], s[8]
+                    squares = ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * s[1] ** 2
+                    self.assertAlmostEqual(squares ** 0.5 / mises, 1, places=5)
+
     def test_contact_lines_move_with_their_bodies(self):
         """contact.pvd leads to lines (in space faces) whose displacement is that of the slave body."""
         cube = {'Decomposition/Blocks': 2, 'Decomposition/Cells per block': 2}

@@ -99,6 +99,12 @@ class Pretension(unittest.TestCase):
                         {'Solver': {'Tolerance': '1e-8', 'Algorithm': 'smalbe'}}):
             self.check_shares(self.solved(joint(**changes)), k_bolt, k_clamped)
 
+    def test_error_bars_leave_the_energy_out(self):
+        bars = {bar['quantity']: bar for bar in self.solved(joint(), {'Error bars': 'true'}).summary['error_bars']}
+        self.assertIsNone(bars['strain_energy']['error'])
+        self.assertEqual(bars['strain_energy']['reason'], 'not estimated with bolts')
+        self.assertIsNotNone(bars['max_displacement']['error'])
+
     def test_of_revolution(self):
         k_bolt, k_clamped = (YOUNG * math.pi * area / LENGTH for area in (4, 12**2 - 6**2))
         self.check_shares(self.solved(joint('axisymmetric', math.pi * 144)), k_bolt, k_clamped)

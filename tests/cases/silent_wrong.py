@@ -241,6 +241,7 @@ class Resultants(Case):
             self.assertNotEqual(bed['force'][1], 0)
             self.assertAlmostEqual(support['moment'] + bed['moment'] + pair['moment'], 16 + 20 + 2, delta=1e-6)
             self.assertIn('traction side', result.stdout)
+            self.assertIn('forces summed along it {:.6g} N normal'.format(pair['normal_force']), result.stdout)
 
     def test_history_has_a_row_for_every_step(self):
         result = converged(shipped('cattaneo_mindlin'))

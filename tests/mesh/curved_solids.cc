@@ -23,9 +23,10 @@ namespace
     /// Nodes of the unit cube or the unit tetrahedron in the order of a program: corners, and between which of them the others are.
     struct Cell
     {
-      std::string                            kind; // of Abaqus, or Gmsh's number
+      std::string                            kind; // of Abaqus, Gmsh's number, or number in .vtk or .unv
       std::vector<Point>                     corners;
       std::vector<std::vector<unsigned int>> between;
+      std::vector<unsigned int>              order = {}; // of the nodes in the file, from 1; empty: this
     };
 
     static std::vector<Cell> cells()
@@ -33,10 +34,20 @@ namespace
       const std::vector<Point>
         cube        = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
         tetrahedron = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-      return {{"C3D20R",
-               cube,
-               {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}},
-              {"C3D10", tetrahedron, {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}},
+      const std::vector<std::vector<unsigned int>>
+        of_cube = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}},
+        of_tetrahedron = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+      auto with_faces  = of_cube; // of VTK
+      with_faces.insert(
+        with_faces.end(),
+        {{0, 3, 4, 7}, {1, 2, 5, 6}, {0, 1, 4, 5}, {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 2, 3, 4, 5, 6, 7}});
+      return {{"C3D20R", cube, of_cube},
+              {"C3D10", tetrahedron, of_tetrahedron},
+              {"vtk 24", tetrahedron, of_tetrahedron},
+              {"vtk 25", cube, of_cube},
+              {"vtk 29", cube, with_faces},
+              {"unv 118", tetrahedron, of_tetrahedron, {1, 5, 2, 6, 3, 7, 8, 9, 10, 4}},
+              {"unv 116", cube, of_cube, {1, 9, 2, 10, 3, 11, 4, 12, 17, 18, 19, 20, 5, 13, 6, 14, 7, 15, 8, 16}},
               {"11", tetrahedron, {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {2, 3}, {1, 3}}},
               {"17",
                cube,
@@ -64,6 +75,45 @@ namespace
                 {0, 1, 2, 3, 4, 5, 6, 7}}}};
     }
 
+    /// A file with this one cell.
+    static mesh::MeshFile file(const Cell &cell, const std::vector<Point> &nodes)
+    {
+      const std::string  program   = cell.kind.substr(0, cell.kind.find(' '));
+      const std::string  separator = program[0] == 'C' ? ", " : " ", n = std::to_string(nodes.size());
+      std::ostringstream numbered, places, numbers, from_zero;
+      numbered.precision(17);
+      places.precision(17);
+      for (unsigned int k = 0; k < nodes.size(); ++k)
+        {
+          std::ostringstream place;
+          place.precision(17);
+          place << nodes[k][0] << separator << nodes[k][1] << separator << nodes[k][2] << '\n';
+          numbered << k + 1 << (program == "unv" ? " 1 1 11\n" : separator) << place.str();
+          places << place.str();
+          const unsigned int number = cell.order.empty() ? k + 1 : cell.order[k];
+          numbers << separator << number;
+          from_zero << separator << number - 1;
+        }
+      const std::string type = cell.kind.substr(cell.kind.find(' ') + 1);
+      if (program == "vtk")
+        return mesh::parse_vtk("a.vtk",
+                               "# vtk DataFile Version 2.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " + n +
+                                 " double\n" + places.str() + "CELLS 1 " + std::to_string(nodes.size() + 1) + "\n" + n +
+                                 from_zero.str() + "\nCELL_TYPES 1\n" + type + "\n");
+      if (program == "unv")
+        return mesh::parse_unv("a.unv",
+                               "-1\n2411\n" + numbered.str() + "-1\n-1\n2412\n1 " + type + " 1 1 7 " + n + "\n" +
+                                 numbers.str() + "\n-1\n");
+      if (program[0] == 'C')
+        return mesh::parse_abaqus("a.inp",
+                                  "*NODE\n" + numbered.str() + "*ELEMENT, TYPE=" + cell.kind + "\n1" + numbers.str() +
+                                    '\n');
+      return mesh::parse_gmsh("a.msh",
+                              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + n + "\n" + numbered.str() +
+                                "$EndNodes\n$Elements\n1\n1 " + cell.kind + " 2 0 0" + numbers.str() +
+                                "\n$EndElements\n");
+    }
+
     static mesh::BodyMesh<3> read(const Cell &cell, const Map &map, const bool is_smooth = true)
     {
       auto nodes = cell.corners;
@@ -74,28 +124,12 @@ namespace
             sum += Tensor(cell.corners[k]) / double(corners.size());
           nodes.push_back(sum);
         }
-      const bool         is_gmsh = cell.kind[0] != 'C';
-      std::ostringstream text, numbers;
-      text.precision(17);
-      text << (is_gmsh ? "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(nodes.size()) + "\n"
-                       : "*NODE\n");
-      for (unsigned int k = 0; k < nodes.size(); ++k)
-        {
-          const Point       x         = map(nodes[k]);
-          const std::string separator = is_gmsh ? " " : ", ";
-          text << k + 1 << separator << x[0] << separator << x[1] << separator << x[2] << '\n';
-          numbers << separator << k + 1;
-        }
-      if (is_gmsh)
-        text << "$EndNodes\n$Elements\n1\n1 " << cell.kind << " 2 0 0" << numbers.str() << "\n$EndElements\n";
-      else
-        text << "*ELEMENT, TYPE=" << cell.kind << "\n1" << numbers.str() << '\n';
+      for (Point &x : nodes)
+        x = map(x);
       scene::Body<3> body;
       body.name               = "body";
       body.has_smooth_outline = is_smooth;
-      auto mesh =
-        mesh::body_from_file(body,
-                             is_gmsh ? mesh::parse_gmsh("a.msh", text.str()) : mesh::parse_abaqus("a.inp", text.str()));
+      auto mesh               = mesh::body_from_file(body, file(cell, nodes));
       mesh::curve_faces(body, mesh);
       return mesh;
     }
@@ -159,6 +193,35 @@ TEST(CurvedSolid, nodes_of_second_order_are_where_the_programs_have_them)
       for (const auto &face : polygon.piece.boundary_faces)
         left_out = std::max(left_out, face.curve.left_out);
       EXPECT_GT(left_out, 0.01);
+    }
+}
+
+// A quarter of a ring of radii 1 and 2: what lies between two nodes of a rim lies on it.
+TEST(CurvedSolid, mid_nodes_of_other_formats_of_gmsh)
+{
+  using S = CurvedSolid;
+  for (const std::string file : {"10.vtk", "10.unv", "27.vtk", "27.unv"})
+    {
+      scene::Body<3> body;
+      body.name  = "body";
+      body.shape = scene::Shape::mesh;
+      body.file  = std::string(SLIPSTICK_MESHES) + "/gmsh_sector_" + file;
+      auto mesh  = mesh::body_from_file(body, mesh::read_mesh_file(body.file));
+      mesh::curve_faces(body, mesh);
+      EXPECT_EQ(mesh.boundary_ids.count(file.find("unv") != std::string::npos ? "outer_rim" : "2"), 1u) << file;
+      const auto   radius  = [](const S::Point &x) { return std::hypot(x[0], x[1]); };
+      unsigned int n_bends = 0;
+      for (const auto &entry : mesh.piece.line_middles)
+        {
+          const S::Point a = mesh.piece.vertices[entry.first[0]], b = mesh.piece.vertices[entry.first[1]];
+          if (std::abs(radius(a) - radius(b)) > 1e-9)
+            continue;
+          ++n_bends;
+          EXPECT_NEAR(radius(entry.second), radius(a), 1e-9) << file;
+          EXPECT_LT(entry.second.distance(a + 0.5 * (b - a)), 0.3 * a.distance(b)) << file;
+          EXPECT_NEAR(entry.second[2], (a[2] + b[2]) / 2, 1e-9) << file;
+        }
+      EXPECT_GE(n_bends, 8u) << file; // two edges at either rim of bottom and top
     }
 }
 

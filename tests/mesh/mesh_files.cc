@@ -587,6 +587,9 @@ TEST(MeshFiles, numbers_in_vtk_and_unv_are_checked)
   EXPECT_SAYS(refusal_of(".unv", unv, "1 2 3 4", "1 2 3 5"), "cell 1 has corner 5");
   EXPECT_SAYS(refusal_of(".unv", unv, "0 1 1\n1 2", "0 1 1\n1 9"), "cell 2 has corner 9");
   EXPECT_SAYS(refusal_of(".unv", unv, "4 1 1 11", "3 1 1 11"), "node 3 occurs twice");
+  EXPECT_SAYS(refusal_of(".unv", unv, "1 44 2 1 7 4\n1 2 3 4", "1 44 2 1 7 5\n1 2 3 4 1"),
+              "with 5 nodes is not supported");
+  EXPECT_SAYS(refusal_of(".unv", unv, "1 44 2 1 7 4", "1 84 2 1 7 4"), "5 elements"); // axisymmetric
 
   const std::string ids = "CELL_DATA 3\nSCALARS MaterialID int 1\nLOOKUP_TABLE default\n7 7 4\n";
   EXPECT_SAYS(refusal_of(".vtk", vtk + ids, "", ""), "8 elements");
@@ -740,6 +743,31 @@ TEST(MeshFiles, gmsh_writes_other_formats_too)
       EXPECT_NEAR(length_of(mesh, has_names ? "foot" : "1"), 2, 1e-10) << file;
       EXPECT_NEAR(length_of(mesh, has_names ? "top_side" : "2"), 2, 1e-10) << file;
     }
+}
+
+TEST(MeshFiles, names_that_other_formats_lack_are_said_to_be_in_msh)
+{
+  const auto refused = [](const std::string &file, const std::string &part, const std::string &foot) {
+    Scene scene;
+    scene.bodies = {body_of(file, part)};
+    support(scene, 0, foot, "0", "0");
+    scene::PointLoad<2> load;
+    load.name        = "pull";
+    load.where.point = "tip";
+    scene.point_loads.push_back(load);
+    std::map<std::string, mesh::MeshFile> files;
+    return refusal([&] { mesh::make_body(scene, 0, files); });
+  };
+  for (const auto &said :
+       {refused("gmsh.vtk", "block", "foot"), refused("gmsh.vtk", "3", "foot"), refused("gmsh.vtk", "3", "1")})
+    EXPECT_SAYS(said, "save as .msh in Gmsh for the names");
+  EXPECT_SAYS(refused("gmsh.vtk", "block", "foot"), "has no part 'block'");
+  EXPECT_SAYS(refused("gmsh.vtk", "3", "foot"), "no boundary 'foot'");
+  EXPECT_SAYS(refused("gmsh.vtk", "3", "1"), "no point 'tip'");
+  for (const auto &said : {refused("gmsh.unv", "block", "top side"), refused("gmsh.unv", "block", "foot")})
+    EXPECT_SAYS(said, "save as .msh in Gmsh");
+  EXPECT_SAYS(refused("gmsh.unv", "block", "top side"), "did you mean 'top_side'?");
+  EXPECT_SAYS(refused("gmsh.unv", "block", "foot"), "no point 'tip'");
 }
 
 TEST(MeshFiles, every_item_of_an_abaqus_file_is_used_refused_or_listed)

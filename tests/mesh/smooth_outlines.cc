@@ -184,13 +184,21 @@ TEST(SmoothOutline, refinement_goes_onto_the_curve)
 TEST(SmoothOutline, mid_nodes_of_files_are_kept)
 {
   // one cell of 8 nodes whose lower edge is bent
-  const std::string gmsh =
-                      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 2 0 0\n3 2 1 0\n4 0 1 0\n"
-                      "5 1 -0.1 0\n6 2 .5 0\n7 1 1 0\n8 0 .5 0\n$EndNodes\n$Elements\n1\n1 16 2 1 1 1 2 3 4 5 6 7 8\n"
-                      "$EndElements\n",
-                    abaqus = "*NODE\n1,0,0\n2,2,0\n3,2,1\n4,0,1\n5,1,-.1\n6,2,.5\n7,1,1\n8,0,.5\n"
-                             "*ELEMENT, TYPE=CPS8, ELSET=ALL\n1,1,2,3,4,5,6,7,8\n";
-  for (const auto &file : {mesh::parse_gmsh("gmsh", gmsh), mesh::parse_abaqus("abaqus", abaqus)})
+  const std::string
+    gmsh   = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 2 0 0\n3 2 1 0\n4 0 1 0\n"
+             "5 1 -0.1 0\n6 2 .5 0\n7 1 1 0\n8 0 .5 0\n$EndNodes\n$Elements\n1\n1 16 2 1 1 1 2 3 4 5 6 7 8\n"
+             "$EndElements\n",
+    abaqus = "*NODE\n1,0,0\n2,2,0\n3,2,1\n4,0,1\n5,1,-.1\n6,2,.5\n7,1,1\n8,0,.5\n"
+             "*ELEMENT, TYPE=CPS8, ELSET=ALL\n1,1,2,3,4,5,6,7,8\n",
+    vtk    = "# vtk DataFile Version 2.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n0 0 0\n2 0 0\n"
+             "2 1 0\n0 1 0\n1 -.1 0\n2 .5 0\n1 1 0\n0 .5 0\nCELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n23\n",
+    unv    = "-1\n2411\n1 1 1 11\n0 0 0\n2 1 1 11\n2 0 0\n3 1 1 11\n2 1 0\n4 1 1 11\n0 1 0\n5 1 1 11\n1 -.1 0\n"
+             "6 1 1 11\n2 .5 0\n7 1 1 11\n1 1 0\n8 1 1 11\n0 .5 0\n-1\n-1\n2412\n1 95 1 1 7 8\n"
+             "1 5 2 6 3 7 4 8\n-1\n";
+  for (const auto &file : {mesh::parse_gmsh("gmsh", gmsh),
+                           mesh::parse_abaqus("abaqus", abaqus),
+                           mesh::parse_vtk("vtk", vtk),
+                           mesh::parse_unv("unv", unv)})
     {
       auto body  = from_file();
       body.scale = 10;
@@ -217,5 +225,23 @@ TEST(SmoothOutline, mid_nodes_of_files_are_kept)
         for (const double s : {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)})
           area += (s == 0.5 ? 8. : 5.) / 36 * cross(dealii::Tensor<1, 2>(edge.point(s)), edge.tangent(s));
       EXPECT_NEAR(area, 200 + 2. / 3 * 20 * 1, 1e-11);
+    }
+}
+
+TEST(SmoothOutline, mid_nodes_of_other_formats_of_gmsh)
+{
+  for (const std::string file : {"gmsh_sector.vtk", "gmsh_sector.unv"}) // a quarter of a ring of radii 1 and 2
+    {
+      auto body = from_file();
+      auto mesh = mesh::body_from_file(body, mesh::read_mesh_file(std::string(SLIPSTICK_MESHES) + "/" + file));
+      mesh::smooth_outline(body, mesh);
+      unsigned int n_curves = 0;
+      for (const auto &face : mesh.piece.boundary_faces)
+        if (face.curve)
+          {
+            ++n_curves;
+            EXPECT_NEAR(face.curve.point(0.5).norm(), mesh.piece.vertices[face.vertices[0]].norm(), 1e-9) << file;
+          }
+      EXPECT_EQ(n_curves, 4u) << file;
     }
 }

@@ -70,7 +70,7 @@ class Commands(unittest.TestCase):
         cls.documents = {path.name: path.read_text() for path in [SOURCE / 'README.md', *sorted((SOURCE / 'doc').glob('*.md'))]}
 
     def run_command(self, command):
-        environment = dict(os.environ, SLIPSTICK=PROGRAM, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
+        environment = dict(os.environ, SLIPSTICK=PROGRAM, SLIPSTICK_NO_SETUP='1', OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
                            PATH='{}:{}'.format(self.top / 'build', os.environ['PATH']))
         if command.startswith('mpirun '):
             command = 'scripts/mpirun --shared-cores ' + command.split(' ', 1)[1]  # also as root, and with few cores

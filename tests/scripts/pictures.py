@@ -1,5 +1,6 @@
 """scripts/render and scripts/report on the folder of a small run. Status 77 (skipped) where what it needs is not installed."""
 
+import os
 import pathlib
 import re
 import shutil
@@ -13,7 +14,7 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / 'scripts'
 sys.path.insert(0, str(SCRIPTS))
 try:
     import numpy
-    from results import contact_plot, fields, film, folder, formula, painters, pictures, report_page
+    from results import contact_plot, fields, film, folder, formula, painters, pictures, probe_plot, report_page, scene_drawing
 except ImportError as error:
     print('skipped: {}; scripts/setup --render'.format(error))
     sys.exit(77)
@@ -95,6 +96,7 @@ class Pictures(WithRun):
         self.assertIn('step 0 (0 to 1), t = 0.5', first)
         self.assertEqual(second, 'largest 6 MPa at (2, 0)')
         self.assertEqual(third, 'displacements in true scale')
+        self.assertEqual(fields.place(numpy.array([-1e-17, 0.25])), '(0, 0.25)')
 
     def test_box_is_of_the_scene_before_loading(self):
         painter = self.painter(box=[-0.1, 1.1, -0.1, 1.1])
@@ -163,6 +165,40 @@ class Films(WithRun):
         self.assertIn('ffmpeg', remark)
 
 
+class Probes(WithRun):
+    def run_with_probes(self):
+        run = self.run_of()
+        (run.folder / 'probes.csv').write_text(run_folder.PROBES)
+        return run
+
+    def test_values_along_lines_and_over_steps(self):
+        """Lines show their step, points all steps; rounding is left out; the axes are those of all steps."""
+        painter = probe_plot.ProbePainter(self.run_with_probes())
+        for step, t in enumerate(run_folder.FACTORS):
+            axes = painter.draw(step).axes
+            curves = [{line.get_label(): (list(line.get_xdata()), list(line.get_ydata())) for line in one.lines
+                       if not line.get_label().startswith('_')} for one in axes]
+            self.assertEqual(curves[0], {'u_x': ([0, 1, 2], [0, 0.1 * t, 0.2 * t])})
+            self.assertEqual(sorted(curves[1]), ['stress_xx', 'stress_yy', 'von_mises'])
+            self.assertEqual(curves[1]['stress_xx'][1], [100 * t] * 3)
+            self.assertEqual(curves[2], {'u_x': ([0.5, 1], [0.1, 0.2])})
+            self.assertGreater(axes[1].get_ylim()[1], 100)
+            self.assertIn('across, from (0, 0.5) to (2, 0.5)', axes[0].get_title())
+            self.assertIn('end, at (2, 0.5)', axes[2].get_title())
+
+    def test_they_are_in_the_scene_and_in_the_report(self):
+        run = self.run_with_probes()
+        figure = scene_drawing.draw(run)
+        self.assertIn('probe', [text.get_text() for text in figure.legends[0].get_texts()])
+        self.assertEqual([text.get_text() for text in figure.axes[0].texts], ['across', 'end'])
+        self.assertIn([[0, 0.5], [2, 0.5]], [line.get_xydata().tolist() for line in figure.axes[0].lines])
+        self.assertEqual(report_page.page(run).count('<img '), 6)
+
+    def test_runs_without_probes(self):
+        painter = probe_plot.ProbePainter(self.run_of())
+        self.assertEqual((painter.probes, painter.draw(0)), ({}, None))
+
+
 class Solids(WithRun):
     def painter(self, name):
         run = folder.Run(run_folder.write_solid(self.place / 'run'))
@@ -201,7 +237,7 @@ class Report(WithRun):
         """Of a support that is moved its reaction, of a probe the loads along the same axis."""
         run = self.run_of()
         (run.folder / 'history.csv').write_text('t,traction pull Fx,traction pull Fy,support wall Fx,support tip Fy,probe end ux,probe end uy\n'
-                                                '0.5,30,0,-30,7,0.1,0\n1,60,0,-60,5,0.2,0\n')
+                                                '0.5,30,0,-30,7,0.1,0\n1,60,1e-12,-60,5,0.2,1e-15\n')
         curves = []
         with unittest.mock.patch.object(report_page, 'picture', lambda figure, alt: curves.extend(
                 (line.get_label(), list(line.get_xdata()), list(line.get_ydata())) for line in figure.axes[0].lines) or alt):
@@ -247,6 +283,41 @@ class Report(WithRun):
         self.assertEqual(result.stdout.count('</table>'), 4)  # none is left open
 
 
+class Needs(WithRun):
+    """With a Matplotlib that cannot be imported until scripts/setup, a stand-in, has run."""
+
+    def render(self, setup, **environment):
+        run, scripts, lacking = run_folder.write(self.place / 'run'), self.place / 'scripts', self.place / 'lacking'
+        shutil.copytree(SCRIPTS / 'results', scripts / 'results', ignore=shutil.ignore_patterns('__pycache__'))
+        shutil.copy(SCRIPTS / 'render', scripts / 'render')
+        lacking.mkdir()
+        (lacking / 'matplotlib.py').write_text('raise ImportError("no matplotlib here")\n')
+        (scripts / 'setup').write_text('#!/bin/bash\necho "$*" >>{0}/asked\n{1}\n'.format(self.place, setup.format(lacking)))
+        (scripts / 'setup').chmod(0o755)
+        return subprocess.run([sys.executable, str(scripts / 'render'), str(run), '--field', 'von_mises'], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True, timeout=120,
+                              env={**os.environ, 'PYTHONPATH': str(lacking), 'PYTHONDONTWRITEBYTECODE': '1', **environment})
+
+    def asked(self):
+        file = self.place / 'asked'
+        return file.read_text().splitlines() if file.is_file() else []
+
+    def test_they_are_installed_once_and_the_pictures_drawn(self):
+        result = self.render('rm {}/matplotlib.py', SLIPSTICK_NO_SETUP='')
+        self.assertEqual((result.returncode, self.asked()), (0, ['--render']), result)
+        self.assertTrue((self.place / 'run' / 'von_mises.png').is_file())
+
+    def test_what_setup_does_not_mend_ends(self):
+        result = self.render('true', SLIPSTICK_NO_SETUP='')
+        self.assertEqual((result.returncode, self.asked()), (10, ['--render']), result)
+        self.assertIn('scripts/setup --render', result.stderr)
+
+    def test_nothing_is_installed_where_that_is_not_wanted(self):
+        result = self.render('true', SLIPSTICK_NO_SETUP='1')
+        self.assertEqual((result.returncode, self.asked()), (10, []), result)
+        self.assertIn('no matplotlib here', result.stderr)
+
+
 class CommandLine(WithRun):
     def render(self, *arguments):
         return subprocess.run([sys.executable, str(SCRIPTS / 'render'), *map(str, arguments)], stdout=subprocess.PIPE,
@@ -254,10 +325,11 @@ class CommandLine(WithRun):
 
     def test_pictures_and_messages(self):
         run = run_folder.write(self.place / 'run')
+        (run / 'probes.csv').write_text(run_folder.PROBES)
         result = self.render(run, self.place / 'png', '--field', 'hoop,displacement_x', '--centre', '0,0.5')
         self.assertEqual(result.returncode, 0, result)
         self.assertEqual(sorted(file.name for file in (self.place / 'png').iterdir()),
-                         ['contact.png', 'displacement_x.png', 'hoop.png'])
+                         ['contact.png', 'displacement_x.png', 'hoop.png', 'probes.png'])
         for arguments, message in ((['--field', 'nothing'], "no field 'nothing'"), (['--step', '7'], 'steps 0 to 1'),
                                    (['--pairs', 'x'], "no pair 'x'"), (['--box', '1,0,0,1'], 'X0 < X1')):
             result = self.render(run, self.place / 'png', *arguments)

@@ -39,6 +39,11 @@ subsection Load steps
 end
 '''
 
+# A line across both squares and its end: what the fields above have there.
+PROBES = 'step,t,probe,s,x,y,u_x,u_y,stress_xx,stress_yy,stress_xy,stress_zz,von_mises\n' + ''.join(
+    '{0},{1},{2},{3},{4},0.5,{5},0,{6},{7},1e-14,0,{8}\n'.format(step, t, name, x - first, x, 0.1 * t * x, 100 * t, 20 * t, t * (10 + x))
+    for step, t in enumerate(FACTORS) for name, first, places in (('across', 0, (0, 1, 2)), ('end', 2, (2, ))) for x in places)
+
 CONDITIONS = '''kind,name,side,body,x1,y1,x2,y2
 support,wall,,left,0,1,0,0
 traction,pull,,right,2,0,2,1

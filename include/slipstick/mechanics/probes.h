@@ -30,6 +30,12 @@ namespace slipstick::mechanics
     std::vector<std::vector<ProbePoint<dim>>> values(const std::vector<Eigen::VectorXd> &u,
                                                      const StressResult                 &stress) const;
 
+    /// By probe and point: distances and positions alone, on all ranks.
+    const std::vector<std::vector<ProbePoint<dim>>> &positions() const
+    {
+      return points;
+    }
+
     /// Loads, by subdomain of this rank, whose work is component @p d of the displacement at the first point of probe @p k.
     std::vector<Eigen::VectorXd> unit_force(const unsigned int k, const unsigned int d) const;
 

@@ -19,6 +19,7 @@ namespace slipstick::mesh
     std::map<typename MeshPiece<dim>::Face, dealii::Point<dim>>
                              middles; // mid nodes of edges of the outline, in space of faces, in the file
     std::vector<std::string> remarks;
+    std::string              about_names; // MeshFile::about_names
 
     // by name: why the boundary or point cannot be used, as parts of it are not of the outline or it is several points
     std::map<std::string, std::string> incomplete_boundaries, ambiguous_points;

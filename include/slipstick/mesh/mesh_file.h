@@ -64,6 +64,7 @@ namespace slipstick::mesh
     bool                                             is_curved = false; // had nodes besides the corners
     std::map<std::string, std::vector<unsigned int>> node_sets; // by name: nodes whose edges or faces are a boundary
     std::vector<std::string>                         remarks;   // what of the file is not used, for the log
+    std::string about_names; // of the format, which explains why a name may be missing; for remedies, or empty
     std::set<std::string> plane_stress_types, plane_strain_types, axisymmetric_types; // element types, by use
 
     /// Mid nodes of the edges of cells of second order, by the two corners in ascending order.

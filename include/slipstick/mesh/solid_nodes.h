@@ -8,10 +8,11 @@ namespace slipstick::mesh
   enum class NodeOrder
   {
     gmsh,
-    abaqus
+    abaqus,
+    vtk // as Abaqus', and nodes in the middle of faces
   };
 
   /// Between which corners the nodes behind the corners lie: two of an edge, four of a face, eight of the cell.
-  /// @param n_nodes 10, 20, 27 (Gmsh's only); none for other cells.
+  /// @param n_nodes 10, 20, 27 (not Abaqus'); none for other cells.
   const std::vector<std::vector<unsigned int>> &middles_of_solid(const NodeOrder order, const unsigned int n_nodes);
 } // namespace slipstick::mesh

@@ -18,8 +18,8 @@ namespace slipstick::output
     const char *pattern;       // dashes
   };
 
-  /// @param kind support, foundation, traction, point load, body force, temperature, pretension, "contact, slave" or
-  /// "contact, master".
+  /// @param kind support, foundation, traction, point load, body force, temperature, pretension, probe,
+  /// "contact, slave" or "contact, master".
   const DrawingStyle &drawing_style(const std::string &kind);
 
   /// From a plane [mm] to the picture [pixels], y downwards.
