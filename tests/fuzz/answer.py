@@ -11,8 +11,7 @@ import re
 import struct
 import xml.etree.ElementTree
 
-PART = 1e-2  # of the largest force or displacement: residuals that status 0 allows at the coarsest tolerances
-BALANCE = 1e-3
+BALANCE = 1e-3  # of the forces that act on the bodies
 
 
 def settings_of(path):
@@ -80,12 +79,15 @@ class Answer:
         self.obstacles = names_in(self.settings, 'Obstacles')
         self.displacement = self.results['max_displacement'] or 0
         self.stress = self.results['max_von_mises'] or 0
+        # Residuals, of the largest force or displacement, that status 0 allows, and what they are beside single nodes.
+        self.allowed = min(0.05, max(1e-3, 1000 * self.summary['solver']['tolerance']))
+        self.part = max(1e-2, self.allowed)
 
     def problem(self):
         """'' when nothing is wrong."""
         if not self.summary['converged']:
             return 'status 0 of a run that did not converge'
-        if any(value is None or value > 1e-3 for value in self.summary['residuals'].values()):
+        if any(value is None or value > self.allowed for value in self.summary['residuals'].values()):
             return 'status 0 with residuals ' + str(self.summary['residuals'])
         return self.balance() or self.contact() or self.places()
 
@@ -136,34 +138,34 @@ class Answer:
     def normal_laws(self, row, largest):
         if row['pressure'] < -BALANCE * largest:
             return 'tension'
-        if row['gap'] < -PART * self.displacement:
+        if row['gap'] < -self.part * self.displacement:
             return 'penetration'
-        if row['gap'] > PART * self.displacement and row['pressure'] > PART * largest:
+        if row['gap'] > self.part * self.displacement and row['pressure'] > self.part * largest:
             return 'pressure across a gap'
         return ''
 
     def friction_laws(self, row, largest, pair):
         traction, bound, slip = abs(row['tangential_traction']), row['slip_bound'], abs(row['slip'])
-        if traction > bound + PART * largest:
+        if traction > bound + self.part * largest:
             return 'friction beyond its bound'
         law, prefix = self.settings.get('Contact {}/Law'.format(pair)), 'Contact {}/'.format(pair)
         coefficient, cohesion = (number_in(self.settings, prefix + key) for key in ('Friction coefficient', 'Cohesion'))
         if law == 'Coulomb' and coefficient is not None and cohesion in (None, 0.):
-            if traction > coefficient * max(0., row['pressure']) + PART * largest * max(1., coefficient):
+            if traction > coefficient * max(0., row['pressure']) + self.part * largest * max(1., coefficient):
                 return 'friction beyond the coefficient of the scene'
         constant = number_in(self.settings, prefix + 'Slip bound')
-        if law == 'Tresca' and constant is not None and traction > constant + PART * largest:
+        if law == 'Tresca' and constant is not None and traction > constant + self.part * largest:
             return 'friction beyond the slip bound of the scene'
-        if law == 'frictionless' and traction > PART * largest:
+        if law == 'frictionless' and traction > self.part * largest:
             return 'friction without a law'
         power = dot([row['traction_' + c] for c in 'xyz'], [row['slip_' + c] for c in 'xyz']) if self.is_solid \
             else row['tangential_traction'] * row['slip']
-        if power > PART * largest * self.displacement:
+        if power > self.part * largest * self.displacement:
             return 'friction along the slip'
-        if law == 'Coulomb' and slip > PART * self.displacement and row['pressure'] > PART * largest \
-                and traction < bound - 2 * PART * largest:
+        if law == 'Coulomb' and slip > self.part * self.displacement and row['pressure'] > self.part * largest \
+                and traction < bound - 2 * self.part * largest:
             return 'slip below the bound of friction'
-        if self.is_solid and abs(dot([row['traction_' + c] for c in 'xyz'], [row['normal_' + c] for c in 'xyz'])) > PART * largest:
+        if self.is_solid and abs(dot([row['traction_' + c] for c in 'xyz'], [row['normal_' + c] for c in 'xyz'])) > self.part * largest:
             return 'friction along the normal'
         return ''
 
@@ -184,7 +186,7 @@ class Answer:
                 continue
             depth, radius = self.depth([a + b for a, b in zip(x, u)], self.settings[prefix + 'Master'])
             away = math.sqrt(dot(u, u))
-            if depth > PART * self.displacement + away * away / radius + 1e-9 * math.sqrt(dot(x, x)):
+            if depth > self.part * self.displacement + away * away / radius + 1e-9 * math.sqrt(dot(x, x)):
                 return 'after loading ({:g}, {:g}, {:g}) is {:g} mm inside of {}'.format(*x, depth, self.settings[prefix + 'Master'])
         return ''
 
