@@ -17,6 +17,8 @@ namespace slipstick::mechanics
   constexpr double same_cubature = 1e-9;
   // Divisions of a piece after the first ones: a jump is located to 1/256 of the face.
   constexpr unsigned int max_divisions = 6;
+  // Limit on the pieces of one face; only formulas that oscillate without end need more.
+  constexpr unsigned int max_pieces_of_face = 10000;
 
   /// n functions of the local coordinates of a face at once: the unit triangle or the unit square.
   template <std::size_t n>
@@ -92,6 +94,7 @@ namespace slipstick::mechanics
     {
       const double area = std::abs(piece.a[0] * piece.b[1] - piece.a[1] * piece.b[0]);
       Values       sum{};
+      ++n_pieces;
       magnitude = 0;
       for (unsigned int q = 0; q < rule().size(); ++q)
         {
@@ -122,7 +125,7 @@ namespace slipstick::mechanics
       double misfit = 0;
       for (unsigned int i = 0; i < n; ++i)
         misfit = std::max(misfit, std::abs(sum[i] - of_whole[i]));
-      if (misfit > same_cubature * scale && divisions < max_divisions)
+      if (misfit > same_cubature * scale && divisions < max_divisions && n_pieces < max_pieces_of_face)
         {
           for (unsigned int k = 0; k < 4; ++k)
             refine(f, pieces[k], of_parts[k], divisions + 1);
@@ -135,5 +138,6 @@ namespace slipstick::mechanics
 
     unsigned int n_corners;
     double       magnitude = 0;
+    unsigned int n_pieces  = 0;
   };
 } // namespace slipstick::mechanics
