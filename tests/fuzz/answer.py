@@ -185,7 +185,7 @@ class Answer:
             pair = pairs[k] if k < len(pairs) else ''
             prefix = 'Contact {}/'.format(pair)
             if (not self.is_obstacle(pair) or self.settings.get(prefix + 'Law') == 'bonded' or
-                    number_in(self.settings, prefix + 'Offset') != 0 or self.settings.get(prefix + 'Gap', 'none') not in ('none', '')):
+                    number_in(self.settings, prefix + 'Offset') != 0 or self.settings.get(prefix + 'Gap') != 'geometry'):
                 continue
             depth, radius = self.depth([a + b for a, b in zip(x, u)], self.settings[prefix + 'Master'])
             away = math.sqrt(dot(u, u))
