@@ -293,11 +293,18 @@ namespace slipstick::interface
       throw InputError(between(scene, pair) +
                          " do not meet: they touch in single points, and no normal of the slave hits the master",
                        "move the bodies until the sides overlap, or exchange slave and master");
+    if (*distance <= corner_on_corner * any)
+      throw InputError(
+        between(scene, pair) +
+          format(" touch in single points, around which their gap grows beyond the reach of %g mm within "
+                 "an element, so that no node has contact",
+                 reach),
+        "raise Contact " + pair.name + "/Reach, or refine the sides there");
     throw InputError(between(scene, pair) +
                        format(" do not meet within the reach of %g mm along the normals of the slave; "
                               "where they face each other they are %g mm apart",
                               reach,
-                              rows.empty() ? *distance : std::max(*distance, least_gap(rows))),
+                              *distance),
                      "raise Contact " + pair.name + "/Reach, move the bodies, or exchange slave and master");
   }
 

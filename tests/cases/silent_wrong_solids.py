@@ -91,22 +91,23 @@ class AfterLoading(Case):
     BALL = {'Shape': 'half ball', 'Center': '0, 10, 0', 'Radius': '10', 'Cells around': '64', 'Material': 'elastic'}
 
     def test_a_reach_that_is_too_small(self):
-        for obstacles, body in (({'floor': FLOOR}, None), ({}, {'Size': '8, 2, 8', 'Origin': '-4, -2, -4', 'Cells': '10, 2, 10',
-                                                               'Material': 'elastic'})):
-            bodies = {'ball': self.BALL, **({'plate': body} if body else {})}
-            supports = {'push': held('ball/flat', '-0.2'), **({'base': held('plate/bottom')} if body else {})}
-            pair = {'Slave': 'ball/surface', 'Master': 'plate/top' if body else 'floor', 'Law': 'frictionless'}
-            found = {}
-            for reach in ('0.05', 'auto'):
-                found[reach] = solve(bar(bodies=bodies, supports=supports, obstacles=obstacles,
-                                         contacts={'joint': {**pair, 'Reach': reach}}))
-            self.assertEqual([found['0.05'].status, found['auto'].status], [3, 0], found['0.05'])
-            self.assertIn('farther away than the Reach of 0.05 mm', found['0.05'].stderr)
-            self.assertIn('Contact joint/Reach', found['0.05'].stderr)
-            if body:  # no node is that near
-                refused = solve(bar(bodies=bodies, supports=supports, obstacles={}, contacts={'joint': {**pair, 'Reach': '1e-6'}}))
-                self.assertEqual(refused.status, 2, refused)
-                self.assertIn('raise Contact joint/Reach', refused.stderr)
+        plate = {'Size': '8, 2, 8', 'Origin': '-4, -2, -4', 'Cells': '10, 2, 10', 'Material': 'elastic'}
+        supports = {'push': held('ball/flat', '-0.2'), 'base': held('plate/bottom')}
+        against_floor = {'bodies': {'ball': self.BALL}, 'supports': {'push': supports['push']}}
+        against_plate = {'bodies': {'ball': self.BALL, 'plate': plate}, 'supports': supports, 'obstacles': {}}
+        for master, reach, kinds in (('floor', '0.005', against_floor), ('plate/top', '0.03', against_plate)):
+            def reaching(how_far):
+                pair = {'Slave': 'ball/surface', 'Master': master, 'Law': 'frictionless', 'Reach': how_far}
+                return solve(bar(contacts={'joint': pair}, **kinds))
+            self.assertEqual(reaching('auto').status, 0)
+            short = reaching(reach)
+            self.assertEqual(short.status, 3, short)
+            self.assertIn('farther away than the Reach of {} mm'.format(reach), short.stderr)
+            self.assertIn('Contact joint/Reach', short.stderr)
+        refused = reaching('1e-6')  # no node of the plate is that near
+        self.assertEqual(refused.status, 2, refused)
+        self.assertIn('within an element', refused.stderr)
+        self.assertIn('raise Contact joint/Reach', refused.stderr)
 
     def within(self, obstacle, depth, **kinds):
         case = bar(supports=self.DOWN, obstacles={'thorn': obstacle}, contacts={'touch': {**TOUCH, 'Master': 'thorn'}}, **kinds)
@@ -183,6 +184,41 @@ class Loads(Case):
     def test_a_formula_without_end_is_warned_of(self):
         case = bar(tractions={'p': {'Boundary': 'bar/top', 'Traction y': '-1 + 9*sin(1e7*x)*sin(3e6*z)'}}, contacts=BONDED)
         self.warned(solve(case), 'traction p', 'changes faster')
+
+
+def bricks(cells):
+    """Path of an .inp with these cuboids (two corners each) as one body with the sets low and up."""
+    numbers, elements = {}, []
+    for (x, y, z), (u, v, w) in cells:
+        corners = [(x, y, z), (u, y, z), (u, v, z), (x, v, z), (x, y, w), (u, y, w), (u, v, w), (x, v, w)]
+        elements.append([numbers.setdefault(corner, len(numbers) + 1) for corner in corners])
+    lines = ['*NODE'] + ['{}, {}, {}, {}'.format(number, *corner) for corner, number in numbers.items()]
+    lines += ['*ELEMENT, TYPE=C3D8, ELSET=block']
+    lines += ['{}, {}'.format(k, ', '.join(map(str, element))) for k, element in enumerate(elements, 1)]
+    for name, y in (('low', 0), ('up', 1)):
+        lines += ['*NSET, NSET=' + name] + [str(number) for corner, number in numbers.items() if corner[1] == y]
+    path = new_path('bricks.inp')
+    path.write_text('\n'.join(lines) + '\n')
+    return path
+
+
+class Meshes(Case):
+
+    ONE = ((0, 0, 0), (1, 1, 1))
+
+    def scene(self, cells):
+        return bar(bodies={'bar': {'Shape': 'mesh', 'File': bricks(cells), 'Material': 'elastic'}}, obstacles={}, contacts={},
+                   supports={'low': held('bar/low')}, tractions={'p': {'Boundary': 'bar/up', 'Traction y': '-1'}})
+
+    def test_nodes_inside_faces_and_edges_are_refused(self):
+        halves = [((1, 0, 0), (2, 0.5, 1)), ((1, 0.5, 0), (2, 1, 1))]
+        quarters = [((1, y, z), (2, y + 0.5, z + 0.5)) for y in (0, 0.5) for z in (0, 0.5)]
+        for others in (halves, quarters):
+            self.refused(self.scene([self.ONE] + others), 2, 'has a node inside an edge or face at (1, 0.5, 0)')
+
+    def test_a_mesh_without_them_is_taken(self):
+        result = converged(self.scene([self.ONE, ((1, 0, 0), (2, 1, 1)), ((0, 0, 1), (1, 1, 3))]))
+        self.near(force(result, 'supports'), [0, 4, 0])
 
 
 if __name__ == '__main__':

@@ -22,7 +22,7 @@ import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'cases'))
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / 'cases'))  # behind: it has another solids.py
 
 import solids  # noqa: E402
 from program import SOURCE, Hang, solve  # noqa: E402
