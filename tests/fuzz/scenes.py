@@ -22,6 +22,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import unicodedata
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'tests' / 'fork_server'))
@@ -298,7 +299,7 @@ def run_one(seed, options):
             problem = 'status {}: {}'.format(status, errors.strip()[-300:])
         elif status == 2 and (errors.count('error: ') != 1 or errors.count('\n  remedy: ') != 1):
             problem = 'no single error with its remedy: ' + errors[:300]
-        elif any(not c.isprintable() and c != '\n' for c in errors):
+        elif any(unicodedata.category(c) in ('Cc', 'Cs') and c != '\n' for c in errors):
             problem = 'control characters in the message: ' + repr(errors[:300])
         elif output.is_dir() and any(name.endswith('.tmp') for name in os.listdir(output)):
             problem = 'half written files'
