@@ -42,13 +42,20 @@ namespace slipstick::contact
   {
     Vector       start = dual.particular();
     DualSolution solution;
-    solution.free             = std::vector<bool>(start.locally_owned_size(), true);
-    solution.slip_bound       = std::vector<double>(start.locally_owned_size(), 0.);
-    solution.algorithm        = "pcg";
-    const auto   face         = dual.face(solution.free);
-    auto         b            = homogenised_load(dual, start);
-    const double reference    = dual.residual_norm(b);
-    const auto   precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
+    solution.free          = std::vector<bool>(start.locally_owned_size(), true);
+    solution.slip_bound    = std::vector<double>(start.locally_owned_size(), 0.);
+    solution.algorithm     = "pcg";
+    const auto   face      = dual.face(solution.free);
+    auto         b         = homogenised_load(dual, start);
+    const double reference = dual.residual_norm(b);
+    if (reference == 0) // nothing is deformed
+      {
+        solution.multipliers = start;
+        solution.status      = qp::Status::converged;
+        ++solution.counts.hessian_multiplications;
+        return solution;
+      }
+    const auto precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
     if (goes_on) // from the true residual, not from the recursion of an earlier solve
       {
         start = goes_on->multipliers;

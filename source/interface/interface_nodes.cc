@@ -39,6 +39,14 @@ namespace slipstick::interface
         found->second += area;
     }
 
+    double mean_of(const std::vector<Tributary> &areas)
+    {
+      double sum = 0;
+      for (const auto &area : areas)
+        sum += area.area;
+      return sum / areas.size();
+    }
+
     /// What supports, foundations and obstacles say about the nodes of one boundary face.
     template <int dim>
     void add_face(const scene::Scene<dim>                                      &scene,
@@ -114,7 +122,10 @@ namespace slipstick::interface
       for (unsigned int k = 0; k < scene.contacts.size(); ++k)
         if (const auto &pair = scene.contacts[k]; !pair.master && here(pair.slave))
           for (unsigned int i = 0; i < on_face.size(); ++i)
-            add_area(*on_face[i], k, areas[i]);
+            // a bond also acts at nodes that equal pressure puts no force on: an area to give its traction by
+            add_area(*on_face[i],
+                     k,
+                     pair.law.is_bonded && areas[i].area == 0 ? Tributary{mean_of(areas), 0.} : areas[i]);
     }
 
     /// A copy of the node of every support, those of boundaries unused. Collective.

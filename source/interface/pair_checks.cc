@@ -26,7 +26,9 @@ namespace slipstick::interface
     constexpr double corner_on_corner = 1e-9;
     // Normals that are compared for a message, per side.
     constexpr unsigned int n_compared = 500;
-    constexpr double       infinity   = std::numeric_limits<double>::infinity();
+    // Parts into which an edge, or a face along each direction, is divided to find what faces it between its nodes.
+    constexpr unsigned int n_between = 8;
+    constexpr double       infinity  = std::numeric_limits<double>::infinity();
 
     /// Edges or faces.
     template <int dim>
@@ -145,6 +147,45 @@ namespace slipstick::interface
                          "move the bodies, or set Contact " + pair.name + "/Reach to more than that gap");
     }
 
+    /// Some places between the nodes with the outward normals there.
+    std::vector<std::pair<dealii::Point<2>, dealii::Tensor<1, 2>>> places_with_normals(
+      const mechanics::SurfaceEdge<2> &edge)
+    {
+      std::vector<std::pair<dealii::Point<2>, dealii::Tensor<1, 2>>> places;
+      for (unsigned int i = 1; i < n_between; ++i)
+        places.emplace_back(edge.point(double(i) / n_between), edge.normal(double(i) / n_between));
+      return places;
+    }
+
+    std::vector<std::pair<dealii::Point<3>, dealii::Tensor<1, 3>>> places_with_normals(
+      const mechanics::SurfaceFacet &facet)
+    {
+      std::vector<std::pair<dealii::Point<3>, dealii::Tensor<1, 3>>> places;
+      for (unsigned int i = 1; i < n_between; ++i)
+        for (unsigned int j = 1; j < n_between; ++j)
+          {
+            const double                         s = double(i) / n_between, t = double(j) / n_between;
+            const mechanics::SurfaceFacet::Place place(facet.n_corners() == 3 ? s * (1 - t) : s, t);
+            places.emplace_back(facet.point(place), facet.normal(place));
+          }
+      return places;
+    }
+
+    /// Largest product of the outward normal with the direction into the obstacle between the nodes: an obstacle that is
+    /// smaller than an edge may face none of them.
+    template <int dim>
+    double cosine_between_nodes(const scene::Scene<dim>       &scene,
+                                const scene::ContactPair<dim> &pair,
+                                const Parts<dim>              &slave)
+    {
+      double cosine = -1;
+      for (const double t : scene.load_factors)
+        for (const auto &part : slave)
+          for (const auto &[x, normal] : places_with_normals(part))
+            cosine = std::max(cosine, contact_with(scene.obstacles[pair.obstacle], x, t).normal * normal);
+      return cosine;
+    }
+
     /// Outward normals and gaps at the nodes of a slave boundary against its obstacle.
     struct AgainstObstacle
     {
@@ -181,7 +222,7 @@ namespace slipstick::interface
       const auto &obstacle = scene.obstacles[pair.obstacle];
       const auto names = "Contact " + pair.name + ": " + describe(scene, pair.slave) + " and obstacle " + obstacle.name;
       const auto found = against_obstacle<dim>(scene, pair, slave);
-      if (found.cosine <= -facing_cosine)
+      if (found.cosine <= -facing_cosine && cosine_between_nodes<dim>(scene, pair, slave) <= -facing_cosine)
         throw InputError(names +
                            format(" face away from each other: the outward normals of the slave are %g degrees or "
                                   "more from the direction to the obstacle; less than %g is allowed",
@@ -248,10 +289,17 @@ namespace slipstick::interface
       mortar_rows(sides.slave, sides.master, {any, any}, scene::ContactDiscretization::mortar, pair.name);
     if (lies_behind(sides, rows))
       refuse_facing_away(scene, pair, rows);
-    if (*distance <= corner_on_corner * any) // corner on corner
+    if (*distance <= corner_on_corner * any && rows.empty())
       throw InputError(between(scene, pair) +
                          " do not meet: they touch in single points, and no normal of the slave hits the master",
                        "move the bodies until the sides overlap, or exchange slave and master");
+    if (*distance <= corner_on_corner * any)
+      throw InputError(
+        between(scene, pair) +
+          format(" touch in single points, around which their gap grows beyond the reach of %g mm within "
+                 "an element, so that no node has contact",
+                 reach),
+        "raise Contact " + pair.name + "/Reach, or refine the sides there");
     throw InputError(between(scene, pair) +
                        format(" do not meet within the reach of %g mm along the normals of the slave; "
                               "where they face each other they are %g mm apart",

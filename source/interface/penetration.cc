@@ -31,11 +31,16 @@ namespace slipstick::interface
     template <int dim>
     using Parts = std::vector<mechanics::BoundaryPart<dim>>;
 
-    // Places on an edge where obstacles are looked for, ends included; narrower features may hide between them (corners
-    // of polylines are found at any size).
-    constexpr unsigned int n_places = 33;
-    // The same along each direction of a face.
-    constexpr unsigned int n_places_across = 9;
+    // Places on an edge, and along each direction of a face, from which the deepest one in an obstacle is looked for. It is
+    // found where depths rise towards it: balls, cylinders and planes of any size, and corners of polylines and triangulated
+    // surfaces; of height functions peaks that are not much narrower than the distance of these places.
+    constexpr unsigned int n_places = 33, n_places_across = 9;
+    // The same for height functions, which rise out of nothing.
+    constexpr unsigned int n_places_below_function = 257, n_places_across_function = 33;
+    // The search ends with steps of this part of an edge.
+    constexpr double least_step = 1e-6;
+    // Points of surfaces are the same within this part of an edge.
+    constexpr double same_place = 1e-3;
 
     template <int dim>
     struct Move
@@ -98,28 +103,77 @@ namespace slipstick::interface
       return x;
     }
 
-    /// Places on an edge, by number.
-    Point at_place(const Edge &edge, const unsigned int i)
+    /// Local coordinates of an edge, or of a face in the unit square, into which triangles are folded.
+    template <int dim>
+    using Place = std::array<double, dim - 1>;
+
+    Point at_place(const Edge &edge, const Place<2> &place)
     {
-      return at(edge, double(i) / (n_places - 1));
+      return at(edge, place[0]);
     }
 
-    constexpr unsigned int n_places_on(const Edge &)
+    dealii::Point<3> at_place(const mechanics::SurfaceFacet &face, const Place<3> &place)
     {
-      return n_places;
-    }
-
-    /// On a face, bilinear.
-    dealii::Point<3> at_place(const mechanics::SurfaceFacet &face, const unsigned int i)
-    {
-      const double s = double(i % n_places_across) / (n_places_across - 1);
-      const double t = double(i / n_places_across) / (n_places_across - 1);
+      const auto &[s, t] = place;
       return face.n_corners() == 3 ? face.point({s * (1 - t), t}) : face.point({s, t});
     }
 
-    constexpr unsigned int n_places_on(const mechanics::SurfaceFacet &)
+    template <int dim>
+    struct DeepPlace
     {
-      return n_places_across * n_places_across;
+      Place<dim> place{};
+      double     depth = -std::numeric_limits<double>::infinity();
+
+      template <class DepthAt>
+      bool try_at(const Place<dim> &other, const DepthAt &depth_at)
+      {
+        const double at_other = depth_at(other);
+        if (!(at_other > depth))
+          return false;
+        place = other;
+        depth = at_other;
+        return true;
+      }
+    };
+
+    /// Of the lattice of n places along each direction.
+    template <int dim, class DepthAt>
+    DeepPlace<dim> deepest_of_lattice(const unsigned int n, const DepthAt &depth_at)
+    {
+      DeepPlace<dim> best;
+      for (unsigned int i = 0; i < (dim == 2 ? n : n * n); ++i)
+        {
+          Place<dim> place;
+          for (unsigned int d = 0, rest = i; d < dim - 1; ++d, rest /= n)
+            place[d] = double(rest % n) / (n - 1);
+          best.try_at(place, depth_at);
+        }
+      return best;
+    }
+
+    /// Uphill in ever smaller steps.
+    template <int dim, class DepthAt>
+    void climb(DeepPlace<dim> &best, double step, const DepthAt &depth_at)
+    {
+      while (step > least_step)
+        {
+          bool is_better = false;
+          for (unsigned int way = 0; way < (dim == 2 ? 2 : 8); ++way)
+            {
+              const unsigned int k     = way < 4 ? way : way + 1; // of 9, the middle left out
+              Place<dim>         other = best.place;
+              if (dim == 2)
+                other[0] += way == 0 ? -step : step;
+              else
+                for (unsigned int d = 0, rest = k; d < dim - 1; ++d, rest /= 3)
+                  other[d] += (int(rest % 3) - 1) * step;
+              for (double &coordinate : other)
+                coordinate = std::min(1., std::max(0., coordinate));
+              is_better = best.try_at(other, depth_at) || is_better;
+            }
+          if (!is_better)
+            step /= 2;
+        }
     }
 
     template <int dim>
@@ -191,22 +245,21 @@ namespace slipstick::interface
           }
     }
 
-    /// For a height function, the height decides what is inside: the foot found on a narrow bump may be on its far
-    /// side.
+    /// Depth in an obstacle; minus infinity where there is no normal (the centre of a circle). For a height function, the
+    /// height decides what is inside: the foot found on a narrow bump may be on its far side.
     template <int dim>
-    std::optional<double> gap_at(const scene::Obstacle<dim> &obstacle, const dealii::Point<dim> &x, const double t)
+    double depth_in_obstacle(const scene::Obstacle<dim> &obstacle, const dealii::Point<dim> &x, const double t)
     {
       try
         {
-          const double gap = contact_with(obstacle, x, t).gap;
           if (obstacle.shape != scene::ObstacleShape::function)
-            return gap;
-          const double above = x[1] - obstacle.height.value(x, t);
-          return above >= 0 ? above : -std::min(std::abs(gap), -above);
+            return -contact_with(obstacle, x, t).gap;
+          const double below = obstacle.height.value(x, t) - x[1];
+          return below <= 0 ? below : std::min(below, std::abs(contact_with(obstacle, x, t).gap));
         }
-      catch (const InputError &) // the centre of a circle, where it has no normal
+      catch (const InputError &)
         {
-          return {};
+          return -std::numeric_limits<double>::infinity();
         }
     }
 
@@ -243,34 +296,114 @@ namespace slipstick::interface
                           const double                   t,
                           std::optional<Penetration>    &deepest)
     {
-      const auto &obstacle = scene.obstacles[pair.obstacle];
+      const auto        &obstacle    = scene.obstacles[pair.obstacle];
+      const bool         is_function = obstacle.shape == scene::ObstacleShape::function;
+      const unsigned int n           = dim == 2 ? (is_function ? n_places_below_function : n_places)
+                                                : (is_function ? n_places_across_function : n_places_across);
       for (unsigned int e = 0; e < slave.size(); ++e)
-        for (unsigned int i = 0; i < n_places_on(slave[e]); ++i)
+        {
+          const auto depth_at = [&](const Place<dim> &place) {
+            return depth_in_obstacle(obstacle, at_place(now[e], place), t) -
+                   pair.offset.value(at_place(slave[e], place), t);
+          };
+          auto         best = deepest_of_lattice<dim>(n, depth_at);
+          const double step = 1. / (n - 1);
+          if (is_function ||
+              best.depth > -2 * step * slave[e].chord()) // distances change by no more than the place does
+            climb<dim>(best, step, depth_at);
+          take(deepest, best.depth, at_place(slave[e], best.place), slave[e].chord(), 0.);
+        }
+    }
+
+    /// Points of an obstacle, with a ball around each, that show when it is in a body as a whole, at any size: centres, corners,
+    /// and of a cylinder places on its axis beside the slave boundary.
+    template <int dim>
+    struct PointsOfObstacle
+    {
+      std::vector<dealii::Point<dim>> points;
+      double                          radius = 0;
+    };
+
+    PointsOfObstacle<2> points_of(const scene::Obstacle<2> &obstacle)
+    {
+      if (obstacle.shape == scene::ObstacleShape::circle)
+        return {{obstacle.center}, obstacle.radius};
+      return {obstacle.shape == scene::ObstacleShape::polyline ? obstacle.points : std::vector<Point>(), 0.};
+    }
+
+    PointsOfObstacle<3> points_of(const scene::Obstacle<3> &obstacle, const Parts<3> &slave)
+    {
+      if (obstacle.shape == scene::ObstacleShape::circle)
+        return {{obstacle.center}, obstacle.radius};
+      if (obstacle.shape == scene::ObstacleShape::stl)
+        return {obstacle.surface->corners(), 0.};
+      PointsOfObstacle<3> found;
+      if (obstacle.shape == scene::ObstacleShape::cylinder)
+        {
+          found.radius = obstacle.radius;
+          for (const auto &part : slave)
+            found.points.push_back(obstacle.center +
+                                   ((part.middle() - obstacle.center) * obstacle.normal) * obstacle.normal);
+        }
+      return found;
+    }
+
+    void find_points_of_obstacle(const scene::Scene<2>       &scene,
+                                 const mesh::Mesh<2>         &mesh,
+                                 const scene::ContactPair<2> &pair,
+                                 const ClosedOutline         &body,
+                                 const double                 t,
+                                 std::optional<Penetration>  &deepest)
+    {
+      const auto [points, radius] = points_of(scene.obstacles[pair.obstacle]);
+      for (const auto &point : points)
+        if (body.contains(point))
           {
-            const auto x = at_place(slave[e], i);
-            if (const auto gap = gap_at(obstacle, at_place(now[e], i), t))
-              take(deepest, -(*gap + pair.offset.value(x, t)), x, slave[e].chord(), 0.);
+            const auto  there = nearest(body, point);
+            const auto &edge  = body.edges[there.edge];
+            if (mesh.on_boundary(pair.slave, edge.boundary))
+              take(deepest, there.distance + radius - pair.offset.value(point, t), point, edge.chord(), 0.);
           }
     }
 
-    /// Corners of a polyline, found at any size.
-    void find_corners_of_obstacle(const scene::Scene<2>       &scene,
-                                  const mesh::Mesh<2>         &mesh,
-                                  const scene::ContactPair<2> &pair,
-                                  const ClosedOutline         &body,
-                                  const double                 t,
-                                  std::optional<Penetration>  &deepest)
+    double distance_to(const mechanics::SurfaceFacet &facet, const dealii::Point<3> &x)
     {
-      const auto &obstacle = scene.obstacles[pair.obstacle];
-      if (obstacle.shape == scene::ObstacleShape::polyline)
-        for (const auto &corner : obstacle.points)
-          if (body.contains(corner))
-            {
-              const auto  at_corner = nearest(body, corner);
-              const auto &edge      = body.edges[at_corner.edge];
-              if (mesh.on_boundary(pair.slave, edge.boundary))
-                take(deepest, at_corner.distance - pair.offset.value(corner, t), corner, edge.chord(), 0.);
-            }
+      const auto nearness = [&](const Place<3> &place) { return -at_place(facet, place).distance(x); };
+      auto       best     = deepest_of_lattice<3>(n_places_across, nearness);
+      climb<3>(best, 1. / (n_places_across - 1), nearness);
+      return -best.depth;
+    }
+
+    /// @param all facets of the body after loading, @param slave those of the pair.
+    void find_points_of_obstacle(const scene::Scene<3>       &scene,
+                                 const scene::ContactPair<3> &pair,
+                                 const Parts<3>              &all,
+                                 const Parts<3>              &slave,
+                                 const double                 t,
+                                 std::optional<Penetration>  &deepest)
+    {
+      const auto [points, radius] = points_of(scene.obstacles[pair.obstacle], slave);
+      if (points.empty())
+        return;
+      std::vector<dealii::Point<3>> nodes;
+      for (const auto &facet : all)
+        for (unsigned int i = 0; i < facet.n_nodes; ++i)
+          nodes.push_back(facet.node(i));
+      const auto                    box = BoxTree<3>::box_around(nodes);
+      std::unique_ptr<SolidSurface> body; // made when a point is near it
+      for (const auto &point : points)
+        if (boost::geometry::intersects(BoxTree<3>::box_around({point}), box))
+          {
+            if (!body)
+              body = std::make_unique<SolidSurface>(all);
+            const double depth = body->depth(point), of_obstacle = depth + radius - pair.offset.value(point, t);
+            if (!(depth > 0) || (deepest && of_obstacle <= deepest->depth))
+              continue;
+            for (const auto &facet : slave)
+              if (facet.middle().distance(point) <= depth + 2 * facet.chord() &&
+                  distance_to(facet, point) <= depth + same_place * facet.chord())
+                take(deepest, of_obstacle, point, facet.chord(), 0.);
+          }
     }
 
     /// One body before and after loading.
@@ -467,7 +600,7 @@ namespace slipstick::interface
         if (!pair.master)
           {
             find_in_obstacle<2>(scene, pair, slave, moved<2>(slave, moves), t, found.in_obstacle[k]);
-            find_corners_of_obstacle(scene, mesh, pair, bodies[pair.slave.body]->outline_now, t, found.in_obstacle[k]);
+            find_points_of_obstacle(scene, mesh, pair, bodies[pair.slave.body]->outline_now, t, found.in_obstacle[k]);
           }
       }
     find_in_bodies(scene, bodies, t, found);
@@ -502,7 +635,15 @@ namespace slipstick::interface
           else if (pair.reach)
             find_beyond_reach<3>(scene.obstacles[pair.obstacle], pair, slave, moves, t, found.beyond_reach[k]);
           if (!pair.master)
-            find_in_obstacle<3>(scene, pair, slave, moved<3>(slave, moves), t, found.in_obstacle[k]);
+            {
+              const auto now = moved<3>(slave, moves);
+              find_in_obstacle<3>(scene, pair, slave, now, t, found.in_obstacle[k]);
+              Parts<3> body;
+              std::copy_if(all.begin(), all.end(), std::back_inserter(body), [&](const auto &facet) {
+                return facet.body == pair.slave.body;
+              });
+              find_points_of_obstacle(scene, pair, moved<3>(body, moves), now, t, found.in_obstacle[k]);
+            }
         }
     if (scene.bodies.size() > 1)
       {

@@ -1,4 +1,5 @@
 #include <slipstick/base/collective.h>
+#include <slipstick/mechanics/adaptive_cubature.h>
 #include <slipstick/mechanics/adaptive_quadrature.h>
 #include <slipstick/mechanics/cell_values.h>
 #include <slipstick/mechanics/dilatation.h>
@@ -6,7 +7,7 @@
 #include <slipstick/mechanics/loads.h>
 #include <slipstick/mechanics/points.h>
 #include <slipstick/mechanics/spaces.h>
-#include <slipstick/mechanics/surface.h>
+#include <slipstick/mechanics/surface_facet.h>
 #include <slipstick/mesh/kinematics.h>
 
 #include <deal.II/base/mpi.h>
@@ -20,7 +21,7 @@ namespace slipstick::mechanics
   {
     // Points a direction of the quadrature that body forces are compared with ...
     constexpr unsigned int finer_order = 6;
-    // ... and by how much the sum over the cells may differ, part of the force.
+    // ... and by how much the sum over the cells, and over the faces of solids, may differ, part of the force.
     constexpr double allowed_misfit = 0.01;
 
     template <int dim>
@@ -31,6 +32,30 @@ namespace slipstick::mechanics
         all[d] = x[d];
       return all;
     }
+
+    /// By how much two quadratures of a load differ.
+    struct Misfit
+    {
+      double                size = 0, difference = 0; // sums of magnitudes over cells or faces [N]
+      double                largest = -1;             // difference in one of them
+      std::array<double, 3> at{{0, 0, 0}};            // its place
+
+      void add(const double size_, const double difference_, const std::array<double, 3> &place)
+      {
+        add({size_, difference_, difference_, place});
+      }
+
+      void add(const Misfit &other)
+      {
+        size += other.size;
+        difference += other.difference;
+        if (other.largest > largest)
+          {
+            largest = other.largest;
+            at      = other.at;
+          }
+      }
+    };
 
     /// One subdomain and its load at load factor t.
     template <int dim>
@@ -48,6 +73,7 @@ namespace slipstick::mechanics
         , spaces(spaces_)
         , element(spaces.of(p))
         , sums(scene.tractions.size() + scene.body_forces.size())
+        , misfits_of_tractions(scene.tractions.size())
         , dof_handler(*spaces.dof_handlers[p])
         , number(mesh.subdomains[p]->body)
         , body(scene.bodies[number])
@@ -65,13 +91,24 @@ namespace slipstick::mechanics
         return std::move(load);
       }
 
-      /// Difference to a finer quadrature of the body forces given by formulas, by body force.
-      struct Misfit
+      /// Difference to a finer quadrature of body forces given by formulas.
+      /// Of tractions and body forces on this subdomain.
+      const std::vector<LoadResultant> &resultants() const
       {
-        double                size = 0, difference = 0; // sums of magnitudes over the cells [N]
-        double                largest = -1;             // difference in a cell
-        std::array<double, 3> at{{0, 0, 0}};            // that cell
-      };
+        return sums;
+      }
+
+      /// Of tractions given by formulas in space, then of body forces.
+      std::vector<Misfit> misfits()
+      {
+        std::vector<Misfit> all = misfits_of_tractions, others = misfits_of_body_forces();
+        all.insert(all.end(), others.begin(), others.end());
+        return all;
+      }
+
+    private:
+      using Vector = dealii::Tensor<1, dim>;
+      using Face   = typename dealii::DoFHandler<dim>::active_face_iterator;
 
       std::vector<Misfit> misfits_of_body_forces()
       {
@@ -101,27 +138,11 @@ namespace slipstick::mechanics
                     return sum;
                   };
                   const Vector a = integral(coarse, element.loads.size()), b = integral(fine, finer.size());
-                  Misfit      &misfit = result[k];
-                  misfit.size += b.norm();
-                  misfit.difference += (a - b).norm();
-                  if ((a - b).norm() > misfit.largest)
-                    {
-                      misfit.largest = (a - b).norm();
-                      misfit.at      = in_space(cell->center());
-                    }
+                  result[k].add(b.norm(), (a - b).norm(), in_space(cell->center()));
                 }
           }
         return result;
       }
-
-      /// Of tractions and body forces on this subdomain.
-      const std::vector<LoadResultant> &resultants() const
-      {
-        return sums;
-      }
-
-    private:
-      using Vector = dealii::Tensor<1, dim>;
 
       /// Thickness, or circumference at @p x [mm].
       double weight(const dealii::Point<dim> &x) const
@@ -152,7 +173,7 @@ namespace slipstick::mechanics
           return;
         dealii::FEFaceValues<dim> values(*element.mapping,
                                          *element.scalar,
-                                         element.face_quadrature(element.degree + 2), // loads may be formulas
+                                         element.face_quadrature(element.degree + 2),
                                          dealii::update_values | dealii::update_quadrature_points |
                                            dealii::update_normal_vectors | dealii::update_JxW_values);
         for (const auto &cell : dof_handler.active_cell_iterators())
@@ -162,12 +183,11 @@ namespace slipstick::mechanics
                 if (const auto &traction = scene.tractions[k];
                     traction.where.body == number && mesh.on_boundary(traction.where, cell->face(f)->boundary_id()))
                   {
-                    if constexpr (dim == 2) // in space by the quadrature that constants have
-                      if (!is_constant(traction))
-                        {
-                          add_formula(traction, cell, f, sums[k]);
-                          continue;
-                        }
+                    if (!is_constant(traction))
+                      {
+                        add_formula(traction, surface_part(subdomain, spaces, cell, f), cell->face(f), k);
+                        continue;
+                      }
                     values.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell), f);
                     element.nodes_of(cell, dofs, nodes);
                     add_traction(traction, values, sums[k]);
@@ -190,42 +210,81 @@ namespace slipstick::mechanics
         return all_constant(load.force) && all_constant(load.acceleration) && load.angular_velocity.is_constant();
       }
 
-      void add_formula(const scene::Traction<dim>                                   &traction,
-                       const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-                       const unsigned int                                            f,
-                       LoadResultant                                                &sum)
+      /// Force per length of the local coordinate of an edge on each of its nodes.
+      std::array<double, 6> forces_at(const scene::Traction<2> &traction,
+                                      const SurfaceEdge<2>     &edge,
+                                      const double              s) const
       {
-        static_assert(dim == 2, "the edge of a plane body");
-        const auto edge     = surface_edge(subdomain, spaces, cell, f);
-        const auto force_at = [&](const double s) {
-          const auto         N = edge.shape(s), dN = edge.shape_derivative(s);
-          dealii::Point<dim> x;
-          Vector             along;
-          for (unsigned int i = 0; i < edge.n_nodes; ++i)
-            {
-              x += N[i] * Vector(edge.node(i));
-              along += dN[i] * Vector(edge.node(i));
-            }
-          const double p     = traction.pressure.value(x, t); // against the normal (along_y, -along_x)
-          const Vector force = weight(x) * (along.norm() * vector(traction.components, x));
-          const double fx = force[0] - weight(x) * p * along[1], fy = force[1] + weight(x) * p * along[0];
-          return std::array<double, 6>{{N[0] * fx, N[0] * fy, N[1] * fx, N[1] * fy, N[2] * fx, N[2] * fy}};
-        };
-        const AdaptiveQuadrature<6> forces(force_at);
+        const auto       N = edge.shape(s), dN = edge.shape_derivative(s);
+        dealii::Point<2> x;
+        Vector           along;
+        for (unsigned int i = 0; i < edge.n_nodes; ++i)
+          {
+            x += N[i] * Vector(edge.node(i));
+            along += dN[i] * Vector(edge.node(i));
+          }
+        const double p     = traction.pressure.value(x, t); // against the normal (along_y, -along_x)
+        const Vector force = weight(x) * (along.norm() * vector(traction.components, x));
+        const double fx = force[0] - weight(x) * p * along[1], fy = force[1] + weight(x) * p * along[0];
+        return {{N[0] * fx, N[0] * fy, N[1] * fx, N[1] * fy, N[2] * fx, N[2] * fy}};
+      }
+
+      using FacetForces = std::array<double, 3 * SurfaceFacet::max_nodes>;
+
+      /// The same of a face, per area of its local coordinates.
+      FacetForces forces_at(const scene::Traction<3>  &traction,
+                            const SurfaceFacet        &facet,
+                            const SurfaceFacet::Place &s) const
+      {
+        const auto   N     = facet.shape(s);
+        const auto   x     = facet.point(s);
+        const auto   area  = facet.area_vector(s);
+        const Vector force = area.norm() * vector(traction.components, x) - traction.pressure.value(x, t) * area;
+        FacetForces  forces{};
+        for (unsigned int i = 0; i < facet.n_nodes; ++i)
+          for (unsigned int c = 0; c < dim; ++c)
+            forces[dim * i + c] = N[i] * force[c];
+        return forces;
+      }
+
+      void add_formula(const scene::Traction<2> &traction,
+                       const SurfaceEdge<2>     &edge,
+                       const Face               &face,
+                       const unsigned int        k)
+      {
+        const AdaptiveQuadrature<6> forces([&](const double s) { return forces_at(traction, edge, s); });
+        add_to_nodes(edge, forces.integral, face, sums[k]);
+        if (!forces.is_resolved && !sums[k].unresolved)
+          sums[k].unresolved = in_space(edge.point(0.5));
+      }
+
+      void add_formula(const scene::Traction<3> &traction,
+                       const SurfaceFacet       &facet,
+                       const Face               &face,
+                       const unsigned int        k)
+      {
+        const AdaptiveCubature<3 * SurfaceFacet::max_nodes> forces(
+          facet.n_corners(),
+          [&](const std::array<double, 2> &s) { return forces_at(traction, facet, SurfaceFacet::Place(s[0], s[1])); });
+        add_to_nodes(facet, forces.integral, face, sums[k]);
+        misfits_of_tractions[k].add(forces.scale, forces.difference, in_space(facet.middle()));
+      }
+
+      template <class Part, class Forces>
+      void add_to_nodes(const Part &part, const Forces &forces, const Face &face, LoadResultant &sum)
+      {
         spaces.for_each_face_node(subdomain,
-                                  cell->face(f),
+                                  face,
                                   [&](const unsigned int node, const NodeKey &key, const dealii::Point<dim> &x) {
                                     unsigned int i = 0;
-                                    while (edge.keys[i] != key)
+                                    while (part.keys[i] != key)
                                       ++i;
                                     Vector force;
                                     for (unsigned int c = 0; c < dim; ++c)
-                                      force[c] = forces.integral[2 * i + c];
+                                      force[c] = forces[dim * i + c];
                                     add(node, force);
                                     sum.sum.template add<dim>(force, x);
                                   });
-        if (!forces.is_resolved && !sum.unresolved)
-          sum.unresolved = in_space(edge.point(0.5));
       }
 
       void add_traction(const scene::Traction<dim>      &traction,
@@ -335,6 +394,7 @@ namespace slipstick::mechanics
       const Spaces<dim>                           &spaces;
       const Element<dim>                          &element;
       std::vector<LoadResultant>                   sums;
+      std::vector<Misfit>                          misfits_of_tractions; // in space
       const dealii::DoFHandler<dim>               &dof_handler;
       unsigned int                                 number;
       const scene::Body<dim>                      &body;
@@ -402,26 +462,17 @@ namespace slipstick::mechanics
                                                  const Spaces<dim>       &spaces,
                                                  const double             t)
     {
-      const unsigned int                               n_spread = scene.tractions.size() + scene.body_forces.size();
-      std::vector<LoadResultant>                       sums(n_spread);
-      std::vector<typename SubdomainLoad<dim>::Misfit> misfits(scene.body_forces.size());
+      const unsigned int         n_spread = scene.tractions.size() + scene.body_forces.size();
+      std::vector<LoadResultant> sums(n_spread);
+      std::vector<Misfit>        misfits(n_spread);
       collectively(mesh.comm, [&] {
         for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
           {
             SubdomainLoad<dim> load(scene, mesh, spaces, p, t);
-            const auto         own_misfits = load.misfits_of_body_forces();
-            for (unsigned int k = 0; k < misfits.size(); ++k)
-              {
-                misfits[k].size += own_misfits[k].size;
-                misfits[k].difference += own_misfits[k].difference;
-                if (own_misfits[k].largest > misfits[k].largest)
-                  {
-                    misfits[k].largest = own_misfits[k].largest;
-                    misfits[k].at      = own_misfits[k].at;
-                  }
-              }
+            const auto         own_misfits = load.misfits();
             for (unsigned int k = 0; k < n_spread; ++k)
               {
+                misfits[k].add(own_misfits[k]);
                 const auto &own = load.resultants()[k];
                 sums[k].sum += own.sum;
                 if (!sums[k].unresolved)
@@ -435,7 +486,7 @@ namespace slipstick::mechanics
           const double difference = dealii::Utilities::MPI::sum(misfits[k].difference, mesh.comm);
           const double largest    = dealii::Utilities::MPI::max(misfits[k].largest, mesh.comm);
           if (difference > allowed_misfit * size && misfits[k].largest == largest)
-            sums[scene.tractions.size() + k].unresolved = misfits[k].at;
+            sums[k].unresolved = misfits[k].at;
         }
       return over_all_ranks(sums, mesh.comm);
     }

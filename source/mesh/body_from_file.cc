@@ -138,7 +138,9 @@ namespace slipstick::mesh
           case ConformityFault<dim>::Kind::overlap:
             part.fail("has cells on top of each other at " + place + ": " + of, remedy_of_overlap);
           case ConformityFault<dim>::Kind::hanging_node:
-            part.fail("has a node inside an edge at " + place + ", which is not joined to it: " + of, remedy);
+            part.fail(std::string("has a node inside ") + (dim == 2 ? "an edge" : "an edge or face") + " at " + place +
+                        ", which is not joined to it: " + of,
+                      remedy);
           case ConformityFault<dim>::Kind::twin_nodes:
             part.fail("has two nodes at " + place + " that are not joined: " + of, remedy);
         }

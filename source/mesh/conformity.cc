@@ -1,3 +1,4 @@
+#include <slipstick/base/box_tree.h>
 #include <slipstick/base/cross.h>
 #include <slipstick/mesh/conformity.h>
 
@@ -7,8 +8,10 @@
 #include <boost/geometry/strategies/strategies.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 namespace slipstick::mesh
@@ -275,6 +278,132 @@ namespace slipstick::mesh
                                       cell_at(by_x[k])};
       return {};
     }
+    /// Nodes of the outline of a solid that lie on faces that are not theirs, as where one cell is beside several.
+    class HangingNodes
+    {
+    public:
+      explicit HangingNodes(const MeshPiece<3> &piece)
+        : piece(piece)
+        , tree(boxes_of(piece))
+      {
+        for (const auto &face : piece.boundary_faces)
+          for (const unsigned int v : vertices_of(face))
+            {
+              auto &shortest = least.emplace(v, std::numeric_limits<double>::max()).first->second;
+              shortest       = std::min(shortest, shortest_side(face));
+              if (face.id == 0)
+                unnamed.insert(v);
+            }
+      }
+
+      std::optional<ConformityFault<3>> first() const
+      {
+        for (const auto &[v, shortest] : least)
+          for (const unsigned int f :
+               tree.near(BoxTree<3>::widened(BoxTree<3>::box_around({x(v)}), on_edge * shortest)))
+            {
+              const auto &face = piece.boundary_faces[f];
+              if ((face.id == 0 || unnamed.count(v) > 0) && // else the flank of a slit
+                  lies_on(v, face, on_edge * std::min(shortest, shortest_side(face))))
+                return ConformityFault<3>{ConformityFault<3>::Kind::hanging_node,
+                                          x(v),
+                                          cell_with({v}),
+                                          cell_with(vertices_of(face))};
+            }
+        return {};
+      }
+
+    private:
+      using Face   = MeshPiece<3>::BoundaryFace;
+      using Vector = dealii::Tensor<1, 3>;
+
+      const dealii::Point<3> &x(const unsigned int vertex) const
+      {
+        return piece.vertices[vertex];
+      }
+
+      static std::vector<unsigned int> vertices_of(const Face &face)
+      {
+        std::vector<unsigned int> vertices;
+        for (const unsigned int v : face.vertices)
+          if (v != MeshPiece<3>::no_vertex)
+            vertices.push_back(v);
+        return vertices;
+      }
+
+      static std::vector<BoxTree<3>::Box> boxes_of(const MeshPiece<3> &piece)
+      {
+        std::vector<BoxTree<3>::Box> boxes;
+        for (const auto &face : piece.boundary_faces)
+          {
+            std::vector<dealii::Point<3>> corners;
+            for (const unsigned int v : vertices_of(face))
+              corners.push_back(piece.vertices[v]);
+            boxes.push_back(BoxTree<3>::box_around(corners));
+          }
+        return boxes;
+      }
+
+      /// Between any two corners: diagonals are longer than the shortest edge.
+      double shortest_side(const Face &face) const
+      {
+        const auto v        = vertices_of(face);
+        double     shortest = std::numeric_limits<double>::max();
+        for (unsigned int a = 0; a < v.size(); ++a)
+          for (unsigned int b = 0; b < a; ++b)
+            shortest = std::min(shortest, x(v[a]).distance(x(v[b])));
+        return shortest;
+      }
+
+      /// In one of the triangles between corners, which cover the face in whatever order these are, and at none of them.
+      bool lies_on(const unsigned int vertex, const Face &face, const double margin) const
+      {
+        const auto v = vertices_of(face);
+        for (const unsigned int corner : v)
+          if (corner == vertex || x(corner).distance(x(vertex)) <= margin)
+            return false;
+        for (unsigned int a = 0; a < v.size(); ++a)
+          for (unsigned int b = 0; b < a; ++b)
+            for (unsigned int c = 0; c < b; ++c)
+              if (is_in_triangle(x(vertex), {{x(v[a]), x(v[b]), x(v[c])}}, margin))
+                return true;
+        return false;
+      }
+
+      static bool is_in_triangle(const dealii::Point<3>                &x,
+                                 const std::array<dealii::Point<3>, 3> &corners,
+                                 const double                           margin)
+      {
+        Vector normal = cross_product_3d(corners[1] - corners[0], corners[2] - corners[0]);
+        normal /= normal.norm();
+        if (!(std::abs((x - corners[0]) * normal) <= margin))
+          return false;
+        for (unsigned int k = 0; k < 3; ++k)
+          {
+            const Vector along = corners[(k + 1) % 3] - corners[k];
+            if (cross_product_3d(along, x - corners[k]) * normal < -margin * along.norm())
+              return false;
+          }
+        return true;
+      }
+
+      unsigned int cell_with(const std::vector<unsigned int> &vertices) const
+      {
+        return std::find_if(piece.cells.begin(),
+                            piece.cells.end(),
+                            [&](const auto &cell) {
+                              return std::all_of(vertices.begin(), vertices.end(), [&](const unsigned int v) {
+                                return std::count(cell.begin(), cell.end(), v) > 0;
+                              });
+                            }) -
+               piece.cells.begin();
+      }
+
+      const MeshPiece<3>            &piece;
+      BoxTree<3>                     tree;    // of the faces
+      std::map<unsigned int, double> least;   // shortest edge at a vertex
+      std::set<unsigned int>         unnamed; // vertices of faces without a name
+    };
   } // namespace
 
   template <>
@@ -286,6 +415,7 @@ namespace slipstick::mesh
   template <>
   std::optional<ConformityFault<3>> find_fault(const MeshPiece<3> &piece)
   {
-    return twin_nodes(piece);
+    const auto twins = twin_nodes(piece);
+    return twins ? twins : HangingNodes(piece).first();
   }
 } // namespace slipstick::mesh

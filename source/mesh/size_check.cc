@@ -21,14 +21,15 @@ namespace slipstick::mesh
     constexpr double bytes_per_unknown = 300, bytes_per_unknown_and_doubling = 32;
     constexpr double cells_per_subdomain          = 10000; // target of auto, see decomposition.cc ...
     constexpr double cells_per_subdomain_in_space = 1000;
-    // Measured in space: 1.1 million unknowns in 512 subdomains of 8^3 cells take 5 GB.
-    constexpr double bytes_per_unknown_in_space = 5000;
-    constexpr double most_cells                 = 1e9;   // beyond this counters of 32 bits may overflow
-    constexpr double bytes_per_subdomain        = 100e3; // its mesh and lists, however few its cells
-    constexpr double many_subdomains            = 1e4;   // beyond this the message names them
-    constexpr double bytes_of_a_cell            = 40;    // in a mesh file
-    constexpr double around_an_edge             = 13;  // cells that come with an edge refined by 3, all levels together
-    constexpr double usable                     = 0.9; // of the memory that is free
+    // Measured in space: 1.1 million unknowns in 512 subdomains of 8^3 cells take 5 GB; in one subdomain of 16^3, 24^3 cells
+    // 14 and 24 kB an unknown, which grows as the root of their number.
+    constexpr double bytes_per_unknown_in_space = 5000, unknowns_of_these = 2200;
+    constexpr double most_cells          = 1e9;   // beyond this counters of 32 bits may overflow
+    constexpr double bytes_per_subdomain = 100e3; // its mesh and lists, however few its cells
+    constexpr double many_subdomains     = 1e4;   // beyond this the message names them
+    constexpr double bytes_of_a_cell     = 40;    // in a mesh file
+    constexpr double around_an_edge      = 13;    // cells that come with an edge refined by 3, all levels together
+    constexpr double usable              = 0.9;   // of the memory that is free
     constexpr double finest = 1e-8; // edges of cells over their distance from the origin: 8 digits are left
 
     struct Count
@@ -165,7 +166,7 @@ namespace slipstick::mesh
     const double of_one = std::max(2., size.unknowns / n_subdomains);
     size.memory_mb =
       (n_subdomains * bytes_per_subdomain +
-       size.unknowns * (dim == 3 ? bytes_per_unknown_in_space
+       size.unknowns * (dim == 3 ? bytes_per_unknown_in_space * std::sqrt(std::max(1., of_one / unknowns_of_these))
                                  : bytes_per_unknown + bytes_per_unknown_and_doubling * std::log2(of_one))) /
       1048576;
     if (n_subdomains > many_subdomains)

@@ -137,6 +137,11 @@ namespace slipstick::scene
     const auto number = parse_number(text);
     if (!number)
       parsed = std::make_shared<Formula>(text, where);
+    else if (*number != 0 &&
+             std::abs(*number) < smallest_number) // its square underflows, so that it would act on nothing
+      throw formula_error<dim>(where,
+                               text,
+                               "numbers here are 0, or at least " + number_text(smallest_number) + " in size");
     else if (is_usable(*number))
       constant = *number;
     else

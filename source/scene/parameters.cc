@@ -1,4 +1,5 @@
 #include <slipstick/base/nearest_name.h>
+#include <slipstick/base/printable.h>
 #include <slipstick/base/text.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/listing.h>
@@ -16,6 +17,8 @@ namespace slipstick::scene
   {
     // Stands for every body, or the whole outline, instead of a name.
     const std::vector<std::string> reserved_names = {"all", "*"};
+    // Of lists in remedies; whoever has longer ones knows how to add to them.
+    constexpr std::size_t longest_list = 400;
 
     /// "a/b/c" -> "a/b", "c"
     std::pair<std::string, std::string> split_path(const std::string &path)
@@ -92,8 +95,8 @@ namespace slipstick::scene
             for (const std::string &section : children_of(parent, true))
               if (section.compare(0, kind.kind.size() + 1, kind.kind + " ") == 0)
                 declared.push_back(section.substr(kind.kind.size() + 1));
-            remedy =
-              "declare it: set " + kind.list + " = " + join_names(declared) + (declared.empty() ? "" : ", ") + own_name;
+            remedy = "declare it: set " + kind.list + " = " +
+                     shortened(join_names(declared) + (declared.empty() ? "" : ", ") + own_name, longest_list);
             if (const auto near = nearest_name(own_name, declared))
               remedy += "; or did you mean '" + kind.kind + " " + *near + "'?";
           }

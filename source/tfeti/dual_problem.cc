@@ -27,7 +27,8 @@ namespace slipstick::tfeti
 
     // Residuals are projected twice when stiffnesses of rows differ by more than this factor.
     constexpr double large_stiffness_ratio = 1e3;
-
+    // What the projection leaves of a residual is rounding below this part of it: bodies that supports move without deforming them.
+    constexpr double rounding_of_projection = 1e-14;
   } // namespace
 
   DualProblem::DualProblem(std::vector<SubdomainMatrices>  matrices,
@@ -233,8 +234,11 @@ namespace slipstick::tfeti
     DistributedVector part(r), range = zero();
     all.project_range(r, range);
     part -= range;
-    return std::sqrt(
-      reduce.sum(std::array<double, 1>{{qp::local_weighted_dot(qp::residual_weights(*this, 0), part, part)}})[0]);
+    const auto weights = qp::residual_weights(*this, 0);
+    const auto squares = reduce.sum(
+      std::array<double, 2>{{qp::local_weighted_dot(weights, part, part), qp::local_weighted_dot(weights, r, r)}});
+    const double norm = std::sqrt(squares[0]);
+    return norm <= rounding_of_projection * std::sqrt(squares[1]) ? 0. : norm;
   }
 
   DualProblem::JumpEnergies DualProblem::jump_energies(const DistributedVector &r, const std::vector<bool> &held) const

@@ -76,6 +76,11 @@ class Robustness(unittest.TestCase):
                      '1e+06 subdomains', 'MB are free', '--force')
         self.refused(case, {'Body a/Refine towards': '*', 'Body a/Refine levels': 10, 'Body a/Cells': '10000, 100'},
                      'most of them by Refine levels', 'unknowns')
+        for more in ({'Body cube/Cells': '1000000, 1000000, 1000000'}, {'Decomposition/Blocks': 1000},
+                     {'Body cube/Cells': '100, 100, 100', 'Discretization/Degree': 2}):
+            self.refused(shipped('cube_on_sphere'), more, 'unknowns', 'Cells')
+        # as one subdomain, whose factor grows faster than its unknowns
+        self.refused(shipped('cube_on_sphere'), {'Decomposition/Method': 'none', 'Body cube/Cells': '90, 90, 90'}, 'MB are free')
         self.refused(shipped('hertz'), {'Body cylinder/Refinements': 10, 'Discretization/Refinements': 10}, 'unknowns')
 
     def test_force_overrides_the_estimate_of_memory(self):
@@ -139,7 +144,8 @@ class Robustness(unittest.TestCase):
     def test_numbers_beyond_arithmetic(self):
         case = write(BLOCK)
         for name, value in (('Material s/Young modulus', '1e300'), ('Body a/Thickness', '1e-308'),
-                            ('Traction t/Traction y', '-1e200'), ('Traction t/Traction y', '-1e100*x'),
+                            ('Traction t/Traction y', '-1e200'), ('Traction t/Traction y', '-1e-200'),
+                            ('Traction t/Traction y', '-1e-310'), ('Traction t/Traction y', '-1e100*x'),
                             ('Body a/Translation', '1e300, 0')):
             self.refused(case, {name: value}, name.split('/')[1])
         self.refused(case, {'Body a/Translation': '1e12, 0'}, 'Body a: has an edge of', ranks=2)

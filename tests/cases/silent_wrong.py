@@ -164,6 +164,15 @@ class AfterLoading(Case):
             case = bar(supports=push, obstacles={'thorn': obstacle}, contacts={'c': {**TOUCH, 'Master': 'thorn'}})
             self.warned(solve(case), 'obstacle thorn is ' + depth, 'inside body bar at (4.5, 0)', 'refine')
 
+    def test_features_much_finer_than_an_edge(self):
+        push = {'push': {'Boundary': 'bar/top', 'Displacement x': '0', 'Displacement y': '-0.2'}}
+        for obstacle, depth in (({'Center': '4.513, -0.12', 'Radius': '0.02'}, '0.1 mm'),  # wholly inside
+                                ({'Center': '4.513, -0.1001', 'Radius': '0.0001'}, '0.1 mm'),
+                                ({'Shape': 'polyline', 'Points': '-9 -3; 4.512 -3; 4.513 0; 4.514 -3; 20 -3'}, '0.2 mm'),
+                                ({'Shape': 'function', 'Height': 'exp(-((x-4.513)/0.005)^2) - 1'}, '')):
+            case = bar(supports=push, obstacles={'thorn': obstacle}, contacts={'c': {**TOUCH, 'Master': 'thorn'}})
+            self.warned(solve(case), 'obstacle thorn is ' + depth, 'inside body bar at (4.513', 'refine')
+
     def test_refined_it_touches(self):
         case = bar(supports={'push': {'Boundary': 'bar/top', 'Displacement x': '0', 'Displacement y': '-0.2'}},
                    bodies={'bar': {**BAR, 'Cells': '80, 32'}},

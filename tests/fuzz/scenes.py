@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""scenes.py N SEED PROGRAM [--server FORK_SERVER] [--keep DIR] [--time SECONDS] [--memory MB] [--jobs N]: N mutated scenes, and
-mesh files in them, through the program. Each run must end with status 0, 2, 3 or 4 within the limits; with one error and one remedy
-where it is refused, nothing left half written, and where it converges with an answer that its files themselves show to be one: loads,
-supports, foundations and contact with obstacles are in balance; no tension, no penetration, no pressure at a gap, no friction beyond
-its bound. With the program of tests/fork_server runs do not load the libraries anew. What fails is kept in DIR (default output/fuzz)
-under its seed. Status 1 when any did. Standard library only.
+"""scenes.py N SEED PROGRAM [--server FORK_SERVER] [--keep DIR] [--time SECONDS] [--memory MB] [--jobs N] [--two-ranks PART]: N
+mutated scenes, and mesh files in them, through the program. Each run must end with status 0, 2, 3 or 4 within the limits; with one
+error and one remedy where it is refused, nothing left half written, and where it converges with an answer that its files themselves
+show to be one (answer.py). Scenes are shipped ones, those of scenes/ (every kind of section), solids drawn at random and plates and
+blocks from mesh files; lines, values, numbers (also by powers of ten), bytes, included files and settings of any parameter are
+mutated. PART of them run on two ranks; with the program of tests/fork_server the others do not load the libraries anew. What fails
+is kept in DIR (default output/fuzz) under its seed. Status 1 when any did. Standard library only.
 """
 
 import argparse
 import concurrent.futures
-import csv
 import json
 import os
 import pathlib
@@ -22,9 +22,14 @@ import subprocess
 import sys
 import tempfile
 import threading
+import unicodedata
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'tests' / 'fork_server'))
+sys.path.insert(0, str(ROOT / 'tests' / 'random'))
+sys.path.insert(0, str(ROOT / 'tests' / 'fuzz'))
+import solids  # noqa: E402
+from answer import problem_of  # noqa: E402
 from fork_server import ForkServer  # noqa: E402
 
 # Shipped scenes that solve in about a second on the meshes that these settings give.
@@ -33,12 +38,13 @@ SHIPPED = {
     'box_frictionless': ['Decomposition/Cells per block=3'],
     'box_prescribed': ['Decomposition/Cells per block=3'],
     'box_linear': ['Decomposition/Cells per block=3'],
-    'raous': [], 'press_fit': [], 'incline': [], 'patch_gmsh': [], 'lap_joint': [], 'circular_punch': [], 'hertz_ball': [],
+    'raous': [], 'press_fit': [], 'dome': [], 'ring_on_shaft': [], 'bolted_joint': ['Load steps/Factors=1, 2'], 'arch': [],
+    'push_out': [], 'cattaneo_mindlin': [], 'cantilevers': [], 'incline': [], 'patch_gmsh': [], 'lap_joint': [], 'circular_punch': [], 'hertz_ball': [],
     'oblique_blocks': ['Body base/Cells=4, 1, 4', 'Body box/Cells=3, 2, 3'], 'patch_solid': [],
     'cube_on_sphere': ['Body cube/Cells=4, 4, 4', 'Decomposition/Method=none'],
 }
 ODD = ['0', '-1', '1', '1e30', '1e-30', '1e300', 'nan', 'inf', '-0', '1e6', '1e-6', '0.5', '2', '1000000', '10', '', ' ', 'x', 'auto',
-       'free', 'all', '*', '0, 0', '1, 2, 3', '-250*x', 'sin(', 'x/0', 'sqrt(y-5)', 't', '1e9*x', 'true', '\xf6', '\x1b[31m', 'none']
+       'free', 'all', '*', '1e-320', '4294967296', '1e308*10', '{1/0}', '{x}', '2e-16', '0, 0', '1, 2, 3', '-250*x', 'sin(', 'x/0', 'sqrt(y-5)', 't', '1e9*x', 'true', '\xf6', '\x1b[31m', 'none']
 PLATE = """\
 set Materials = steel
 set Bodies = plate
@@ -104,95 +110,142 @@ def mutated_lines(rng, text):
     return '\n'.join(lines)
 
 
-def make_case(seed, folder):
-    """Writes the case; returns its path and the arguments."""
-    rng = random.Random(seed)
-    case = folder / 'case.prm'
-    arguments = []
-    if rng.random() < 0.6:
-        name = rng.choice(sorted(SHIPPED))
-        text = (ROOT / 'prm' / (name + '.prm')).read_text()
-        os.symlink(ROOT / 'meshes', folder.parent / 'meshes')
-        for setting in SHIPPED[name]:
-            arguments += ['--set', setting]
+NUMBER = r'-?[0-9][0-9.]*(?:e[+-]?[0-9]+)?'
+
+
+def mutated_values(rng, text):
+    """Numbers of the scene times a factor, mostly within what a scene may mean."""
+    lines = text.split('\n')
+    values = [k for k, line in enumerate(lines) if re.search('=.*[0-9]', line) and not line.startswith('#')]
+    for _ in range(rng.randint(1, 4)):
+        k = rng.choice(values or [0])
+        name, _, value = lines[k].partition('=')
+        factor = rng.choice([rng.uniform(0.3, 3), rng.uniform(0.9, 1.1), -1, 10 ** rng.uniform(-4, 4), 10 ** rng.uniform(-320, 300)])
+        number = rng.choice(list(re.finditer(NUMBER, value)) or [None])
+        if number:
+            changed = float(number.group()) * factor
+            text = str(round(changed)) if '.' not in number.group() and rng.random() < 0.5 and abs(changed) < 1e9 else repr(changed)
+            lines[k] = name + '=' + value[:number.start()] + text + value[number.end():]
+    return '\n'.join(lines)
+
+
+def with_include(rng, text, folder):
+    """Some of the lines, whole sections or not, in another file."""
+    lines = text.split('\n')
+    first = rng.randrange(len(lines))
+    last = rng.randint(first, len(lines))
+    (folder / 'part.prm').write_text('\n'.join(lines[first:last]) + '\n', encoding='utf-8', errors='replace')
+    return '\n'.join(lines[:first] + ['include part.prm'] + lines[last:])
+
+
+def random_solid(rng):
+    scene = solids.Scene(rng)
+    rng.choice(solids.KINDS)(scene, rng)
+    return scene.text()
+
+
+def block_of_solids(rng):
+    """A block of hexahedra or tetrahedra: name of the file, its text, and its part and boundaries (left, top, low)."""
+    n = [rng.randint(1, 3) for _ in range(3)]
+    node = lambda i, j, k: 1 + i + (n[0] + 1) * (j + (n[1] + 1) * k)
+    corners = [(i, j, k) for k in range(n[2] + 1) for j in range(n[1] + 1) for i in range(n[0] + 1)]
+    bricks = [[node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k),
+               node(i, j, k + 1), node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)]
+              for k in range(n[2]) for j in range(n[1]) for i in range(n[0])]
+    is_split = rng.random() < 0.5
+    cells = [[b[c] for c in cell] for b in bricks for cell in
+             ([(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)] if is_split else [range(8)])]
+    if rng.random() < 0.3:
+        lines = ['# vtk DataFile Version 3.0', 'block', 'ASCII', 'DATASET UNSTRUCTURED_GRID', 'POINTS {} double'.format(len(corners))]
+        lines += [' '.join(map(str, corner)) for corner in corners]
+        lines += ['CELLS {} {}'.format(len(cells), sum(1 + len(cell) for cell in cells))]
+        lines += [' '.join(map(str, [len(cell)] + [number - 1 for number in cell])) for cell in cells]
+        lines += ['CELL_TYPES {}'.format(len(cells))] + ['10' if is_split else '12'] * len(cells)
+        return 'block.vtk', '\n'.join(lines) + '\n', ('', '0 where x < 0.01', '0 where y > {}'.format(n[1] - 0.01), '0 where y < 0.01')
+    lines = ['*NODE'] + ['{}, {}, {}, {}'.format(number, *corner) for number, corner in enumerate(corners, 1)]
+    lines += ['*ELEMENT, TYPE={}, ELSET=block'.format('C3D4' if is_split else 'C3D8')]
+    lines += [', '.join(map(str, [number] + cell)) for number, cell in enumerate(cells, 1)]
+    for name, d, at in (('left', 0, 0), ('up', 1, n[1]), ('low', 1, 0)):
+        lines += ['*NSET, NSET=' + name] + [str(number) for number, corner in enumerate(corners, 1) if corner[d] == at]
+    return 'block.inp', '\n'.join(lines) + '\n', ('block', 'left', 'up', 'low')
+
+
+def scene_of_mesh(rng, folder):
+    """A mesh file, in most cases mutated, and a scene with it."""
+    is_solid = rng.random() < 0.4
+    if is_solid:
+        name, data, names = block_of_solids(rng)
+        data = data.encode()
     else:
         name = rng.choice(MESHES)
         data = (ROOT / 'tests/mesh/meshes' / name).read_bytes()
-        mesh = folder / name
-        if rng.random() < 0.7 and b'\0' not in data:
-            mesh.write_text(mutated_lines(rng, data.decode()), encoding='latin1', errors='replace')
-        else:
-            data = bytearray(data)
-            for _ in range(rng.randint(1, 3)):
-                data[rng.randrange(len(data))] = rng.randrange(256)
-            mesh.write_bytes(bytes(data))
-        numbers = name.endswith('.vtk')
-        text = PLATE.format(name, '', *(['2', '2', '1'] if numbers else ['foot', 'top_side', 'foot'] if 'gmsh' in name
-                                        else ['outline', 'right side', 'foot']))
-    if rng.random() < 0.8 or name not in MESHES:
+        names = ('', *(['2', '2', '1'] if name.endswith('.vtk') else ['foot', 'top_side', 'foot'] if 'gmsh' in name
+                       else ['outline', 'right side', 'foot']))
+    what = rng.random()
+    if what < 0.6 and b'\0' not in data:
+        data = mutated_lines(rng, data.decode()).encode('latin1', errors='replace')
+    elif what < 0.9:
+        data = bytearray(data)
+        for _ in range(rng.randint(1, 3)):
+            data[rng.randrange(len(data))] = rng.randrange(256)
+    (folder / name).write_bytes(bytes(data))
+    text = PLATE.format(name, *names)
+    if is_solid:
+        for before, after in (('half plane', 'half space'), ('0, 0\n', '0, 0, 0\n'), ('0, 1\n', '0, 1, 0\n')):
+            text = text.replace(before, after)
+        text = 'set Dimension = 3\n' + text.replace('  set Displacement x = 0\n', '  set Displacement x = 0\n  set Displacement z = 0\n')
+    return text
+
+
+def scene_of(rng, folder):
+    """Text of a scene to be mutated, and its settings."""
+    kind = rng.random()
+    if kind < 0.45:
+        name = rng.choice(sorted(SHIPPED))
+        os.symlink(ROOT / 'meshes', folder.parent / 'meshes')
+        return (ROOT / 'prm' / (name + '.prm')).read_text(), SHIPPED[name]
+    if kind < 0.6:
+        return (ROOT / 'tests/fuzz/scenes' / rng.choice(['plane.prm', 'solid.prm'])).read_text(), []
+    if kind < 0.7:
+        return random_solid(rng), []
+    return scene_of_mesh(rng, folder), []
+
+
+def make_case(seed, folder, parameters):
+    """Writes the case; returns its path and the arguments."""
+    rng = random.Random(seed)
+    case = folder / 'case.prm'
+    text, given = scene_of(rng, folder)
+    arguments = [word for setting in given for word in ('--set', setting)]
+    what = rng.random()
+    if what < 0.5:
         text = mutated_lines(rng, text)
-    case.write_text(text, encoding=rng.choice(['utf-8', 'latin1']), errors='replace')
-    if rng.random() < 0.2:
-        arguments += ['--set', rng.choice(['Discretization/Degree', 'Discretization/Refinements', 'Solver/Tolerance',
-                                           'Decomposition/Subdomains', 'Load steps/Factors']) + '=' + rng.choice(ODD)]
+    if 0.4 < what < 0.9:
+        text = mutated_values(rng, text)
+    if rng.random() < 0.3:
+        arguments += ['--set', random_setting(rng, text, parameters)]
+    if rng.random() < 0.1:
+        text = with_include(rng, text, folder)
+    case.write_text(text, encoding=rng.choice(['utf-8', 'utf-8', 'latin1']), errors='replace')
     return case, arguments
 
 
-def settings_of(path):
-    """{'Section/Name': value} of the parameters that a run has written."""
-    settings, sections = {}, []
-    for line in path.read_text(errors='replace').split('\n'):
-        word, _, rest = line.strip().partition(' ')
-        if word == 'subsection':
-            sections.append(rest.strip())
-        elif word == 'end' and sections:
-            sections.pop()
-        elif word == 'set' and '=' in rest:
-            name, value = rest.split('=', 1)
-            settings['/'.join(sections + [name.strip()])] = value.strip()
-    return settings
+def random_setting(rng, text, parameters):
+    """Any parameter of any section of the scene, with a word that it allows or an odd one."""
+    sections = re.findall('^ *subsection (.+)$', text, re.MULTILINE)
+    name = rng.choice(sorted(parameters))
+    section, slash, last = name.rpartition('/')
+    own = [other for other in sections if other.split(' ')[0] == section.split(' ')[0]]
+    if own and ' ' in section:
+        section = rng.choice(own)
+    return section + slash + last + '=' + rng.choice(parameters[name] if parameters[name] and rng.random() < 0.7 else ODD)
 
 
-def check_balance(summary, settings):
-    """All that acts on the bodies from outside, relative to the sum of magnitudes, and to the rounding of stresses."""
-    rounding = 1e-12 * (summary['results']['max_von_mises'] or 0)  # on 1 mm^2
-    outside = [entry['force'] for kind in ('loads', 'supports', 'foundations') for entry in summary['results'].get(kind) or []]
-    obstacles = [name.strip() for name in settings.get('Obstacles', '').split(',')]
-    for pair in summary['results'].get('contact') or []:
-        if settings.get('Contact {}/Master'.format(pair['pair'])) in obstacles:
-            outside.append(pair['force'])
-    for components in zip(*outside):
-        if abs(sum(components)) > 1e-3 * sum(abs(c) for force in outside for c in force) + rounding:
-            return 'forces are out of balance: ' + str(outside)
-    return ''
-
-
-def check_contact(path, results):
-    """What contact.csv says against the conditions of contact, relative to its largest numbers, which are rounding where they
-    are a tiny part of the stress or of the displacements."""
-    with open(path, newline='') as stream:
-        rows = list(csv.DictReader(stream))
-    stress, displacement = results['max_von_mises'], results['max_displacement']
-    for step in {row['step'] for row in rows}:
-        for pair in {row['pair'] for row in rows}:
-            own = [row for row in rows if row['step'] == step and row['pair'] == pair]
-            if not own or any(row['slip_bound'] == 'inf' for row in own):  # bonded
-                continue
-            number = lambda row, key: float(row[key])
-            largest = max(abs(number(row, 'pressure')) + abs(number(row, 'tangential_traction')) for row in own)
-            if largest < 1e-5 * stress:
-                continue
-            for row in own:
-                place = ' at ' + row['x'] + ', ' + row['y'] + ' of ' + pair
-                if number(row, 'pressure') < -1e-3 * largest:
-                    return 'tension' + place
-                if abs(number(row, 'tangential_traction')) > number(row, 'slip_bound') + 1e-2 * largest:
-                    return 'friction beyond its bound' + place
-                if number(row, 'gap') < -1e-2 * displacement:
-                    return 'penetration' + place
-                if number(row, 'gap') > 1e-2 * displacement and number(row, 'pressure') > 1e-2 * largest:
-                    return 'pressure across a gap' + place
-    return ''
+def parameters_of(program):
+    """Words that the parameters of the program allow, by name."""
+    listed = subprocess.run([program, '--list-parameters', 'json'], capture_output=True, text=True, check=True, env=ENVIRONMENT).stdout
+    return {entry['name']: re.sub('.*one of: ', '', entry['allowed']).split(', ') if 'one of: ' in entry['allowed'] else []
+            for entry in json.loads(listed)['parameters']}
 
 
 def limit(memory):
@@ -207,14 +260,15 @@ ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1', OM
 of_thread = threading.local()
 
 
-def start(arguments, options):
+def start(arguments, options, ranks):
     """Returns the status, what was printed on standard error as bytes, and whether the time limit was hit."""
-    if options.server and all(argument.isprintable() for argument in arguments):
+    if ranks == 1 and options.server and all(argument.isprintable() for argument in arguments):
         if not hasattr(of_thread, 'server'):
             of_thread.server = ForkServer(options.server, ENVIRONMENT)
         status, _, stderr, is_late = of_thread.server.run(arguments, os.getcwd(), options.time, options.memory)
         return status, stderr, is_late
-    process = subprocess.Popen([options.program, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+    launcher = [str(ROOT / 'scripts' / 'mpirun'), '--shared-cores', '-n', str(ranks)] if ranks > 1 else []
+    process = subprocess.Popen([*launcher, options.program, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                stderr=subprocess.PIPE, start_new_session=True, preexec_fn=limit(options.memory), env=ENVIRONMENT)
     try:
         stderr = process.communicate(timeout=options.time)[1]
@@ -234,9 +288,10 @@ def run_one(seed, options):
     problem = ''
     status = None
     try:
-        case, arguments = make_case(seed, folder)
+        case, arguments = make_case(seed, folder, options.parameters)
         arguments = [str(case), '--output', str(output), *arguments]
-        status, stderr, is_late = start(arguments, options)
+        ranks = 2 if random.Random(-seed).random() < options.two_ranks else 1
+        status, stderr, is_late = start(arguments, options, ranks)
         errors = stderr.decode(errors='surrogateescape')
         if is_late:
             problem = 'no end within {} s'.format(options.time)
@@ -244,20 +299,12 @@ def run_one(seed, options):
             problem = 'status {}: {}'.format(status, errors.strip()[-300:])
         elif status == 2 and (errors.count('error: ') != 1 or errors.count('\n  remedy: ') != 1):
             problem = 'no single error with its remedy: ' + errors[:300]
-        elif any(not c.isprintable() and c != '\n' for c in errors):
+        elif any(unicodedata.category(c) in ('Cc', 'Cs') and c != '\n' for c in errors):
             problem = 'control characters in the message: ' + repr(errors[:300])
         elif output.is_dir() and any(name.endswith('.tmp') for name in os.listdir(output)):
             problem = 'half written files'
         elif status == 0:
-            summary = json.loads((output / 'summary.json').read_text())
-            if not summary['converged']:
-                problem = 'status 0 of a run that did not converge'
-            elif any(value is None or value > 1e-3 for value in summary['residuals'].values()):
-                problem = 'status 0 with residuals ' + str(summary['residuals'])
-            else:
-                problem = check_balance(summary, settings_of(output / 'parameters.prm'))
-                if not problem and (output / 'contact.csv').exists():
-                    problem = check_contact(output / 'contact.csv', summary['results'])
+            problem = problem_of(output)
         if problem:
             kept = options.keep / str(seed)
             shutil.rmtree(kept, ignore_errors=True)
@@ -278,7 +325,9 @@ def main():
     parser.add_argument('--time', type=float, default=60)
     parser.add_argument('--memory', type=int, default=2048)
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
+    parser.add_argument('--two-ranks', type=float, default=0.01)
     options = parser.parse_args()
+    options.parameters = parameters_of(options.program)
     options.keep.mkdir(parents=True, exist_ok=True)
     statuses = {}
     n_bad = 0

@@ -8,7 +8,7 @@
 
 namespace slipstick::interface
 {
-  /// The whole surface of a body, holes included; quadrilaterals count as two triangles.
+  /// The whole surface of a body, holes included; of triangles between its nodes.
   class SolidSurface
   {
   public:

@@ -15,7 +15,8 @@ namespace slipstick::mechanics
   {
     Resultant                            sum;
     std::optional<std::array<double, 3>> unresolved; // where its formula is too rough for the mesh or has no integral;
-                                                     // of body forces when two quadratures differ by one percent
+                                                     // of body forces, and of tractions on solids, when
+                                                     // two quadratures differ by one percent
   };
 
   /// Of the tractions, then the body forces, then the point loads of the scene, at load factor @p t. The same on all
@@ -29,7 +30,7 @@ namespace slipstick::mechanics
   /// f_p [N] at load factor @p t, by subdomain of this rank. Forces per area and per volume act on the body's
   /// thickness, or on the whole circumference; pressure acts against the outward normal of the undeformed boundary; a
   /// point load acts on one copy of the node nearest to it, whole (no thickness, no circumference). Formulas of
-  /// tractions are integrated by AdaptiveQuadrature, jumps included. Thermal strain enters as the force of the stress
+  /// tractions are integrated by AdaptiveQuadrature and AdaptiveCubature, jumps included. Thermal strain enters as the force of the stress
   /// that would suppress it. Collective.
   /// @throws InputError on all ranks for a formula that gives no number and for a point load outside its body.
   template <int dim>

@@ -36,6 +36,12 @@ namespace slipstick::scene
       return size;
     }
 
+    /// All vertices.
+    const std::vector<dealii::Point<3>> &corners() const
+    {
+      return vertices;
+    }
+
     std::size_t n_triangles() const
     {
       return triangles.size();

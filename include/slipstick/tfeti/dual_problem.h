@@ -128,7 +128,8 @@ namespace slipstick::tfeti
       return preconditioner && !bodies->are_solids() ? norm_PFP * least_stiffness : 0.;
     }
 
-    /// Norm of the part of a residual (such as d - F x over norm()) that multipliers can change, with its weights.
+    /// Norm of the part of a residual (such as d - F x over norm()) that multipliers can change, with its
+    /// weights; 0 where that is rounding.
     double residual_norm(const DistributedVector &r) const;
 
     /// Nearly the squared energy norm of the smallest displacements that close jumps r (owned rows) [mm], where rows
