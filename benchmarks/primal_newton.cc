@@ -1,5 +1,6 @@
 // benchmark_primal_newton CASE.prm [options]: the usual way to solve a contact problem with Tresca friction, to compare
-// slipstick with: a primal semismooth Newton method (primal-dual active set; Hueber, Wohlmuth 2005) on the untorn body,
+// slipstick with: a primal semismooth Newton method (primal-dual active set; Hueber, Wohlmuth 2005; in space with discs: Hueber, Stadler,
+// Wohlmuth 2008, in the symmetric form of converged directions) on the untorn body,
 // sparse Cholesky factorisations by CHOLMOD. benchmarks/primal_newton runs it; prints one line of JSON.
 //
 // What makes it quick: same matrices as slipstick's (its layer of mechanics, Decomposition/Method = none), normal and tangential
@@ -9,9 +10,9 @@
 //
 // --ordering amd|metis|nesdis   CHOLMOD's ordering
 // --start open|gap|coarse       first active set: nothing closed; the node with the smallest gap (default); that of the
-//                               solution on the mesh of half as many Blocks, and so on down to 1 (their time counts)
+//                               solution on the mesh of half as many Blocks, and so on down to 1 (their time counts; in the plane)
 // --condensed                   contact unknowns last in the ordering, one factorisation, Newton on their dense Schur
-//                               complement: beyond the usual way
+//                               complement: beyond the usual way (in the plane)
 // --analysis-only               one analysis and one factorisation, to choose the ordering
 // --tolerance EPS, --threads N (of BLAS), --openmp (CHOLMOD's OpenMP regions as they come), --set NAME=VALUE
 #include <slipstick/base/log.h>
@@ -70,50 +71,56 @@ namespace
   };
 
   /// One contact node: unknowns v_n, v_t of the reduced problem, u = n v_n + t v_t.
+  template <int dim>
   struct ContactNode
   {
-    std::array<int, 2> unknown;              // normal, tangential
-    double             position, gap, bound; // along x [mm], [mm], [N]
+    std::array<int, dim> unknown;                    // normal, tangential
+    double               position, area, gap, bound; // along x [mm], [mm^2], [mm], [N]
   };
 
   /// min 1/2 v'A v - b'v + sum bound |v_t|, v_n <= gap, supports eliminated.
+  template <int dim>
   struct Problem
   {
-    Eigen::SparseMatrix<double> lower; // lower triangle of A [N/mm]
-    Vector                      load;  // [N]
-    std::vector<ContactNode>    nodes; // sorted by position
+    Eigen::SparseMatrix<double>   lower; // lower triangle of A [N/mm]
+    Vector                        load;  // [N]
+    std::vector<ContactNode<dim>> nodes; // sorted by position
   };
 
   /// Normal and tangential directions in place of x and y at the contact nodes: A := Q'A Q on their blocks.
-  void rotate(Eigen::SparseMatrix<double> &A, Vector &b, const std::map<int, Eigen::Matrix2d> &directions)
+  template <int dim>
+  void rotate(Eigen::SparseMatrix<double>                          &A,
+              Vector                                               &b,
+              const std::map<int, Eigen::Matrix<double, dim, dim>> &directions)
   {
+    using Square     = Eigen::Matrix<double, dim, dim>;
     const auto entry = [&A](const int i, const int j) -> double & {
       const int *begin = A.innerIndexPtr() + A.outerIndexPtr()[j], *end = A.innerIndexPtr() + A.outerIndexPtr()[j + 1];
       return A.valuePtr()[std::lower_bound(begin, end, i) - A.innerIndexPtr()];
     };
-    const auto direction = [&directions](const int node) -> Eigen::Matrix2d {
+    const auto direction = [&directions](const int node) -> Square {
       const auto found = directions.find(node);
-      return found == directions.end() ? Eigen::Matrix2d(Eigen::Matrix2d::Identity()) : found->second;
+      return found == directions.end() ? Square(Square::Identity()) : found->second;
     };
-    for (int column = 0; 2 * column < A.cols(); ++column)
-      for (int k = A.outerIndexPtr()[2 * column]; k < A.outerIndexPtr()[2 * column + 1]; ++k)
+    for (int column = 0; dim * column < A.cols(); ++column)
+      for (int k = A.outerIndexPtr()[dim * column]; k < A.outerIndexPtr()[dim * column + 1]; ++k)
         {
-          const int row = A.innerIndexPtr()[k] / 2;
-          if (A.innerIndexPtr()[k] % 2 == 1 || (!directions.count(row) && !directions.count(column)))
+          const int row = A.innerIndexPtr()[k] / dim;
+          if (A.innerIndexPtr()[k] % dim != 0 || (!directions.count(row) && !directions.count(column)))
             continue;
-          Eigen::Matrix2d block;
-          for (int i = 0; i < 2; ++i)
-            for (int j = 0; j < 2; ++j)
-              block(i, j) =
-                row == column && i < j ? entry(2 * row + j, 2 * column + i) : entry(2 * row + i, 2 * column + j);
+          Square block;
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j)
+              block(i, j) = row == column && i < j ? entry(dim * row + j, dim * column + i)
+                                                   : entry(dim * row + i, dim * column + j);
           block = direction(row).transpose() * block * direction(column);
-          for (int i = 0; i < 2; ++i)
-            for (int j = 0; j < 2; ++j)
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j)
               if (row != column || i >= j)
-                entry(2 * row + i, 2 * column + j) = block(i, j);
+                entry(dim * row + i, dim * column + j) = block(i, j);
         }
     for (const auto &[node, Q] : directions)
-      b.segment<2>(2 * node) = Q.transpose() * b.segment<2>(2 * node).eval();
+      b.segment<dim>(dim * node) = Q.transpose() * b.segment<dim>(dim * node).eval();
   }
 
   /// Removes rows and columns; in place, since indices only move down. Returns the new numbers, -1 for removed ones.
@@ -148,19 +155,20 @@ namespace
     return number;
   }
 
-  Problem assembled(const Options &options, const std::vector<std::string> &overrides, Clock &clock)
+  template <int dim>
+  Problem<dim> assembled(const Options &options, const std::vector<std::string> &overrides, Clock &clock)
   {
     clock.enter("mesh");
-    const auto scene       = scene::read_scene(options.file, overrides);
-    const auto mesh        = std::make_unique<const mesh::Mesh<2>>(mesh::make_mesh(scene, MPI_COMM_WORLD));
-    const auto spaces      = std::make_unique<const mechanics::Spaces<2>>(*mesh, scene.discretization.degree);
+    const auto scene       = scene::read_scene<dim>(options.file, overrides);
+    const auto mesh        = std::make_unique<const mesh::Mesh<dim>>(mesh::make_mesh(scene, MPI_COMM_WORLD));
+    const auto spaces      = std::make_unique<const mechanics::Spaces<dim>>(*mesh, scene.discretization.degree);
     const auto constraints = interface::contact_constraints(scene, *mesh, *spaces, 1.);
     clock.enter("assembly");
     auto matrices = mechanics::assemble(scene, *mesh, *spaces, 1.);
     if (matrices.size() != 1)
       throw std::runtime_error("one body and one rank, please");
 
-    Problem problem;
+    Problem<dim> problem;
     problem.lower = std::move(matrices[0].stiffness);
     problem.load  = std::move(matrices[0].load);
     std::vector<bool>                                   held(problem.load.size(), false);
@@ -174,28 +182,35 @@ namespace
             throw std::runtime_error("supports must hold single unknowns at 0 here");
           held[entries[row][0].dof] = true;
         }
-    std::map<int, Eigen::Matrix2d> directions;
+    using Square = Eigen::Matrix<double, dim, dim>;
+    std::map<int, Square> directions;
     for (const auto &point : constraints.contact_points)
       {
-        ContactNode     node;
-        Eigen::Matrix2d Q;
-        Q.setZero();
-        const int first = entries[point.normal_row][0].dof / 2 * 2;
-        for (const auto &[row, k] : {std::pair(point.normal_row, 0), std::pair(point.tangential_row, 1)})
-          for (const auto &entry : entries[row])
+        const int first = entries[point.normal_row][0].dof / dim * dim;
+        if (std::all_of(held.begin() + first, held.begin() + first + dim, [](const bool is_held) { return is_held; }))
+          continue;
+        ContactNode<dim>                  node;
+        Square                            Q    = Square::Zero();
+        const std::array<unsigned int, 3> rows = {{point.normal_row, point.tangential_row, point.second_row}};
+        for (int k = 0; k < dim; ++k)
+          for (const auto &entry : entries[rows[k]])
             Q(entry.dof - first, k) = entry.value;
         if (!(Q.transpose() * Q).isIdentity(1e-10))
           throw std::runtime_error("contact rows are not orthonormal");
-        directions[first / 2]       = Q;
-        node.unknown                = {{first, first + 1}};
-        node.position               = point.position[0];
-        node.gap                    = constraints.c[point.normal_row];
-        const auto            &pair = scene.contacts[point.pair];
-        const dealii::Point<2> x(point.position[0], point.position[1]);
+        directions[first / dim] = Q;
+        for (int k = 0; k < dim; ++k)
+          node.unknown[k] = first + k;
+        node.position           = point.position[0];
+        node.area               = point.area;
+        node.gap                = constraints.c[point.normal_row];
+        const auto        &pair = scene.contacts[point.pair];
+        dealii::Point<dim> x;
+        for (int k = 0; k < dim; ++k)
+          x[k] = point.position[k];
         node.bound = pair.law.admissible_forces(x, 1., point.area, pair.name).fixed;
         problem.nodes.push_back(node);
       }
-    rotate(problem.lower, problem.load, directions);
+    rotate<dim>(problem.lower, problem.load, directions);
     const auto number = eliminate(problem.lower, problem.load, held);
     for (auto &node : problem.nodes)
       for (int &unknown : node.unknown)
@@ -207,9 +222,10 @@ namespace
   }
 
   /// Mesh and spaces are gone, and their memory is given back.
-  Problem make_problem(const Options &options, const std::vector<std::string> &overrides, Clock &clock)
+  template <int dim>
+  Problem<dim> make_problem(const Options &options, const std::vector<std::string> &overrides, Clock &clock)
   {
-    Problem problem = assembled(options, overrides, clock);
+    Problem<dim> problem = assembled<dim>(options, overrides, clock);
     malloc_trim(0);
     return problem;
   }
@@ -220,11 +236,27 @@ namespace
     closed
   };
 
-  /// What is assumed of every contact node in a Newton step; slip -1, 0 (sticks), 1: sign of v_t.
+  /// What is assumed of the tangential motion: none, or the friction bound * direction + stiffness * (what of v_t is across it).
+  template <int dim>
+  struct Slip
+  {
+    bool                              slips     = false;
+    Eigen::Matrix<double, dim - 1, 1> direction = Eigen::Matrix<double, dim - 1, 1>::Zero(); // of v_t, length 1
+    double                            stiffness = 0;                                         // [N/mm]
+
+    /// In the plane alone sets come back to the last bit.
+    bool operator==(const Slip &other) const
+    {
+      return slips == other.slips && direction == other.direction && stiffness == other.stiffness;
+    }
+  };
+
+  /// What is assumed of every contact node in a Newton step.
+  template <int dim>
   struct ActiveSet
   {
-    std::vector<Normal>      normal;
-    std::vector<signed char> slip;
+    std::vector<Normal>    normal;
+    std::vector<Slip<dim>> slip;
 
     bool operator==(const ActiveSet &other) const
     {
@@ -233,38 +265,65 @@ namespace
   };
 
   /// v and the forces at contact unknowns.
+  template <int dim>
   struct State
   {
-    std::vector<std::array<double, 2>> v, force; // [mm]; -(A v - b) [N]
+    using Node = Eigen::Matrix<double, dim, 1>;
+    std::vector<Node> v, force; // [mm]; -(A v - b) [N]
   };
+
+  /// w = force + constant v_t tells the next slip: force = bound w / |w|, linearised where w is, with the converged direction on its own
+  /// side, so that the matrix stays symmetric. In the plane nothing is across the direction.
+  template <int dim>
+  Slip<dim> slip_along(const Eigen::Matrix<double, dim - 1, 1> &w, const double bound, const double constant)
+  {
+    Slip<dim> slip;
+    slip.slips     = true;
+    slip.direction = w.normalized();
+    if (dim == 3)
+      slip.stiffness = constant * bound / std::max(w.norm() - bound, 1e-12 * w.norm());
+    return slip;
+  }
 
   /// The next active set, and how far the state is from complementarity: violated forces over all forces, violated
   /// displacements over all displacements, the larger. A node that slips against its friction sticks next: the constant
   /// of the complementarity function is taken so small that it never reverses at once (with 1e5 N/mm it cycles).
-  std::pair<ActiveSet, double> next_set(const Problem &problem, const State &state, const ActiveSet &set)
+  template <int dim>
+  std::pair<ActiveSet<dim>, double> next_set(const Problem<dim>   &problem,
+                                             const State<dim>     &state,
+                                             const ActiveSet<dim> &set,
+                                             const double          constant = 0)
   {
-    ActiveSet  next        = set;
-    double     wrong_force = 0, wrong_motion = 0, force = 0, motion = 0;
-    const auto square = [](const double x) { return x * x; };
+    ActiveSet<dim> next        = set;
+    double         wrong_force = 0, wrong_motion = 0, force = 0, motion = 0;
+    const auto     square = [](const double x) { return x * x; };
     for (unsigned int i = 0; i < problem.nodes.size(); ++i)
       {
-        const auto &node              = problem.nodes[i];
-        const auto [v_n, v_t]         = state.v[i];
-        const auto [force_n, force_t] = state.force[i];
-        const bool closed             = set.normal[i] == Normal::closed;
-        force += square(force_n) + square(force_t);
-        motion += square(v_n) + square(v_t);
+        const auto  &node = problem.nodes[i];
+        const double v_n = state.v[i][0], force_n = state.force[i][0];
+        const auto   v_t     = state.v[i].template tail<dim - 1>().eval();
+        const auto   force_t = state.force[i].template tail<dim - 1>().eval();
+        const bool   closed  = set.normal[i] == Normal::closed;
+        force += state.force[i].squaredNorm();
+        motion += state.v[i].squaredNorm();
         (closed ? wrong_force : wrong_motion) += square(closed ? std::min(force_n, 0.) : std::max(v_n - node.gap, 0.));
         next.normal[i] = (closed ? force_n > 0 : v_n > node.gap) ? Normal::closed : Normal::open;
-        if (set.slip[i] == 0)
+        if (!set.slip[i].slips)
           {
-            wrong_force += square(std::max(std::abs(force_t) - node.bound, 0.));
-            next.slip[i] = force_t > node.bound ? 1 : (force_t < -node.bound ? -1 : 0);
+            wrong_force += square(std::max(force_t.norm() - node.bound, 0.));
+            if (force_t.norm() > node.bound)
+              next.slip[i] = slip_along<dim>(force_t, node.bound, constant);
           }
-        else if (set.slip[i] * v_t < 0)
+        else if (set.slip[i].direction.dot(v_t) < 0)
           {
-            wrong_motion += square(v_t);
-            next.slip[i] = 0;
+            wrong_motion += v_t.squaredNorm();
+            next.slip[i] = {};
+          }
+        else if (dim == 3)
+          {
+            if (v_t.norm() > 0)
+              wrong_force += (force_t - node.bound * v_t.normalized()).squaredNorm();
+            next.slip[i] = slip_along<dim>(force_t + constant * v_t, node.bound, constant);
           }
       }
     return {next,
@@ -392,16 +451,21 @@ namespace
   };
 
   /// The matrix of a Newton step: entries near the contact are those of A or of fixed unknowns.
+  template <int dim>
   class ContactEntries
   {
   public:
-    ContactEntries(Problem &problem_)
+    ContactEntries(Problem<dim> &problem_)
       : problem(problem_)
       , node_of(problem_.load.size(), -1)
+      , component_of(problem_.load.size(), 0)
     {
       for (unsigned int i = 0; i < problem.nodes.size(); ++i)
-        for (const int unknown : problem.nodes[i].unknown)
-          node_of[unknown] = i;
+        for (int k = 0; k < dim; ++k)
+          {
+            node_of[problem.nodes[i].unknown[k]]      = i;
+            component_of[problem.nodes[i].unknown[k]] = k;
+          }
       auto &A = problem.lower;
       for (int j = 0; j < A.cols(); ++j)
         for (int k = A.outerIndexPtr()[j]; k < A.outerIndexPtr()[j + 1]; ++k)
@@ -410,22 +474,24 @@ namespace
     }
 
     /// Writes the matrix of a step into the lower triangle of the problem; returns its right hand side.
-    Vector matrix_and_load(const ActiveSet &set)
+    Vector matrix_and_load(const ActiveSet<dim> &set)
     {
       std::vector<char> fixed(problem.load.size(), 0);
       Vector            b = problem.load, value = Vector::Zero(problem.load.size());
       for (unsigned int i = 0; i < problem.nodes.size(); ++i)
         {
-          const auto [n, t] = problem.nodes[i].unknown;
-          fixed[n]          = set.normal[i] == Normal::closed;
-          value[n]          = problem.nodes[i].gap;
-          fixed[t]          = set.slip[i] == 0;
-          if (set.slip[i] != 0)
-            b[t] -= set.slip[i] * problem.nodes[i].bound;
+          const auto &unknown = problem.nodes[i].unknown;
+          fixed[unknown[0]]   = set.normal[i] == Normal::closed;
+          value[unknown[0]]   = problem.nodes[i].gap;
+          for (int k = 1; k < dim; ++k)
+            {
+              fixed[unknown[k]] = !set.slip[i].slips;
+              b[unknown[k]] -= set.slip[i].direction[k - 1] * problem.nodes[i].bound;
+            }
         }
       for (const auto &[k, i, j, a] : entries)
         {
-          problem.lower.valuePtr()[k] = !fixed[i] && !fixed[j] ? a : (i == j ? a : 0.);
+          problem.lower.valuePtr()[k] = !fixed[i] && !fixed[j] ? a + friction(set, i, j) : (i == j ? a : 0.);
           if (i != j && fixed[i] && !fixed[j])
             b[j] -= a * value[i];
           if (i != j && fixed[j] && !fixed[i])
@@ -437,13 +503,14 @@ namespace
       return b;
     }
 
-    State state(const double *v) const
+    State<dim> state(const double *v) const
     {
-      State                              state;
-      std::vector<std::array<double, 2>> product(problem.nodes.size(), {{0, 0}});
-      const auto                         add = [&](const int i, const double x) {
+      using Node = typename State<dim>::Node;
+      State<dim>        state;
+      std::vector<Node> product(problem.nodes.size(), Node::Zero());
+      const auto        add = [&](const int i, const double x) {
         if (node_of[i] >= 0)
-          product[node_of[i]][i == problem.nodes[node_of[i]].unknown[1]] += x;
+          product[node_of[i]][component_of[i]] += x;
       };
       for (const auto &[k, i, j, a] : entries)
         {
@@ -453,41 +520,71 @@ namespace
         }
       for (unsigned int i = 0; i < problem.nodes.size(); ++i)
         {
-          const auto [n, t] = problem.nodes[i].unknown;
-          state.v.push_back({{v[n], v[t]}});
-          state.force.push_back({{problem.load[n] - product[i][0], problem.load[t] - product[i][1]}});
+          state.v.push_back(Node::Zero());
+          state.force.push_back(-product[i]);
+          for (int k = 0; k < dim; ++k)
+            {
+              state.v.back()[k] = v[problem.nodes[i].unknown[k]];
+              state.force.back()[k] += problem.load[problem.nodes[i].unknown[k]];
+            }
         }
       return state;
     }
 
+    /// Mean stiffness of the tangential unknowns [N/mm].
+    double mean_stiffness() const
+    {
+      double       sum = 0;
+      unsigned int n   = 0;
+      for (const auto &[k, i, j, a] : entries)
+        if (i == j && component_of[i] > 0)
+          {
+            sum += a;
+            ++n;
+          }
+      return sum / std::max(n, 1u);
+    }
+
   private:
+    /// What friction adds to an entry.
+    double friction(const ActiveSet<dim> &set, const int i, const int j) const
+    {
+      if (dim == 2 || node_of[i] != node_of[j] || component_of[i] == 0 || component_of[j] == 0)
+        return 0;
+      const Slip<dim> &slip = set.slip[node_of[i]];
+      return slip.stiffness * ((i == j) - slip.direction[component_of[i] - 1] * slip.direction[component_of[j] - 1]);
+    }
+
     struct Entry
     {
       int    place, i, j;
       double value;
     };
 
-    Problem           &problem;
-    std::vector<int>   node_of; // by unknown
+    Problem<dim>      &problem;
+    std::vector<int>   node_of, component_of; // by unknown
     std::vector<Entry> entries;
   };
 
+  template <int dim>
   struct Result
   {
-    ActiveSet    set;
-    State        state;
-    Vector       v;
-    unsigned int steps     = 0;
-    double       violation = 0, factor_mb = 0;
-    bool         converged = false;
+    ActiveSet<dim> set;
+    State<dim>     state;
+    Vector         v;
+    unsigned int   steps     = 0;
+    double         violation = 0, factor_mb = 0;
+    bool           converged = false;
   };
 
   /// Newton with a factorisation a step.
-  Result newton(Problem &problem, const ActiveSet &start, const Options &options, Clock &clock)
+  template <int dim>
+  Result<dim> newton(Problem<dim> &problem, const ActiveSet<dim> &start, const Options &options, Clock &clock)
   {
     clock.enter("assembly");
-    ContactEntries contact(problem);
-    Result         result;
+    ContactEntries<dim> contact(problem);
+    const double        constant = contact.mean_stiffness();
+    Result<dim>         result;
     result.set = start;
     clock.enter("analysis");
     Factor factor(problem.lower, options.ordering);
@@ -502,7 +599,7 @@ namespace
         clock.enter("solve");
         const double *v        = factor.solve(b);
         result.state           = contact.state(v);
-        auto [next, violation] = next_set(problem, result.state, result.set);
+        auto [next, violation] = next_set(problem, result.state, result.set, constant);
         result.violation       = violation;
         result.converged       = violation <= options.tolerance || next == result.set;
         if (result.converged)
@@ -515,7 +612,7 @@ namespace
   }
 
   /// Newton on the Schur complement of the contact unknowns; one sparse factorisation in all.
-  Result condensed(Problem &problem, const ActiveSet &start, const Options &options, Clock &clock)
+  Result<2> condensed(Problem<2> &problem, const ActiveSet<2> &start, const Options &options, Clock &clock)
   {
     std::vector<int> last;
     for (const auto &node : problem.nodes)
@@ -533,7 +630,7 @@ namespace
     for (int k = 0; k < n; ++k)
       u_last[k] = u[last[k]];
     const Vector g = S * u_last; // condensed load
-    Result       result;
+    Result<2>    result;
     result.set       = start;
     result.factor_mb = factor.megabytes();
     Vector v(n), force(n);
@@ -549,10 +646,10 @@ namespace
               free.push_back(2 * i);
             else
               v[2 * i] = problem.nodes[i].gap;
-            if (result.set.slip[i] != 0)
+            if (result.set.slip[i].slips)
               {
                 free.push_back(2 * i + 1);
-                right[2 * i + 1] -= result.set.slip[i] * problem.nodes[i].bound;
+                right[2 * i + 1] -= result.set.slip[i].direction[0] * problem.nodes[i].bound;
               }
           }
         right -= S * v;
@@ -563,11 +660,11 @@ namespace
             v(free)                        = solution;
           }
         force        = g - S * v;
-        result.state = State();
+        result.state = State<2>();
         for (int i = 0; i < n / 2; ++i)
           {
-            result.state.v.push_back({{v[2 * i], v[2 * i + 1]}});
-            result.state.force.push_back({{force[2 * i], force[2 * i + 1]}});
+            result.state.v.push_back(v.segment<2>(2 * i));
+            result.state.force.push_back(force.segment<2>(2 * i));
           }
         auto [next, violation] = next_set(problem, result.state, result.set);
         result.violation       = violation;
@@ -581,11 +678,12 @@ namespace
     return result;
   }
 
-  ActiveSet first_set(const Problem &problem, const std::string &start)
+  template <int dim>
+  ActiveSet<dim> first_set(const Problem<dim> &problem, const std::string &start)
   {
-    ActiveSet set{std::vector<Normal>(problem.nodes.size(), Normal::open),
-                  std::vector<signed char>(problem.nodes.size(), 0)};
-    double    smallest = HUGE_VAL;
+    ActiveSet<dim> set{std::vector<Normal>(problem.nodes.size(), Normal::open),
+                       std::vector<Slip<dim>>(problem.nodes.size())};
+    double         smallest = HUGE_VAL;
     for (const auto &node : problem.nodes)
       smallest = std::min(smallest, node.gap);
     if (start == "gap")
@@ -596,10 +694,11 @@ namespace
   }
 
   /// The active set of the nearest node of a coarser mesh.
-  ActiveSet transferred(const Problem &from, const ActiveSet &set, const Problem &to)
+  template <int dim>
+  ActiveSet<dim> transferred(const Problem<dim> &from, const ActiveSet<dim> &set, const Problem<dim> &to)
   {
-    ActiveSet    result = first_set(to, "open");
-    unsigned int k      = 0;
+    ActiveSet<dim> result = first_set(to, "open");
+    unsigned int   k      = 0;
     for (unsigned int i = 0; i < to.nodes.size(); ++i)
       {
         while (k + 1 < from.nodes.size() && std::abs(from.nodes[k + 1].position - to.nodes[i].position) <=
@@ -611,9 +710,13 @@ namespace
     return result;
   }
 
-  Result solve(Problem &problem, const ActiveSet &start, const Options &options, Clock &clock)
+  template <int dim>
+  Result<dim> solve(Problem<dim> &problem, const ActiveSet<dim> &start, const Options &options, Clock &clock)
   {
-    return options.condensed ? condensed(problem, start, options, clock) : newton(problem, start, options, clock);
+    if constexpr (dim == 2)
+      if (options.condensed)
+        return condensed(problem, start, options, clock);
+    return newton(problem, start, options, clock);
   }
 
   std::vector<std::string> with_blocks(std::vector<std::string> overrides, const unsigned int blocks)
@@ -623,27 +726,30 @@ namespace
     return overrides;
   }
 
+  template <int dim>
   nlohmann::json run(const Options &options)
   {
+    if (dim == 3 && (options.condensed || options.start == "coarse"))
+      throw std::runtime_error("--condensed and --start coarse are for scenes in the plane");
     Clock clock;
     clock.enter("mesh");
-    const unsigned int        blocks = scene::read_scene(options.file, options.overrides).decomposition.blocks;
+    const unsigned int        blocks = scene::read_scene<dim>(options.file, options.overrides).decomposition.blocks;
     std::vector<unsigned int> steps_before;
-    ActiveSet                 start;
-    Problem                   coarse;
+    ActiveSet<dim>            start;
+    Problem<dim>              coarse;
     if (options.start == "coarse")
       for (unsigned int n = 1; n < blocks; n *= 2)
         {
-          Problem finer = make_problem(options, with_blocks(options.overrides, n), clock);
-          start         = n == 1 ? first_set(finer, "open") : transferred(coarse, start, finer);
-          auto result   = solve(finer, start, options, clock);
+          Problem<dim> finer = make_problem<dim>(options, with_blocks(options.overrides, n), clock);
+          start              = n == 1 ? first_set(finer, "open") : transferred(coarse, start, finer);
+          auto result        = solve(finer, start, options, clock);
           steps_before.push_back(result.steps);
           start        = std::move(result.set);
           coarse.nodes = finer.nodes;
         }
-    Problem problem = make_problem(options, with_blocks(options.overrides, blocks), clock);
-    start           = coarse.nodes.empty() ? first_set(problem, options.start) : transferred(coarse, start, problem);
-    const Result result = solve(problem, start, options, clock);
+    Problem<dim> problem = make_problem<dim>(options, with_blocks(options.overrides, blocks), clock);
+    start = coarse.nodes.empty() ? first_set(problem, options.start) : transferred(coarse, start, problem);
+    const Result<dim> result = solve(problem, start, options, clock);
     clock.enter("end");
 
     nlohmann::json out;
@@ -661,21 +767,18 @@ namespace
     out["memory_mb"]       = peak_memory_mb();
     if (options.analysis_only)
       return out;
-    const double length           = problem.nodes[1].position - problem.nodes[0].position;
     double       largest_pressure = 0, normal_force = 0, tangential_force = 0, displacement = 0;
     unsigned int closed = 0, slips = 0;
     for (unsigned int i = 0; i < problem.nodes.size(); ++i)
       {
-        const bool   at_end = i + 1 == problem.nodes.size();
-        const double area   = at_end ? length / 2 : length; // thickness 1; the other end of the boundary is held
         closed += result.set.normal[i] == Normal::closed;
-        slips += result.set.slip[i] != 0;
-        largest_pressure = std::max(largest_pressure, result.state.force[i][0] / area);
+        slips += result.set.slip[i].slips;
+        largest_pressure = std::max(largest_pressure, result.state.force[i][0] / problem.nodes[i].area);
         normal_force += result.state.force[i][0];
-        tangential_force += result.state.force[i][1];
+        tangential_force += dim == 2 ? result.state.force[i][1] : result.state.force[i].tail(dim - 1).norm();
       }
-    for (int i = 0; i + 1 < result.v.size(); i += 2)
-      displacement = std::max(displacement, std::hypot(result.v[i], result.v[i + 1]));
+    for (int i = 0; i + dim <= result.v.size(); i += dim)
+      displacement = std::max(displacement, result.v.template segment<dim>(i).norm());
     out["converged"]        = result.converged;
     out["violation"]        = result.violation;
     out["contact_nodes"]    = closed;
@@ -729,7 +832,8 @@ int main(int argc, char **argv)
     {
       const Options  options = read(argc, argv);
       tfeti::Process process(options.threads, options.openmp);
-      std::cout << run(options).dump() << std::endl;
+      const bool     is_solid = scene::read_dimension(options.file, options.overrides) == 3;
+      std::cout << (is_solid ? run<3>(options) : run<2>(options)).dump() << std::endl;
     }
   catch (const std::exception &error)
     {

@@ -1,4 +1,4 @@
-"""Decks for CalculiX (surface-to-surface penalty contact of two meshes of quadrilaterals), its runs and its results."""
+"""Decks for CalculiX (surface-to-surface penalty contact of two meshes of quadrilaterals or hexahedra), its runs and its results."""
 
 import os
 import pathlib
@@ -24,20 +24,22 @@ def edges_where(body, condition):
 
 
 def write_deck(file_name, bodies, held, pressed, contact, physics):
-    """Bodies: points, cells (counterclockwise), young, poisson. held: [(body, points, directions)]; pressed: (body, edges, MPa);
-    contact: ((slave body, edges), (master body, edges)); physics: element, penalty, stick, friction."""
+    """Bodies: points, cells (counterclockwise; hexahedra as C3D8), young, poisson. held: [(body, points, directions)]; pressed: (body,
+    edges or faces, MPa); contact: ((slave body, edges), (master body, edges)); physics: element, penalty, stick, friction."""
+    is_solid = len(bodies[0]["points"][0]) == 3
+    line = (lambda i, point: ",".join([str(i), *(f"{x:.15g}" for x in point)] + ([] if is_solid else ["0"])) + "\n")
     with open(file_name, "w", encoding="ascii") as file:
         write = file.write
         first_node, first_element, n_nodes, n_elements = [], [], 0, 0
         for number, body in enumerate(bodies):
             first_node.append(n_nodes + 1)
             first_element.append(n_elements + 1)
-            write("*NODE\n" + "".join(f"{n_nodes + 1 + i},{x:.15g},{y:.15g},0\n" for i, (x, y) in enumerate(body["points"])))
+            write("*NODE\n" + "".join(line(n_nodes + 1 + i, point) for i, point in enumerate(body["points"])))
             write(f"*ELEMENT,TYPE={physics['element']},ELSET=E{number}\n")
             write("".join(f"{n_elements + 1 + i},{','.join(str(n_nodes + 1 + point) for point in cell)}\n"
                           for i, cell in enumerate(body["cells"])))
             write(f"*MATERIAL,NAME=M{number}\n*ELASTIC\n{body['young']:g},{body['poisson']:g}\n"
-                  f"*SOLID SECTION,ELSET=E{number},MATERIAL=M{number}\n1.\n")
+                  f"*SOLID SECTION,ELSET=E{number},MATERIAL=M{number}\n" + ("" if is_solid else "1.\n"))
             n_nodes += len(body["points"])
             n_elements += len(body["cells"])
         for name, (body, edges) in zip(("SLAVE", "MASTER"), contact):
@@ -51,7 +53,7 @@ def write_deck(file_name, bodies, held, pressed, contact, physics):
         body, edges, pressure = pressed
         write("*STEP\n*STATIC,SOLVER=SPOOLES\n1.,1.\n*DLOAD\n"
               + "".join(f"{first_element[body] + e},P{f},{pressure:g}\n" for e, f in edges))
-        write("*CONTACT FILE\nCDIS,CSTR\n*NODE FILE,OUTPUT=2D\nU\n*END STEP\n")
+        write(f"*CONTACT FILE\nCDIS,CSTR\n*NODE FILE{'' if is_solid else ',OUTPUT=2D'}\nU\n*END STEP\n")
     return first_node
 
 

@@ -1,6 +1,6 @@
-"""GetFEM on the box with Coulomb friction and on Hertz contact; run by benchmarks/rivals with Debian's Python.
+"""GetFEM on the box and the cube with Coulomb friction and on Hertz contact; run by benchmarks/rivals with Debian's Python.
 
-rival_getfem.py box CELLS | hertz MESH.json; prints one line of JSON: time by stage, peak memory, Newton steps, and the normal
+rival_getfem.py box CELLS | cube CELLS FRICTION | hertz MESH.json; prints one line of JSON: time by stage, peak memory, Newton steps, and the normal
 force of every contact node by position. Nodal augmented Lagrangian, Newton, MUMPS. Settings: the symmetric augmentation
 with r = 10 E takes the fewest Newton steps of three versions, four r, two line searches (box with 2500 cells and four times
 as many).
@@ -16,6 +16,7 @@ import numpy as np
 
 YOUNG, POISSON, FRICTION, PRESSURE = 1e5, 0.35, 0.3, 250.0  # box: [MPa], [-], [-], [MPa]
 SIZE, RADIUS = 10.0, 20.0  # [mm]
+CUBE_PRESSURE, SPHERE = 500.0, 100.0  # on the top of the cube [MPa]; radius of the sphere below the middle of its bottom [mm]
 AUGMENTATION, VERSION = 10.0, 2  # r over Young's modulus; symmetric (Hertz: the nonsymmetric version 1)
 RESIDUAL = 1e-6  # relative
 
@@ -79,6 +80,48 @@ def box(n):
     displacement = model.variable("u").reshape(-1, 2)
     result["max_displacement"] = float(np.hypot(*displacement.T).max())
     result["nodes"] = by_position(fem.basic_dof_nodes()[:, dofs[::2]].T, -model.variable("normal"))
+    result["unknowns"] = fem.nbdof()
+    return result, stages
+
+
+def cube(n, friction):
+    """prm/cube_on_sphere.prm: clamped at x = 0, pressed from above (y) on a rigid sphere; friction 0: frictionless."""
+    stages = Stages()
+    lines = np.linspace(0, SIZE, n + 1)
+    mesh = gf.Mesh("cartesian", lines, lines, lines)
+    faces = mesh.outer_faces()
+    normals = mesh.normal_of_faces(faces)
+    left, bottom, top = 1, 2, 3
+    for region, kept in ((left, normals[0] < -0.9), (bottom, normals[1] < -0.9), (top, normals[1] > 0.9)):
+        mesh.set_region(region, faces[:, kept])
+    fem = gf.MeshFem(mesh, 3)
+    fem.set_fem(gf.Fem("FEM_QK(3,1)"))
+    integration = gf.MeshIm(mesh, gf.Integ("IM_GAUSS_PARALLELEPIPED(3,3)"))
+    stages.end("mesh")
+    model = gf.Model("real")
+    model.add_fem_variable("u", fem)
+    first, shear = lame(YOUNG, POISSON, plane_stress=False)
+    for name, value in (("lambda", first), ("mu", shear), ("r", AUGMENTATION * YOUNG), ("friction", friction)):
+        model.add_initialized_data(name, [value])
+    model.add_isotropic_linearized_elasticity_brick(integration, "u", "lambda", "mu")
+    model.add_initialized_data("traction", [0, -CUBE_PRESSURE, 0])
+    model.add_source_term_brick(integration, "u", "traction", top)
+    model.add_Dirichlet_condition_with_simplification("u", left)
+    dofs = fem.basic_dof_on_region(bottom)
+    variables = ["normal"]
+    model.add_variable("normal", dofs.size // 3)
+    if friction:
+        model.add_variable("tangential", dofs.size // 3 * 2)
+        variables.append("tangential")
+    middle = SIZE / 2
+    model.add_nodal_contact_with_rigid_obstacle_brick(
+        integration, "u", *variables, "r", *(["friction"] if friction else []), bottom,
+        f"sqrt((x-{middle})*(x-{middle})+(y+{SPHERE})*(y+{SPHERE})+(z-{middle})*(z-{middle}))-{SPHERE}", VERSION)
+    stages.end("model")
+    result = solve(model)
+    stages.end("solve")
+    result["max_displacement"] = float(np.linalg.norm(model.variable("u").reshape(-1, 3), axis=1).max())
+    result["nodes"] = by_position(fem.basic_dof_nodes()[::2, dofs[::3]].T, -model.variable("normal"))
     result["unknowns"] = fem.nbdof()
     return result, stages
 
@@ -150,7 +193,11 @@ def hold_axis(model, fem, radius):
 
 def main():
     gf.util_trace_level(0)
-    result, stages = box(int(sys.argv[2])) if sys.argv[1] == "box" else hertz(sys.argv[2])
+    problem, *given = sys.argv[1:]
+    if problem == "cube":
+        result, stages = cube(int(given[0]), float(given[1]))
+    else:
+        result, stages = box(int(given[0])) if problem == "box" else hertz(given[0])
     result["time_s"] = dict(stages.seconds, total=sum(stages.seconds.values()))
     result["memory_mb"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print("RESULT " + json.dumps(result))

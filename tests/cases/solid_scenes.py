@@ -114,6 +114,29 @@ class Assemblies(Solids):
         ends = converged(shipped('cantilevers'), {**closed, 'Contact touch/Law': 'bonded'}).summary['results']['probes']
         self.assertAlmostEqual(ends[0]['displacement'][1] / (-600 * (bending / 8 + shear / 2)), 1, delta=0.03)
 
+    def test_flange(self):
+        """Sector of 22.5 degrees: forces of gasket, bolt and pressure balance at every step; the joint diagram where flanges are stiff."""
+        wetted = 8 * 57 ** 2 / 2 * math.sin(math.pi / 64)  # within the gasket, a polygon
+        preload, gaskets = 2e4, []
+        result = converged(shipped('flange'), {'Output/VTU': 'false'})
+        for pressure, tension, step, row in zip((0, 8, 16), (40.00e3, 37.36e3, 35.20e3), result.summary['steps'], result.rows('history.csv')):
+            bolt, pairs = step['pretensions'][0]['force'], {pair['pair']: pair for pair in step['contact']}
+            self.assertAlmostEqual(bolt / (tension / 2), 1, delta=2e-3)
+            self.assertAlmostEqual(row['traction on cover Fz'], -pressure * wetted, delta=1e-6 * preload)
+            for pair, force in (('under head', bolt), ('under nut', -bolt), ('upper face', pressure * wetted - bolt), ('lower face', bolt - pressure * wetted)):
+                self.assertAlmostEqual(pairs[pair]['force'][2], force, delta=1e-4 * preload)
+            faces = pairs['upper face'], pairs['lower face']
+            gaskets.append((sum(face['open_nodes'] for face in faces), faces[1]['normal_force']))
+        for before, after in zip(gaskets, gaskets[1:]):
+            self.assertGreater(after[0], before[0])
+            self.assertGreater(before[1] - after[1], 8 * wetted)
+        stiff = {'Material flanges/Young modulus': '2.1e7', 'Material fibre/Poisson ratio': '0', 'Load steps/Factors': '1, 2', 'Output/VTU': 'false'}
+        first, second = (step['pretensions'][0] for step in converged(shipped('flange'), stiff).summary['steps'])
+        bolt = (62 + .9 * 16) / (E * 16 * 8 ** 2 / 2 * math.sin(math.pi / 16))
+        gasket = 2 / (1e4 * 8 * (76 ** 2 - 57 ** 2) / 2 * math.sin(math.pi / 64))
+        self.assertAlmostEqual(first['shortening'] / (preload * (bolt + gasket)), 1, delta=0.04)
+        self.assertAlmostEqual((second['force'] - first['force']) / (8 * wetted * gasket / (bolt + gasket)), 1, delta=0.07)
+
     def test_ring_turned_on_its_shaft(self):
         result = converged(shipped('ring_on_shaft'), {'Variables/turn': 0.98})
         self.assertEqual({row['status'] for row in result.contact}, {'stick'})
