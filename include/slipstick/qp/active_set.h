@@ -21,7 +21,7 @@ namespace slipstick::qp
     // Forces out of balance by less than this part of all of them move no body: faces tell what is left, better than points on
     // springs (doc/decisions/0091). ...
     constexpr double tolerated_imbalance = 0.1;
-    // ... After a step that failed less is tolerated, and no more than the natural residual.
+    // ... Once a step was cut in vain less is tolerated, and no more than the natural residual.
     constexpr double fine_imbalance = 0.01;
 
     // Across a slipping force that yields by more than this times what its entry does, over the norm of F, the entry is held.
@@ -430,7 +430,8 @@ namespace slipstick::qp
 
       // moved -= stiffness times the jumps of the motions of bodies at which the forces, cut to their bounds, balance the loads.
       // An entry that its gradient takes off its bound does not count as more than the bound there: what it will bear the face
-      // tells, and it must not push a body off the others that bear its loads.
+      // tells, and it must not push a body off the others that bear its loads. For the same reason motions close one-sided entries, but
+      // open none, until they are asked for finely.
       void move_bodies(const Vector &x, const std::vector<double> &stiffness, std::vector<double> &moved) const
       {
         std::vector<double> forces(moved);
@@ -445,7 +446,12 @@ namespace slipstick::qp
         const std::vector<double> before(forces);
         balance_bodies(problem, stiffness, set, is_fine ? finest_imbalance : tolerated_imbalance, forces, 0);
         for (std::size_t i = 0; i < moved.size(); ++i)
-          moved[i] += forces[i] - before[i];
+          {
+            const double change = forces[i] - before[i];
+            const bool   bears  = moved[i] > set.box.lower.begin()[i] && set.box.upper.begin()[i] == HUGE_VAL;
+            if (is_fine || !bears || change > 0)
+              moved[i] += change;
+          }
       }
 
       // The set, and action(i, x_i, proj(x - s g)_i, (x - s g)_i) for all entries with bounds. Normal entries come first: bounds of
@@ -504,7 +510,7 @@ namespace slipstick::qp
       double                     step;
       double                     softening        = 1;              // of s, <= 1
       double                     finest_imbalance = fine_imbalance; // of forces that moves no body, ...
-      bool                       is_fine          = false;          // ... after a step that failed
+      bool                       is_fine          = false;          // ... once a step was cut in vain
       AdmissibleSet<Vector>      set;
       const double              *weights;
       std::vector<bool>          bounded;

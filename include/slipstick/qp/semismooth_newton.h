@@ -401,7 +401,7 @@ namespace slipstick::qp
           }
         if (!has_met_goal && merit < *std::min_element(merits.begin(), merits.end()))
           best = y;
-        if (!(merit < merits.back()))
+        if (!(merit < merits.back()) && (t == 1 || !set.balance_finely()))
           set.soften();
         go_to_y(merit);
         return t;
