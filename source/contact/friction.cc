@@ -503,6 +503,9 @@ namespace slipstick::contact
           asks = [&](const Vector &step, const Vector &g) {
             return accepts(unshifted(box, bounds_of(set), from, step), g);
           };
+        auto how = options.smalbe;
+        if (options.algorithm == scene::Algorithm::semismooth_newton)
+          how.max_multiplications = longest_fallback;
         // at lower accuracy it goes on all the same
         const double forces = tolerance <= options.tolerance && size_of_forces > 0 ? size_of_forces : qp::infinity;
         const auto   result = qp::smalbe(dual,
@@ -511,7 +514,7 @@ namespace slipstick::contact
                                        set,
                                        reached && *reached ? **reached : qp::SmalbeStart<Vector>{dual.zero()},
                                        qp::Goal(tolerance, solution.reference, forces),
-                                       options.smalbe,
+                                       how,
                                        with_start,
                                        asks);
         solution.status     = result.status;

@@ -224,7 +224,7 @@ namespace slipstick::output
       };
       const Range &first = ranges.front(), &second = ranges.back();
       if (dim == 2)
-        return {at(first.low, 0), at(first.high, 0)};
+        return {at(first.high, 0), at(first.low, 0)};
       return {at(first.low, second.low),
               at(first.high, second.low),
               at(first.high, second.high),

@@ -285,6 +285,19 @@ TEST(SmalbeDegenerate, outer_limit_is_kept)
   EXPECT_EQ(result.counts.outer_iterations, 2u);
 }
 
+TEST(SmalbeDegenerate, limit_of_multiplications_is_kept)
+{
+  const Instance instance(3, 40, 6);
+  SmalbeOptions  options;
+  const auto     all          = instance.solve(1e-12, options);
+  options.max_multiplications = 20;
+  const auto cut              = instance.solve(1e-12, options);
+  ASSERT_EQ(all.status, Status::converged);
+  ASSERT_GT(all.counts.hessian_multiplications, 40);
+  EXPECT_EQ(cut.status, Status::iteration_limit);
+  EXPECT_LE(cut.counts.hessian_multiplications, 40); // an iteration takes up to two
+}
+
 TEST(SmalbeDegenerate, not_a_number_in_the_operator_ends)
 {
   Instance p(10, 10, 2);

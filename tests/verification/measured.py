@@ -186,7 +186,7 @@ def cattaneo_mindlin(cells=40, levels=3, degree=1, share=0.5, length=30):
     return compared_with_cattaneo_mindlin(checked(case), share, degree)
 
 
-def cattaneo_mindlin_cylinders(overrides=None, degree=1):
+def cattaneo_mindlin_cylinders(overrides=None, degree=2):
     """prm/cattaneo_mindlin.prm: two curved bodies."""
     result = checked(shipped('cattaneo_mindlin'), {'Solver/Tolerance': 1e-8, 'Discretization/Degree': degree,
                                                    **(overrides or {})})

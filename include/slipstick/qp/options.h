@@ -1,6 +1,8 @@
 // Tunable numbers of the quadratic programming solvers, each with its source.
 #pragma once
 
+#include <limits>
+
 namespace slipstick::qp
 {
   /// What MPGP does when a conjugate gradient step would leave the bounds.
@@ -33,6 +35,7 @@ namespace slipstick::qp
     double balance_reduction = 1.5; // beta > 1: M is divided by it; the paper's 10 buys inner precision too dearly
     double regularization    = 1.0; // rho over |PFP|
     unsigned int max_outer_iterations = 400;
+    unsigned int max_multiplications  = std::numeric_limits<unsigned int>::max(); // by the Hessian, of one solve
     MpgpOptions  inner;
 
     unsigned int penalty_window   = 15;   // outer steps in which the least |Gx| so far must fall ... (own choice)

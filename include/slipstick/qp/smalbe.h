@@ -107,7 +107,8 @@ namespace slipstick::qp
               return Status::converged;
             if (accepts && accepts(x, *g))
               return Status::converged;
-            if (inner == Status::iteration_limit || counts.outer_iterations >= options.max_outer_iterations)
+            if (inner == Status::iteration_limit || counts.outer_iterations >= options.max_outer_iterations ||
+                counts.hessian_multiplications >= options.max_multiplications)
               return Status::iteration_limit;
             if (inner == Status::stagnated && feasibility <= std::max(feasible, noise))
               return Status::stagnated;
@@ -136,15 +137,11 @@ namespace slipstick::qp
           const double balanced = std::min(M * residual, reference);
           return gradient <= (residual <= feasible ? std::max(balanced, target) : balanced);
         };
-        auto inner = mpgp(A,
-                          inner_norm,
-                          rhs,
-                          set,
-                          MpgpStart<Vector>{std::move(x), std::move(g)},
-                          stop,
-                          options.inner,
-                          reduction,
-                          A);
+        MpgpOptions how = options.inner; // an iteration takes one multiplication or two
+        how.max_iterations =
+          std::min<std::uint64_t>(how.max_iterations, options.max_multiplications - counts.hessian_multiplications);
+        auto inner =
+          mpgp(A, inner_norm, rhs, set, MpgpStart<Vector>{std::move(x), std::move(g)}, stop, how, reduction, A);
         x          = std::move(inner.x);
         g          = std::move(inner.gradient);
         inner_norm = inner.norm;
