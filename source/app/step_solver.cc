@@ -275,9 +275,10 @@ namespace slipstick::app
           {
             clock.enter("solve");
             accepted.reset();
+            const contact::SlipLaw law(discrete_scene(), dual(), t);
             the_solution =
               contact::solve_refined(problem.dual(),
-                                     contact::SlipLaw(discrete_scene(), dual(), t),
+                                     law,
                                      options,
                                      discrete_scene().friction,
                                      convergence_observer(log,
@@ -294,7 +295,7 @@ namespace slipstick::app
             if (!answer)
               {
                 answer           = std::make_unique<Answer>();
-                answer->recovery = recovered();
+                answer->recovery = recovered(law.depends_on_pressure());
               }
             const double penetration = problem.penetration_of_pruned(answer->recovery.u);
             if (!(penetration > 0))
@@ -315,9 +316,10 @@ namespace slipstick::app
   }
 
   // If the solution did not converge, work of the loads along a free motion proves nothing; all rows then count as
-  // holding.
+  // holding. With bounds that follow the pressure it proves nothing either: forces that balance the loads were found before the
+  // solve, only the rows inside their bounds are not the right ones.
   template <int dim>
-  tfeti::DualProblem::Recovery StepSolver<dim>::recovered() const
+  tfeti::DualProblem::Recovery StepSolver<dim>::recovered(const bool bounds_follow)
   {
     try
       {
@@ -330,8 +332,10 @@ namespace slipstick::app
       }
     catch (const NoEquilibrium &) // on all ranks alike
       {
-        if (the_solution.status == qp::Status::converged || problem.is_pruned())
+        if ((the_solution.status == qp::Status::converged && !bounds_follow) || problem.is_pruned())
           throw;
+        if (the_solution.status == qp::Status::converged)
+          the_solution.status = qp::Status::stagnated;
         return dual().recover(the_solution.multipliers, std::vector<bool>(the_solution.free.size(), true));
       }
   }

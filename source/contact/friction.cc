@@ -115,6 +115,8 @@ namespace slipstick::contact
           law.depends_on_pressure() && solution.friction_iterations > 0; // not a limit of SMALBE alone
         if (solution.status == qp::Status::stagnated || (solution.status == qp::Status::iteration_limit && follows))
           finish_by_newton(feasible);
+        if (solution.status != qp::Status::converged)
+          refuse_overload();
         return finished();
       }
 
@@ -133,14 +135,15 @@ namespace slipstick::contact
         return std::move(point.x);
       }
 
-      /// Where Newton's method found no solution: is friction, at the normal forces that it came to, too weak for the loads
-      /// along a motion that nothing else resists?
+      /// Where no solution was found: is friction, at the normal forces that the search came to, too weak for the loads along a
+      /// motion that nothing else resists?
       void refuse_overload() const
       {
         if (!law.depends_on_pressure())
           return;
-        const Vector       &x     = solution.multipliers;
-        const double        noise = tfeti::force_rounding * x.linfty_norm();
+        const Vector       &x      = solution.multipliers;
+        const double        noise  = tfeti::force_rounding * x.linfty_norm();
+        const auto          bounds = law.bounds(x);
         std::vector<bool>   holds(x.locally_owned_size());
         std::vector<double> capacity(holds.size(), -1.);
         for (unsigned int r = 0; r < holds.size(); ++r)
@@ -148,7 +151,7 @@ namespace slipstick::contact
             const auto kind = dual.constraints().kind[r];
             holds[r]        = is_equality(kind) || (kind == tfeti::RowKind::normal && x.local_element(r) > noise);
             if (!holds[r])
-              capacity[r] = kind == tfeti::RowKind::normal ? qp::infinity : solution.slip_bound[r];
+              capacity[r] = kind == tfeti::RowKind::normal ? qp::infinity : bounds[r];
           }
         const auto overload = dual.overload(holds, capacity);
         if (overload)

@@ -119,7 +119,7 @@ namespace slipstick::app
                                           std::unique_ptr<Answer> answer);
 
     /// The displacement of the solution.
-    tfeti::DualProblem::Recovery recovered() const;
+    tfeti::DualProblem::Recovery recovered(bool bounds_follow);
 
     /// Computes checks and stresses of an answer that was recovered from @p from.
     void evaluate(Answer &answer, const contact::DualSolution &from, const double t) const;
