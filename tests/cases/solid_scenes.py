@@ -130,7 +130,9 @@ class Assemblies(Solids):
         for before, after in zip(gaskets, gaskets[1:]):
             self.assertGreater(after[0], before[0])
             self.assertGreater(before[1] - after[1], 8 * wetted)
-        stiff = {'Material flanges/Young modulus': '2.1e7', 'Material fibre/Poisson ratio': '0', 'Load steps/Factors': '1, 2', 'Output/VTU': 'false'}
+        # at the default tolerance: with that of the scene, 1e-6, these flanges end with status 3 (doc/status.md)
+        stiff = {'Material flanges/Young modulus': '2.1e7', 'Material fibre/Poisson ratio': '0', 'Load steps/Factors': '1, 2', 'Output/VTU': 'false',
+                 'Solver/Tolerance': '1e-4'}
         first, second = (step['pretensions'][0] for step in converged(shipped('flange'), stiff).summary['steps'])
         bolt = (62 + .9 * 16) / (E * 16 * 8 ** 2 / 2 * math.sin(math.pi / 16))
         gasket = 2 / (1e4 * 8 * (76 ** 2 - 57 ** 2) / 2 * math.sin(math.pi / 64))
