@@ -11,7 +11,7 @@ readonly setup_failed=10
 readonly packages=(
   g++ cmake ninja-build ccache libdeal.ii-dev libtrilinos-amesos2-dev libtrilinos-tpetra-dev libmetis-dev
   libsuitesparse-dev libopenblas-dev openmpi-bin libopenmpi-dev libeigen3-dev nlohmann-json3-dev libcli11-dev
-  libgtest-dev python3
+  libgtest-dev python3 file
 )
 # shellcheck disable=SC2034 # used by scripts/setup
 readonly render_packages=(python3-vtk9 python3-numpy python3-matplotlib)

@@ -6,6 +6,8 @@
 #include <slipstick/qp/augmented_operator.h>
 #include <slipstick/qp/mpgp.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
 
 namespace slipstick::qp
