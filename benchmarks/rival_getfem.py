@@ -45,29 +45,37 @@ def by_position(positions, forces):
     return [[float(x), float(y), float(force)] for (x, y), force in zip(positions, forces)]
 
 
-def box(n):
-    """Left edge held along x, pressed from above on a rigid circle below the left corner."""
-    stages = Stages()
-    lines = np.linspace(0, SIZE, n + 1)
-    mesh = gf.Mesh("cartesian", lines, lines)
+def grid(dimension, n):
+    """Of a square or cube: its elements of degree 1, with the regions 1, 2, 3 at x = 0, y = 0 and the largest y."""
+    mesh = gf.Mesh("cartesian", *[np.linspace(0, SIZE, n + 1)] * dimension)
     faces = mesh.outer_faces()
     normals = mesh.normal_of_faces(faces)
     left, bottom, top = 1, 2, 3
-    mesh.set_region(left, faces[:, normals[0] < -0.9])
-    mesh.set_region(bottom, faces[:, normals[1] < -0.9])
-    mesh.set_region(top, faces[:, normals[1] > 0.9])
-    fem = gf.MeshFem(mesh, 2)
-    fem.set_fem(gf.Fem("FEM_QK(2,1)"))
-    integration = gf.MeshIm(mesh, gf.Integ("IM_GAUSS_PARALLELEPIPED(2,3)"))
-    stages.end("mesh")
+    for region, kept in ((left, normals[0] < -0.9), (bottom, normals[1] < -0.9), (top, normals[1] > 0.9)):
+        mesh.set_region(region, faces[:, kept])
+    fem = gf.MeshFem(mesh, dimension)
+    fem.set_fem(gf.Fem(f"FEM_QK({dimension},1)"))
+    return fem, gf.MeshIm(mesh, gf.Integ(f"IM_GAUSS_PARALLELEPIPED({dimension},3)")), (left, bottom, top)
+
+
+def elastic(fem, integration, plane_stress, friction, traction, loaded):
     model = gf.Model("real")
     model.add_fem_variable("u", fem)
-    first, shear = lame(YOUNG, POISSON, plane_stress=True)
-    for name, value in (("lambda", first), ("mu", shear), ("r", AUGMENTATION * YOUNG), ("friction", FRICTION)):
+    first, shear = lame(YOUNG, POISSON, plane_stress)
+    for name, value in (("lambda", first), ("mu", shear), ("r", AUGMENTATION * YOUNG), ("friction", friction)):
         model.add_initialized_data(name, [value])
     model.add_isotropic_linearized_elasticity_brick(integration, "u", "lambda", "mu")
-    model.add_initialized_data("traction", [0, -PRESSURE])
-    model.add_source_term_brick(integration, "u", "traction", top)
+    model.add_initialized_data("traction", traction)
+    model.add_source_term_brick(integration, "u", "traction", loaded)
+    return model
+
+
+def box(n):
+    """Left edge held along x, pressed from above on a rigid circle below the left corner."""
+    stages = Stages()
+    fem, integration, (left, bottom, top) = grid(2, n)
+    stages.end("mesh")
+    model = elastic(fem, integration, True, FRICTION, [0, -PRESSURE], top)
     model.add_normal_Dirichlet_condition_with_multipliers(integration, "u", 1, left)
     dofs = fem.basic_dof_on_region(bottom)
     for name in ("normal", "tangential"):
@@ -87,25 +95,9 @@ def box(n):
 def cube(n, friction):
     """prm/cube_on_sphere.prm: clamped at x = 0, pressed from above (y) on a rigid sphere; friction 0: frictionless."""
     stages = Stages()
-    lines = np.linspace(0, SIZE, n + 1)
-    mesh = gf.Mesh("cartesian", lines, lines, lines)
-    faces = mesh.outer_faces()
-    normals = mesh.normal_of_faces(faces)
-    left, bottom, top = 1, 2, 3
-    for region, kept in ((left, normals[0] < -0.9), (bottom, normals[1] < -0.9), (top, normals[1] > 0.9)):
-        mesh.set_region(region, faces[:, kept])
-    fem = gf.MeshFem(mesh, 3)
-    fem.set_fem(gf.Fem("FEM_QK(3,1)"))
-    integration = gf.MeshIm(mesh, gf.Integ("IM_GAUSS_PARALLELEPIPED(3,3)"))
+    fem, integration, (left, bottom, top) = grid(3, n)
     stages.end("mesh")
-    model = gf.Model("real")
-    model.add_fem_variable("u", fem)
-    first, shear = lame(YOUNG, POISSON, plane_stress=False)
-    for name, value in (("lambda", first), ("mu", shear), ("r", AUGMENTATION * YOUNG), ("friction", friction)):
-        model.add_initialized_data(name, [value])
-    model.add_isotropic_linearized_elasticity_brick(integration, "u", "lambda", "mu")
-    model.add_initialized_data("traction", [0, -CUBE_PRESSURE, 0])
-    model.add_source_term_brick(integration, "u", "traction", top)
+    model = elastic(fem, integration, False, friction, [0, -CUBE_PRESSURE, 0], top)
     model.add_Dirichlet_condition_with_simplification("u", left)
     dofs = fem.basic_dof_on_region(bottom)
     variables = ["normal"]

@@ -91,7 +91,6 @@ namespace slipstick::mechanics
         return std::move(load);
       }
 
-      /// Difference to a finer quadrature of body forces given by formulas.
       /// Of tractions and body forces on this subdomain.
       const std::vector<LoadResultant> &resultants() const
       {
@@ -110,6 +109,7 @@ namespace slipstick::mechanics
       using Vector = dealii::Tensor<1, dim>;
       using Face   = typename dealii::DoFHandler<dim>::active_face_iterator;
 
+      /// Difference to a finer quadrature of those given by formulas.
       std::vector<Misfit> misfits_of_body_forces()
       {
         std::vector<Misfit> result(scene.body_forces.size());

@@ -278,6 +278,7 @@ namespace slipstick::mesh
                                       cell_at(by_x[k])};
       return {};
     }
+
     /// Nodes of the outline of a solid that lie on faces that are not theirs, as where one cell is beside several.
     class HangingNodes
     {

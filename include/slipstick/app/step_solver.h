@@ -118,7 +118,8 @@ namespace slipstick::app
                                           const std::uint64_t     multiplications_before,
                                           std::unique_ptr<Answer> answer);
 
-    /// The displacement of the solution.
+    /// The displacement of the solution, whose status becomes stagnated where its rows do not hold the bodies though they may.
+    /// @param bounds_follow the pressure?
     tfeti::DualProblem::Recovery recovered(bool bounds_follow);
 
     /// Computes checks and stresses of an answer that was recovered from @p from.
