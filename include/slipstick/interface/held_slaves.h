@@ -2,6 +2,7 @@
 #pragma once
 
 #include <slipstick/interface/mortar_row.h>
+#include <slipstick/mechanics/surface_facet.h>
 #include <slipstick/mesh/mesh.h>
 
 namespace slipstick::interface
