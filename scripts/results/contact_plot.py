@@ -47,7 +47,7 @@ class ContactPainter:
             if panel is None or panel[3] is None:
                 axes.remove()
                 continue
-            self.draw_pair(axes, *panel)
+            self.draw_pair(axes, step == self.steps[-1], *panel)
             handles.update(zip(*reversed(axes.get_legend_handles_labels())))
         title = self.run.summary.get("case", "")
         if len(self.steps) > 1:
@@ -55,10 +55,19 @@ class ContactPainter:
         bands.add(figure, [title] if title else [], list(handles.values()), legend_above=True)
         return figure
 
-    def draw_pair(self, axes, name, nodes, part, shown):
+    def draw_error_bar(self, axes, name, s, pressure, is_last):
+        """Of the largest pressure, where the run estimated it."""
+        error = self.run.error_bar(f"{name}.max_pressure") if is_last else None
+        if error is not None and np.isfinite(pressure).any():
+            k = np.nanargmax(pressure)
+            axes.errorbar(s[k], pressure[k], yerr=error, color="tab:green", capsize=4, linewidth=1.5, zorder=5,
+                          label="largest pressure, estimated error of the mesh")
+
+    def draw_pair(self, axes, is_last, name, nodes, part, shown):
         s = nodes["s"][shown]
         marker = "." if shown.sum() < 120 else None
         axes.plot(s, nodes["pressure"][shown], color="black", marker=marker, label="pressure")
+        self.draw_error_bar(axes, name, s, nodes["pressure"][shown], is_last)
         axes.plot(s, nodes["tangential_traction"][shown], color="tab:orange", marker=marker, label="tangential traction")
         low, high = self.ranges[name]
         margin = 0.12 * (high - low) or 1.

@@ -140,6 +140,10 @@ class Run:
     def grid(self, step):
         return Grid(self.grid_files[step])
 
+    def error_bar(self, quantity):
+        """Estimate of the error that the mesh causes in a figure of the last load step ("touch.max_pressure"); None if there is none."""
+        return next((bar["error"] for bar in self.summary.get("error_bars", []) if bar["quantity"] == quantity), None)
+
     def is_open_anywhere(self):
         return any(row["status"] == "open" for row in self.contact)
 

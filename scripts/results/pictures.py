@@ -120,7 +120,10 @@ class Painter:
             lines[0] += f", step {step} (0 to {len(self.grids) - 1}), t = {t:g}"
         if found:
             signed = self.limits[0] < 0
-            lines.append(f"{'largest magnitude' if signed else 'largest'} {found[0]:.5g} {self.unit} at {fields.place(found[1])}")
+            is_whole = self.title == "displacement" and step == len(self.grids) - 1 and self.shown.all()
+            error = self.run.error_bar("max_displacement") if is_whole else None
+            value = f"{found[0]:.5g}" + ("" if error is None else f" \u00b1 {error:.2g}")
+            lines.append(f"{'largest magnitude' if signed else 'largest'} {value} {self.unit} at {fields.place(found[1])}")
         lines.append("displacements in true scale" if self.factor == 1 else f"displacements drawn {self.factor:g} times")
         return lines
 

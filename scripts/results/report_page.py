@@ -28,6 +28,12 @@ def number(value, digits=5):
     return "-" if value is None else f"{value:.{digits}g}"
 
 
+def with_bar(run, value, quantity):
+    """A figure with the estimate of its error, where the run made one."""
+    error = run.error_bar(quantity)
+    return number(value) if error is None else f"{number(value)} \u00b1 {number(error, 2)}"
+
+
 def table(head, rows, sums=()):
     text = "<div class=scroll><table><tr>" + "".join(f"<th>{html.escape(cell)}</th>" for cell in head) + "</tr>"
     for kind, group in (("", rows), (" class=sum", sums)):
@@ -58,9 +64,9 @@ def figures(run):
     summary = run.summary
     results, error, problem, solver = (summary.get(key, {}) for key in ("results", "error", "problem", "solver"))
     estimate = error.get("estimate_energy_relative")
-    rows = [("largest displacement", number(results.get("max_displacement")) + " mm"),
+    rows = [("largest displacement", with_bar(run, results.get("max_displacement"), "max_displacement") + " mm"),
             ("largest von Mises stress", number(results.get("max_von_mises")) + " MPa"),
-            ("strain energy", number(results.get("strain_energy")) + " N mm"),
+            ("strain energy", with_bar(run, results.get("strain_energy"), "strain_energy") + " N mm"),
             ("discretisation error in the energy norm, estimated", "-" if estimate is None else f"{100 * estimate:.2g} %"),
             ("algebraic error in the energy norm, at most", "-" if error.get("algebraic_relative") is None else
              f"{100 * error['algebraic_relative']:.1g} %"),
@@ -105,14 +111,21 @@ def balance_table(run, results):
     return table(("acts on the bodies", *head), rows, [("sum", *cells)])
 
 
-def pairs_table(results):
+def pairs_table(run):
     keys = (("normal_force", "normal force [N]"), ("tangential_force", "tangential force [N]"), ("max_pressure", "largest pressure [MPa]"),
             ("contact_length", "length in contact [mm]"), ("contact_area", "area in contact [mm^2]"), ("contact_nodes", "nodes in contact"), ("stick_nodes", "stick"),
             ("slip_nodes", "slip"), ("open_nodes", "open"))
-    pairs = results.get("contact", [])
+    pairs = run.summary.get("results", {}).get("contact", [])
     keys = [(key, name) for key, name in keys if any(key in pair for pair in pairs)]
-    rows = [(pair["pair"], *(number(pair.get(key)) for key, _ in keys)) for pair in pairs]
+    rows = [(pair["pair"], *(with_bar(run, pair.get(key), f"{pair['pair']}.{key}") for key, _ in keys)) for pair in pairs]
     return table(("pair", *(name for _, name in keys)), rows) if rows else "<p>The scene has no contact.</p>"
+
+
+def bars_table(run):
+    """All figures whose errors were asked for, of the last load step."""
+    rows = [(bar["quantity"], number(bar["value"]), number(bar["error"], 2) if bar.get("error") is not None else
+             f"none: {bar.get('reason', 'not known')}", bar.get("unit", "")) for bar in run.summary.get("error_bars", [])]
+    return table(("figure", "value", "estimated error of the mesh", "unit"), rows) if rows else ""
 
 
 def bolts_table(run):
@@ -240,7 +253,8 @@ def page(run, options=None):
     sections = [("Scene", scene(run)),
                 ("Results", figures(run)), ("Warnings", warnings(run)),
                 ("Balance of loads and reactions" + (", last load step" if len(run.factors) > 1 else ""), balance_table(run, results)),
-                ("Contact pairs", pairs_table(results)), ("Bolts", bolts_table(run)), ("Load steps", history_plot(run) + loop_plot(run)), ("Pictures", drawings(run, options)),
+                ("Contact pairs", pairs_table(run)), ("Error bars", bars_table(run)),
+                ("Bolts", bolts_table(run)), ("Load steps", history_plot(run) + loop_plot(run)), ("Pictures", drawings(run, options)),
                 ("Time and memory", costs(run))]
     body = heading(run) + "".join(f"<h2>{html.escape(name)}</h2>{text}" for name, text in sections if text)
     title = html.escape(run.summary.get("case", "run"))

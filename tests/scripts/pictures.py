@@ -13,6 +13,7 @@ import unittest.mock
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / 'scripts'
 sys.path.insert(0, str(SCRIPTS))
 try:
+    import matplotlib.pyplot
     import numpy
     from results import contact_plot, fields, film, folder, formula, painters, pictures, probe_plot, report_page, scene_drawing
 except ImportError as error:
@@ -258,6 +259,26 @@ class Report(WithRun):
         text = report_page.page(run)
         self.assertIn('<h2>Bolts</h2>', text)
         self.assertIn('m8 left 0.5, 0.25 0, 2 0.5 2000 1999.9 2100 0.0125'.split(), self.rows(text))
+
+    def test_error_bars(self):
+        run = self.run_of()
+        self.assertNotIn('Error bars', report_page.page(run))
+        run.summary['error_bars'] = [{'quantity': 'joint.max_pressure', 'value': 100., 'error': 1.25, 'unit': 'MPa'},
+                                     {'quantity': 'max_displacement', 'value': 0.01, 'error': 2e-4, 'unit': 'mm'},
+                                     {'quantity': 'tip.force_x', 'value': 3., 'error': None, 'unit': 'N', 'reason': 'held by a point'}]
+        text = report_page.page(run)
+        rows = self.rows(text)
+        self.assertTrue(any(row[:1] == ['joint'] and '1.2' in row and '\u00b1' in row for row in rows), rows)
+        self.assertTrue(any(row[:2] == ['largest', 'displacement'] and row[-3:] == ['\u00b1', '0.0002', 'mm'] for row in rows), rows)
+        self.assertIn('tip.force_x 3 none: held by a point N'.split(), rows)
+        painter = painters.field_painter(run, 'displacement', pictures.Options(), painters.grids(run))
+        self.assertIn('\u00b1 0.0002 mm', painter.lines_of_title(len(painter.grids) - 1)[1])
+        self.assertNotIn('\u00b1', painter.lines_of_title(0)[1])  # bars are of the last step
+        contact = painters.contact_painter(run)
+        for step, bars in ((contact.steps[-1], 1), (contact.steps[0], 0)):
+            figure = contact.draw(step)
+            self.assertEqual(len(figure.axes[0].containers), bars)
+            matplotlib.pyplot.close(figure)
 
     def test_forces_that_do_not_balance_show(self):
         run = self.run_of()
