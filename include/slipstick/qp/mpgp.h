@@ -96,7 +96,7 @@ namespace slipstick::qp
         const double optimal = c.pg / c.pAp, longest = std::min(optimal, iterate.longest_step());
         iterate.step(longest);
         if (options.expansion == Expansion::boundary_then_projection)
-          iterate.set_direction(&GradientParts::free);
+          iterate.template set_direction<&GradientParts::free>();
         else if (optimal <= longest)
           return restart();
         const bool projects_gradient = options.expansion == Expansion::boundary_then_projection;
@@ -110,7 +110,7 @@ namespace slipstick::qp
         ++steps.proportioning_steps;
         if (options.expansion == Expansion::gradient_projection)
           return project_gradient();
-        iterate.set_direction(&GradientParts::chopped);
+        iterate.template set_direction<&GradientParts::chopped>();
         is_conjugate         = false;
         const double longest = iterate.longest_step();
         if (longest * iterate.norm() < 1)
@@ -127,7 +127,7 @@ namespace slipstick::qp
       // x := projection of x - alpha gP, on discs of x - alpha g
       Outcome project_gradient()
       {
-        iterate.set_direction(&GradientParts::descent);
+        iterate.template set_direction<&GradientParts::descent>();
         return project_step(iterate.step_length()) ? Outcome() : Outcome(Status::stagnated);
       }
 

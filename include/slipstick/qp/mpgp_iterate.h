@@ -33,8 +33,6 @@ namespace slipstick::qp
     class MpgpIterate
     {
     public:
-      using Part = double GradientParts::*;
-
       /// p'g, p'Ap, p'p
       struct Curvature
       {
@@ -163,11 +161,13 @@ namespace slipstick::qp
         const Sums s     = own_sums(x, g);
         const auto total = reduction.sum(std::array<double, 4>{{s.free, s.chopped, s.reduced, s.x}});
         sums             = {total[0], total[1], total[2], total[3]};
-        set_direction(&GradientParts::free);
+        set_direction<&GradientParts::free>();
       }
 
-      /// p = a part of the gradient.
-      void set_direction(const Part part)
+      /// p = a part of the gradient. The part is a template argument since g++ 14.2 at -O2 reads a member through a pointer
+      /// known at run time before the temporary that it is in has been written (doc/decisions/0096).
+      template <double GradientParts::*part>
+      void set_direction()
       {
         const auto pi = p.begin();
         for_each_part(set, x, g, step_length(), [&](const std::size_t i, const GradientParts &parts) {
@@ -259,7 +259,7 @@ namespace slipstick::qp
         swap(g, trial_g);
         tracker.moved_towards(1.0);
         sums = trial_sums;
-        set_direction(&GradientParts::free);
+        set_direction<&GradientParts::free>();
       }
 
       /// x := x + fraction (trial - x). To be followed by restart().
