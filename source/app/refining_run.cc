@@ -4,6 +4,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace slipstick::app
@@ -40,11 +41,14 @@ namespace slipstick::app
         const bool  solved  = summary.status == output::RunStatus::converged;
         if (rows.empty() && options.goals.empty())
           leave_out(steps->point_forces());
+        else if (rows.empty() && options.skips_unknown)
+          left_out = steps->point_forces();
         if (solved)
           add(*steps, summary);
         const std::string missed = solved ? why_to_stop(*steps, summary) : "a mesh was not solved";
         if (!solved || reached || !missed.empty())
           {
+            notes.insert(notes.end(), unknown.begin(), unknown.end());
             steps->finish(rows, notes, reached ? "" : missed);
             steps->print_warnings(log);
             steps->print(log);
@@ -86,8 +90,10 @@ namespace slipstick::app
     row.cells        = summary.problem.cells;
     row.unknowns     = summary.problem.primal_dofs;
     row.energy_error = summary.error.estimate_energy_relative;
+    find_counted(summary.error_bars);
     const auto worst = options.goals.empty() ? std::optional<double>(std::sqrt(errors_of(steps).total))
-                                             : worst_error(summary.error_bars, options.goals);
+                       : counted.empty()     ? std::optional<double>()
+                                             : worst_error(summary.error_bars, counted);
     is_known         = dealii::Utilities::MPI::broadcast(comm, worst.has_value());
     row.error        = dealii::Utilities::MPI::broadcast(comm, worst.value_or(0.));
     row.seconds      = summary.time_s.total;
@@ -104,6 +110,24 @@ namespace slipstick::app
                     row.seconds));
   }
 
+  void RefiningRun::find_counted(const std::vector<output::ErrorBar> &bars)
+  {
+    counted = options.goals;
+    unknown.clear();
+    if (options.skips_unknown)
+      for (const auto &bar : bars)
+        if (const auto goal = std::find(counted.begin(), counted.end(), bar.quantity); goal != counted.end())
+          {
+            const bool is_infinite = bar.quantity == "strain_energy" && !left_out.empty();
+            if (!bar.error || is_infinite || bar.value == 0)
+              counted.erase(goal);
+            if (!bar.error || is_infinite)
+              unknown.push_back("the accuracy leaves out " + bar.quantity + ": " +
+                                (is_infinite ? "the energy is infinite where forces act at points" : bar.reason));
+          }
+    counted = dealii::Utilities::MPI::broadcast(comm, counted);
+  }
+
   std::string RefiningRun::why_to_stop(const Run<dim> &steps, const output::Summary &summary)
   {
     if (reached)
@@ -115,8 +139,13 @@ namespace slipstick::app
     if (rows.size() >= options.max_meshes)
       return so_far + "; allow more of them (Adaptivity/Max meshes), or begin with a finer one";
     auto cells =
-      options.goals.empty() || !is_known ? errors_of(steps) : errors_of_goals(steps.goals(), options.accuracy, comm);
-    const auto n_marked = mark(steps.mesh(), cells, refinement);
+      options.goals.empty() || !is_known ? errors_of(steps) : errors_of_goals(goals_of(steps), options.accuracy, comm);
+    auto n_marked = mark(steps.mesh(), cells, refinement);
+    if (n_marked == 0 && !options.goals.empty()) // what is left is the resolution of a pressure
+      {
+        cells    = errors_of(steps);
+        n_marked = mark(steps.mesh(), cells, refinement);
+      }
     // nine cells for one, and templates around them
     constexpr double cells_for_one = 12;
     const double     growth        = 1 + cells_for_one * n_marked / summary.problem.cells;
@@ -134,6 +163,15 @@ namespace slipstick::app
     if (needed > free)
       return so_far + format("; the next mesh may need %.0f MB of memory, and %.0f MB are free", needed, free);
     return "";
+  }
+
+  std::vector<GoalError> RefiningRun::goals_of(const Run<dim> &steps) const
+  {
+    std::vector<GoalError> goals;
+    for (const auto &goal : steps.goals())
+      if (std::find(counted.begin(), counted.end(), goal.quantity) != counted.end())
+        goals.push_back(goal);
+    return goals;
   }
 
   CellErrors RefiningRun::errors_of(const Run<dim> &steps) const

@@ -11,6 +11,7 @@
 #include <slipstick/output/fields.h>
 #include <slipstick/output/history.h>
 #include <slipstick/output/probes.h>
+#include <slipstick/scene/adaptivity.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -78,6 +79,7 @@ namespace slipstick::app
     , log(log_)
     , comm(comm_)
     , wanted(std::move(wanted_))
+    , wanted_accuracy(refinement ? 0. : scene::accuracy_of(scene_.accuracy))
     , solver(scene_, log_, clock, comm_, wanted.has_value(), refinement)
     , scene(solver.discrete_scene())
     , probes(scene, solver.mesh(), solver.spaces())
@@ -127,7 +129,7 @@ namespace slipstick::app
     print_forces(to, scene, summary.results);
     if (prints())
       do_not_tell_when_interrupted();
-    print_bars(to, summary.error_bars);
+    print_bars(to, summary.error_bars, wanted_accuracy);
     print_result(to, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
   }
 

@@ -60,9 +60,13 @@ namespace slipstick::scene
 
   void apply_accuracy(const Parameters &parameters, dealii::ParameterHandler &prm)
   {
-    const auto preset = parameters.value(name);
+    const auto preset = parameters.value(name), mesh = parameters.value(adaptive_mesh.first);
     if (preset) // a word that is not a preset is refused by apply()
       for (const auto &[path, value] : knobs_of_accuracy(*preset))
         set_value(prm, path, value);
+    if (mesh && *mesh == adaptive_mesh.second)
+      for (const auto &[path, value] : of_percentage)
+        if (path != degree)
+          set_value(prm, path, value);
   }
 } // namespace slipstick::scene

@@ -29,6 +29,32 @@ namespace slipstick::scene
   template std::vector<std::string> quantity_names(const Scene<2> &);
   template std::vector<std::string> quantity_names(const Scene<3> &);
 
+  template <int dim>
+  std::vector<std::string> goals_of_presets(const Scene<dim> &scene)
+  {
+    std::vector<std::string> names = {"max_displacement", "strain_energy"};
+    for (const auto &pair : scene.contacts)
+      for (const char *what : {"normal_force", "max_pressure"})
+        names.push_back(pair.name + "." + what);
+    return names;
+  }
+
+  template std::vector<std::string> goals_of_presets(const Scene<2> &);
+  template std::vector<std::string> goals_of_presets(const Scene<3> &);
+
+  double accuracy_of(const Accuracy preset)
+  {
+    switch (preset)
+      {
+        case Accuracy::draft:
+          return 0.1;
+        case Accuracy::engineering:
+          return 0.03;
+        default:
+          return 0.003;
+      }
+  }
+
   double accuracy_of(const std::string &text)
   {
     const auto sign = text.find_last_not_of(" \t");
@@ -47,12 +73,22 @@ namespace slipstick::scene
       options.error_bars,
       "estimate the discretisation errors of forces, pressures, lengths and displacements (one linear problem a figure: 15 "
       "to 70 % more time)");
+    add_word(
+      prm,
+      adaptive_mesh.first,
+      "fixed",
+      {"fixed", adaptive_mesh.second},
+      "fixed: as the scene has it (a percentage as Accuracy refines it all the same); adaptive: refined until the "
+      "figures of Goal, or if there are none displacement, energy, forces and pressures, are known to what the preset "
+      "stands for: draft 10 %, engineering 3 %, reference 0.3 %",
+      [&options](const std::string &word) { options.adapts_mesh = word == adaptive_mesh.second; });
     add_entry(
       prm,
       "Goal",
       "",
       "",
-      "with a percentage as Accuracy: the quantities that are to have it, such as PAIR.max_pressure; empty: the energy norm",
+      "of meshes that are refined: the quantities that are to have the accuracy, such as PAIR.max_pressure; empty: the "
+      "energy norm, or with a preset what Mesh says",
       "names separated by commas",
       [](const std::string &) { return true; },
       [&options](const std::string &text) { options.goals = split_list(text); });

@@ -248,6 +248,21 @@ namespace slipstick::scene
       return scene;
     }
 
+    /// With Mesh = adaptive: the accuracy and the goals of the preset.
+    template <int dim>
+    void resolve_mesh(AdaptivityOptions &adaptivity, const Scene<dim> &scene)
+    {
+      if (adaptivity.adapts_mesh && !adaptivity.refines())
+        {
+          adaptivity.accuracy = accuracy_of(scene.accuracy);
+          if (adaptivity.goals.empty())
+            {
+              adaptivity.goals         = goals_of_presets(scene);
+              adaptivity.skips_unknown = true;
+            }
+        }
+    }
+
     /// Whether the goals name quantities of the scene.
     template <int dim>
     void check_goals(const AdaptivityOptions &adaptivity, const Scene<dim> &scene, const Parameters &parameters)
@@ -257,7 +272,7 @@ namespace slipstick::scene
       if (!adaptivity.refines())
         throw parameters.error("Goal",
                                "there is no accuracy that it should have",
-                               "set Accuracy = 1 %, or leave the goal out");
+                               "set Accuracy = 1 %, or Mesh = adaptive, or leave the goal out");
       const auto names = quantity_names(scene);
       for (const std::string &goal : adaptivity.goals)
         if (std::find(names.begin(), names.end(), goal) == names.end())
@@ -294,6 +309,7 @@ namespace slipstick::scene
     Scene<dim> scene = declared.read(parameters);
     scene.name       = std::filesystem::path(file).stem().string();
     check_scene(scene, parameters);
+    resolve_mesh(declared.adaptivity, scene);
     check_goals(declared.adaptivity, scene, parameters);
     if (adaptivity)
       *adaptivity = declared.adaptivity;

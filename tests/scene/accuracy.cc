@@ -116,6 +116,29 @@ TEST(accuracy, percentage_refines_meshes)
   expect_refused(prm("box_on_circle"), {"Goal=strain_energy"}, {"Goal", "set Accuracy = 1 %"});
 }
 
+TEST(accuracy, adaptive_meshes_of_presets)
+{
+  AdaptivityOptions draft, reference, goal, percentage;
+  const auto        scene = read_scene(prm("hertz"), {"Mesh=adaptive", "Accuracy=reference"}, &reference);
+  EXPECT_DOUBLE_EQ(reference.accuracy, 3e-3);
+  EXPECT_TRUE(reference.skips_unknown);
+  EXPECT_EQ(
+    reference.goals,
+    (std::vector<std::string>{"max_displacement", "strain_energy", "touch.normal_force", "touch.max_pressure"}));
+  EXPECT_EQ(scene.discretization.degree, 2u);
+  EXPECT_EQ(scene.friction.tolerance, 1e-6); // of runs that compare meshes
+  read_scene(prm("hertz"), {"Mesh=adaptive", "Accuracy=draft"}, &draft);
+  EXPECT_DOUBLE_EQ(draft.accuracy, 0.1);
+  read_scene(prm("hertz"), {"Mesh=adaptive", "Goal=strain_energy"}, &goal);
+  EXPECT_DOUBLE_EQ(goal.accuracy, 0.03);
+  EXPECT_EQ(goal.goals, std::vector<std::string>{"strain_energy"});
+  EXPECT_FALSE(goal.skips_unknown);
+  read_scene(prm("hertz"), {"Mesh=fixed", "Accuracy=2 %"}, &percentage); // as parameters.prm of such a run has it
+  EXPECT_DOUBLE_EQ(percentage.accuracy, 0.02);
+  EXPECT_TRUE(percentage.goals.empty());
+  expect_refused(prm("hertz"), {"Mesh=adaptve"}, {"Mesh = 'adaptve'", "fixed, adaptive", "did you mean 'adaptive'"});
+}
+
 TEST(accuracy, automatic_tolerance)
 {
   const auto scene = box_without_knobs({"Solver/Tolerance=auto"});

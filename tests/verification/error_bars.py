@@ -145,6 +145,28 @@ class Accuracy(unittest.TestCase):
                     print(quantity, found[quantity], exact, flush=True)
                     self.assertLess(abs(found[quantity] / exact - 1), 0.03, (name, quantity))
 
+    def test_presets_with_adaptive_meshes(self):
+        """Every figure of a closed form within what the preset stands for; what has no estimate is said."""
+        for preset, accuracy in (('draft', 0.1), ('engineering', 0.03), ('reference', 0.003)):
+            for name in ('hertz', 'hertz_ball', 'press_fit'):
+                summary = converged(shipped(name), {'Accuracy': preset, 'Mesh': 'adaptive', 'Output/VTU': 'false'}).summary
+                found = figures(summary)
+                print(name, preset, [(mesh['unknowns'], round(mesh['error'], 4)) for mesh in summary['meshes']], flush=True)
+                self.assertLessEqual(summary['meshes'][-1]['error'], accuracy)
+                for quantity, exact in CLOSED[name].items():
+                    if not quantity.endswith('_length'):
+                        self.assertLess(abs(found[quantity] / exact - 1), accuracy + KNOWN_TO.get(name, 0), (preset, name, quantity))
+        summary = converged(shipped('clamp'), {'Mesh': 'adaptive', 'Output/VTU': 'false'}).summary
+        told = ' '.join(summary['warnings'])
+        self.assertIn('leaves out strain_energy: the energy is infinite where forces act at points', told)
+        self.assertIn('leaves out back.max_pressure: a peak at a single node', told)
+
+    def test_figures_that_a_fixed_mesh_does_not_give(self):
+        result = converged(shipped('hertz'), {'Accuracy': 'reference', 'Error bars': 'true', 'Output/VTU': 'false'})
+        self.assertRegex(result.stdout, r'known to less than the 0.3 % that the preset stands for: touch.max_pressure \(0\.\d+ %\)')
+        result = converged(shipped('hertz'), {'Error bars': 'true', 'Output/VTU': 'false'})
+        self.assertNotIn('known to less', result.stdout)
+
     def test_fewer_unknowns_than_uniform_meshes(self):
         adaptive = converged(shipped('lap_joint'), {'Accuracy': '8 %', 'Output/VTU': 'false'}).summary['meshes'][-1]
         uniform = converged(shipped('lap_joint'), settings(1, 2)).summary
@@ -169,7 +191,7 @@ class Accuracy(unittest.TestCase):
         self.assertTrue(any('Max meshes' in warning for warning in result.summary['warnings']))
 
     def test_what_is_refused(self):
-        for overrides, words in (({'Goal': 'touch.max_pressure'}, ('Goal', 'set Accuracy')),
+        for overrides, words in (({'Goal': 'touch.max_pressure'}, ('Goal', 'set Accuracy', 'Mesh = adaptive')),
                                  ({'Accuracy': '1 %', 'Goal': 'touch.max_presure'}, ("did you mean 'touch.max_pressure'",)),
                                  ({'Accuracy': '0 %'}, ('Accuracy', 'percentage')), ({'Accuracy': '100 %'}, ('percentage',))):
             result = solve(shipped('hertz_ball'), overrides)

@@ -15,6 +15,6 @@ namespace slipstick::app
                                            const std::vector<contact::ContactNode>  &nodes,
                                            const std::vector<scene::ContactPair<2>> &pairs);
 
-  /// A line a figure.
-  void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars);
+  /// A line a figure. @param accuracy the relative error that is wanted: figures with larger ones are named; 0: any.
+  void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars, const double accuracy);
 } // namespace slipstick::app

@@ -30,6 +30,11 @@ namespace slipstick::app
     /// One line a mesh.
     void add(const Run<dim> &steps, const output::Summary &summary);
 
+    /// Which goals have estimates, and why the others have none. Collective; bars are known on rank 0.
+    void find_counted(const std::vector<output::ErrorBar> &bars);
+
+    std::vector<GoalError> goals_of(const Run<dim> &steps) const;
+
     /// Marks the cells of the next mesh. @return why there is none; empty: there is one, or none is needed.
     std::string why_to_stop(const Run<dim> &steps, const output::Summary &summary);
 
@@ -46,6 +51,8 @@ namespace slipstick::app
     std::vector<output::MeshRow>    rows;
     std::vector<LeftOut>            left_out;
     std::vector<std::string>        notes;
+    std::vector<std::string>        counted; // goals ...
+    std::vector<std::string>        unknown; // ... and on rank 0 what the others lack
     bool                            reached = false, is_known = false;
   };
 } // namespace slipstick::app
