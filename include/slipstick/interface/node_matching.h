@@ -100,8 +100,8 @@ namespace slipstick::interface
   // Master nodes lie across slave nodes when they are off by no more than this part of the tributary length ...
   constexpr double across_automatic = 1e-6; // ... to be taken for matching meshes
   constexpr double across_asked_for = 0.1;  // ... when node to node is asked for
-  // In space matching nodes are not enough: a quadrilateral may face two triangles. The integrals must say the same, with no less than
-  // this weight of the node across.
+  // Matching nodes are not enough: an edge may face two or three, a quadrilateral two triangles. The integrals must say the same, with
+  // no less than this weight of the node across.
   constexpr double least_weight_across = 0.99;
 
   /// Rows from node to node where the discretisation asks for them, or leaves it to the meshes and these match; else @p rows.
@@ -122,7 +122,7 @@ namespace slipstick::interface
     for (auto &row : to_nodes)
       {
         const auto [key, off] = places.across(row);
-        if (dim == 3 && !is_asked_for && weight_of(key, row.master_weights) < least_weight_across)
+        if (!is_asked_for && weight_of(key, row.master_weights) < least_weight_across)
           return rows;
         if (off > tolerance * std::pow(row.length, 1. / (dim - 1)))
           {
