@@ -30,10 +30,6 @@ namespace slipstick::app
     constexpr double of_no_answer = 0.5;
     // ... down to what double precision achieves nearly everywhere.
     constexpr double least_tolerance = 1e-13;
-    // An answer within its limits is continued once if a jump or penetration exceeds this many times the tolerance: they
-    // are relative to the displacement, but |Pd| contains the gaps of nodes that stay open, however large. It aims at
-    // the tolerance itself.
-    constexpr double largest_gaps = 10;
     // Below this tolerance rounding of the multipliers may show; gaps are then closed in the displacement first ...
     constexpr double tolerance_of_rounding = 1e-10;
     // ... at most this many times, as long as the worst check falls by this factor.
@@ -357,28 +353,17 @@ namespace slipstick::app
                                                        const std::uint64_t     multiplications_before,
                                                        std::unique_ptr<Answer> answer)
   {
-    const double tolerance = tolerance_of(discrete_scene().solver, the_solution);
+    const double limit = check_limit(tolerance_of(discrete_scene().solver, the_solution));
     for (unsigned int n = 0; n < max_tightenings && the_solution.status == qp::Status::converged; ++n)
       {
-        auto       worst = answer->contact->checks.worst_entry();
-        double     limit = check_limit(tolerance);
-        const bool fails = !(worst.value <= limit);
-        if (!fails && n == 0)
-          {
-            worst = answer->contact->checks.worst_gap();
-            limit = std::min(limit, largest_gaps * tolerance);
-          }
+        const auto   worst = answer->contact->checks.worst_entry();
         const double reached =
           std::min(options.tolerance, std::max(the_solution.projected_gradient, the_solution.equality));
         if (worst.value <= limit || worst.is_balance)
           break;
         // also if the answer is not a number
-        const double excess =
-          std::min(largest_tightening,
-                   std::max(least_tightening, worst.value / (fails ? limit : limit / largest_gaps)));
-        options.tolerance = std::max(reached / (margin_of_tightening * excess), least_tolerance);
-        if (!fails && options.tolerance < tolerance_of_rounding)
-          break;
+        const double excess = std::min(largest_tightening, std::max(least_tightening, worst.value / limit));
+        options.tolerance   = std::max(reached / (margin_of_tightening * excess), least_tolerance);
         if (options.tolerance < tolerance_of_rounding && close_gaps(*answer, step, limit))
           break;
         if (reached <= least_tolerance)
@@ -391,11 +376,10 @@ namespace slipstick::app
         const auto   before      = the_solution;
         const double kept        = problem.kept_part();
         the_solution.multipliers = answer->recovery.multipliers;
-        auto        next = checked(solve_step(step, multiplications_before, true), discrete_scene().load_factors[step]);
-        const auto &after = next->contact->checks;
+        auto next = checked(solve_step(step, multiplications_before, true), discrete_scene().load_factors[step]);
         if (problem.kept_part() != kept ||
             (the_solution.status == qp::Status::converged &&
-             (worst.value > of_no_answer || (fails ? after.worst_entry() : after.worst_gap()).value < worst.value)))
+             (worst.value > of_no_answer || next->contact->checks.worst().second < worst.value)))
           answer = std::move(next); // the first: it got rows for more contact nodes
         else
           { // it did converge to the tolerance requested

@@ -416,12 +416,6 @@ namespace slipstick::contact
     });
   }
 
-  Checks::Entry Checks::worst_gap() const
-  {
-    const auto all = entries();
-    return penetration > interface_jump ? all[1] : all[0];
-  }
-
   std::pair<std::string, double> Checks::worst() const
   {
     const Entry entry = worst_entry();

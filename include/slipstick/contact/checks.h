@@ -48,9 +48,6 @@ namespace slipstick::contact
     /// The worst of them; a value that is not a number counts as worse than any other.
     Entry worst_entry() const;
 
-    /// The larger of interface jump and penetration.
-    Entry worst_gap() const;
-
     /// Its name and value.
     std::pair<std::string, double> worst() const;
   };
