@@ -138,9 +138,9 @@ namespace slipstick::app
     log.line(line("dual",
                   format("%s F, kernel %llu, |PFP| = %.4g mm/N estimated with %llu multiplications",
                          dual.dual_operator().is_explicit() ? "explicit" : "implicit",
-                         dual.kernel_dimension(),
+                         dual.projector().dimension(),
                          dual.norm(),
-                         dual.n_setup_multiplications())));
+                         dual.set_up().multiplications)));
   }
 
   double tolerance_of(const scene::SolverOptions &options, const contact::DualSolution &solution)
@@ -463,7 +463,7 @@ namespace slipstick::app
     s.problem.bodies             = scene.bodies.size();
     s.problem.subdomains         = mesh.n_subdomains();
     s.problem.primal_dofs        = spaces.n_dofs;
-    s.problem.kernel_dimension   = dual.kernel_dimension();
+    s.problem.kernel_dimension   = dual.projector().dimension();
     s.problem.cells              = mesh.n_cells;
     s.problem.dual               = {n.total(), n.gluing + n.prescribed, n.normal, n.tangential};
     s.problem.contact_candidates = n.candidates;
@@ -473,7 +473,7 @@ namespace slipstick::app
     s.solver.dual_operator               = dual.dual_operator().is_explicit() ? "explicit" : "implicit";
     s.solver.tolerance                   = tolerance;
     s.solver.hessian_multiplications     = solution.counts.hessian_multiplications;
-    s.solver.dual_setup_multiplications  = dual.n_setup_multiplications();
+    s.solver.dual_setup_multiplications  = dual.set_up().multiplications;
     s.solver.preconditioner_applications = solution.counts.preconditioner_applications;
     s.solver.outer_iterations            = solution.counts.outer_iterations;
     s.solver.cg_steps                    = solution.counts.cg_steps;

@@ -44,16 +44,16 @@ namespace slipstick::qp
       return least;
     }
 
-    /// `balance_bodies` of problems that have it; others have no bodies that contact alone holds.
+    /// What loose bodies of problems do that have them (semismooth_newton.h); others have no bodies that contact alone holds.
     template <typename Problem, typename Set>
     auto balance_bodies(const Problem             &problem,
                         const std::vector<double> &stiffness,
                         const Set                 &set,
                         const double               tolerated,
                         std::vector<double>       &moved,
-                        int) -> decltype(problem.balance_bodies(stiffness, set, tolerated, moved))
+                        int) -> decltype(problem.loose_bodies().balance(stiffness, set, tolerated, moved))
     {
-      problem.balance_bodies(stiffness, set, tolerated, moved);
+      problem.loose_bodies().balance(stiffness, set, tolerated, moved);
     }
     template <typename Problem, typename Set>
     void balance_bodies(const Problem &,
@@ -64,12 +64,12 @@ namespace slipstick::qp
                         long)
     {}
     template <typename Problem>
-    auto has_loose_bodies(const Problem &problem, int) -> decltype(problem.has_loose_bodies())
+    auto bodies_tell_sets(const Problem &problem, int) -> decltype(problem.loose_bodies().tell_sets())
     {
-      return problem.has_loose_bodies();
+      return problem.loose_bodies().tell_sets();
     }
     template <typename Problem>
-    bool has_loose_bodies(const Problem &, long)
+    bool bodies_tell_sets(const Problem &, long)
     {
       return false;
     }
@@ -93,7 +93,7 @@ namespace slipstick::qp
         : problem(problem_)
         , norm(norm_)
         , noise(noise_)
-        , balances(has_loose_bodies(problem_, 0))
+        , balances(bodies_tell_sets(problem_, 0))
         , step(balances ? 1 : step_of_points(problem_, step_, 0))
         , set(std::move(set_))
         , weights(residual_weights(problem_, 0))
