@@ -1,6 +1,6 @@
 #include <slipstick/app/held_nodes.h>
 #include <slipstick/app/names.h>
-#include <slipstick/app/report.h>
+#include <slipstick/app/run_summary.h>
 #include <slipstick/app/step_solver.h>
 #include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
