@@ -9,6 +9,7 @@
 #include <slipstick/mesh/kinematics.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/fe/fe_values.h>
 
 #include <algorithm>
 

@@ -9,7 +9,7 @@ using namespace slipstick::test;
 namespace
 {
   /// Of all ranks.
-  double misfit(const tfeti::DualProblem &dual, const tfeti::Recovery &of, const std::vector<bool> &free)
+  double norm_of_misfit(const tfeti::DualProblem &dual, const tfeti::Recovery &of, const std::vector<bool> &free)
   {
     return tfeti::misfit(dual, of, free).l2_norm();
   }
@@ -42,12 +42,12 @@ TEST(CloseGaps, leads_from_a_rough_answer_to_the_accurate_one_on_its_set)
           if (free[r])
             x.local_element(r) += 0.03 * size * noise.local_element(r);
         auto         rough = tfeti::recover(*accurate.dual, x, free);
-        const double open  = misfit(*accurate.dual, rough, free);
+        const double open  = norm_of_misfit(*accurate.dual, rough, free);
         const double off   = largest_difference(rough.u, recovery.u);
         const auto   work  = contact::close_gaps(*accurate.dual, free, scene.solver.pcpg, rough);
         EXPECT_GT(work.hessian_multiplications, 0u);
-        EXPECT_GT(open, 1e6 * misfit(*accurate.dual, recovery, free));
-        EXPECT_LT(misfit(*accurate.dual, rough, free), 1e-2 * open);
+        EXPECT_GT(open, 1e6 * norm_of_misfit(*accurate.dual, recovery, free));
+        EXPECT_LT(norm_of_misfit(*accurate.dual, rough, free), 1e-2 * open);
         EXPECT_LT(largest_difference(rough.u, recovery.u), 1e-2 * off);
       }
 }
