@@ -14,7 +14,7 @@ namespace slipstick::test
       : torn(scene, comm)
       , dual(torn.dual())
       , solution(contact::solve(*dual, contact::slip_bounds(scene, *dual, 1.), contact::resolved_options(scene), {}))
-      , u(dual->recover(solution.multipliers, solution.free).u)
+      , u(tfeti::recover(*dual, solution.multipliers, solution.free).u)
     {}
 
     Torn                                torn;

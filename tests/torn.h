@@ -2,11 +2,12 @@
 // bodies as an independent reference.
 #pragma once
 
-#include <slipstick/tfeti/dense.h>
 #include <slipstick/interface/contact_constraints.h>
 #include <slipstick/mechanics/assembly.h>
 #include <slipstick/mesh/decomposition.h>
-#include <slipstick/tfeti/dual_problem.h>
+#include <slipstick/tfeti/dense.h>
+#include <slipstick/tfeti/face.h>
+#include <slipstick/tfeti/recovery.h>
 
 #include <deal.II/base/mpi.h>
 

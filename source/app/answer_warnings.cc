@@ -3,6 +3,7 @@
 #include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
 #include <slipstick/mechanics/deformation.h>
+#include <slipstick/tfeti/diagnosis.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -122,7 +123,7 @@ namespace slipstick::app
                               const tfeti::DualProblem &dual,
                               const std::vector<bool>  &free)
     {
-      const auto                      ambiguous = dual.ambiguous(free);
+      const auto                      ambiguous = tfeti::ambiguous(dual, free);
       std::set<unsigned int>          pairs;
       std::set<std::array<double, 3>> places;
       for (const auto *points : {&dual.constraints().contact_points, &dual.constraints().bonded_points})

@@ -1,5 +1,6 @@
 #include <slipstick/app/held_nodes.h>
-#include <slipstick/app/report.h>
+#include <slipstick/app/run_summary.h>
+#include <slipstick/base/log.h>
 
 #include <deal.II/base/mpi.h>
 

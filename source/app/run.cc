@@ -330,7 +330,8 @@ namespace slipstick::app
       warn({{"unresisted", set_to_zero(solver.unheld())}});
     if (!answer.recovery.unresisted.empty())
       warn({{"unresisted",
-             set_to_zero(tfeti::describe(tfeti::plainest(answer.recovery.unresisted), solver.dual().body_names()))}});
+             set_to_zero(
+               tfeti::describe(tfeti::plainest(answer.recovery.unresisted), solver.dual().body_motions().names()))}});
     const auto geometry = geometry_findings(scene,
                                             interface::penetrations(scene, solver.mesh(), solver.spaces(), u, t),
                                             contact.checks.max_displacement);

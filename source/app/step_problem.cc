@@ -179,7 +179,7 @@ namespace slipstick::app
                                                     dual_options,
                                                     names_of(scene.bodies),
                                                     comm);
-    factorization += the_dual->factorization_seconds();
+    factorization += the_dual->set_up().factorization_seconds;
     print_dual(log, *the_dual);
   }
 
@@ -217,7 +217,7 @@ namespace slipstick::app
   void StepProblem<dim>::start_slip_from(const std::vector<Eigen::VectorXd> &u)
   {
     auto       c     = the_dual->constraints().c;
-    const auto jumps = the_dual->jumps(u);
+    const auto jumps = the_dual->dual_operator().jumps(u);
     for (unsigned int r = 0; r < c.size(); ++r)
       if (the_dual->constraints().kind[r] == tfeti::RowKind::tangential)
         c[r] = jumps.local_element(r);

@@ -1,6 +1,6 @@
 #include <slipstick/app/held_nodes.h>
 #include <slipstick/app/names.h>
-#include <slipstick/app/report.h>
+#include <slipstick/app/run_summary.h>
 #include <slipstick/app/step_solver.h>
 #include <slipstick/base/collective.h>
 #include <slipstick/base/exceptions.h>
@@ -235,7 +235,7 @@ namespace slipstick::app
     try
       {
         Answer answer;
-        answer.recovery = dual().recover(iterate.multipliers, iterate.free);
+        answer.recovery = tfeti::recover(dual(), iterate.multipliers, iterate.free);
         evaluate(answer, iterate, t);
         const auto &checks           = answer.contact->checks;
         discretization_error         = std::sqrt(answer.stress->error_squared);
@@ -319,12 +319,12 @@ namespace slipstick::app
   // holding. With bounds that follow the pressure it proves nothing either: forces that balance the loads were found before the
   // solve, only the rows inside their bounds are not the right ones.
   template <int dim>
-  tfeti::DualProblem::Recovery StepSolver<dim>::recovered(const bool bounds_follow)
+  tfeti::Recovery StepSolver<dim>::recovered(const bool bounds_follow)
   {
     try
       {
         // motions that nothing resists and no load drives are kept at zero
-        return dual().recover(the_solution.multipliers, the_solution.free, true);
+        return tfeti::recover(dual(), the_solution.multipliers, the_solution.free, true);
       }
     catch (const UndeterminedPosition &)
       {
@@ -336,7 +336,7 @@ namespace slipstick::app
           throw;
         if (the_solution.status == qp::Status::converged)
           the_solution.status = qp::Status::stagnated;
-        return dual().recover(the_solution.multipliers, std::vector<bool>(the_solution.free.size(), true));
+        return tfeti::recover(dual(), the_solution.multipliers, std::vector<bool>(the_solution.free.size(), true));
       }
   }
 

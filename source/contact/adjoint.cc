@@ -1,5 +1,6 @@
 #include <slipstick/contact/adjoint.h>
 #include <slipstick/qp/pcpg.h>
+#include <slipstick/tfeti/recovery.h>
 
 namespace slipstick::contact
 {
@@ -28,7 +29,7 @@ namespace slipstick::contact
     const auto result = qp::pcpg(face,
                                  b,
                                  qp::PcpgStart<tfeti::DistributedVector>{dual.zero()},
-                                 qp::Goal(tolerance, dual.residual_norm(b)),
+                                 qp::Goal(tolerance, tfeti::residual_norm(dual, b)),
                                  options,
                                  [this](const auto &r, auto &z) { face.precondition(r, z); });
     if (result.status != qp::Status::converged)
@@ -36,7 +37,7 @@ namespace slipstick::contact
     work += result.counts;
     ++work.hessian_multiplications;
     x += result.x;
-    return dual.recover(x, free).u;
+    return tfeti::recover(dual, x, free).u;
   }
 
   std::vector<Eigen::VectorXd> Adjoint::solve(std::vector<double> jumps)

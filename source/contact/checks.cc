@@ -86,7 +86,7 @@ namespace slipstick::contact
       for (unsigned int r = 0; r < dual.constraints().kind.size(); ++r)
         if (dual.constraints().kind[r] == tfeti::RowKind::gluing)
           outside.local_element(r) = 0;
-      const auto all = dual.forces(multipliers), of_outside = dual.forces(outside);
+      const auto all = dual.dual_operator().forces(multipliers), of_outside = dual.dual_operator().forces(outside);
 
       const unsigned int k =
         dealii::Utilities::MPI::max(dual.subdomains().empty()
@@ -151,7 +151,7 @@ namespace slipstick::contact
         , n_bodies(n_bodies_)
         , history(history_)
         , energies_beside(energies_beside_)
-        , jumps(dual_.jumps(u_))
+        , jumps(dual_.dual_operator().jumps(u_))
         , deformed(deformations(dual_, u_))
         , forces(nodal_forces(dual_, deformed))
       {}
@@ -218,7 +218,7 @@ namespace slipstick::contact
       }
 
       /// Jumps that must not be. @return the energies that closing them would take.
-      tfeti::DualProblem::JumpEnergies check_rows()
+      tfeti::JumpEnergies check_rows()
       {
         unsigned int row_of_jump = tfeti::invalid_row;
         for (unsigned int r = 0; r < constraints.kind.size(); ++r)
@@ -238,7 +238,7 @@ namespace slipstick::contact
             held[r]                = is_equality(constraints.kind[r]) || wrong.local_element(r) != 0;
           }
         find_place_of_row(dual, row_of_jump, largest[jump]);
-        auto energies              = dual.jump_energies(wrong, held);
+        auto energies              = tfeti::jump_energies(dual, wrong, held);
         result.checks.error_energy = energies.of_body.sum();
         return energies;
       }
@@ -336,9 +336,7 @@ namespace slipstick::contact
       }
 
       /// Of every body; also of stiff bodies among soft ones, which have little of the energy.
-      void check_energies(const tfeti::DualProblem::JumpEnergies &error_energies,
-                          const Balance                          &on_bodies,
-                          const Scales                           &scales)
+      void check_energies(const tfeti::JumpEnergies &error_energies, const Balance &on_bodies, const Scales &scales)
       {
         const double least_load = negligible_load * on_bodies.scale.maxCoeff();
         unsigned int worst_body = 0;

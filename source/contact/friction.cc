@@ -8,7 +8,8 @@
 #include <slipstick/qp/feasible_point.h>
 #include <slipstick/qp/semismooth_newton.h>
 #include <slipstick/qp/smalbe.h>
-#include <slipstick/tfeti/rigid_motions.h>
+#include <slipstick/tfeti/diagnosis.h>
+#include <slipstick/tfeti/face.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -60,7 +61,7 @@ namespace slipstick::contact
     {
       throw NoEquilibrium(
         "no contact forces within their bounds balance the loads, which move " +
-          tfeti::describe(dual.motion_behind(certificate), dual.body_names()),
+          tfeti::describe(tfeti::motion_behind(dual, certificate), dual.body_motions().names()),
         "support the body against this motion, raise friction coefficient or slip bound, or turn the loads towards the "
         "contact");
     }
@@ -153,12 +154,12 @@ namespace slipstick::contact
             if (!holds[r])
               capacity[r] = kind == tfeti::RowKind::normal ? qp::infinity : bounds[r];
           }
-        const auto overload = dual.overload(holds, capacity);
+        const auto overload = dual.loose_bodies().overload(holds, capacity);
         if (overload)
           throw NoEquilibrium(
             format("friction is too weak: at the normal forces found it bears %.3g of the load that moves %s",
                    overload->held,
-                   tfeti::describe(overload->motion, dual.body_names()).c_str()),
+                   tfeti::describe(overload->motion, dual.body_motions().names()).c_str()),
             "raise the friction coefficient or the normal force, support the body against this motion, or lower the load");
       }
 
@@ -184,7 +185,7 @@ namespace slipstick::contact
             force[r] = kind[r] == tfeti::RowKind::normal ? stiffness[r] * dual.d().local_element(r) : 0.;
           }
         const double none = negligible_overlap * largest_of(force);
-        dual.balance_bodies(stiffness, qp::AdmissibleSet<Vector>{box, {}}, 0., force);
+        dual.loose_bodies().balance(stiffness, qp::AdmissibleSet<Vector>{box, {}}, 0., force);
         for (unsigned int r = 0; r < kind.size(); ++r)
           if (kind[r] != tfeti::RowKind::normal)
             force[r] = 0;
@@ -263,7 +264,7 @@ namespace slipstick::contact
           {
             const auto load             = homogenised_load(dual, feasible);
             solution.reference          = std::max(start->reference, load.l2_norm());
-            solution.weighted_reference = std::max(start->weighted_reference, dual.residual_norm(load));
+            solution.weighted_reference = std::max(start->weighted_reference, tfeti::residual_norm(dual, load));
             ++solution.counts.hessian_multiplications;
             set_bounds(law.bounds(start->multipliers));
             return start->multipliers;
@@ -347,7 +348,7 @@ namespace slipstick::contact
         ++solution.fallbacks;
         if (solution.weighted_reference == 0)
           {
-            solution.weighted_reference = dual.residual_norm(homogenised_load(dual, feasible));
+            solution.weighted_reference = tfeti::residual_norm(dual, homogenised_load(dual, feasible));
             ++solution.counts.hessian_multiplications;
           }
         try_newton();
@@ -500,7 +501,7 @@ namespace slipstick::contact
         };
         const auto load = homogenised_load(dual, from);
         if (options.algorithm == scene::Algorithm::semismooth_newton && solution.weighted_reference == 0)
-          solution.weighted_reference = dual.residual_norm(load);
+          solution.weighted_reference = tfeti::residual_norm(dual, load);
         std::function<bool(const Vector &, const Vector &)> asks;
         if (is_accurate && may_end_early)
           asks = [&](const Vector &step, const Vector &g) {

@@ -1,5 +1,7 @@
 #include <slipstick/contact/linear.h>
 #include <slipstick/qp/pcpg.h>
+#include <slipstick/tfeti/diagnosis.h>
+#include <slipstick/tfeti/face.h>
 
 #include <cmath>
 
@@ -31,7 +33,7 @@ namespace slipstick::contact
     std::vector<bool> held(r.locally_owned_size());
     for (unsigned int i = 0; i < held.size(); ++i)
       held[i] = tfeti::is_equality(dual.constraints().kind[i]) || r.local_element(i) != 0;
-    return std::sqrt(dual.jump_energies(r, held).of_body.sum());
+    return std::sqrt(tfeti::jump_energies(dual, r, held).of_body.sum());
   }
 
   DualSolution solve_linear(const tfeti::DualProblem   &dual,
@@ -47,7 +49,7 @@ namespace slipstick::contact
     solution.algorithm     = "pcg";
     const auto   face      = dual.face(solution.free);
     auto         b         = homogenised_load(dual, start);
-    const double reference = dual.residual_norm(b);
+    const double reference = tfeti::residual_norm(dual, b);
     if (reference == 0) // nothing is deformed
       {
         solution.multipliers = start;
@@ -69,17 +71,18 @@ namespace slipstick::contact
       if (observer)
         observer({step, 0});
     };
-    qp::PcpgOptions       pcpg             = options.pcpg;
-    bool                  reorthogonalizes = dual.is_preconditioned();
+    qp::PcpgOptions       pcpg              = options.pcpg;
+    const bool            is_preconditioned = dual.preconditioner() != nullptr;
+    bool                  reorthogonalizes  = is_preconditioned;
     qp::PcpgStart<Vector> from{dual.zero()};
     if (is_accurate) // stages continue with the directions of the previous ones
-      from.history = std::make_shared<qp::DirectionHistory<Vector>>(dual.is_preconditioned());
+      from.history = std::make_shared<qp::DirectionHistory<Vector>>(is_preconditioned);
     double tolerance = is_accurate ? std::max(first_asked, options.tolerance) : options.tolerance;
     for (;; tolerance = std::max(options.tolerance, part_of_residual * tolerance))
       {
         const qp::Goal goal(tolerance, reference);
-        auto           result = dual.is_preconditioned() ? qp::pcpg(face, b, from, goal, pcpg, precondition, counted)
-                                                         : qp::pcpg(face, b, from, goal, pcpg, qp::NoPreconditioner(), counted);
+        auto           result = is_preconditioned ? qp::pcpg(face, b, from, goal, pcpg, precondition, counted)
+                                                  : qp::pcpg(face, b, from, goal, pcpg, qp::NoPreconditioner(), counted);
         solution.counts += result.counts;
         solution.status             = result.status;
         solution.projected_gradient = result.relative_residual;

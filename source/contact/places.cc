@@ -72,7 +72,7 @@ namespace slipstick::contact
     if (is_first(owned_row != tfeti::invalid_row && violation.value == largest, comm))
       one.local_element(owned_row) = 1;
     const auto pair    = pair_of(dual, one);
-    const auto touched = dual.forces(one);
+    const auto touched = dual.dual_operator().forces(one);
     for (unsigned int p = 0; p < touched.size(); ++p)
       {
         Eigen::Index unknown;
@@ -83,16 +83,17 @@ namespace slipstick::contact
       violation.value = largest;
   }
 
-  void find_place_in_body(const tfeti::DualProblem               &dual,
-                          const tfeti::DualProblem::JumpEnergies &energies,
-                          const unsigned int                      body,
-                          Largest                                &error)
+  void find_place_in_body(const tfeti::DualProblem  &dual,
+                          const tfeti::JumpEnergies &energies,
+                          const unsigned int         body,
+                          Largest                   &error)
   {
     const MPI_Comm comm  = dual.communicator();
     const auto    &spot  = energies.spots[body];
     const double   most  = dealii::Utilities::MPI::max(spot.energy, comm);
     const bool     is_it = is_first(spot.energy >= 0 && spot.energy == most, comm);
-    const auto     pair  = pair_of(dual, dual.column(is_it ? spot.subdomain : dual.subdomains().size(), spot.touched));
+    const auto     pair =
+      pair_of(dual, dual.dual_operator().column(is_it ? spot.subdomain : dual.subdomains().size(), spot.touched));
     if (is_it)
       {
         const auto &subdomain = *dual.subdomains()[spot.subdomain];

@@ -1,5 +1,6 @@
 #include <slipstick/contact/refinement.h>
 #include <slipstick/qp/pcpg.h>
+#include <slipstick/tfeti/face.h>
 
 namespace slipstick::contact
 {
@@ -67,23 +68,23 @@ namespace slipstick::contact
       }
   }
 
-  qp::Counts close_gaps(const tfeti::DualProblem     &dual,
-                        const std::vector<bool>      &free,
-                        const qp::PcpgOptions        &options,
-                        tfeti::DualProblem::Recovery &recovery)
+  qp::Counts close_gaps(const tfeti::DualProblem &dual,
+                        const std::vector<bool>  &free,
+                        const qp::PcpgOptions    &options,
+                        tfeti::Recovery          &recovery)
   {
     const auto face = dual.face(free);
     if (!face.is_regular())
       return {};
-    auto b = dual.misfit(recovery, free);
+    auto b = tfeti::misfit(dual, recovery, free);
     b /= -dual.norm(); // F step = B u - c
     const auto result = qp::pcpg(face,
                                  b,
                                  qp::PcpgStart<tfeti::DistributedVector>{dual.zero()},
-                                 qp::Goal(closing_tolerance, dual.residual_norm(b)),
+                                 qp::Goal(closing_tolerance, tfeti::residual_norm(dual, b)),
                                  options,
                                  [&face](const auto &r, auto &z) { face.precondition(r, z); });
-    dual.correct(recovery, result.x, free);
+    tfeti::correct(dual, recovery, result.x, free);
     return result.counts;
   }
 } // namespace slipstick::contact

@@ -51,6 +51,23 @@ namespace slipstick::interface
     return inside;
   }
 
+  ClosedOutline::Nearest ClosedOutline::nearest(const dealii::Point<2> &x) const
+  {
+    Nearest best;
+    tree.for_each_by_distance(
+      x,
+      [&] { return best.distance; },
+      [&](const unsigned int e) {
+        const auto   a = edges[e].node(0), b = edges[e].node(1);
+        const double s        = std::min(1., std::max(0., (x - a) * (b - a) / (b - a).norm_square()));
+        const double distance = x.distance(a + s * (b - a));
+        if (distance < best.distance)
+          best = {e, s, distance};
+        return true;
+      });
+    return best;
+  }
+
   BoxTree<3> facet_tree(const std::vector<mechanics::SurfaceFacet> &facets)
   {
     std::vector<BoxTree<3>::Box> boxes;

@@ -1,17 +1,15 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/mechanics/adaptive_cubature.h>
 #include <slipstick/mechanics/adaptive_quadrature.h>
-#include <slipstick/mechanics/cell_values.h>
-#include <slipstick/mechanics/dilatation.h>
-#include <slipstick/mechanics/elasticity.h>
 #include <slipstick/mechanics/loads.h>
 #include <slipstick/mechanics/points.h>
 #include <slipstick/mechanics/spaces.h>
 #include <slipstick/mechanics/surface_facet.h>
+#include <slipstick/mechanics/volume_load.h>
 #include <slipstick/mesh/kinematics.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
 
 #include <algorithm>
 
@@ -19,43 +17,8 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // Points a direction of the quadrature that body forces are compared with ...
-    constexpr unsigned int finer_order = 6;
-    // ... and by how much the sum over the cells, and over the faces of solids, may differ, part of the force.
+    // By how much two quadratures, summed over the cells, and over the faces of solids, may differ, part of the force.
     constexpr double allowed_misfit = 0.01;
-
-    template <int dim>
-    std::array<double, 3> in_space(const dealii::Point<dim> &x)
-    {
-      std::array<double, 3> all{{0, 0, 0}};
-      for (unsigned int d = 0; d < dim; ++d)
-        all[d] = x[d];
-      return all;
-    }
-
-    /// By how much two quadratures of a load differ.
-    struct Misfit
-    {
-      double                size = 0, difference = 0; // sums of magnitudes over cells or faces [N]
-      double                largest = -1;             // difference in one of them
-      std::array<double, 3> at{{0, 0, 0}};            // its place
-
-      void add(const double size_, const double difference_, const std::array<double, 3> &place)
-      {
-        add({size_, difference_, difference_, place});
-      }
-
-      void add(const Misfit &other)
-      {
-        size += other.size;
-        difference += other.difference;
-        if (other.largest > largest)
-          {
-            largest = other.largest;
-            at      = other.at;
-          }
-      }
-    };
 
     /// One subdomain and its load at load factor t.
     template <int dim>
@@ -79,11 +42,11 @@ namespace slipstick::mechanics
         , body(scene.bodies[number])
         , kinematics(scene.plane_state)
         , t(t_)
+        , volume(scene, mesh, spaces, p, t)
         , load(Eigen::VectorXd::Zero(dof_handler.n_dofs()))
       {
         add_tractions();
-        add_body_forces();
-        add_thermal_strain();
+        volume.add_to(load, sums);
       }
 
       Eigen::VectorXd take()
@@ -100,7 +63,7 @@ namespace slipstick::mechanics
       /// Of tractions given by formulas in space, then of body forces.
       std::vector<Misfit> misfits()
       {
-        std::vector<Misfit> all = misfits_of_tractions, others = misfits_of_body_forces();
+        std::vector<Misfit> all = misfits_of_tractions, others = volume.misfits();
         all.insert(all.end(), others.begin(), others.end());
         return all;
       }
@@ -108,41 +71,6 @@ namespace slipstick::mechanics
     private:
       using Vector = dealii::Tensor<1, dim>;
       using Face   = typename dealii::DoFHandler<dim>::active_face_iterator;
-
-      /// Difference to a finer quadrature of those given by formulas.
-      std::vector<Misfit> misfits_of_body_forces()
-      {
-        std::vector<Misfit> result(scene.body_forces.size());
-        const bool          any = std::any_of(body_forces.begin(), body_forces.end(), [this](const unsigned int k) {
-          return !is_constant(scene.body_forces[k]);
-        });
-        if (!any)
-          return result;
-        const auto      finer = element.cell.is_simplex()
-                                  ? dealii::Quadrature<dim>(dealii::QWitherdenVincentSimplex<dim>(finer_order))
-                                  : dealii::Quadrature<dim>(dealii::QGauss<dim>(finer_order));
-        CellValues<dim> coarse(*element.mapping, *element.scalar, element.loads, dealii::update_quadrature_points),
-          fine(*element.mapping, *element.scalar, finer, dealii::update_quadrature_points);
-        for (const auto &cell : dof_handler.active_cell_iterators())
-          {
-            coarse.reinit(cell);
-            fine.reinit(cell);
-            for (const unsigned int k : body_forces)
-              if (!is_constant(scene.body_forces[k]))
-                {
-                  const auto integral = [&](const CellValues<dim> &values, const unsigned int n) {
-                    Vector sum;
-                    for (unsigned int q = 0; q < n; ++q)
-                      sum +=
-                        body_force(scene.body_forces[k], values.point(q)) * (*values).JxW(q) * weight(values.point(q));
-                    return sum;
-                  };
-                  const Vector a = integral(coarse, element.loads.size()), b = integral(fine, finer.size());
-                  result[k].add(b.norm(), (a - b).norm(), in_space(cell->center()));
-                }
-          }
-        return result;
-      }
 
       /// Thickness, or circumference at @p x [mm].
       double weight(const dealii::Point<dim> &x) const
@@ -200,14 +128,6 @@ namespace slipstick::mechanics
                std::all_of(traction.components.begin(), traction.components.end(), [](const auto &component) {
                  return component.is_constant();
                });
-      }
-
-      static bool is_constant(const scene::BodyForce<dim> &load)
-      {
-        const auto all_constant = [](const auto &fields) {
-          return std::all_of(fields.begin(), fields.end(), [](const auto &field) { return field.is_constant(); });
-        };
-        return all_constant(load.force) && all_constant(load.acceleration) && load.angular_velocity.is_constant();
       }
 
       /// Force per length of the local coordinate of an edge on each of its nodes.
@@ -303,91 +223,6 @@ namespace slipstick::mechanics
           }
       }
 
-      /// Force per volume [N/mm^3].
-      Vector body_force(const scene::BodyForce<dim> &load, const dealii::Point<dim> &x) const
-      {
-        const double density = scene.materials[body.material].density;
-        const double omega   = load.angular_velocity.value(x, t);
-        return vector(load.force, x) + density * (vector(load.acceleration, x) +
-                                                  omega * omega * kinematics.arm(x, load.axis, load.axis_direction));
-      }
-
-      void add_body_forces()
-      {
-        for (unsigned int k = 0; k < scene.body_forces.size(); ++k)
-          if (const auto &bodies = scene.body_forces[k].bodies;
-              std::find(bodies.begin(), bodies.end(), number) != bodies.end())
-            body_forces.push_back(k);
-        if (body_forces.empty())
-          return;
-        CellValues<dim> values(*element.mapping,
-                               *element.scalar,
-                               element.loads,
-                               dealii::update_values | dealii::update_quadrature_points);
-        for (const auto &cell : dof_handler.active_cell_iterators())
-          {
-            values.reinit(cell);
-            element.nodes_of(cell, dofs, nodes);
-            for (unsigned int q = 0; q < element.loads.size(); ++q)
-              {
-                const auto x = values.point(q);
-                Vector     force;
-                for (const unsigned int k : body_forces)
-                  {
-                    const Vector one = body_force(scene.body_forces[k], x) * (*values).JxW(q) * weight(x);
-                    sums[scene.tractions.size() + k].sum.template add<dim>(one, x);
-                    force += one;
-                  }
-                for (unsigned int i = 0; i < nodes.size(); ++i)
-                  add(nodes[i], force * (*values).shape_value(i, q));
-              }
-          }
-      }
-
-      /// Integral of (lambda e_V T + 2 mu e T) div v; where the dilatation is projected, T is too beside lambda.
-      void add_thermal_strain()
-      {
-        const TemperatureOfBody<dim> temperature(scene, number, t);
-        if (temperature.is_zero())
-          return;
-        const ElasticLaw          law(scene.materials[body.material], state_of(scene));
-        const bool                project = scene.discretization.element == scene::ElementKind::nearly_incompressible;
-        DilatationProjection<dim> projection(element);
-        const auto                rule = element.stiffness_rule(kinematics);
-        CellValues<dim>           values(*element.mapping,
-                               *element.scalar,
-                               rule,
-                               dealii::update_quadrature_points |
-                                 (kinematics.is_revolution() ? dealii::update_values : dealii::update_default));
-        Eigen::VectorXd           change(rule.size()), beside_lambda;
-        for (const auto &cell : dof_handler.active_cell_iterators())
-          {
-            if (const bool is_new = values.reinit(cell); project && (is_new || kinematics.is_revolution()))
-              projection.reinit(values, kinematics);
-            for (unsigned int q = 0; q < change.size(); ++q)
-              change[q] = temperature(values.point(q));
-            if (project)
-              beside_lambda = projection.projected(change);
-            else
-              beside_lambda = change;
-            element.nodes_of(cell, dofs, nodes);
-            for (unsigned int q = 0; q < change.size(); ++q)
-              {
-                const double stress = law.lame.lambda * law.volume_expansion * beside_lambda[q] +
-                                      2 * law.lame.mu * law.expansion * change[q];
-                const auto   x         = values.point(q);
-                const double of_volume = stress * (*values).JxW(q) * weight(x);
-                for (unsigned int i = 0; i < nodes.size(); ++i)
-                  {
-                    Vector dilatation = (*values).shape_grad(i, q);
-                    if (kinematics.is_revolution())
-                      dilatation[0] += kinematics.hoop_strain((*values).shape_value(i, q), x);
-                    add(nodes[i], of_volume * dilatation);
-                  }
-              }
-          }
-      }
-
       const scene::Scene<dim>                     &scene;
       const mesh::Mesh<dim>                       &mesh;
       const mesh::SubdomainMesh<dim>              &subdomain;
@@ -400,9 +235,9 @@ namespace slipstick::mechanics
       const scene::Body<dim>                      &body;
       mesh::Kinematics<dim>                        kinematics;
       double                                       t;
+      VolumeLoad<dim>                              volume;
       Eigen::VectorXd                              load;
-      std::vector<unsigned int>                    body_forces; // on this body
-      std::vector<dealii::types::global_dof_index> dofs;        // of the present cell
+      std::vector<dealii::types::global_dof_index> dofs; // of the present cell
       std::vector<unsigned int>                    nodes;
     };
 

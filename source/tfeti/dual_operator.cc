@@ -35,8 +35,10 @@ namespace slipstick::tfeti
                              const Partitioner                                   &rows,
                              const std::vector<PackedSymmetric>                  *dense_blocks)
     : subdomains(subdomains)
-    , gluing(gluing)
+    , of_subdomains(gluing)
     , rows(rows)
+    , owned_rows(std::make_shared<dealii::Utilities::MPI::Partitioner>(rows->locally_owned_range(),
+                                                                       rows->get_mpi_communicator()))
     , blocks(dense_blocks)
     , source(rows)
     , target(rows)
@@ -45,14 +47,14 @@ namespace slipstick::tfeti
   Eigen::VectorXd DualOperator::scatter(const unsigned int p, const DistributedVector &x) const
   {
     Eigen::VectorXd v = Eigen::VectorXd::Zero(subdomains[p]->touched().size());
-    for (const auto &entry : gluing[p].entries)
+    for (const auto &entry : of_subdomains[p].entries)
       v[entry.touched] += entry.value * x.local_element(entry.row);
     return v;
   }
 
   void DualOperator::gather(const unsigned int p, const Eigen::VectorXd &v, DistributedVector &y) const
   {
-    for (const auto &entry : gluing[p].entries)
+    for (const auto &entry : of_subdomains[p].entries)
       y.local_element(entry.row) += entry.value * v[entry.touched];
   }
 
@@ -61,11 +63,58 @@ namespace slipstick::tfeti
     return DistributedVector(rows);
   }
 
+  DistributedVector DualOperator::zero() const
+  {
+    return DistributedVector(owned_rows);
+  }
+
   void DualOperator::import(const DistributedVector &x, DistributedVector &with_ghosts) const
   {
     with_ghosts.zero_out_ghost_values();
     with_ghosts.copy_locally_owned_data_from(x);
     with_ghosts.update_ghost_values();
+  }
+
+  DistributedVector DualOperator::jumps(const std::vector<Eigen::VectorXd> &u) const
+  {
+    DistributedVector sum = ghosted(), y = zero();
+    for (unsigned int p = 0; p < subdomains.size(); ++p)
+      {
+        const auto     &touched = subdomains[p]->touched();
+        Eigen::VectorXd v(touched.size());
+        for (unsigned int k = 0; k < touched.size(); ++k)
+          v[k] = u[p][touched[k]];
+        gather(p, v, sum);
+      }
+    sum.compress(dealii::VectorOperation::add);
+    y.copy_locally_owned_data_from(sum);
+    return y;
+  }
+
+  DistributedVector DualOperator::column(const unsigned int subdomain, const unsigned int touched) const
+  {
+    DistributedVector sum = ghosted(), y = zero();
+    if (subdomain < subdomains.size())
+      gather(subdomain, Eigen::VectorXd::Unit(subdomains[subdomain]->touched().size(), touched), sum);
+    sum.compress(dealii::VectorOperation::add);
+    y.copy_locally_owned_data_from(sum);
+    return y;
+  }
+
+  std::vector<Eigen::VectorXd> DualOperator::forces(const DistributedVector &x) const
+  {
+    DistributedVector all = ghosted();
+    import(x, all);
+    std::vector<Eigen::VectorXd> result;
+    for (unsigned int p = 0; p < subdomains.size(); ++p)
+      {
+        const Eigen::VectorXd at_touched = scatter(p, all);
+        const auto           &touched    = subdomains[p]->touched();
+        result.push_back(Eigen::VectorXd::Zero(subdomains[p]->n_unknowns()));
+        for (unsigned int k = 0; k < touched.size(); ++k)
+          result[p][touched[k]] = at_touched[k];
+      }
+    return result;
   }
 
   template <class Local>

@@ -1,7 +1,6 @@
-#include <slipstick/base/collective.h>
 #include <slipstick/tfeti/dense.h>
-#include <slipstick/tfeti/dual_problem.h>
 #include <slipstick/tfeti/gathered_by_label.h>
+#include <slipstick/tfeti/loose_bodies.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -140,13 +139,26 @@ namespace slipstick::tfeti
     };
   } // namespace
 
-  bool DualProblem::hold_by(const std::vector<RigidMotion> &loose,
+  LooseBodies::LooseBodies(const BodyMotions &motions_, const Constraints &rows_, const MPI_Comm comm_)
+    : motions(motions_)
+    , rows(rows_)
+    , comm(comm_)
+    , held_by_contact(motions, rows, comm)
+  {}
+
+  void LooseBodies::update_loads()
+  {
+    if (!held_by_contact.empty())
+      held_by_contact.set_loads(motions.loads());
+  }
+
+  bool LooseBodies::hold_by(const std::vector<RigidMotion> &loose,
                             const std::vector<bool>        &is_candidate,
                             const std::vector<double>      &scale,
                             std::vector<bool>              &free,
                             const std::vector<qp::Turn>    &turns) const
   {
-    Eigen::MatrixXd own = bodies->jumps(loose).toDense();
+    Eigen::MatrixXd own = motions.jumps(loose).toDense();
     for (const qp::Turn &turn : turns)
       {
         const Eigen::RowVectorXd first = own.row(turn.first), second = own.row(turn.second);
@@ -182,13 +194,13 @@ namespace slipstick::tfeti
     return true;
   }
 
-  std::vector<bool> DualProblem::hold(const std::vector<bool>     &free,
+  std::vector<bool> LooseBodies::hold(const std::vector<bool>     &free,
                                       const std::vector<double>   &gaps,
                                       const bool                   well,
                                       const std::vector<qp::Turn> &turns) const
   {
     std::vector<bool> result = free;
-    const auto        loose  = bodies->free(free, well ? weak_resistance : BodyMotions::rounding_of_resistance, turns);
+    const auto        loose  = motions.free(free, well ? weak_resistance : BodyMotions::rounding_of_resistance, turns);
     if (loose.empty())
       return result;
     const double largest =
@@ -204,30 +216,30 @@ namespace slipstick::tfeti
     return result;
   }
 
-  bool DualProblem::has_loose_bodies() const
+  bool LooseBodies::tell_sets() const
   {
-    return !held_by_contact->empty() && !bodies->are_solids();
+    return !held_by_contact.empty() && !motions.are_solids();
   }
 
-  void DualProblem::balance_bodies(const std::vector<double>                  &stiffness,
-                                   const qp::AdmissibleSet<DistributedVector> &bounds,
-                                   const double                                tolerated,
-                                   std::vector<double>                        &moved) const
+  void LooseBodies::balance(const std::vector<double>                  &stiffness,
+                            const qp::AdmissibleSet<DistributedVector> &bounds,
+                            const double                                tolerated,
+                            std::vector<double>                        &moved) const
   {
-    if (held_by_contact->empty())
+    if (held_by_contact.empty())
       return;
-    const auto jumps = held_by_contact->shift(moved, stiffness, bounds, tolerated);
+    const auto jumps = held_by_contact.shift(moved, stiffness, bounds, tolerated);
     for (std::size_t r = 0; r < moved.size(); ++r)
       moved[r] -= stiffness[r] * jumps[r];
   }
 
-  std::optional<DualProblem::Overload> DualProblem::overload(const std::vector<bool>   &free,
-                                                             const std::vector<double> &capacity) const
+  std::optional<Overload> LooseBodies::overload(const std::vector<bool>   &free,
+                                                const std::vector<double> &capacity) const
   {
-    const auto loose = bodies->free(free, weak_resistance);
+    const auto loose = motions.free(free, weak_resistance);
     if (loose.empty())
       return {};
-    const Eigen::MatrixXd            own = bodies->jumps(loose).toDense();
+    const Eigen::MatrixXd            own = motions.jumps(loose).toDense();
     std::vector<std::vector<double>> numbers;
     std::vector<std::uint64_t>       labels;
     Eigen::VectorXd                  loads(loose.size());

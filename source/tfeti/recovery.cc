@@ -1,8 +1,9 @@
-// Displacements and free motions of bodies from the multipliers.
 #include <slipstick/tfeti/dense.h>
-#include <slipstick/tfeti/dual_problem.h>
+#include <slipstick/tfeti/recovery.h>
 
 #include <deal.II/base/mpi.h>
+
+#include <cmath>
 
 namespace slipstick::tfeti
 {
@@ -46,123 +47,115 @@ namespace slipstick::tfeti
         }
       return amount;
     }
+
+    /// The free rows and those rows with friction forces that hold the loose motions or, if nothing drives these, some
+    /// of all rows. @return whether they are rows with forces.
+    bool rows_that_fix(const DualProblem              &dual,
+                       const std::vector<RigidMotion> &loose,
+                       const DistributedVector        &x,
+                       const bool                      keeps_still,
+                       std::vector<bool>              &free)
+    {
+      const Constraints        &rows  = dual.constraints();
+      const double              noise = force_rounding * x.linfty_norm();
+      const std::vector<double> equal(free.size(), 1.);
+      std::vector<bool>         is_candidate(free.size());
+      for (unsigned int r = 0; r < free.size(); ++r)
+        is_candidate[r] = !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
+      if (dual.loose_bodies().hold_by(loose, is_candidate, equal, free))
+        return true;
+      if (!keeps_still || plainest(loose).work > 0)
+        require_support(loose, dual.body_motions().names());
+      for (unsigned int r = 0; r < free.size(); ++r)
+        is_candidate[r] = !free[r];
+      if (!dual.loose_bodies().hold_by(loose, is_candidate, equal, free))
+        require_support(loose, dual.body_motions().names());
+      return false;
+    }
+
+    /// Removes the loose motions from u.
+    void remove_motions(const DualProblem &dual, const std::vector<RigidMotion> &loose, std::vector<Eigen::VectorXd> &u)
+    {
+      const auto       &systems = dual.subdomains();
+      const std::size_t n       = loose.size();
+      Eigen::MatrixXd   gram    = Eigen::MatrixXd::Zero(n, n + 1); // the last column: of u
+      for (unsigned int p = 0; p < systems.size(); ++p)
+        {
+          Eigen::MatrixXd motions(u[p].size(), n);
+          for (std::size_t m = 0; m < n; ++m)
+            motions.col(m) = dual.body_motions().displacements(p, loose[m].amplitudes);
+          gram.leftCols(n) += motions.transpose() * motions;
+          gram.col(n) += motions.transpose() * u[p];
+        }
+      MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, dual.communicator());
+      const Eigen::VectorXd amount     = shortest_solution(gram.leftCols(n), gram.col(n));
+      Eigen::VectorXd       amplitudes = Eigen::VectorXd::Zero(loose[0].amplitudes.size());
+      for (std::size_t m = 0; m < n; ++m)
+        amplitudes += amount[m] * loose[m].amplitudes;
+      for (unsigned int p = 0; p < systems.size(); ++p)
+        u[p] -= dual.body_motions().displacements(p, amplitudes);
+    }
+
+    /// Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of the violations.
+    void slide_apart(const DualProblem              &dual,
+                     const std::vector<RigidMotion> &loose,
+                     const std::vector<bool>        &free,
+                     const DistributedVector        &x,
+                     Recovery                       &at)
+    {
+      const Constraints &rows               = dual.constraints();
+      const auto        &systems            = dual.subdomains();
+      Eigen::MatrixXd    own                = dual.body_motions().jumps(loose).toDense();
+      own                                   = (own.array().abs() < least_jump).select(0., own); // rounding moves no row
+      const DistributedVector          jump = dual.dual_operator().jumps(at.u);
+      std::vector<std::vector<double>> conditions; // jump on the right side, then its derivatives
+      for (unsigned int r = 0; r < free.size(); ++r)
+        {
+          const double force = x.local_element(r);
+          const double side =
+            free[r] || is_equality(rows.kind[r]) || (rows.kind[r] == RowKind::tangential && force == 0) ? 0.
+            : rows.kind[r] == RowKind::tangential && force > 0                                          ? 1.
+                                                                                                        : -1.;
+          if (side == 0)
+            continue;
+          conditions.push_back({side * (jump.local_element(r) - rows.c[r])});
+          for (unsigned int m = 0; m < loose.size(); ++m)
+            conditions.back().push_back(side * own(r, m));
+        }
+      std::vector<std::vector<double>> all;
+      for (const auto &part : dealii::Utilities::MPI::all_gather(dual.communicator(), conditions))
+        all.insert(all.end(), part.begin(), part.end());
+      const Eigen::VectorXd amount     = least_violation(all, loose.size());
+      Eigen::VectorXd       amplitudes = Eigen::VectorXd::Zero(loose[0].amplitudes.size());
+      for (unsigned int m = 0; m < loose.size(); ++m)
+        amplitudes += amount[m] * loose[m].amplitudes;
+      for (unsigned int p = 0; p < systems.size(); ++p)
+        at.u[p] += dual.body_motions().displacements(p, amplitudes);
+    }
+
+    /// u += R a: a least squares fit of the free rows, to which the projector is restricted.
+    void fit_motions(const DualProblem &dual, const Projector &on_free, const std::vector<bool> &free, Recovery &at)
+    {
+      const auto       &systems = dual.subdomains();
+      DistributedVector missing = misfit(dual, at, free), range = dual.zero();
+      Eigen::VectorXd   a = on_free.amplitudes(missing);
+      on_free.project_range(missing, range);
+      missing -= range;
+      a += on_free.amplitudes(missing); // for the rounding of the first
+      unsigned int next = 0;
+      for (unsigned int p = 0; p < systems.size(); ++p)
+        {
+          const unsigned int k = systems[p]->kernel().cols();
+          at.u[p] += systems[p]->kernel() * a.segment(next, k);
+          next += k;
+        }
+    }
   } // namespace
 
-  bool DualProblem::rows_that_fix(const std::vector<RigidMotion> &loose,
-                                  const DistributedVector        &x,
-                                  const bool                      keeps_still,
-                                  std::vector<bool>              &free) const
+  DistributedVector misfit(const DualProblem &dual, const Recovery &of, const std::vector<bool> &free)
   {
-    const double              noise = force_rounding * x.linfty_norm();
-    const std::vector<double> equal(free.size(), 1.);
-    std::vector<bool>         is_candidate(free.size());
-    for (unsigned int r = 0; r < free.size(); ++r)
-      is_candidate[r] = !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
-    if (hold_by(loose, is_candidate, equal, free))
-      return true;
-    if (!keeps_still || plainest(loose).work > 0)
-      require_support(loose, names_of_bodies);
-    for (unsigned int r = 0; r < free.size(); ++r)
-      is_candidate[r] = !free[r];
-    if (!hold_by(loose, is_candidate, equal, free))
-      require_support(loose, names_of_bodies);
-    return false;
-  }
-
-  void DualProblem::remove_motions(const std::vector<RigidMotion> &loose, std::vector<Eigen::VectorXd> &u) const
-  {
-    const std::size_t n    = loose.size();
-    Eigen::MatrixXd   gram = Eigen::MatrixXd::Zero(n, n + 1); // the last column: of u
-    for (unsigned int p = 0; p < systems.size(); ++p)
-      {
-        Eigen::MatrixXd motions(u[p].size(), n);
-        for (std::size_t m = 0; m < n; ++m)
-          motions.col(m) = bodies->displacements(p, loose[m].amplitudes);
-        gram.leftCols(n) += motions.transpose() * motions;
-        gram.col(n) += motions.transpose() * u[p];
-      }
-    MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, comm);
-    const Eigen::VectorXd amount     = shortest_solution(gram.leftCols(n), gram.col(n));
-    Eigen::VectorXd       amplitudes = Eigen::VectorXd::Zero(loose[0].amplitudes.size());
-    for (std::size_t m = 0; m < n; ++m)
-      amplitudes += amount[m] * loose[m].amplitudes;
-    for (unsigned int p = 0; p < systems.size(); ++p)
-      u[p] -= bodies->displacements(p, amplitudes);
-  }
-
-  // Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of the violations.
-  void DualProblem::slide_apart(const std::vector<RigidMotion> &loose,
-                                const std::vector<bool>        &free,
-                                const DistributedVector        &x,
-                                Recovery                       &at) const
-  {
-    Eigen::MatrixXd own                   = bodies->jumps(loose).toDense();
-    own                                   = (own.array().abs() < least_jump).select(0., own); // rounding moves no row
-    const DistributedVector          jump = jumps(at.u);
-    std::vector<std::vector<double>> conditions; // jump on the right side, then its derivatives
-    for (unsigned int r = 0; r < free.size(); ++r)
-      {
-        const double force = x.local_element(r);
-        const double side  = free[r] || is_equality(rows.kind[r]) || (rows.kind[r] == RowKind::tangential && force == 0)
-                               ? 0.
-                             : rows.kind[r] == RowKind::tangential && force > 0 ? 1.
-                                                                                : -1.;
-        if (side == 0)
-          continue;
-        conditions.push_back({side * (jump.local_element(r) - rows.c[r])});
-        for (unsigned int m = 0; m < loose.size(); ++m)
-          conditions.back().push_back(side * own(r, m));
-      }
-    std::vector<std::vector<double>> all;
-    for (const auto &part : dealii::Utilities::MPI::all_gather(comm, conditions))
-      all.insert(all.end(), part.begin(), part.end());
-    const Eigen::VectorXd amount     = least_violation(all, loose.size());
-    Eigen::VectorXd       amplitudes = Eigen::VectorXd::Zero(loose[0].amplitudes.size());
-    for (unsigned int m = 0; m < loose.size(); ++m)
-      amplitudes += amount[m] * loose[m].amplitudes;
-    for (unsigned int p = 0; p < systems.size(); ++p)
-      at.u[p] += bodies->displacements(p, amplitudes);
-  }
-
-  DualProblem::Recovery DualProblem::recover(const DistributedVector &x,
-                                             const std::vector<bool> &free,
-                                             const bool               keeps_still) const
-  {
-    const auto        loose      = bodies->free(free);
-    std::vector<bool> fixed      = free;
-    const bool        is_at_rest = loose.empty() || rows_that_fix(loose, x, keeps_still, fixed);
-    const Projector   on_free(*projector, fixed, comm, std::vector<qp::Tie>(), metric);
-    Recovery          result{{}, zero(), {}};
-    DistributedVector step{zero()};
-    result.multipliers = x;
-    for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
-      {
-        on_free.particular(resultants - projector->multiply(result.multipliers), step);
-        result.multipliers += step;
-      }
-
-    result.u = forces(result.multipliers);
-    auto &u  = result.u;
-    for (unsigned int p = 0; p < systems.size(); ++p)
-      {
-        u[p] = systems[p]->load() - u[p];
-        systems[p]->apply_pseudo_inverse(u[p]);
-      }
-
-    fit_motions(on_free, fixed, result);
-    if (!is_at_rest)
-      {
-        remove_motions(loose, result.u);
-        result.unresisted = loose;
-      }
-    if (!loose.empty())
-      slide_apart(loose, free, x, result);
-    return result;
-  }
-
-  DistributedVector DualProblem::misfit(const Recovery &of, const std::vector<bool> &free) const
-  {
-    DistributedVector missing = jumps(of.u);
+    const Constraints &rows    = dual.constraints();
+    DistributedVector  missing = dual.dual_operator().jumps(of.u);
     for (unsigned int r = 0; r < rows.c.size(); ++r)
       missing.local_element(r) = free[r] ? rows.c[r] - missing.local_element(r) : 0.;
     for (unsigned int r = 0; r < rows.compliance.size(); ++r)
@@ -170,31 +163,61 @@ namespace slipstick::tfeti
     return missing;
   }
 
-  void DualProblem::fit_motions(const Projector &on_free, const std::vector<bool> &free, Recovery &at) const
+  Recovery recover(const DualProblem       &dual,
+                   const DistributedVector &x,
+                   const std::vector<bool> &free,
+                   const bool               keeps_still)
   {
-    DistributedVector missing = misfit(at, free), range = zero();
-    Eigen::VectorXd   a = on_free.amplitudes(missing);
-    on_free.project_range(missing, range);
-    missing -= range;
-    a += on_free.amplitudes(missing); // for the rounding of the first
-    unsigned int next = 0;
+    const auto       &systems    = dual.subdomains();
+    const auto        loose      = dual.body_motions().free(free);
+    std::vector<bool> fixed      = free;
+    const bool        is_at_rest = loose.empty() || rows_that_fix(dual, loose, x, keeps_still, fixed);
+    const Projector   on_free(dual.projector(),
+                            fixed,
+                            dual.communicator(),
+                            std::vector<qp::Tie>(),
+                            dual.residual_weights());
+    Recovery          result{{}, dual.zero(), {}};
+    DistributedVector step{dual.zero()};
+    result.multipliers = x;
+    for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
+      {
+        on_free.particular(dual.e() - dual.projector().multiply(result.multipliers), step);
+        result.multipliers += step;
+      }
+
+    result.u = dual.dual_operator().forces(result.multipliers);
+    auto &u  = result.u;
     for (unsigned int p = 0; p < systems.size(); ++p)
       {
-        const unsigned int k = systems[p]->kernel().cols();
-        at.u[p] += systems[p]->kernel() * a.segment(next, k);
-        next += k;
+        u[p] = systems[p]->load() - u[p];
+        systems[p]->apply_pseudo_inverse(u[p]);
       }
+
+    fit_motions(dual, on_free, fixed, result);
+    if (!is_at_rest)
+      {
+        remove_motions(dual, loose, result.u);
+        result.unresisted = loose;
+      }
+    if (!loose.empty())
+      slide_apart(dual, loose, free, x, result);
+    return result;
   }
 
-  void DualProblem::correct(Recovery &at, const DistributedVector &step, const std::vector<bool> &free) const
+  void correct(const DualProblem &dual, Recovery &at, const DistributedVector &step, const std::vector<bool> &free)
   {
-    auto change = forces(step);
+    const auto &systems = dual.subdomains();
+    auto        change  = dual.dual_operator().forces(step);
     for (unsigned int p = 0; p < systems.size(); ++p)
       {
         systems[p]->apply_pseudo_inverse(change[p]);
         at.u[p] -= change[p];
       }
     at.multipliers += step;
-    fit_motions(Projector(*projector, free, comm, std::vector<qp::Tie>(), metric), free, at);
+    fit_motions(dual,
+                Projector(dual.projector(), free, dual.communicator(), std::vector<qp::Tie>(), dual.residual_weights()),
+                free,
+                at);
   }
 } // namespace slipstick::tfeti

@@ -103,16 +103,17 @@ namespace slipstick::tfeti
   BodyMotions::BodyMotions(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains_,
                            const std::vector<LocalGluing>                      &gluing,
                            const Constraints                                   &constraints,
-                           const unsigned int                                   n_bodies,
+                           const std::vector<std::string>                      &names,
                            const MPI_Comm                                       comm_)
     : subdomains(subdomains_)
+    , names_of_bodies(names)
     , comm(comm_)
     , n_owned_rows(constraints.kind.size())
     , motions_of_body(
         dealii::Utilities::MPI::max(subdomains.empty() ? 0u : static_cast<unsigned int>(subdomains[0]->kernel().cols()),
                                     comm))
-    , n_motions(motions_of_body * n_bodies)
-    , frames(frames_of_bodies(subdomains, n_bodies, comm))
+    , n_motions(motions_of_body * names.size())
+    , frames(frames_of_bodies(subdomains, names.size(), comm))
   {
     for (const auto &part : parts_of_owned_rows(subdomains, gluing, constraints, comm))
       shares.push_back({constraints.rows->global_to_local(part.row),

@@ -12,7 +12,7 @@ namespace
   {
     const Solved solved(scene);
     EXPECT_EQ(solved.solution.status, qp::Status::converged);
-    const auto recovery = solved.dual->recover(solved.solution.multipliers, solved.solution.free);
+    const auto recovery = tfeti::recover(*solved.dual, solved.solution.multipliers, solved.solution.free);
     const auto checked  = contact::check(*solved.dual,
                                         recovery.multipliers,
                                         recovery.u,

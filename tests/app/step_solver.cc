@@ -1,7 +1,7 @@
 // The load steps of a scene: answers that pass their checks, pruning that is taken back, what is refused.
 #include "torn.h"
 
-#include <slipstick/app/report.h>
+#include <slipstick/app/run_summary.h>
 #include <slipstick/app/step_solver.h>
 #include <slipstick/base/exceptions.h>
 

@@ -52,7 +52,7 @@ namespace
   /// By body.
   Eigen::VectorXd energies(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
   {
-    Eigen::VectorXd sums = Eigen::VectorXd::Zero(dual.body_names().size());
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(dual.body_motions().names().size());
     for (unsigned int p = 0; p < u.size(); ++p)
       sums[dual.subdomains()[p]->body()] += u[p].dot(dual.subdomains()[p]->apply_stiffness(u[p]));
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, dual.communicator());
@@ -88,13 +88,13 @@ namespace
 
     contact::Checks checks(const contact::DualSolution &iterate) const
     {
-      const auto recovery = dual->recover(iterate.multipliers, iterate.free);
+      const auto recovery = tfeti::recover(*dual, iterate.multipliers, iterate.free);
       return contact::check(*dual,
                             recovery.multipliers,
                             recovery.u,
                             iterate.slip_bound,
                             iterate.free,
-                            dual->body_names().size())
+                            dual->body_motions().names().size())
         .checks;
     }
 
@@ -106,7 +106,7 @@ namespace
 
     std::vector<Eigen::VectorXd> recovered(const contact::DualSolution &solution) const
     {
-      return dual->recover(solution.multipliers, solution.free).u;
+      return tfeti::recover(*dual, solution.multipliers, solution.free).u;
     }
 
     Scene                               scene;

@@ -54,7 +54,7 @@ namespace
       , dual(torn.dual())
       , law(scene, *dual, 1.)
       , solution(contact::solve(*dual, law, torn.scene.solver, scene.friction, {}))
-      , recovery(dual->recover(solution.multipliers, solution.free))
+      , recovery(tfeti::recover(*dual, solution.multipliers, solution.free))
       , contact(
           contact::check(*dual, recovery.multipliers, recovery.u, law.bounds(recovery.multipliers), solution.free, 1))
     {}
@@ -63,7 +63,7 @@ namespace
     std::unique_ptr<tfeti::DualProblem> dual;
     contact::SlipLaw                    law;
     contact::DualSolution               solution;
-    tfeti::DualProblem::Recovery        recovery;
+    tfeti::Recovery                     recovery;
     contact::CheckedContact             contact;
   };
 

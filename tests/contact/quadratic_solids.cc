@@ -57,7 +57,7 @@ TEST(QuadraticSolids, bending_is_exact)
       const auto      scene = bent_bar(slope, in_tetrahedra);
       const Solved<3> solved(scene);
       ASSERT_EQ(solved.solution.status, qp::Status::converged);
-      const auto u = solved.dual.recover(solved.solution.multipliers, solved.solution.free).u;
+      const auto u = tfeti::recover(solved.dual, solved.solution.multipliers, solved.solution.free).u;
       const auto stress =
         mechanics::recover_stress(scene, solved.mesh, solved.spaces, solved.dual.constraints(), u, 1.);
       for (unsigned int p = 0; p < u.size(); ++p)

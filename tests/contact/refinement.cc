@@ -9,9 +9,9 @@ using namespace slipstick::test;
 namespace
 {
   /// Of all ranks.
-  double misfit(const tfeti::DualProblem &dual, const tfeti::DualProblem::Recovery &of, const std::vector<bool> &free)
+  double norm_of_misfit(const tfeti::DualProblem &dual, const tfeti::Recovery &of, const std::vector<bool> &free)
   {
-    return dual.misfit(of, free).l2_norm();
+    return tfeti::misfit(dual, of, free).l2_norm();
   }
 
   double largest_difference(const std::vector<Eigen::VectorXd> &a, const std::vector<Eigen::VectorXd> &b)
@@ -31,7 +31,7 @@ TEST(CloseGaps, leads_from_a_rough_answer_to_the_accurate_one_on_its_set)
         Scene scene            = cut(has_contact ? box_on_circle(8, "500") : bent_box(8), how);
         scene.solver.tolerance = 1e-12;
         const Solved accurate(scene);
-        const auto   recovery = accurate.dual->recover(accurate.solution.multipliers, accurate.solution.free);
+        const auto   recovery = tfeti::recover(*accurate.dual, accurate.solution.multipliers, accurate.solution.free);
 
         // multipliers off by some percent, balanced: displacements that leave gaps open
         const auto  &free  = accurate.solution.free;
@@ -41,13 +41,13 @@ TEST(CloseGaps, leads_from_a_rough_answer_to_the_accurate_one_on_its_set)
         for (unsigned int r = 0; r < free.size(); ++r)
           if (free[r])
             x.local_element(r) += 0.03 * size * noise.local_element(r);
-        auto         rough = accurate.dual->recover(x, free);
-        const double open  = misfit(*accurate.dual, rough, free);
+        auto         rough = tfeti::recover(*accurate.dual, x, free);
+        const double open  = norm_of_misfit(*accurate.dual, rough, free);
         const double off   = largest_difference(rough.u, recovery.u);
         const auto   work  = contact::close_gaps(*accurate.dual, free, scene.solver.pcpg, rough);
         EXPECT_GT(work.hessian_multiplications, 0u);
-        EXPECT_GT(open, 1e6 * misfit(*accurate.dual, recovery, free));
-        EXPECT_LT(misfit(*accurate.dual, rough, free), 1e-2 * open);
+        EXPECT_GT(open, 1e6 * norm_of_misfit(*accurate.dual, recovery, free));
+        EXPECT_LT(norm_of_misfit(*accurate.dual, rough, free), 1e-2 * open);
         EXPECT_LT(largest_difference(rough.u, recovery.u), 1e-2 * off);
       }
 }
@@ -57,7 +57,7 @@ TEST(CloseGaps, leaves_bodies_alone_that_slide_on_all_their_contacts)
   for (const Cut &how : {whole(), blocks(2)})
     {
       const Sliding sliding(how, "0", 0);
-      auto          recovery = sliding.dual->recover(sliding.x, sliding.free, true);
+      auto          recovery = tfeti::recover(*sliding.dual, sliding.x, sliding.free, true);
       const auto    before   = recovery.u;
       const auto    work     = contact::close_gaps(*sliding.dual, sliding.free, {}, recovery);
       EXPECT_EQ(work.hessian_multiplications, 0u);

@@ -7,6 +7,7 @@
 #include <slipstick/interface/contact_constraints.h>
 #include <slipstick/mechanics/assembly.h>
 #include <slipstick/mesh/decomposition.h>
+#include <slipstick/tfeti/recovery.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -49,7 +50,7 @@ namespace slipstick::test
           contact::solve(dual, contact::SlipLaw(scene, dual, 1.), contact::resolved_options(scene), scene.friction, {}))
       , checked(contact::check(dual,
                                solution.multipliers,
-                               dual.recover(solution.multipliers, solution.free).u,
+                               tfeti::recover(dual, solution.multipliers, solution.free).u,
                                solution.slip_bound,
                                solution.free,
                                scene.bodies.size()))
@@ -254,7 +255,7 @@ namespace slipstick::test
     // u = (nu, -1, nu) p / E times the coordinates
     const double E = 1e5, nu = scene.materials[0].poisson_ratio, angle = degrees * dealii::numbers::PI / 180;
     const dealii::Tensor<1, 3> axis({1. / 3, 2. / 3, 2. / 3});
-    const auto                 u = solved.dual.recover(solved.solution.multipliers, solved.solution.free).u;
+    const auto                 u = tfeti::recover(solved.dual, solved.solution.multipliers, solved.solution.free).u;
     for (unsigned int p = 0; p < u.size(); ++p)
       {
         std::map<dealii::types::global_dof_index, dealii::Point<3>> places;

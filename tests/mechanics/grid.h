@@ -139,7 +139,7 @@ namespace slipstick::test
       const auto               solution =
         contact::solve(dual, contact::slip_bounds(scene, dual, 1.), contact::resolved_options(scene), {});
       EXPECT_EQ(solution.status, qp::Status::converged);
-      return dual.recover(solution.multipliers, solution.free).u;
+      return tfeti::recover(dual, solution.multipliers, solution.free).u;
     }
 
     /// Displacements of a function of position.

@@ -170,6 +170,11 @@ namespace slipstick::qp::test
       return Face(*this, free, ties, turns);
     }
 
+    const FacedProblem &loose_bodies() const
+    {
+      return *this;
+    }
+
     /// The entries with the least gaps become free until the face is regular.
     std::vector<bool> hold(std::vector<bool>          free,
                            const std::vector<double> &gaps,

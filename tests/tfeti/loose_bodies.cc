@@ -70,7 +70,7 @@ namespace
       for (const auto &point : rows.contact_points)
         if (friction > 0 && point.tangential_row != tfeti::invalid_row)
           bounds.pressure_bounds.push_back({point.tangential_row, point.normal_row, {0., friction}});
-      dual->balance_bodies(stiffness, bounds, 0.01, moved);
+      dual->loose_bodies().balance(stiffness, bounds, 0.01, moved);
 
       auto forces = dual->zero();
       for (unsigned int r = 0; r < n; ++r)
@@ -105,7 +105,7 @@ namespace
                   u.back()[2 * i + c] = motion(at[i])[c];
               load += u.back().dot(torn.matrices[p].load);
             }
-          const double bears = dual->jumps(u) * forces;
+          const double bears = dual->dual_operator().jumps(u) * forces;
           largest_load       = std::max(largest_load, std::abs(dealii::Utilities::MPI::sum(load, comm)));
           missing.push_back(dealii::Utilities::MPI::sum(load, comm) - bears);
         }
@@ -173,7 +173,7 @@ TEST(LooseBodies, stay_where_supports_hold_them)
   const std::vector<double>                         stiffness(torn.constraints.kind.size(), 1.);
   std::vector<double>                               moved(stiffness.size(), 1.);
   const qp::AdmissibleSet<tfeti::DistributedVector> bounds{{dual->zero(), dual->zero()}, {}};
-  dual->balance_bodies(stiffness, bounds, 0.01, moved);
+  dual->loose_bodies().balance(stiffness, bounds, 0.01, moved);
   EXPECT_EQ(moved, stiffness);
 }
 
@@ -192,7 +192,7 @@ TEST(LooseBodies, are_held_by_the_row_that_is_nearest_to_its_bound)
       least   = free[r] ? least : std::min(least, gaps[r]);
     }
   least              = dealii::Utilities::MPI::min(least, MPI_COMM_WORLD);
-  const auto   holds = dual->hold(free, gaps, false);
+  const auto   holds = dual->loose_bodies().hold(free, gaps, false);
   unsigned int added = 0;
   for (unsigned int r = 0; r < n; ++r)
     if (holds[r] != free[r])
@@ -201,5 +201,5 @@ TEST(LooseBodies, are_held_by_the_row_that_is_nearest_to_its_bound)
         EXPECT_EQ(gaps[r], least);
       }
   EXPECT_EQ(dealii::Utilities::MPI::sum(added, MPI_COMM_WORLD), 1u);
-  EXPECT_EQ(dual->hold(holds, gaps, false), holds);
+  EXPECT_EQ(dual->loose_bodies().hold(holds, gaps, false), holds);
 }

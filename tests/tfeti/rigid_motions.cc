@@ -27,7 +27,7 @@ namespace
     if (takes_part)
       for (unsigned int r = 0; r < torn.constraints.kind.size(); ++r)
         active.push_back(takes_part(torn, r));
-    return tfeti::BodyMotions(systems, gluing, torn.constraints, scene.bodies.size(), MPI_COMM_WORLD).free(active);
+    return tfeti::BodyMotions(systems, gluing, torn.constraints, body_names(scene), MPI_COMM_WORLD).free(active);
   }
 
   std::string description(const Scene &scene, const tfeti::RigidMotion &motion)

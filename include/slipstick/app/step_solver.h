@@ -7,6 +7,7 @@
 #include <slipstick/contact/friction.h>
 #include <slipstick/mechanics/stress.h>
 #include <slipstick/output/convergence.h>
+#include <slipstick/tfeti/recovery.h>
 
 #include <memory>
 #include <optional>
@@ -17,7 +18,7 @@ namespace slipstick::app
   /// A recovered displacement, and what was found from it.
   struct StepAnswer
   {
-    tfeti::DualProblem::Recovery           recovery;
+    tfeti::Recovery                        recovery;
     std::optional<contact::CheckedContact> contact;
     std::optional<mechanics::StressResult> stress;
   };
@@ -120,7 +121,7 @@ namespace slipstick::app
 
     /// The displacement of the solution, whose status becomes stagnated where its rows do not hold the bodies though they may.
     /// @param bounds_follow the pressure?
-    tfeti::DualProblem::Recovery recovered(bool bounds_follow);
+    tfeti::Recovery recovered(bool bounds_follow);
 
     /// Computes checks and stresses of an answer that was recovered from @p from.
     void evaluate(Answer &answer, const contact::DualSolution &from, const double t) const;

@@ -3,6 +3,7 @@
 
 #include <slipstick/contact/dual_solution.h>
 #include <slipstick/qp/options.h>
+#include <slipstick/tfeti/face.h>
 
 namespace slipstick::contact
 {
@@ -34,10 +35,10 @@ namespace slipstick::contact
     }
 
   private:
-    tfeti::DualProblem      &dual;
-    const std::vector<bool>  free;
-    const qp::PcpgOptions    options;
-    tfeti::DualProblem::Face face;
-    qp::Counts               work;
+    tfeti::DualProblem     &dual;
+    const std::vector<bool> free;
+    const qp::PcpgOptions   options;
+    tfeti::Face             face;
+    qp::Counts              work;
   };
 } // namespace slipstick::contact

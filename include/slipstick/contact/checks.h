@@ -23,7 +23,7 @@ namespace slipstick::contact
     double moment_balance    = 0;
     double algebraic_error   = 0; // energy norm, from above: root of error_energy over u'K u
     double body_error        = 0; // worst body: the same over u'K u of its own, or algebraic_error
-    double error_energy      = 0; // DualProblem::jump_energies of all that u violates [N mm]
+    double error_energy      = 0; // tfeti::jump_energies of all that u violates [N mm]
     double max_displacement  = 0; // magnitude [mm]
     double energy            = 0; // u'K u, twice the strain energy [N mm]
     double largest_force     = 0; // of a contact node [N]
@@ -72,7 +72,7 @@ namespace slipstick::contact
   };
 
   /// @param u displacements of this rank's subdomains [mm].
-  /// @param multipliers [N], balanced with u as DualProblem::recover returns them.
+  /// @param multipliers [N], balanced with u as tfeti::recover returns them.
   /// @param slip_bound of every owned row [N].
   /// @param energies_beside of every body, what initial strains add to u'K u for it to be twice its strain energy [N mm]; of
   /// this rank; empty: none.

@@ -1,7 +1,7 @@
 // Where something is at its largest.
 #pragma once
 
-#include <slipstick/tfeti/dual_problem.h>
+#include <slipstick/tfeti/diagnosis.h>
 
 #include <array>
 #include <cmath>
@@ -44,8 +44,8 @@ namespace slipstick::contact
   void find_place_of_row(const tfeti::DualProblem &dual, const unsigned int owned_row, Largest &violation);
 
   /// Where a body has most of the energy of its jumps, and the pair that touches there. Collective.
-  void find_place_in_body(const tfeti::DualProblem               &dual,
-                          const tfeti::DualProblem::JumpEnergies &energies,
-                          const unsigned int                      body,
-                          Largest                                &error);
+  void find_place_in_body(const tfeti::DualProblem  &dual,
+                          const tfeti::JumpEnergies &energies,
+                          const unsigned int         body,
+                          Largest                   &error);
 } // namespace slipstick::contact

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <slipstick/contact/friction.h>
+#include <slipstick/tfeti/recovery.h>
 
 namespace slipstick::contact
 {
@@ -23,8 +24,8 @@ namespace slipstick::contact
   /// (L/h)^2 times as much as it stretches). The set stays; bodies that slide on all their contacts are left alone.
   /// Collective.
   /// @return the work.
-  qp::Counts close_gaps(const tfeti::DualProblem     &dual,
-                        const std::vector<bool>      &free,
-                        const qp::PcpgOptions        &options,
-                        tfeti::DualProblem::Recovery &recovery);
+  qp::Counts close_gaps(const tfeti::DualProblem &dual,
+                        const std::vector<bool>  &free,
+                        const qp::PcpgOptions    &options,
+                        tfeti::Recovery          &recovery);
 } // namespace slipstick::contact

@@ -4,6 +4,8 @@
 #include <slipstick/base/box_tree.h>
 #include <slipstick/mechanics/surface_facet.h>
 
+#include <limits>
+
 namespace slipstick::interface
 {
   /// Tree of the bounding boxes of edges.
@@ -27,6 +29,15 @@ namespace slipstick::interface
 
     /// Is x inside? Crossings of the ray along +x are counted.
     bool contains(const dealii::Point<2> &x) const;
+
+    struct Nearest
+    {
+      unsigned int edge     = 0;
+      double       s        = 0; // where on its chord
+      double       distance = std::numeric_limits<double>::max();
+    };
+    /// The place on the chords that is nearest to x.
+    Nearest nearest(const dealii::Point<2> &x) const;
 
     const std::vector<mechanics::SurfaceEdge<2>> &edges;
     const EdgeTree                                tree;

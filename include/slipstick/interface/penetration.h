@@ -1,22 +1,18 @@
 // Penetrations after loading, from the geometry alone, at places that no contact row sees.
 #pragma once
 
+#include <slipstick/interface/deepest_penetration.h>
 #include <slipstick/mechanics/spaces.h>
 
 #include <Eigen/Dense>
 
+#include <map>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace slipstick::interface
 {
-  struct Penetration
-  {
-    double                depth = 0;     // [mm]
-    std::array<double, 3> at{{0, 0, 0}}; // reference configuration [mm]
-    double                edge = 0;      // length of the shorter of the edges there [mm]
-    double                gap  = 0;      // before loading, beyond_reach: of the node [mm]
-  };
-
   struct Penetrations
   {
     /// By contact pair: the deepest slave node that is not paired since it is farther away than the pair's Reach, along

@@ -1,24 +1,15 @@
 // Loads of the subdomains: tractions, pressure, body forces, point loads, thermal strain.
 #pragma once
 
-#include <slipstick/base/resultant.h>
+#include <slipstick/mechanics/load_resultant.h>
 #include <slipstick/mechanics/spaces.h>
 
 #include <Eigen/Dense>
 
-#include <optional>
+#include <vector>
 
 namespace slipstick::mechanics
 {
-  /// Resultant of one load of the scene.
-  struct LoadResultant
-  {
-    Resultant                            sum;
-    std::optional<std::array<double, 3>> unresolved; // where its formula is too rough for the mesh or has no integral;
-                                                     // of body forces, and of tractions on solids, when
-                                                     // two quadratures differ by one percent
-  };
-
   /// Of the tractions, then the body forces, then the point loads of the scene, at load factor @p t. The same on all
   /// ranks. Collective.
   template <int dim>

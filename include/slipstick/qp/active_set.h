@@ -4,6 +4,7 @@
 
 #include <slipstick/qp/admissible_set.h>
 #include <slipstick/qp/kernels.h>
+#include <slipstick/qp/optional_members.h>
 
 #include <algorithm>
 #include <array>
@@ -27,53 +28,6 @@ namespace slipstick::qp
     // Across a slipping force that yields by more than this times what its entry does, over the norm of F, the entry is held.
     constexpr double rigid_compliance = 1e3;
 
-    // s of the natural map over the stiffness of a point whose neighbours are held: they yield with it, and the diagonal of
-    // F is some ten times the inverse of that stiffness (doc/decisions/0090).
-    constexpr double yielding_neighbours = 0.1;
-
-    /// s times the norm of F, of an entry of weight 1: by the stiffness of single points, where the problem tells it, but never
-    /// less than bodies need.
-    template <typename Problem>
-    auto step_of_points(const Problem &problem, const double least, int) -> decltype(problem.point_stiffness())
-    {
-      return std::max(least, yielding_neighbours * problem.point_stiffness());
-    }
-    template <typename Problem>
-    double step_of_points(const Problem &, const double least, long)
-    {
-      return least;
-    }
-
-    /// `balance_bodies` of problems that have it; others have no bodies that contact alone holds.
-    template <typename Problem, typename Set>
-    auto balance_bodies(const Problem             &problem,
-                        const std::vector<double> &stiffness,
-                        const Set                 &set,
-                        const double               tolerated,
-                        std::vector<double>       &moved,
-                        int) -> decltype(problem.balance_bodies(stiffness, set, tolerated, moved))
-    {
-      problem.balance_bodies(stiffness, set, tolerated, moved);
-    }
-    template <typename Problem, typename Set>
-    void balance_bodies(const Problem &,
-                        const std::vector<double> &,
-                        const Set &,
-                        const double,
-                        std::vector<double> &,
-                        long)
-    {}
-    template <typename Problem>
-    auto has_loose_bodies(const Problem &problem, int) -> decltype(problem.has_loose_bodies())
-    {
-      return problem.has_loose_bodies();
-    }
-    template <typename Problem>
-    bool has_loose_bodies(const Problem &, long)
-    {
-      return false;
-    }
-
     /// The natural map x -> proj(x - s g) of an admissible set, and the set of entries that it puts on bounds. s: `step`
     /// over the norm of F, times the weight of the entry, so that s g is a force of the size that closes g: the stiffness of
     /// a point. The residual then counts a force beyond its bound as the gap that it closes. Bodies that
@@ -93,7 +47,7 @@ namespace slipstick::qp
         : problem(problem_)
         , norm(norm_)
         , noise(noise_)
-        , balances(has_loose_bodies(problem_, 0))
+        , balances(bodies_tell_sets(problem_, 0))
         , step(balances ? 1 : step_of_points(problem_, step_, 0))
         , set(std::move(set_))
         , weights(residual_weights(problem_, 0))

@@ -17,13 +17,15 @@
 //       `precondition(r, z)`    z = M r on the free entries, 0 on the others; symmetric positive semidefinite
 //       the Problem and its faces may have residual_weights (kernels.h)
 //       `is_regular()`          false when the free entries alone do not determine a
-//   `hold(free, gaps, well, turns) const`   the free entries and as many others, with small gaps, as make the face regular if that
-//       can be; or, if that is asked for, far from singular
-// It may have `point_stiffness() const`, |PFP| times the stiffness of an entry of weight 1 whose neighbours are held (active_set.h), and
-//     `has_loose_bodies() const` and
-//     `balance_bodies(stiffness, set, tolerated, moved) const`, which moves bodies that nothing but entries with bounds holds,
-//       moved -= stiffness times their jumps, so that proj(moved) balances their loads, up to the part `tolerated` of all
-//       forces: the least of the potential of the projected forces. So sets are predicted that can bear the loads.
+//   `loose_bodies() const`   an object with
+//       `hold(free, gaps, well, turns)`   the free entries and as many others, with small gaps, as make the face regular if
+//           that can be; or, if that is asked for, far from singular
+//       and, if there are bodies that nothing but entries with bounds holds,
+//       `tell_sets()`   is it worth while to move them?
+//       `balance(stiffness, set, tolerated, moved)`   moves them, moved -= stiffness times their jumps, so that proj(moved)
+//           balances their loads, up to the part `tolerated` of all forces: the least of the potential of the projected
+//           forces. So sets are predicted that can bear the loads.
+// It may have `point_stiffness() const`, |PFP| times the stiffness of an entry of weight 1 whose neighbours are held (active_set.h).
 #pragma once
 
 #include <slipstick/qp/active_set.h>
@@ -227,7 +229,7 @@ namespace slipstick::qp
       std::optional<Face> regular_face()
       {
         if (is_stuck)
-          set.release(problem.hold(set.free(), set.gaps(), true, set.turns()));
+          set.release(problem.loose_bodies().hold(set.free(), set.gaps(), true, set.turns()));
         for (unsigned int attempt = 0; attempt < 2; ++attempt)
           {
             ties = set.ties();
@@ -235,7 +237,7 @@ namespace slipstick::qp
             face.emplace(problem.face(set.free(), ties, set.turns()));
             if (face->is_regular())
               return face;
-            set.release(problem.hold(set.free(), set.gaps(), false, set.turns()));
+            set.release(problem.loose_bodies().hold(set.free(), set.gaps(), false, set.turns()));
           }
         return {};
       }

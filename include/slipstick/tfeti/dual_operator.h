@@ -1,4 +1,4 @@
-// F = B K+ B', the Hessian of the dual problem.
+// F = B K+ B', the Hessian of the dual problem, and products with B and B'.
 #pragma once
 
 #include <slipstick/tfeti/constraints.h>
@@ -49,11 +49,28 @@ namespace slipstick::tfeti
     /// Adds B_p v to y (ghosts included; compress afterwards).
     void gather(const unsigned int p, const Eigen::VectorXd &v, DistributedVector &y) const;
 
-    /// A vector with ghosts.
+    /// B u of displacements of this rank's subdomains, owned rows [mm]. Collective.
+    DistributedVector jumps(const std::vector<Eigen::VectorXd> &u) const;
+
+    /// The column of B, owned rows, of a touched unknown (its number among them) of a subdomain of one rank.
+    /// Collective.
+    /// @param subdomain on the other ranks: the number of their subdomains
+    DistributedVector column(const unsigned int subdomain, const unsigned int touched) const;
+
+    /// B_p'x of this rank's subdomains, all unknowns [N]: the forces of the multipliers (owned entries). Collective.
+    std::vector<Eigen::VectorXd> forces(const DistributedVector &x) const;
+
+    /// A zero vector with ghosts, and one of owned entries only.
     DistributedVector ghosted() const;
+    DistributedVector zero() const;
 
     /// Copies the owned entries of x and fetches the ghosts.
     void import(const DistributedVector &x, DistributedVector &with_ghosts) const;
+
+    const std::vector<LocalGluing> &gluing() const
+    {
+      return of_subdomains;
+    }
 
     unsigned long long n_applications() const
     {
@@ -74,9 +91,9 @@ namespace slipstick::tfeti
     void solve(const unsigned int p, const Eigen::VectorXd &force, Eigen::VectorXd &at_touched) const;
 
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
-    const std::vector<LocalGluing>                      &gluing;
-    Partitioner                                          rows;
-    const std::vector<PackedSymmetric>                  *blocks; // null: none
+    const std::vector<LocalGluing>                      &of_subdomains;    // B_p
+    Partitioner                                          rows, owned_rows; // with and without ghosts
+    const std::vector<PackedSymmetric>                  *blocks;           // null: none
     mutable DistributedVector                            source, target;
     mutable unsigned long long                           applications = 0;
   };

@@ -35,12 +35,18 @@ namespace slipstick::tfeti
   class BodyMotions
   {
   public:
-    /// The arguments are not kept, but `subdomains` has to live as long as this. Collective.
+    /// The arguments are not kept, but `subdomains` has to live as long as this. @param names of all bodies. Collective.
     BodyMotions(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                 const std::vector<LocalGluing>                      &gluing,
                 const Constraints                                   &constraints,
-                const unsigned int                                   n_bodies,
+                const std::vector<std::string>                      &names,
                 const MPI_Comm                                       comm);
+
+    /// Of the bodies.
+    const std::vector<std::string> &names() const
+    {
+      return names_of_bodies;
+    }
 
     /// Motions that no active row of B resists. Rows between bodies never count as resisting a motion that the bodies
     /// have in common: a gap or an overlap between the joined points looks like a lever but holds nothing. Collective.
@@ -88,6 +94,7 @@ namespace slipstick::tfeti
                                                const std::vector<Share> &of_rows) const;
 
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
+    std::vector<std::string>                             names_of_bodies;
     MPI_Comm                                             comm;
     unsigned int                                         n_owned_rows;
     unsigned int                                         motions_of_body; // 3 in the plane, 1 where it is revolved

@@ -3,6 +3,7 @@
 #include <slipstick/qp/smalbe.h>
 #include <slipstick/tfeti/dual_problem.h>
 #include <slipstick/tfeti/process.h>
+#include <slipstick/tfeti/recovery.h>
 
 #include <cstdio>
 
@@ -68,7 +69,7 @@ int main()
   const auto result = qp::smalbe(dual, 1., b, box, {dual.zero()}, 1e-12);
   Vector     x      = start;
   x += result.x;
-  const auto solution = dual.recover(x, {true, true, x(2) > 0});
+  const auto solution = tfeti::recover(dual, x, {true, true, x(2) > 0});
   std::printf("status %d, force on the wall %.9g, displacement of its end %.9g\n",
               static_cast<int>(result.status),
               x(2),

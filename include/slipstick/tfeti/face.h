@@ -1,0 +1,76 @@
+// The dual problem on the rows that hold.
+#pragma once
+
+#include <slipstick/tfeti/dual_problem.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace slipstick::tfeti
+{
+  /// The dual problem on its free rows, as qp's semismooth Newton and PCPG ask for it. Members are collective.
+  class Face
+  {
+  public:
+    /// @param problem is referred to. @param free owned rows. @param ties rows held at others, @param turns rows of
+    /// slipping nodes in space that count as turned. Collective.
+    Face(const DualProblem           &problem,
+         const std::vector<bool>     &free,
+         const std::vector<qp::Tie>  &ties  = {},
+         const std::vector<qp::Turn> &turns = {});
+
+    void                       multiply(const DistributedVector &x, DistributedVector &y) const; // y = F x / |P F P|
+    const MpiReduction        &reduction() const;
+    const std::vector<double> &residual_weights() const;
+
+    /// y = Q_f x on the free rows, y = x on the others.
+    void project_range(const DistributedVector &x, DistributedVector &y) const;
+
+    /// Changes the free rows of x, and those tied to them, by the smallest amount that makes G x = e.
+    void balance(DistributedVector &x) const;
+
+    /// Changes the free rows of p by the smallest amount that makes G p = 0, once the tied rows are factor times
+    /// theirs.
+    void project_kernel(DistributedVector &p) const;
+
+    /// y = G'a on all rows, with the a that minimises v - G'a on the free ones.
+    void multiplier_shift(const DistributedVector &v, DistributedVector &y) const;
+
+    /// z = M r on the free rows, 0 on the others; a copy without a preconditioner.
+    void precondition(const DistributedVector &r, DistributedVector &z) const;
+
+    /// Do the free rows hold all bodies?
+    bool is_regular() const
+    {
+      return projector != nullptr;
+    }
+
+  private:
+    using Projection = void (Projector::*)(const DistributedVector &, DistributedVector &) const;
+    void                projected(const Projection project, const DistributedVector &x, DistributedVector &y) const;
+    void                make_projectors();
+    std::vector<double> softened_weights();
+    const DistributedVector &turned(const DistributedVector &x, std::optional<DistributedVector> &copy) const;
+    void                     soften(DistributedVector &x) const;
+
+    const Projector &balancing() const
+    {
+      return tied ? *tied : *projector;
+    }
+
+    const DualProblem         &problem;
+    const RowMetric           &metric;
+    std::vector<bool>          free;
+    std::vector<qp::Tie>       ties;
+    std::vector<qp::Turn>      turns;
+    std::vector<double>        stiffness; // by turns: of the row across the force, over that without compliance
+    std::unique_ptr<Projector> projector; // none if the free rows do not hold the bodies
+    std::unique_ptr<Projector> tied;      // of free and tied rows, if some rank has ties
+    std::unique_ptr<RowWeights::Inverse> weights;
+  };
+
+  /// Norm of the part of a residual (such as d - F x over norm()) that multipliers can change, with its
+  /// weights; 0 where that is rounding. Collective.
+  double residual_norm(const DualProblem &problem, const DistributedVector &r);
+} // namespace slipstick::tfeti

@@ -1,0 +1,51 @@
+// Stiffnesses of the rows of B, by which projections and norms of the dual problem weigh residuals.
+#pragma once
+
+#include <slipstick/tfeti/constraints.h>
+
+#include <mpi.h>
+
+#include <vector>
+
+namespace slipstick::tfeti
+{
+  /// The stiffness of a row is the force that opens it by 1 mm, the other rows held, with its own compliance in series.
+  class RowMetric
+  {
+  public:
+    /// All rows alike: no weights.
+    RowMetric() = default;
+
+    /// @param stiffnesses of the owned rows without their own compliance [N/mm]. Collective.
+    RowMetric(std::vector<double> stiffnesses, const Constraints &rows, const MPI_Comm comm);
+
+    /// Stiffnesses of the owned rows over the least one of all ranks; both tangents of a node alike. Empty: all alike.
+    const std::vector<double> &weights() const
+    {
+      return relative;
+    }
+
+    /// The least stiffness [N/mm].
+    double least() const
+    {
+      return smallest;
+    }
+
+    /// Of the owned rows: root of the stiffness with the row's compliance over that without. Empty: 1.
+    const std::vector<double> &yielding() const
+    {
+      return roots;
+    }
+
+    /// Do stiffnesses differ so much that the rounding of one projection would show in the stiffest rows?
+    bool is_wide() const
+    {
+      return differs_much;
+    }
+
+  private:
+    std::vector<double> relative, roots;
+    double              smallest     = 1;
+    bool                differs_much = false;
+  };
+} // namespace slipstick::tfeti

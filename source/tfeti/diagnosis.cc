@@ -1,0 +1,50 @@
+#include <slipstick/tfeti/diagnosis.h>
+
+#include <optional>
+
+namespace slipstick::tfeti
+{
+  JumpEnergies jump_energies(const DualProblem &dual, const DistributedVector &r, const std::vector<bool> &held)
+  {
+    const auto                      &systems = dual.subdomains();
+    const DualOperator              &F       = dual.dual_operator();
+    const MPI_Comm                   comm    = dual.communicator();
+    std::optional<RowPreconditioner> lumped;
+    if (!dual.preconditioner())
+      lumped.emplace(systems, F.gluing(), F, dual.constraints().rows, comm, nullptr);
+    const RowPreconditioner &M        = lumped ? *lumped : *dual.preconditioner();
+    const auto               energies = M.energies(RowWeights::Inverse(M.weights(), held), r);
+    const std::size_t        n_bodies = dual.body_motions().names().size();
+    JumpEnergies             result{Eigen::VectorXd::Zero(n_bodies), std::vector<JumpEnergies::Spot>(n_bodies)};
+    for (unsigned int p = 0; p < systems.size(); ++p)
+      {
+        const unsigned int body = systems[p]->body();
+        result.of_body[body] += energies[p].sum();
+        Eigen::Index k;
+        if (energies[p].size() > 0 && energies[p].maxCoeff(&k) > result.spots[body].energy)
+          result.spots[body] = {energies[p][k], p, static_cast<unsigned int>(k)};
+      }
+    MPI_Allreduce(MPI_IN_PLACE, result.of_body.data(), result.of_body.size(), MPI_DOUBLE, MPI_SUM, comm);
+    return result;
+  }
+
+  std::vector<bool> ambiguous(const DualProblem &dual, const std::vector<bool> &free)
+  {
+    const auto       &compliance = dual.constraints().compliance;
+    std::vector<bool> rigid      = free; // rows that yield are determined by that
+    for (unsigned int r = 0; r < compliance.size(); ++r)
+      rigid[r] = rigid[r] && compliance[r] == 0;
+    if (dual.preconditioner())
+      return dual.preconditioner()->weights().ambiguous(rigid);
+    return RowWeights(dual.subdomains(), dual.dual_operator().gluing(), dual.constraints().rows, dual.communicator())
+      .ambiguous(rigid);
+  }
+
+  RigidMotion motion_behind(const DualProblem &dual, const DistributedVector &r)
+  {
+    return body_motion(dual.subdomains(),
+                       dual.projector().amplitudes(r),
+                       dual.body_motions().names().size(),
+                       dual.communicator());
+  }
+} // namespace slipstick::tfeti

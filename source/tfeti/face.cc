@@ -1,0 +1,210 @@
+#include <slipstick/base/exceptions.h>
+#include <slipstick/qp/kernels.h>
+#include <slipstick/tfeti/face.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <array>
+#include <cmath>
+
+namespace slipstick::tfeti
+{
+  namespace
+  {
+    // What the projection leaves of a residual is rounding below this part of it: bodies that supports move without deforming them.
+    constexpr double rounding_of_projection = 1e-14;
+  } // namespace
+
+  Face DualProblem::face(const std::vector<bool>     &free,
+                         const std::vector<qp::Tie>  &ties,
+                         const std::vector<qp::Turn> &turns) const
+  {
+    return Face(*this, free, ties, turns);
+  }
+
+  Face::Face(const DualProblem           &problem_,
+             const std::vector<bool>     &free_,
+             const std::vector<qp::Tie>  &ties_,
+             const std::vector<qp::Turn> &turns_)
+    : problem(problem_)
+    , metric(problem_.metric())
+    , free(free_)
+    , ties(ties_)
+    , turns(turns_)
+  {
+    if (!problem.body_motions().free(free, BodyMotions::rounding_of_resistance, turns).empty())
+      return;
+    try
+      {
+        make_projectors();
+      }
+    catch (const NumericalError &) // to rounding the free rows leave a motion open; the same on every rank
+      {
+        projector.reset();
+        tied.reset();
+        return;
+      }
+    if (problem.preconditioner())
+      weights = std::make_unique<RowWeights::Inverse>(problem.preconditioner()->weights(), free, turns);
+  }
+
+  void Face::make_projectors()
+  {
+    const std::vector<double>  softened = softened_weights();
+    const std::vector<double> &of_rows  = turns.empty() ? metric.weights() : softened;
+    const MPI_Comm             comm     = problem.communicator();
+    projector = std::make_unique<Projector>(problem.projector(), free, comm, std::vector<qp::Tie>(), of_rows, turns);
+    if (dealii::Utilities::MPI::max(ties.empty() ? 0 : 1, comm) > 0)
+      {
+        std::vector<bool> moving = free;
+        for (const auto &tie : ties)
+          moving[tie.tied] = true;
+        tied = std::make_unique<Projector>(problem.projector(), moving, comm, ties, of_rows, turns);
+      }
+  }
+
+  // A row that yields by kappa on top of 1/k has the stiffness 1/(kappa + 1/k). Empty without turned rows.
+  std::vector<double> Face::softened_weights()
+  {
+    if (turns.empty())
+      return {};
+    std::vector<double> result = metric.weights();
+    for (const qp::Turn &turn : turns)
+      {
+        double part = 1;
+        if (!result.empty())
+          {
+            part = 1 / (1 + turn.compliance * problem.norm() * metric.least() * result[turn.second]);
+            result[turn.second] *= part;
+          }
+        stiffness.push_back(part);
+      }
+    return result;
+  }
+
+  void Face::multiply(const DistributedVector &x, DistributedVector &y) const
+  {
+    problem.multiply(x, y);
+  }
+
+  const std::vector<double> &Face::residual_weights() const
+  {
+    return problem.residual_weights();
+  }
+
+  const MpiReduction &Face::reduction() const
+  {
+    return problem.reduction();
+  }
+
+  // Twice where the rounding of the first shows. Of turned rows.
+  void Face::projected(const Projection project, const DistributedVector &x, DistributedVector &y) const
+  {
+    (*projector.*project)(x, y);
+    if (!metric.is_wide())
+      return;
+    DistributedVector left(x), rest = problem.zero();
+    left -= y;
+    (*projector.*project)(left, rest);
+    y += rest;
+  }
+
+  void Face::project_range(const DistributedVector &x, DistributedVector &y) const
+  {
+    std::optional<DistributedVector> copy;
+    const DistributedVector         &at = turned(x, copy);
+    projected(&Projector::project_range, at, y);
+    for (unsigned int r = 0; r < free.size(); ++r)
+      if (!free[r])
+        y.local_element(r) = at.local_element(r);
+    qp::turn_back(turns, y);
+  }
+
+  void Face::balance(DistributedVector &x) const
+  {
+    DistributedVector step = problem.zero();
+    for (unsigned int pass = 0; pass < (metric.is_wide() ? 2 : 1); ++pass)
+      {
+        balancing().particular(problem.e() - problem.projector().multiply(x), step);
+        qp::turn_back(turns, step);
+        x += step;
+      }
+  }
+
+  void Face::project_kernel(DistributedVector &p) const
+  {
+    qp::turn(turns, p);
+    for (const qp::Tie &tie : ties)
+      p.local_element(tie.tied) = tie.factor * p.local_element(tie.to);
+    DistributedVector range = problem.zero();
+    balancing().excess(p, range);
+    p -= range;
+    qp::turn_back(turns, p);
+  }
+
+  void Face::multiplier_shift(const DistributedVector &v, DistributedVector &y) const
+  {
+    std::optional<DistributedVector> copy;
+    projected(&Projector::extend_range, turned(v, copy), y);
+    qp::turn_back(turns, y);
+  }
+
+  void Face::precondition(const DistributedVector &r, DistributedVector &z) const
+  {
+    if (!weights)
+      {
+        z.copy_locally_owned_data_from(r);
+        return;
+      }
+    const RowPreconditioner   &M        = *problem.preconditioner();
+    const std::vector<double> &yielding = metric.yielding();
+    if (turns.empty() && yielding.empty())
+      M.apply(*weights, r, z);
+    else
+      {
+        DistributedVector at(r);
+        soften(at);
+        M.apply(*weights, at, z);
+        soften(z);
+      }
+    for (std::size_t row = 0; row < yielding.size(); ++row) // their own stiffness bears what is smooth, too
+      z.local_element(row) +=
+        (1 - yielding[row] * yielding[row]) * metric.weights()[row] * metric.least() * r.local_element(row);
+    z *= problem.norm();
+  }
+
+  // x itself where no rows are turned.
+  const DistributedVector &Face::turned(const DistributedVector &x, std::optional<DistributedVector> &copy) const
+  {
+    if (turns.empty())
+      return x;
+    copy.emplace(x);
+    qp::turn(turns, *copy);
+    return *copy;
+  }
+
+  // Half of what the compliance of rows and of turned ones does to M.
+  void Face::soften(DistributedVector &x) const
+  {
+    const std::vector<double> &yielding = metric.yielding();
+    for (std::size_t r = 0; r < yielding.size(); ++r)
+      x.local_element(r) *= yielding[r];
+    qp::turn(turns, x);
+    for (std::size_t k = 0; k < turns.size(); ++k)
+      x.local_element(turns[k].second) *= std::sqrt(stiffness[k]);
+    qp::turn_back(turns, x);
+  }
+
+  double residual_norm(const DualProblem &problem, const DistributedVector &r)
+  {
+    const Face        all(problem, std::vector<bool>(r.locally_owned_size(), true));
+    DistributedVector part(r), range = problem.zero();
+    all.project_range(r, range);
+    part -= range;
+    const auto weights = qp::residual_weights(problem, 0);
+    const auto squares = problem.reduction().sum(
+      std::array<double, 2>{{qp::local_weighted_dot(weights, part, part), qp::local_weighted_dot(weights, r, r)}});
+    const double norm = std::sqrt(squares[0]);
+    return norm <= rounding_of_projection * std::sqrt(squares[1]) ? 0. : norm;
+  }
+} // namespace slipstick::tfeti
