@@ -151,7 +151,7 @@ namespace slipstick::contact
         const auto overload = weakest_motion(dual, law, solution.multipliers, 1);
         if (overload)
           throw NoEquilibrium(
-            (overload->held > 1 - nearness_of_limit ? "friction is too weak, at the limit of equilibrium: "
+            (overload->held > 1 - nearness_of_limit ? "friction is at the limit of equilibrium: "
                                                     : "friction is too weak: ") +
               describe(*overload, dual.body_names()),
             "raise the friction coefficient or the normal force, support the body against this motion, or lower the load");
