@@ -1,11 +1,13 @@
 #include <slipstick/app/answer_warnings.h>
 #include <slipstick/app/error_bars.h>
+#include <slipstick/app/formula_warnings.h>
 #include <slipstick/app/geometry_checks.h>
 #include <slipstick/app/held_nodes.h>
 #include <slipstick/app/interruption.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/run.h>
 #include <slipstick/base/memory.h>
+#include <slipstick/contact/equilibrium_limit.h>
 #include <slipstick/output/conditions.h>
 #include <slipstick/output/contact_displacement.h>
 #include <slipstick/output/fields.h>
@@ -326,6 +328,13 @@ namespace slipstick::app
                          contact.nodes,
                          solver.elastic_part(u)));
     warn(held_node_warnings(scene, solver.held_contacts(), contact, comm));
+    if (scene.has_contact())
+      if (const std::string text = contact::limit_warning(solver.dual(),
+                                                          contact::SlipLaw(scene, solver.dual(), t),
+                                                          answer.recovery.multipliers);
+          !text.empty())
+        warn({{"limit", text}});
+    warn(formula_warnings(scene, solver.mesh(), solver.spaces(), t, contact.checks.max_displacement));
     if (!solver.unheld().empty())
       warn({{"unresisted", set_to_zero(solver.unheld())}});
     if (!answer.recovery.unresisted.empty())

@@ -1,6 +1,7 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
 #include <slipstick/contact/bound_damping.h>
+#include <slipstick/contact/equilibrium_limit.h>
 #include <slipstick/contact/friction.h>
 #include <slipstick/contact/given_bounds.h>
 #include <slipstick/contact/linear.h>
@@ -57,10 +58,16 @@ namespace slipstick::contact
              });
     }
 
-    [[noreturn]] void no_equilibrium(const tfeti::DualProblem &dual, const Vector &certificate)
+    /// @param unbalanced the part of the loads that the forces found do not balance.
+    [[noreturn]] void no_equilibrium(const tfeti::DualProblem &dual, const Vector &certificate, const double unbalanced)
     {
       throw NoEquilibrium(
-        "no contact forces within their bounds balance the loads, which move " +
+        (unbalanced < nearness_of_limit
+           ? format(
+               "no contact forces within their bounds balance the last %.1e of the loads, at the limit of equilibrium: they "
+               "move ",
+               unbalanced)
+           : "no contact forces within their bounds balance the loads, which move ") +
           tfeti::describe(tfeti::motion_behind(dual, certificate), dual.body_motions().names()),
         "support the body against this motion, raise friction coefficient or slip bound, or turn the loads towards the "
         "contact");
@@ -131,7 +138,7 @@ namespace slipstick::contact
           return dual.zero();
         auto point = qp::feasible_point(dual, loads, law.admissible(dual));
         if (point.status == qp::Status::infeasible)
-          no_equilibrium(dual, point.certificate);
+          no_equilibrium(dual, point.certificate, point.residual);
         size_of_forces = point.x.l2_norm();
         return std::move(point.x);
       }
@@ -142,24 +149,12 @@ namespace slipstick::contact
       {
         if (!law.depends_on_pressure())
           return;
-        const Vector       &x      = solution.multipliers;
-        const double        noise  = tfeti::force_rounding * x.linfty_norm();
-        const auto          bounds = law.bounds(x);
-        std::vector<bool>   holds(x.locally_owned_size());
-        std::vector<double> capacity(holds.size(), -1.);
-        for (unsigned int r = 0; r < holds.size(); ++r)
-          {
-            const auto kind = dual.constraints().kind[r];
-            holds[r]        = is_equality(kind) || (kind == tfeti::RowKind::normal && x.local_element(r) > noise);
-            if (!holds[r])
-              capacity[r] = kind == tfeti::RowKind::normal ? qp::infinity : bounds[r];
-          }
-        const auto overload = dual.loose_bodies().overload(holds, capacity);
+        const auto overload = weakest_motion(dual, law, solution.multipliers, 1);
         if (overload)
           throw NoEquilibrium(
-            format("friction is too weak: at the normal forces found it bears %.3g of the load that moves %s",
-                   overload->held,
-                   tfeti::describe(overload->motion, dual.body_motions().names()).c_str()),
+            (overload->held > 1 - nearness_of_limit ? "friction is at the limit of equilibrium: "
+                                                    : "friction is too weak: ") +
+              describe(*overload, dual.body_motions().names()),
             "raise the friction coefficient or the normal force, support the body against this motion, or lower the load");
       }
 

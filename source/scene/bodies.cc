@@ -22,7 +22,12 @@ namespace slipstick::scene
       choices,
       "typical values at room temperature; values that the scene sets take precedence. A material in Materials "
       "that has such a name needs no subsection");
-    add_number(prm, "Young modulus", material.young_modulus, "MPa", Interval::above(0), "Young's modulus E");
+    add_number(prm,
+               "Young modulus",
+               material.young_modulus,
+               "MPa",
+               Interval::between(least_of_material, most_of_material),
+               "Young's modulus E");
     add_number(prm,
                "Poisson ratio",
                material.poisson_ratio,
@@ -34,7 +39,7 @@ namespace slipstick::scene
                "Density",
                material.density,
                "t/mm^3",
-               Interval{0},
+               Interval::between(0, most_of_material),
                "mass per volume, for accelerations and rotation");
     add_number(prm,
                "Thermal expansion",

@@ -293,7 +293,7 @@ namespace slipstick::scene
                  "Thickness",
                  body.thickness,
                  "mm",
-                 Interval::above(0),
+                 Interval::between(least_of_material, most_of_material),
                  "thickness out of the plane; bodies of revolution have none");
     for (const Fit &fit : fits<dim>())
       defaults[fit.parameter] = prm.get(fit.parameter);

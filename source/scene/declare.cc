@@ -101,6 +101,11 @@ namespace slipstick::scene
     return {lower, upper, true, true};
   }
 
+  Interval Interval::between(const double lower, const double upper)
+  {
+    return {lower, upper, false, false};
+  }
+
   bool Interval::contains(const double value) const
   {
     const bool may_be_tiny =

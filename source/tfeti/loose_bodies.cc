@@ -28,6 +28,8 @@ namespace slipstick::tfeti
     constexpr double least_decrease = 1e-4, shortest_step = 1e-10;
     // ... the search ends where the slope promises less than this part of the sum.
     constexpr double least_gain = 1e-12;
+    // Products of shares in each of its Newton steps above which no motion is looked for: some hundred steps take seconds.
+    constexpr double most_products = 1e8;
 
     /// A row of a loose body, or in space both tangential ones of a node, whose forces together are no larger than the
     /// capacity.
@@ -234,10 +236,14 @@ namespace slipstick::tfeti
   }
 
   std::optional<Overload> LooseBodies::overload(const std::vector<bool>   &free,
-                                                const std::vector<double> &capacity) const
+                                                const std::vector<double> &capacity,
+                                                const double               below) const
   {
     const auto loose = motions.free(free, weak_resistance);
     if (loose.empty())
+      return {};
+    const double n_loose = loose.size(), n_rows = dealii::Utilities::MPI::sum(free.size(), comm);
+    if (n_loose * n_loose * n_rows > most_products)
       return {};
     const Eigen::MatrixXd            own = motions.jumps(loose).toDense();
     std::vector<std::vector<double>> numbers;
@@ -280,13 +286,13 @@ namespace slipstick::tfeti
     if (!a.allFinite() || a.isZero(0.))
       return {};
     const double held = weakest.held_part(a);
-    if (!(held < 1))
+    if (!(held < below))
       return {};
     RigidMotion motion = loose.front();
     motion.amplitudes.setZero();
     for (std::size_t m = 0; m < loose.size(); ++m)
       motion.amplitudes -= a[m] * loose[m].amplitudes; // bodies move against G'a
     motion.amplitudes.normalize();
-    return Overload{motion, held};
+    return Overload{motion, held, -loads.dot(a) / a.norm()};
   }
 } // namespace slipstick::tfeti

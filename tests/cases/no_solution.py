@@ -1,5 +1,6 @@
 """Scenes without equilibrium end with status 4, solves that stop early with status 3; both say so in summary.json."""
 
+import math
 import unittest
 
 import scenes
@@ -70,6 +71,48 @@ class NoEquilibrium(unittest.TestCase):
         result = run(case, '--check', ranks=2)
         self.assertEqual(result.status, 4, result)
         self.assertIn('nothing holds body box', result.stderr)
+
+
+class LimitOfEquilibrium(unittest.TestCase):
+    """Stack on an incline of 20 degrees, mu a factor times tan 20."""
+
+    def stack(self, factor, tolerance, ranks=1):
+        pairs = ('ground', 'lower joint', 'upper joint')
+        friction = {'Contact {}/Friction coefficient'.format(pair): repr(factor * math.tan(math.radians(20))) for pair in pairs}
+        return solve(shipped('incline'), {**friction, 'Solver/Tolerance': tolerance, 'Output/VTU': 'false'}, ranks=ranks)
+
+    def warnings(self, result):
+        return [text for text in result.summary['warnings'] if 'at the limit of equilibrium' in text]
+
+    def test_what_friction_bears_is_solved_at_any_tolerance(self):
+        for factor, part in ((1, '1.00000'), (1 + 1e-6, '1.00000'), (1 + 1e-4, '1.0001')):
+            for tolerance in (1e-4, 1e-6, 1e-8, 1e-10):
+                with self.subTest(factor=factor, tolerance=tolerance):
+                    result = self.stack(factor, tolerance)
+                    self.assertEqual(result.status, 0, result)
+                    self.assertEqual(len(self.warnings(result)), 1, result)
+                    self.assertIn('bears ' + part, self.warnings(result)[0])
+                    self.assertIn('body a', self.warnings(result)[0])
+
+    def test_well_below_the_limit_nothing_is_said(self):
+        self.assertEqual(self.warnings(self.stack(1.01, 1e-8, ranks=2)), [])
+
+    def test_what_it_does_not_bear_is_refused_at_any_tolerance(self):
+        for factor, is_near in ((0.9, False), (1 - 1e-4, True), (1 - 1e-6, True)):
+            for tolerance in (1e-4, 1e-6, 1e-8, 1e-10):
+                with self.subTest(factor=factor, tolerance=tolerance):
+                    result = self.stack(factor, tolerance)
+                    self.assertEqual(result.status, 4, result)
+                    self.assertEqual('at the limit of equilibrium' in result.stderr, is_near, result)
+
+    def test_within_the_tolerance_both_say_so(self):
+        for tolerance, status in ((1e-4, 0), (1e-6, 0), (1e-8, 4), (1e-10, 4)):
+            with self.subTest(tolerance=tolerance):
+                result = self.stack(1 - 1e-8, tolerance)
+                self.assertEqual(result.status, status, result)
+                text = result.stderr if status else self.warnings(result)[0]
+                self.assertIn('at the limit of equilibrium', text)
+                self.assertIn('bears 0.99999999', text)
 
 
 class NotConverged(unittest.TestCase):

@@ -149,6 +149,11 @@ class Robustness(unittest.TestCase):
                             ('Body a/Translation', '1e300, 0')):
             self.refused(case, {name: value}, name.split('/')[1])
         self.refused(case, {'Body a/Translation': '1e12, 0'}, 'Body a: has an edge of', ranks=2)
+        for name, value in (('Material s/Young modulus', '1e27'), ('Material s/Young modulus', '1e-16'),
+                            ('Material s/Density', '2e15'), ('Body a/Thickness', '1e16'), ('Body a/Thickness', '1e-20')):
+            self.refused(case, {name: value}, name.split('/')[1], '1e+15')
+        for name, value in (('Material s/Young modulus', '1e15'), ('Material s/Density', '0'), ('Body a/Thickness', '1e-15')):
+            self.assertEqual(solve(case, {name: value}).status, 0)
 
     def test_obstacles_that_cross_themselves(self):
         contact = BLOCK + ('set Obstacles = p\nset Contacts = c\nsubsection Obstacle p\n  set Shape = polyline\n'

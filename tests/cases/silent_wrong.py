@@ -240,6 +240,47 @@ class Loads(Case):
                 self.assertEqual(result.summary['warnings'], [])
 
 
+class FormulasAtNodes(Case):
+    """Slip bounds, prescribed displacements and gaps act at nodes: what a formula does between them alone is warned of."""
+
+    def formulas(self, contact=None, support=None, **kinds):
+        held = {'hold': {'Boundary': 'bar/left', 'Displacement x': '0', 'Displacement y': '0', **(support or {})}}
+        result = converged(bar(supports=held, tractions={'pressed': PRESSED}, contacts={'touch': {**TOUCH, **(contact or {})}},
+                               **kinds))
+        return result, [text for text in result.summary['warnings'] if 'it acts at nodes' in text]
+
+    def test_peaks_between_nodes_are_warned_of(self):
+        peak = 'exp(-((x-4.37)/0.05)^2)'
+        for degree in (1, 2):
+            for name, contact, value in (('Slip bound', {'Law': 'Tresca', 'Slip bound': '0.1 + ' + peak}, '1.09 MPa'),
+                                         ('Friction coefficient', {'Law': 'Coulomb', 'Friction coefficient': '0.3 - 0.3*' + peak}, ''),
+                                         ('Gap', {'Gap': '0.5 - 0.5*' + peak}, ''), ('Gap', {'Gap': '-1e-4*' + peak}, '')):
+                with self.subTest(name, degree=degree):
+                    result, found = self.formulas(contact, Discretization={'Degree': degree})
+                    for word in ('Contact touch/' + name + ': the formula is ' + value, 'at (4.37', 'refine bar there'):
+                        self.assertIn(word, only(found))
+        result, found = self.formulas(support={'Displacement x': '1e-3*exp(-((y-1.43)/0.05)^2)'})
+        self.assertIn('Support hold/Displacement x: the formula is', only(found))
+        self.assertIn('at (0, 1.4', only(found))
+
+    def test_where_nodes_see_it_nothing_is_said(self):
+        for contact in ({'Law': 'Tresca', 'Slip bound': '0.1 + exp(-((x-4)/1.5)^2)'}, {'Law': 'Tresca', 'Slip bound': '5*(x>3.3)'},
+                        {'Gap': 'x^2/200'}, {'Gap': '-1e-5*x*(10-x)'}):
+            with self.subTest(contact):
+                self.assertEqual(self.formulas(contact)[1], [])
+        self.assertEqual(self.formulas(support={'Displacement x': '1e-3*sin(pi*y/4)'})[1], [])
+        fine = {'bodies': {'bar': {**BAR, 'Cells': '200, 4'}}}
+        self.assertEqual(self.formulas({'Law': 'Tresca', 'Slip bound': '0.1 + exp(-((x-4.37)/0.1)^2)'}, **fine)[1], [])
+
+    def test_also_on_several_ranks_and_in_the_step_where_it_appears(self):
+        case = bar(supports={'hold': {'Boundary': 'bar/left', 'Displacement x': '0', 'Displacement y': '0'}},
+                   tractions={'pressed': PRESSED}, Decomposition={'Method': 'METIS', 'Subdomains': '4'},
+                   contacts={'touch': {**TOUCH, 'Law': 'Tresca', 'Slip bound': '1 + 3*(t-1)*exp(-((x-4.37)/0.05)^2)'}},
+                   **{'Load steps': {'Factors': '1, 2'}})
+        texts = {only(converged(case, ranks=ranks).summary['warnings']) for ranks in (1, 2, 3)}
+        self.assertIn('the formula is 3.97 MPa at (4.375, 0)', only(list(texts)))
+
+
 class Names(Case):
 
     def test_all_and_the_star_are_reserved(self):

@@ -186,6 +186,29 @@ class Loads(Case):
         self.warned(solve(case), 'traction p', 'changes faster')
 
 
+class FormulasAtNodes(Case):
+
+    def formulas(self, contact, **kinds):
+        result = converged(bar(supports={'hold': held('bar/left')}, tractions={'p': {'Boundary': 'bar/top', 'Traction y': '-1'}},
+                               contacts={'touch': {**TOUCH, **contact}}, **kinds))
+        return [text for text in result.summary['warnings'] if 'it acts at nodes' in text]
+
+    def test_peaks_within_a_face_are_warned_of(self):
+        peak = 'exp(-((x-4.9)^2+(z-5.13)^2)/0.3^2)'
+        mesh = solids.abaqus_block('block', (10, 4, 10), (3, 1, 3))
+        for more in DEGREES + [{'bodies': {'bar': {'Shape': 'mesh', 'File': mesh, 'Material': 'elastic'}}}]:
+            for name, contact in (('Slip bound', {'Law': 'Tresca', 'Slip bound': '0.1 + ' + peak}),
+                                  ('Gap', {'Gap': '-1e-4*' + peak})):
+                with self.subTest(name, **more):
+                    text = only(self.formulas(contact, **more))
+                    self.assertIn('Contact touch/' + name + ': the formula is', text)
+                    self.assertIn('of its face of', text)
+
+    def test_where_nodes_see_it_nothing_is_said(self):
+        for contact in ({'Law': 'Tresca', 'Slip bound': '1 + sin(pi*x/10)*cos(z/10)'}, {'Gap': '(x^2+z^2)/2000'}):
+            self.assertEqual(self.formulas(contact), [])
+
+
 def bricks(cells):
     """Path of an .inp with these cuboids (two corners each) as one body with the sets low and up."""
     numbers, elements = {}, []

@@ -165,7 +165,7 @@ namespace slipstick::qp
       }
 
       /// p = a part of the gradient. The part is a template argument since g++ 14.2 at -O2 reads a member through a pointer
-      /// known at run time before the temporary that it is in has been written (doc/decisions/0096).
+      /// known at run time before the temporary that it is in has been written (doc/decisions/0095).
       template <double GradientParts::*part>
       void set_direction()
       {

@@ -21,6 +21,10 @@ namespace slipstick::scene
   /// from overflow, and no units need more.
   constexpr double smallest_number = 1e-30, largest_number = 1e30;
 
+  /// Moduli [MPa] and thicknesses [mm] lie between these: in no usual units are those of materials beyond (diamond has 1.2e12 Pa), and
+  /// what rounding of coordinates (1e-16 of an edge) leaves in a gap would press with more than a tenth of a MPa above.
+  constexpr double least_of_material = 1e-15, most_of_material = 1e15;
+
   /// Whether a number is finite and no larger.
   bool is_usable(const double value);
 
@@ -35,6 +39,7 @@ namespace slipstick::scene
     static Interval above(const double lower);
     static Interval from(const double lower);
     static Interval inside(const double lower, const double upper);
+    static Interval between(const double lower, const double upper); // both included
 
     bool        contains(const double value) const;
     std::string text() const; // to follow "a number": " > 0", " in (0, 1)", or nothing

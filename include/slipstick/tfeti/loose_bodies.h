@@ -7,11 +7,12 @@
 
 namespace slipstick::tfeti
 {
-  /// A motion of bodies for which friction at the current bounds is too weak.
+  /// The motion of bodies that friction at the current bounds resists least.
   struct Overload
   {
     RigidMotion motion;
-    double      held = 0; // the part of the load along it that friction bears, below 1
+    double      held = 0; // of the load along it friction bears this part: no equilibrium below 1
+    double      load = 0; // along the motion, of unit length [N]
   };
 
   /// Which rows hold the bodies that others leave loose. Rows are owned ones throughout; members are collective.
@@ -52,8 +53,12 @@ namespace slipstick::tfeti
                  std::vector<double>                        &moved) const;
 
     /// @param free rows that hold: gluing, supports, closed contact. @param capacity the bound of a row between two
-    ///        bounds [N]; negative: the row bears nothing; infinity: a row with one bound.
-    std::optional<Overload> overload(const std::vector<bool> &free, const std::vector<double> &capacity) const;
+    ///        bounds [N]; negative: the row bears nothing; infinity: a row with one bound. @param below motions of which
+    ///        friction bears this part or more do not count. None where so many bodies are loose that the search would take
+    ///        longer than the solve.
+    std::optional<Overload> overload(const std::vector<bool>   &free,
+                                     const std::vector<double> &capacity,
+                                     const double               below = 1) const;
 
   private:
     const BodyMotions &motions;
