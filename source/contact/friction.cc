@@ -306,7 +306,7 @@ namespace slipstick::contact
         Vector d = dual.d();
         d /= dual.norm();
         qp::NewtonOptions how    = options.newton;
-        const auto        bodies = static_cast<unsigned int>(dual.body_names().size());
+        const auto        bodies = static_cast<unsigned int>(dual.body_motions().names().size());
         how.max_outer_iterations = std::max(how.max_outer_iterations, bodies / bodies_per_step);
         if (law.has_discs())
           how.max_outer_iterations = std::min(how.max_outer_iterations, most_steps_in_space);
