@@ -21,9 +21,10 @@ namespace slipstick::scene
   /// from overflow, and no units need more.
   constexpr double smallest_number = 1e-30, largest_number = 1e30;
 
-  /// Moduli [MPa] and thicknesses [mm] lie between these: in no usual units are those of materials beyond (diamond has 1.2e12 Pa), and
-  /// what rounding of coordinates (1e-16 of an edge) leaves in a gap would press with more than a tenth of a MPa above.
-  constexpr double least_of_material = 1e-15, most_of_material = 1e15;
+  /// Moduli [MPa] and thicknesses [mm] lie between these: in no units are those of materials beyond (diamond has 1.2e12 Pa,
+  /// 1.2e18 N/km^2), and what rounding of coordinates (1e-16 of an edge) leaves in a gap would press with more than the
+  /// loads above.
+  constexpr double least_of_material = 1e-20, most_of_material = 1e20;
 
   /// Whether a number is finite and no larger.
   bool is_usable(const double value);
