@@ -123,7 +123,7 @@ TEST(loads, of_bodies_without_density_or_expansion)
 {
   refused({"Material steel/Density=0"}, {"Body force weight", "body 'box'", "Material steel/Density is 0", "7.85e-9"});
   refused({"Material steel/Thermal expansion=0"}, {"Temperature warm", "Thermal expansion is 0"});
-  refused({"Material steel/Density=-1"}, {"Material steel/Density = '-1'", "a number in [0, 1e+15]"});
+  refused({"Material steel/Density=-1"}, {"Material steel/Density = '-1'", "a number in [0, 1e+20]"});
 }
 
 TEST(loads, section_of_two_words_that_no_list_declares)
