@@ -264,6 +264,7 @@ def limit(memory, seconds=None):
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1', OMPI_ALLOW_RUN_AS_ROOT='1',
                    OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
 of_thread = threading.local()
+servers = []  # a child that Python forks drops the locals of other threads, which must not delete the folders of their servers
 
 
 def start(arguments, options, ranks):
@@ -271,6 +272,7 @@ def start(arguments, options, ranks):
     if ranks == 1 and options.server and all(argument.isprintable() for argument in arguments):
         if not hasattr(of_thread, 'server'):
             of_thread.server = ForkServer(options.server, ENVIRONMENT)
+            servers.append(of_thread.server)
         status, _, stderr, is_late = of_thread.server.run(arguments, os.getcwd(), options.time, options.memory)
         return status, stderr, is_late
     launcher = [str(ROOT / 'scripts' / 'mpirun'), '--shared-cores', '-n', str(ranks)] if ranks > 1 else []
