@@ -117,12 +117,6 @@ namespace slipstick::contact
             if (newton(from, true, !start))
               return finished();
             refuse_overload();
-            if (law.has_discs() && solution.status == qp::Status::iteration_limit) // it may just be slow
-              {
-                if (newton(Vector(solution.multipliers), true))
-                  return finished();
-                refuse_overload();
-              }
             ++solution.fallbacks;
             set_bounds(law.bounds(feasible));
           }
