@@ -101,14 +101,6 @@ namespace slipstick::app
       return values;
     }
 
-    /// Quantities that presets speak of: others may be zero and nothing but rounding.
-    bool is_promised(const std::string &quantity)
-    {
-      const auto dot  = quantity.rfind('.');
-      const auto what = dot == std::string::npos ? quantity : quantity.substr(dot + 1);
-      return what == "max_displacement" || what == "strain_energy" || what == "normal_force" || what == "max_pressure";
-    }
-
     /// Magnitudes of values and bars, by unit.
     std::map<std::string, double> largest_of_units(const std::vector<output::ErrorBar> &bars)
     {
@@ -168,7 +160,7 @@ namespace slipstick::app
     return bars;
   }
 
-  void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars, const double accuracy)
+  void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars)
   {
     if (bars.empty())
       return;
@@ -190,17 +182,26 @@ namespace slipstick::app
                         bar.value,
                         bar.reason.c_str(),
                         bar.unit.c_str()));
-    std::string inaccurate;
+  }
+
+  void print_inaccurate(const Log                           &log,
+                        const std::vector<output::ErrorBar> &bars,
+                        const std::vector<std::string>      &promised,
+                        const double                         accuracy)
+  {
+    const auto  largest = largest_of_units(bars);
+    std::string names;
     for (const auto &bar : bars)
-      if (accuracy > 0 && bar.error && is_promised(bar.quantity) && *bar.error > accuracy * std::abs(bar.value) &&
-          std::abs(bar.value) > nothing * largest.at(bar.unit))
-        inaccurate += (inaccurate.empty() ? "" : ", ") + bar.quantity +
-                      format(" (%.2g %%)", 100 * *bar.error / std::abs(bar.value));
-    if (!inaccurate.empty())
-      log.line(format(
-        "             known to less than the %g %% that the preset stands for: %s; Mesh = adaptive refines until "
-        "they are known to it",
-        100 * accuracy,
-        inaccurate.c_str()));
+      if (bar.error && *bar.error > accuracy * std::abs(bar.value) &&
+          std::abs(bar.value) > nothing * largest.at(bar.unit) &&
+          std::find(promised.begin(), promised.end(), bar.quantity) != promised.end())
+        names +=
+          (names.empty() ? "" : ", ") + bar.quantity + format(" (%.2g %%)", 100 * *bar.error / std::abs(bar.value));
+    if (!names.empty())
+      log.line(
+        format("             known to less than the %g %% that the preset stands for: %s; Mesh = adaptive refines "
+               "until they are known to it",
+               100 * accuracy,
+               names.c_str()));
   }
 } // namespace slipstick::app

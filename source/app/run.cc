@@ -81,7 +81,7 @@ namespace slipstick::app
     , log(log_)
     , comm(comm_)
     , wanted(std::move(wanted_))
-    , wanted_accuracy(refinement ? 0. : scene::accuracy_of(scene_.accuracy))
+    , refines(refinement)
     , solver(scene_, log_, clock, comm_, wanted.has_value(), refinement)
     , scene(solver.discrete_scene())
     , probes(scene, solver.mesh(), solver.spaces())
@@ -131,7 +131,9 @@ namespace slipstick::app
     print_forces(to, scene, summary.results);
     if (prints())
       do_not_tell_when_interrupted();
-    print_bars(to, summary.error_bars, wanted_accuracy);
+    print_bars(to, summary.error_bars);
+    if (!refines)
+      print_inaccurate(to, summary.error_bars, scene::goals_of_presets(scene), scene::accuracy_of(scene.accuracy));
     print_result(to, summary, directory.path(scene.output.vtu ? "solution.pvd" : "summary.json"));
   }
 

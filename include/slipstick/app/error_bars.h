@@ -15,6 +15,12 @@ namespace slipstick::app
                                            const std::vector<contact::ContactNode>  &nodes,
                                            const std::vector<scene::ContactPair<2>> &pairs);
 
-  /// A line a figure. @param accuracy the relative error that is wanted: figures with larger ones are named; 0: any.
-  void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars, const double accuracy);
+  /// A line a figure.
+  void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars);
+
+  /// Those of the figures @p promised whose errors are larger than the part @p accuracy of them, if any.
+  void print_inaccurate(const Log                           &log,
+                        const std::vector<output::ErrorBar> &bars,
+                        const std::vector<std::string>      &promised,
+                        const double                         accuracy);
 } // namespace slipstick::app

@@ -99,8 +99,8 @@ namespace slipstick::app
     const output::OutputDirectory          &directory;
     const Log                              &log;
     const MPI_Comm                          comm;
-    std::optional<std::vector<std::string>> wanted;          // error bars
-    const double                            wanted_accuracy; // relative; 0: it is somebody else's matter
+    std::optional<std::vector<std::string>> wanted; // error bars
+    const bool                              refines;
     StageClock                              clock;
     StepSolver<dim>                         solver;
     const scene::Scene<dim>                &scene; // with the contact pairs that are found

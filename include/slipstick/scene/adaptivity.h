@@ -4,6 +4,7 @@
 #include <slipstick/scene/scene.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dealii
@@ -14,7 +15,7 @@ namespace dealii
 namespace slipstick::scene
 {
   /// The parameter, and its value, with which presets refine meshes.
-  const std::pair<std::string, std::string> adaptive_mesh = {"Mesh", "adaptive"};
+  inline const std::pair<std::string, std::string> adaptive_mesh = {"Mesh", "adaptive"};
 
   struct AdaptivityOptions
   {
