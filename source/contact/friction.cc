@@ -160,19 +160,25 @@ namespace slipstick::contact
             "raise the friction coefficient or the normal force, support the body against this motion, or lower the load");
       }
 
-      /// Without loads and prescribed displacements: can bodies move to where nothing touches? Where nothing is nearly
-      /// true only, sets have no forces to be told by.
+      /// Without loads and prescribed displacements: do the bodies touch nothing where they are, or can they move to where
+      /// nothing touches? Where nothing is nearly true only, sets have no forces to be told by.
       bool bears_nothing(const Vector &feasible) const
       {
         const auto &kind  = dual.constraints().kind;
-        double      loads = feasible.linfty_norm(), bounds = 0;
+        double      loads = feasible.linfty_norm(), jumps = 0, bounds = 0;
         for (unsigned int r = 0; r < kind.size(); ++r)
           {
+            const double d = dual.d().local_element(r);
             if (is_equality(kind[r]))
-              loads = std::max(loads, std::abs(dual.d().local_element(r)));
+              loads = std::max(loads, std::abs(d));
+            else
+              jumps = std::max(jumps, kind[r] == tfeti::RowKind::normal ? d : std::abs(d));
             bounds = std::max(bounds, solution.slip_bound[r]);
           }
-        if (dealii::Utilities::MPI::max(std::max(loads, bounds), dual.communicator()) > 0)
+        loads = dealii::Utilities::MPI::max(loads, dual.communicator());
+        if (loads == 0 && dealii::Utilities::MPI::max(jumps, dual.communicator()) <= 0)
+          return true;
+        if (loads > 0 || dealii::Utilities::MPI::max(bounds, dual.communicator()) > 0)
           return false;
         std::vector<double> force(kind.size()), stiffness(kind.size(), 1 / dual.norm());
         const auto         &weights = dual.residual_weights();

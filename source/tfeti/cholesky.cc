@@ -120,8 +120,8 @@ namespace slipstick::tfeti
 
     cholmod_factor *factor = analyse(A, last);
     if (factor == nullptr)
-      throw NumericalError("not enough memory for the analysis of a sparse matrix",
-                           "use more or smaller subdomains (Decomposition), or more ranks on more machines");
+      throw InputError("not enough memory for the analysis of a sparse matrix",
+                       "use more or smaller subdomains (Decomposition), or more ranks on more machines");
     if (analyses.size() == max_analyses)
       {
         cholmod_free_factor(&analyses.front().factor, &common);
@@ -171,8 +171,8 @@ namespace slipstick::tfeti
     trailing.assign(permutation + factor->n - last.size(), permutation + factor->n);
     cholmod_factorize(&A, factor.get(), &common);
     if (common.status == CHOLMOD_OUT_OF_MEMORY)
-      throw NumericalError(name + ": not enough memory for the Cholesky factor",
-                           "use more or smaller subdomains (Decomposition), or more ranks on more machines");
+      throw InputError(name + ": not enough memory for the Cholesky factor",
+                       "use more or smaller subdomains (Decomposition), or more ranks on more machines");
     if (common.status != CHOLMOD_OK || factor->minor < factor->n ||
         cholmod_rcond(factor.get(), &common) < smallest_reciprocal_condition)
       throw NumericalError(name + failure.text, failure.remedy);

@@ -197,7 +197,10 @@ namespace slipstick::tfeti
 
   double residual_norm(const DualProblem &problem, const DistributedVector &r)
   {
-    const Face        all(problem, std::vector<bool>(r.locally_owned_size(), true));
+    const Face all(problem, std::vector<bool>(r.locally_owned_size(), true));
+    if (!all.is_regular())
+      throw InputError("the stiffnesses of the bodies differ by more than double precision can tell",
+                       "check their thicknesses, moduli and sizes for wrong units");
     DistributedVector part(r), range = problem.zero();
     all.project_range(r, range);
     part -= range;

@@ -137,6 +137,27 @@ class Held(Case):
         self.assertEqual({(row['gap'], row['status']) for row in result.contact}, {(0.1, 'open')})
 
 
+class NoLoad(Case):
+
+    def test_friction_bears_nothing_where_nothing_loads(self):
+        """A slip bound is there without a pressure; the rounding of gaps was borne by it."""
+        for support in ({'Displacement x': '0', 'Displacement y': 'free'}, {'Displacement x': '0', 'Displacement y': '0'}):
+            result = converged(shipped('box_prescribed'), {
+                **{'Support pressed/' + name: value for name, value in support.items()},
+                'Contact circle/Law': 'Tresca', 'Contact circle/Slip bound': '150', 'Decomposition/Cells per block': '3'})
+            self.assertEqual({(row['pressure'], row['tangential_traction'], row['slip']) for row in result.contact}, {(0, 0, 0)})
+            self.assertEqual(result.summary['results']['max_displacement'], 0)
+
+
+class BeyondArithmetic(Case):
+
+    def test_stiffnesses_that_double_precision_cannot_tell(self):
+        """Ended with a segmentation fault."""
+        result = solve(shipped('lap_joint'), {'Body upper plate/Thickness': '1e20'})
+        self.assertEqual(result.status, 2, result)
+        self.assertIn('differ by more than double precision can tell', result.stderr)
+
+
 class Bonded(Case):
 
     def test_a_bond_to_an_obstacle_reports_its_force(self):

@@ -194,6 +194,37 @@ TEST(FaceSolver, agrees_with_a_dense_solve)
       }
 }
 
+TEST(FaceSolver, products_are_those_of_F_where_that_is_nearly_singular)
+{
+  // Forces that F hardly tells from none, as on rows that nearly depend on each other: directions made orthogonal to those
+  // before lose digits of their products, and sums of many that cancel would lead the next faces away.
+  unsigned int n_converged = 0;
+  for (unsigned int seed = 0; seed < 8; ++seed)
+    {
+      Held       p(seed, 40, seed % 3);
+      const auto size = [](const std::size_t i) { return std::pow(10., -0.05 * static_cast<double>(i)); };
+      for (std::size_t i = 0; i < p.d.size(); ++i)
+        {
+          p.d[i] *= size(i);
+          for (std::size_t j = 0; j < p.d.size(); ++j)
+            p.problem.F(i, j) *= size(i) * size(j);
+        }
+      DirectionStore<Vector> store(200);
+      for (std::size_t k = 0; k < 12; ++k)
+        {
+          const double target = 1e-10;
+          const auto   found  = p.solve({0, 30 + k % 5}, {{2 + k, 1 + k, 0.4}, {15 + k, 14 + k, -0.3}}, store, target);
+          const double drift  = distance(found.product, p.problem.F * found.x);
+          EXPECT_LT(drift, 1e-4) << seed << ", face " << k;
+          if (found.status != Status::converged)
+            continue;
+          ++n_converged;
+          EXPECT_LT(drift, target) << seed << ", face " << k;
+        }
+    }
+  EXPECT_GT(n_converged, 60u); // of 96
+}
+
 TEST(FaceSolver, the_same_face_again_costs_no_multiplication)
 {
   for (unsigned int seed = 0; seed < 20; ++seed)

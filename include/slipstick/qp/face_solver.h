@@ -9,8 +9,11 @@
 #include <slipstick/qp/kernels.h>
 #include <slipstick/qp/options.h>
 #include <slipstick/qp/pressure_bounds.h>
+#include <slipstick/qp/recycled.h>
 #include <slipstick/qp/types.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -20,87 +23,8 @@ namespace slipstick::qp
 {
   namespace detail
   {
-    // Directions whose energies (residuals) are combinations of others' up to this part of their square are left out.
-    constexpr double dependent_direction = 1e-12;
-
-    /// The combinations of the store that a face admits, and what is solved by them.
-    template <typename Vector>
-    class Recycled
-    {
-    public:
-      Recycled(const DirectionStore<Vector> &store_, Combinations combinations_)
-        : store(store_)
-        , combinations(std::move(combinations_))
-      {}
-
-      std::size_t size() const
-      {
-        return combinations.size();
-      }
-
-      /// of[j] of the directions summed up for every combination.
-      std::vector<double> combined(const std::vector<double> &of) const
-      {
-        std::vector<double> result;
-        for (const auto &c : combinations)
-          result.push_back(local_dot(c, of)); // not distributed
-        return result;
-      }
-
-      /// Coefficients of the directions, of amounts of the combinations.
-      std::vector<double> coefficients(const std::vector<double> &amounts) const
-      {
-        std::vector<double> result(store.size(), 0.);
-        for (std::size_t i = 0; i < combinations.size(); ++i)
-          if (amounts[i] != 0)
-            add(amounts[i], combinations[i], result);
-        return result;
-      }
-
-      /// Factors of A(c_i, c_j) of all pairs of combinations, of A(j, k) of the directions. Combinations that cancel to
-      /// rounding are left out.
-      template <typename Energy>
-      PivotedCholesky factor(const Energy &of) const
-      {
-        const std::size_t   n = store.size(), m = combinations.size();
-        SmallSymmetric      result(m);
-        std::vector<double> row(n);
-        for (std::size_t i = 0; i < m; ++i)
-          {
-            for (std::size_t k = 0; k < n; ++k)
-              {
-                row[k] = 0;
-                for (std::size_t j = 0; j < n; ++j)
-                  if (combinations[i][j] != 0)
-                    row[k] += combinations[i][j] * of(j, k);
-              }
-            for (std::size_t j = 0; j < m; ++j)
-              result(i, j) = local_dot(combinations[j], row);
-          }
-        std::vector<double> sizes(m, 0.);
-        for (std::size_t i = 0; i < m; ++i)
-          for (std::size_t j = 0; j < n; ++j)
-            sizes[i] += combinations[i][j] * combinations[i][j] * of(j, j);
-        return PivotedCholesky(std::move(result), sizes, dependent_direction);
-      }
-
-      /// x += sum of factor times coefficient times what `part` takes of each direction.
-      template <typename Part>
-      void add_combination(const double               factor,
-                           const std::vector<double> &coefficients,
-                           const Part                &part,
-                           Vector                    &x) const
-      {
-        for (std::size_t j = 0; j < store.size(); ++j)
-          if (coefficients[j] != 0)
-            add(factor * coefficients[j], part(j), x);
-      }
-
-      const DirectionStore<Vector> &store;
-
-    private:
-      Combinations combinations;
-    };
+    // What rounding leaves wrong of F p, weighted, over |p| and the weighted |F p|: a few times the unit roundoff. |F| is near 1.
+    constexpr double rounding_of_products = 1e-15;
   } // namespace detail
 
   template <typename Vector>
@@ -109,6 +33,7 @@ namespace slipstick::qp
     Status status;
     Vector x, product; // F x
     double residual;   // weighted |P(d - F x)|
+    double error;      // of the product, by rounding: an estimate in the norm of the residual
     Counts counts;
   };
 
@@ -142,11 +67,12 @@ namespace slipstick::qp
       , w(d_)
     {}
 
-    /// @param product F x. @return the weighted residual |P(d - F x)|.
-    double start(Vector x_, Vector product)
+    /// @param product F x. @param error_of_product by rounding, weighted. @return the weighted residual |P(d - F x)|.
+    double start(Vector x_, Vector product, const double error_of_product = 0)
     {
-      x  = std::move(x_);
-      Fx = std::move(product);
+      x     = std::move(x_);
+      Fx    = std::move(product);
+      error = error_of_product;
       update_residual();
       return norm_r;
     }
@@ -163,25 +89,12 @@ namespace slipstick::qp
             known.emplace(
               recycled.factor([this](const std::size_t i, const std::size_t j) { return store.energy(i, j); }));
           for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
-            {
-              const auto c = recycled.coefficients(known->solve(recycled.combined(dots(r, &Direction::p))));
-              recycled.add_combination(
-                1.,
-                c,
-                [this](const std::size_t j) -> const Vector & { return store[j].p; },
-                x);
-              recycled.add_combination(
-                1.,
-                c,
-                [this](const std::size_t j) -> const Vector & { return store[j].Fp; },
-                Fx);
-              update_residual();
-            }
+            move(recycled.coefficients(known->solve(recycled.combined(dots(r, &Direction::p)))));
         }
       std::vector<std::pair<Vector, Vector>> own; // F-orthogonal, with products
       std::vector<double>                    energies;
       double                                 largest = 0;
-      while (norm_r > target)
+      while (norm_r > target || !is_true(target))
         {
           if (counts.cg_steps == options.max_iterations)
             return ended(Status::iteration_limit);
@@ -214,6 +127,7 @@ namespace slipstick::qp
           largest = std::max(largest, pFp / pp);
           add(pr / pFp, p, x);
           add(pr / pFp, Fp, Fx);
+          error               = std::hypot(error, pr / pFp * rounding_of(p, Fp));
           const double before = norm_r;
           update_residual();
           ++counts.cg_steps;
@@ -238,40 +152,31 @@ namespace slipstick::qp
           const SmallSymmetric all = gram(images);
           known.emplace(recycled.factor([&all](const std::size_t i, const std::size_t j) { return all(i, j); }));
           for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
-            {
-              const auto c = recycled.coefficients(known->solve(recycled.combined(dots(weighted(r), images))));
-              recycled.add_combination(
-                1.,
-                c,
-                [this](const std::size_t j) -> const Vector & { return store[j].p; },
-                x);
-              recycled.add_combination(
-                1.,
-                c,
-                [this](const std::size_t j) -> const Vector & { return store[j].Fp; },
-                Fx);
-              update_residual();
-            }
+            move(recycled.coefficients(known->solve(recycled.combined(dots(weighted(r), images)))));
         }
       struct Own
       {
         Vector p, Fp, q;
+        double error; // of Fp
       };
       std::vector<Own> own; // q orthonormal
-      while (norm_r > target)
+      while (norm_r > target || !is_true(target))
         {
           if (counts.cg_steps == options.max_iterations)
             return ended(Status::iteration_limit);
           Vector p = preconditioned();
           Vector Fp(p);
           multiply(p, Fp);
-          Vector       q     = image(p, Fp);
-          const double first = norm(q, reduction);
+          keep(p, Fp); // as it is: where little of it is left below, so is of the accuracy of its product
+          Vector       q            = image(p, Fp);
+          const double first        = norm(q, reduction);
+          double       error_of_own = rounding_of(p, Fp);
           for (unsigned int pass = 0; pass < 2; ++pass) // twice is enough
             {
               if (known)
                 {
                   const auto c = recycled.coefficients(known->solve(recycled.combined(dots(q, images))));
+                  error_of_own = std::hypot(error_of_own, rounding_of(c));
                   recycled.add_combination(
                     -1.,
                     c,
@@ -297,21 +202,23 @@ namespace slipstick::qp
                   add(-along[j], own[j].p, p);
                   add(-along[j], own[j].Fp, Fp);
                   add(-along[j], own[j].q, q);
+                  error_of_own = std::hypot(error_of_own, along[j] * own[j].error);
                 }
             }
           const double length = norm(q, reduction);
-          if (!(length > options.rounding * first))
+          if (!(length > std::max(error_of_own, options.rounding * first)))
             return ended(Status::stagnated);
           for (Vector *v : {&p, &Fp, &q})
             combine(1. / length, *v, 0., *v);
           const double rq = dot(weighted(r), q, reduction);
           add(rq, p, x);
           add(rq, Fp, Fx);
+          error_of_own /= length;
+          error               = std::hypot(error, rq * error_of_own);
           const double before = norm_r;
           update_residual();
           ++counts.cg_steps;
-          own.push_back({p, Fp, std::move(q)});
-          keep(std::move(p), std::move(Fp));
+          own.push_back({std::move(p), std::move(Fp), std::move(q), error_of_own});
           if (stagnates(before))
             return ended(Status::stagnated);
         }
@@ -325,7 +232,67 @@ namespace slipstick::qp
     {
       for (auto &[p, Fp] : made)
         store.push(std::move(p), std::move(Fp), reduction);
-      return {status, std::move(x), std::move(Fx), norm_r, counts};
+      return {status, std::move(x), std::move(Fx), norm_r, error, counts};
+    }
+
+    // x moves along directions of the store, unless these cancel so far that rounding leads away.
+    void move(const std::vector<double> &coefficients)
+    {
+      const Vector x_before = x, Fx_before = Fx;
+      const double error_before = error, residual_before = norm_r;
+      recycled.add_combination(
+        1.,
+        coefficients,
+        [this](const std::size_t j) -> const Vector & { return store[j].p; },
+        x);
+      recycled.add_combination(
+        1.,
+        coefficients,
+        [this](const std::size_t j) -> const Vector & { return store[j].Fp; },
+        Fx);
+      error = std::hypot(error, rounding_of(coefficients));
+      update_residual();
+      if (norm_r + error <= options.longest_rise * residual_before)
+        return;
+      x     = x_before;
+      Fx    = Fx_before;
+      error = error_before;
+      update_residual();
+    }
+
+    // What rounding leaves wrong of a product, weighted, ...
+    double rounding_of(const Vector &v, const Vector &Fv) const
+    {
+      return detail::rounding_of_products * std::sqrt(reduction.sum(std::array<double, 1>{
+                                              {local_dot(v, v) + local_weighted_dot(weights, Fv, Fv)}})[0]);
+    }
+
+    // ... and of a combination of those of the store.
+    double rounding_of(const std::vector<double> &coefficients)
+    {
+      if (sizes.empty())
+        {
+          for (std::size_t j = 0; j < n_recycled; ++j)
+            sizes.push_back(local_dot(store[j].p, store[j].p) + local_weighted_dot(weights, store[j].Fp, store[j].Fp));
+          sum_all(sizes, reduction);
+        }
+      double square = 0;
+      for (std::size_t j = 0; j < n_recycled; ++j)
+        square += coefficients[j] * coefficients[j] * sizes[j];
+      return detail::rounding_of_products * std::sqrt(square);
+    }
+
+    // Is the residual that of F x, as far as the target tells? Where it may not be F is multiplied once more (residual replacement:
+    // van der Vorst, Ye 2000), if that is more accurate.
+    bool is_true(const double target)
+    {
+      if (error <= options.accuracy * target || is_replaced || !(rounding_of(x, Fx) <= options.accuracy * target))
+        return true;
+      is_replaced = true;
+      multiply(x, Fx);
+      error = rounding_of(x, Fx);
+      update_residual();
+      return norm_r <= target;
     }
 
     // Into the store at the end: until then its numbering is that of the combinations.
@@ -470,9 +437,12 @@ namespace slipstick::qp
     detail::Recycled<Vector> recycled;
     const std::size_t        n_recycled;
 
-    Vector                                 x, Fx, r, w;
-    double                                 norm_r  = 0;
-    unsigned int                           n_stuck = 0;
+    Vector              x, Fx, r, w;
+    double              norm_r      = 0;
+    double              error       = 0; // of Fx
+    bool                is_replaced = false;
+    std::vector<double> sizes; // squares of what rounding_of() of the directions of the store goes by
+    unsigned int        n_stuck = 0;
     std::vector<std::pair<Vector, Vector>> made;
     Counts                                 counts;
   };

@@ -72,27 +72,30 @@ namespace slipstick::qp
   {
     unsigned int max_iterations = 300;
     double smallest_curvature   = 1e-15; // p'Fp over p'p and the largest such quotient so far: below it F is singular
-    double rounding       = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
-    double progress       = 0.999; // a step that leaves more than this part of the residual ...
-    unsigned int patience = 10;    // ... this many times in a row ends the solve
+    double rounding       = 1e-14;  // a new direction below this part of itself after orthogonalisation is in the span
+    double progress       = 0.999;  // a step that leaves more than this part of the residual ...
+    unsigned int patience = 10;     // ... this many times in a row ends the solve
+    double       longest_rise = 10; // residual, with its rounding, after a start by earlier directions over that before
+    double       accuracy     = 0.3; // products are trusted up to this part of the target
   };
 
   /// Options of the semismooth Newton method (own choice; doc/method.md).
   struct NewtonOptions
   {
-    double            start_tolerance = 0.3;  // of the SMALBE steps that give the first active set
-    double            set_step        = 3;    // least s of the natural residual, times norm over weight
-    double            forcing         = 0.1;  // residual that faces are solved to, over the natural residual
-    double            last_forcing    = 0.6;  // times the tolerance: never below
-    double            tightening      = 0.1;  // of the residual reached, where the goal is met and x is not right ...
-    double            least_part      = 1e-5; // ... down to this part of the goal
-    unsigned int      memory          = 6;    // a step must end below the largest natural residual of so many ...
-    double            sufficient_decrease  = 1e-2; // ... by this part times its length, ...
-    double            backtracking         = 0.5;  // ... or is cut by this factor ...
-    double            shortest_step        = 1e-3; // ... down to this part of itself
-    double            longest_leap         = 1e4;  // residual after a leap over that before
-    unsigned int      max_outer_iterations = 100;
-    unsigned int      n_directions         = 200; // kept with their products
+    double       start_tolerance      = 0.3;  // of the SMALBE steps that give the first active set
+    double       set_step             = 3;    // least s of the natural residual, times norm over weight
+    double       forcing              = 0.1;  // residual that faces are solved to, over the natural residual
+    double       last_forcing         = 0.6;  // times the tolerance: never below
+    double       tightening           = 0.1;  // of the residual reached, where the goal is met and x is not right ...
+    double       least_part           = 1e-5; // ... down to this part of the goal
+    double       gaps_over_forces     = 10; // |gP| may be at most this times the tolerance times |PFP| times the forces
+    unsigned int memory               = 6;  // a step must end below the largest natural residual of so many ...
+    double       sufficient_decrease  = 1e-2; // ... by this part times its length, ...
+    double       backtracking         = 0.5;  // ... or is cut by this factor ...
+    double       shortest_step        = 1e-3; // ... down to this part of itself
+    double       longest_leap         = 1e4;  // residual after a leap over that before
+    unsigned int max_outer_iterations = 100;
+    unsigned int n_directions         = 200; // kept with their products
     FaceSolverOptions face;
   };
 

@@ -171,7 +171,8 @@ namespace slipstick::qp
             if (left <= goal.tolerance)
               {
                 best = y;
-                if (!is_right || left <= options.least_part * goal.tolerance || is_right(y, error_on(*face)))
+                if (left <= options.least_part * goal.tolerance ||
+                    (tells_forces(left) && (!is_right || is_right(y, error_on(*face)))))
                   {
                     std::swap(x, y);
                     return Status::converged;
@@ -183,6 +184,13 @@ namespace slipstick::qp
               return ended(Status::stagnated);
           }
         return ended(Status::iteration_limit);
+      }
+
+      // Where gaps of open contact make the reference, the forces may be next to nothing beside it.
+      bool tells_forces(const double left) const
+      {
+        return left * goal.reference <=
+               options.gaps_over_forces * goal.tolerance * norm * qp::norm(y, problem.reduction());
       }
 
       // Residuals below the goal that do not fall any more are at rounding.
@@ -283,13 +291,14 @@ namespace slipstick::qp
           [this](const Vector &p) { return set.conditions(p, ties); },
           options.face,
           set.turns());
-        const double first = solver.start(std::move(y), std::move(Fy));
+        const double first = solver.start(std::move(y), std::move(Fy), error_of_Fx);
         const double target =
           std::max(options.last_forcing * tolerance * goal.reference, options.forcing * std::min(first, merits.back()));
         auto result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
         counts += result.counts;
-        y  = std::move(result.x);
-        Fy = std::move(result.product);
+        y           = std::move(result.x);
+        Fy          = std::move(result.product);
+        error_of_Fy = result.error;
         gradient_on(face, y, Fy, gy);
       }
 
@@ -400,6 +409,7 @@ namespace slipstick::qp
             std::swap(y, xt);
             std::swap(gy, gt);
             combine(1 - t, Fx, t, Fy);
+            error_of_Fy = std::max(error_of_Fx, error_of_Fy);
           }
         if (!has_met_goal && merit < *std::min_element(merits.begin(), merits.end()))
           best = y;
@@ -415,6 +425,7 @@ namespace slipstick::qp
         set.approach(merit / goal.reference);
         std::swap(x, y);
         std::swap(Fx, Fy);
+        std::swap(error_of_Fx, error_of_Fy);
         std::swap(g, gy);
       }
 
@@ -460,9 +471,10 @@ namespace slipstick::qp
       Vector                y, Fy, gy; // where the present step leads
       std::vector<double>   merits;    // natural residuals of all x so far
       std::optional<Vector> best;      // where the natural residual is least
-      double                residual = HUGE_VAL;
-      bool                  is_stuck = false; // the last step did not lower the residual
-      bool                  is_rough;         // the start, and no step was made yet in spite of the residual
+      double                residual    = HUGE_VAL;
+      double                error_of_Fx = 0, error_of_Fy = 0; // by rounding, weighted, estimates
+      bool                  is_stuck = false;                 // the last step did not lower the residual
+      bool                  is_rough; // the start, and no step was made yet in spite of the residual
       Counts                counts;
     };
   } // namespace detail
