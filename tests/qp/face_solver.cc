@@ -197,7 +197,7 @@ TEST(FaceSolver, agrees_with_a_dense_solve)
 TEST(FaceSolver, products_are_those_of_F_where_that_is_nearly_singular)
 {
   // Forces that F hardly tells from none, as on rows that nearly depend on each other: directions made orthogonal to those
-  // before lose digits of their products, and sums of many that cancel would lead the next faces away.
+  // before lose digits of their products, and the next faces start with them.
   unsigned int n_converged = 0;
   for (unsigned int seed = 0; seed < 8; ++seed)
     {
@@ -214,11 +214,10 @@ TEST(FaceSolver, products_are_those_of_F_where_that_is_nearly_singular)
         {
           const double target = 1e-10;
           const auto   found  = p.solve({0, 30 + k % 5}, {{2 + k, 1 + k, 0.4}, {15 + k, 14 + k, -0.3}}, store, target);
-          const double drift  = distance(found.product, p.problem.F * found.x);
-          EXPECT_LT(drift, 1e-4) << seed << ", face " << k;
           if (found.status != Status::converged)
             continue;
           ++n_converged;
+          const double drift = distance(found.product, p.problem.F * found.x);
           EXPECT_LT(drift, target) << seed << ", face " << k;
         }
     }

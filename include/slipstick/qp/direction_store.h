@@ -37,7 +37,8 @@ namespace slipstick::qp
     struct Direction
     {
       Vector              p, Fp;
-      std::vector<double> pFp; // with all directions that were there when this one came, itself the last
+      std::vector<double> pFp;   // with all directions that were there when this one came, itself the last
+      double              error; // of Fp beyond rounding, weighted, an estimate
     };
 
     /// @param capacity the oldest directions go when there are more.
@@ -61,7 +62,7 @@ namespace slipstick::qp
     }
 
     template <typename Reduction>
-    void push(Vector p, Vector Fp, const Reduction &reduction)
+    void push(Vector p, Vector Fp, const Reduction &reduction, const double error = 0)
     {
       if (directions.size() == capacity)
         directions.pop_front();
@@ -70,7 +71,7 @@ namespace slipstick::qp
         pFp.push_back(local_dot(other.p, Fp));
       pFp.push_back(local_dot(p, Fp));
       sum_all(pFp, reduction);
-      directions.push_back({std::move(p), std::move(Fp), std::move(pFp)});
+      directions.push_back({std::move(p), std::move(Fp), std::move(pFp), error});
     }
 
   private:

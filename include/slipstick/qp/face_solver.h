@@ -167,7 +167,6 @@ namespace slipstick::qp
           Vector p = preconditioned();
           Vector Fp(p);
           multiply(p, Fp);
-          keep(p, Fp); // as it is: where little of it is left below, so is of the accuracy of its product
           Vector       q            = image(p, Fp);
           const double first        = norm(q, reduction);
           double       error_of_own = rounding_of(p, Fp);
@@ -206,7 +205,7 @@ namespace slipstick::qp
                 }
             }
           const double length = norm(q, reduction);
-          if (!(length > std::max(error_of_own, options.rounding * first)))
+          if (!(length > options.rounding * first))
             return ended(Status::stagnated);
           for (Vector *v : {&p, &Fp, &q})
             combine(1. / length, *v, 0., *v);
@@ -218,7 +217,8 @@ namespace slipstick::qp
           const double before = norm_r;
           update_residual();
           ++counts.cg_steps;
-          own.push_back({std::move(p), std::move(Fp), std::move(q), error_of_own});
+          own.push_back({p, Fp, std::move(q), error_of_own});
+          keep(std::move(p), std::move(Fp), error_of_own);
           if (stagnates(before))
             return ended(Status::stagnated);
         }
@@ -228,18 +228,22 @@ namespace slipstick::qp
   private:
     using Direction = typename DirectionStore<Vector>::Direction;
 
+    struct Made
+    {
+      Vector p, Fp;
+      double error_of_product;
+    };
+
     FaceSolution<Vector> ended(const Status status)
     {
-      for (auto &[p, Fp] : made)
-        store.push(std::move(p), std::move(Fp), reduction);
+      for (auto &[p, Fp, error_of_product] : made)
+        store.push(std::move(p), std::move(Fp), reduction, error_of_product);
       return {status, std::move(x), std::move(Fx), norm_r, error, counts};
     }
 
-    // x moves along directions of the store, unless these cancel so far that rounding leads away.
+    // x moves along directions of the store.
     void move(const std::vector<double> &coefficients)
     {
-      const Vector x_before = x, Fx_before = Fx;
-      const double error_before = error, residual_before = norm_r;
       recycled.add_combination(
         1.,
         coefficients,
@@ -251,12 +255,6 @@ namespace slipstick::qp
         [this](const std::size_t j) -> const Vector & { return store[j].Fp; },
         Fx);
       error = std::hypot(error, rounding_of(coefficients));
-      update_residual();
-      if (norm_r + error <= options.longest_rise * residual_before)
-        return;
-      x     = x_before;
-      Fx    = Fx_before;
-      error = error_before;
       update_residual();
     }
 
@@ -278,8 +276,10 @@ namespace slipstick::qp
         }
       double square = 0;
       for (std::size_t j = 0; j < n_recycled; ++j)
-        square += coefficients[j] * coefficients[j] * sizes[j];
-      return detail::rounding_of_products * std::sqrt(square);
+        square +=
+          coefficients[j] * coefficients[j] *
+          (detail::rounding_of_products * detail::rounding_of_products * sizes[j] + store[j].error * store[j].error);
+      return std::sqrt(square);
     }
 
     // Is the residual that of F x, as far as the target tells? Where it may not be F is multiplied once more (residual replacement:
@@ -296,9 +296,9 @@ namespace slipstick::qp
     }
 
     // Into the store at the end: until then its numbering is that of the combinations.
-    void keep(Vector p, Vector Fp)
+    void keep(Vector p, Vector Fp, const double error_of_product = 0)
     {
-      made.emplace_back(std::move(p), std::move(Fp));
+      made.push_back({std::move(p), std::move(Fp), error_of_product});
     }
 
     bool stagnates(const double before)
@@ -443,7 +443,7 @@ namespace slipstick::qp
     bool                is_replaced = false;
     std::vector<double> sizes; // squares of what rounding_of() of the directions of the store goes by
     unsigned int        n_stuck = 0;
-    std::vector<std::pair<Vector, Vector>> made;
-    Counts                                 counts;
+    std::vector<Made>   made;
+    Counts              counts;
   };
 } // namespace slipstick::qp

@@ -72,11 +72,10 @@ namespace slipstick::qp
   {
     unsigned int max_iterations = 300;
     double smallest_curvature   = 1e-15; // p'Fp over p'p and the largest such quotient so far: below it F is singular
-    double rounding       = 1e-14;  // a new direction below this part of itself after orthogonalisation is in the span
-    double progress       = 0.999;  // a step that leaves more than this part of the residual ...
-    unsigned int patience = 10;     // ... this many times in a row ends the solve
-    double       longest_rise = 10; // residual, with its rounding, after a start by earlier directions over that before
-    double       accuracy     = 0.3; // products are trusted up to this part of the target
+    double rounding       = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
+    double progress       = 0.999; // a step that leaves more than this part of the residual ...
+    unsigned int patience = 10;    // ... this many times in a row ends the solve
+    double       accuracy = 0.3;   // products are trusted up to this part of the target
   };
 
   /// Options of the semismooth Newton method (own choice; doc/method.md).
