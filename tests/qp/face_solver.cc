@@ -202,7 +202,7 @@ TEST(FaceSolver, products_are_those_of_F_where_that_is_nearly_singular)
   for (unsigned int seed = 0; seed < 8; ++seed)
     {
       Held       p(seed, 40, seed % 3);
-      const auto size = [](const std::size_t i) { return std::pow(10., -0.05 * static_cast<double>(i)); };
+      const auto size = [](const std::size_t i) { return std::pow(10., -0.08 * static_cast<double>(i)); };
       for (std::size_t i = 0; i < p.d.size(); ++i)
         {
           p.d[i] *= size(i);
@@ -221,7 +221,7 @@ TEST(FaceSolver, products_are_those_of_F_where_that_is_nearly_singular)
           EXPECT_LT(drift, target) << seed << ", face " << k;
         }
     }
-  EXPECT_GT(n_converged, 60u); // of 96
+  EXPECT_GT(n_converged, 40u); // of 96; without residual replacement all, 44 of them with other residuals than they say
 }
 
 TEST(FaceSolver, the_same_face_again_costs_no_multiplication)
