@@ -117,7 +117,7 @@ namespace slipstick
     void serialize(Archive &a, ResultSummary &x, const unsigned int)
     {
       a &x.max_displacement &x.max_von_mises &x.max_von_mises_at &x.singular &x.probes &x.strain_energy &x.contact &x
-        .forces &x.pretensions;
+        .forces            &x.pretensions;
       bool                  is_revolved = x.hoop_stress.has_value();
       std::array<double, 2> hoop_stress = x.hoop_stress.value_or(std::array<double, 2>());
       a &is_revolved       &hoop_stress;
@@ -146,6 +146,11 @@ namespace slipstick
   namespace app
   {
     template <class Archive>
+    void serialize(Archive &a, StepState::Direction &x, const unsigned int)
+    {
+      a &x.p &x.Fp &x.error;
+    }
+    template <class Archive>
     void serialize(Archive &a, StepState &x, const unsigned int)
     {
       a &x.kept_part &x.largest_load &x.history &x.rows &x.labels &x.multipliers &x.reference &x.weighted_reference &x
@@ -166,7 +171,7 @@ namespace slipstick::app
   {
     const std::string head_name = "restart.bin";
     // Format of the files: another layout gets another number.
-    constexpr unsigned int format_number = 3;
+    constexpr unsigned int format_number = 4;
 
     /// Content of restart.bin: to which run the files belong.
     struct Head

@@ -148,7 +148,7 @@ namespace slipstick::app
       for (std::size_t j = 0; j < the_solution.directions->size(); ++j)
         {
           const auto &direction = (*the_solution.directions)[j];
-          state.directions.emplace_back(values_of(direction.p), values_of(direction.Fp));
+          state.directions.push_back({values_of(direction.p), values_of(direction.Fp), direction.error});
         }
     return state;
   }
@@ -179,8 +179,8 @@ namespace slipstick::app
       return;
     the_solution.directions =
       std::make_shared<qp::DirectionStore<tfeti::DistributedVector>>(options.newton.n_directions);
-    for (const auto &[p, Fp] : state.directions)
-      the_solution.directions->push(vector_of(p, dual()), vector_of(Fp, dual()), dual().reduction());
+    for (const auto &[p, Fp, error] : state.directions)
+      the_solution.directions->push(vector_of(p, dual()), vector_of(Fp, dual()), error, dual().reduction());
   }
 
   template <int dim>

@@ -5,6 +5,7 @@
 #include <slipstick/contact/friction.h>
 #include <slipstick/contact/given_bounds.h>
 #include <slipstick/contact/linear.h>
+#include <slipstick/contact/no_forces.h>
 #include <slipstick/contact/traction_error.h>
 #include <slipstick/qp/feasible_point.h>
 #include <slipstick/qp/semismooth_newton.h>
@@ -33,8 +34,6 @@ namespace slipstick::contact
     constexpr double least_accuracy = 1e-3;
     // Loads below this part of those of earlier steps are what rounding leaves of none.
     constexpr double rounding_of_loads = 1e-12;
-    // Overlaps below this part of the first ones are what rounding leaves of none.
-    constexpr double negligible_overlap = 1e-10;
     // SMALBE-M is taken over by Newton's method at this residual, ...
     constexpr double first_takeover = 0.1;
     // ... or at so much smaller ones, ...
@@ -98,7 +97,7 @@ namespace slipstick::contact
         const auto feasible = feasible_start(start);
         solution.algorithm  = options.algorithm == scene::Algorithm::semismooth_newton ? "semismooth newton" : "smalbe";
         set_bounds(law.bounds(feasible));
-        if (bears_nothing(feasible))
+        if (bears_nothing(dual, feasible, box, solution.slip_bound))
           {
             solution.multipliers = dual.zero();
             return finished();
@@ -158,51 +157,6 @@ namespace slipstick::contact
                                                     : "friction is too weak: ") +
               describe(*overload, dual.body_motions().names()),
             "raise the friction coefficient or the normal force, support the body against this motion, or lower the load");
-      }
-
-      /// Without loads and prescribed displacements: do the bodies touch nothing where they are, or can they move to where
-      /// nothing touches? Where nothing is nearly true only, sets have no forces to be told by.
-      bool bears_nothing(const Vector &feasible) const
-      {
-        const auto &kind  = dual.constraints().kind;
-        double      loads = feasible.linfty_norm(), jumps = 0, bounds = 0;
-        for (unsigned int r = 0; r < kind.size(); ++r)
-          {
-            const double d = dual.d().local_element(r);
-            if (is_equality(kind[r]))
-              loads = std::max(loads, std::abs(d));
-            else
-              jumps = std::max(jumps, kind[r] == tfeti::RowKind::normal ? d : std::abs(d));
-            bounds = std::max(bounds, solution.slip_bound[r]);
-          }
-        loads = dealii::Utilities::MPI::max(loads, dual.communicator());
-        if (loads == 0 && dealii::Utilities::MPI::max(jumps, dual.communicator()) <= 0)
-          return true;
-        if (loads > 0 || dealii::Utilities::MPI::max(bounds, dual.communicator()) > 0)
-          return false;
-        std::vector<double> force(kind.size()), stiffness(kind.size(), 1 / dual.norm());
-        const auto         &weights = dual.residual_weights();
-        for (unsigned int r = 0; r < kind.size(); ++r)
-          {
-            stiffness[r] *= weights.empty() ? 1. : weights[r];
-            force[r] = kind[r] == tfeti::RowKind::normal ? stiffness[r] * dual.d().local_element(r) : 0.;
-          }
-        const double none = negligible_overlap * largest_of(force);
-        dual.loose_bodies().balance(stiffness, qp::AdmissibleSet<Vector>{box, {}}, 0., force);
-        for (unsigned int r = 0; r < kind.size(); ++r)
-          if (kind[r] != tfeti::RowKind::normal)
-            force[r] = 0;
-          else
-            force[r] = std::max(force[r], 0.);
-        return largest_of(force) <= none;
-      }
-
-      double largest_of(const std::vector<double> &values) const
-      {
-        double largest = 0;
-        for (const double value : values)
-          largest = std::max(largest, std::abs(value));
-        return dealii::Utilities::MPI::max(largest, dual.communicator());
       }
 
       void set_bounds(std::vector<double> bounds)

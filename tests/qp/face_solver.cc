@@ -142,7 +142,7 @@ TEST(DirectionStore, energies_are_those_of_the_directions_left)
   for (unsigned int k = 0; k < 7; ++k)
     {
       all.push_back(random.vector(6));
-      store.push(all.back(), F * all.back(), SerialReduction());
+      store.push(all.back(), F * all.back(), 0, SerialReduction());
     }
   ASSERT_EQ(store.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i)
@@ -161,7 +161,7 @@ TEST(DirectionStore, as_many_combinations_as_the_rank_allows_vanish_on_the_condi
         for (std::size_t k = 0; k < n; ++k)
           {
             const Vector p = random.vector(12);
-            store.push(p, p, SerialReduction());
+            store.push(p, p, 0, SerialReduction());
           }
         const auto conditions = [n_conditions](const Vector &p) { return Vector(p.begin(), p.begin() + n_conditions); };
         const auto found      = admissible_combinations(store, conditions, SerialReduction());
@@ -269,7 +269,7 @@ TEST(FaceSolver, combinations_that_cancel_do_no_harm)
             for (double &entry : part)
               entry *= k % 2 == 0 ? 0.5 : 0.3;
             const Vector product = p.problem.F * part;
-            store.push(part, product, SerialReduction());
+            store.push(part, product, 0, SerialReduction());
           }
         for (const std::size_t other : {8, 9, 10})
           {

@@ -5,7 +5,6 @@
 #include <slipstick/output/convergence.h>
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace slipstick::app
@@ -24,8 +23,13 @@ namespace slipstick::app
     double                              largest_traction   = 0;
     std::vector<std::vector<double>>    u; // of this rank's subdomains [mm]
 
-    /// Directions that the solver has kept, with their products, oldest first; owned rows.
-    std::vector<std::pair<std::vector<double>, std::vector<double>>> directions;
+    /// A direction that the solver has kept, with its product and the error of that (qp/direction_store.h); owned rows.
+    struct Direction
+    {
+      std::vector<double> p, Fp;
+      double              error;
+    };
+    std::vector<Direction> directions; // oldest first
 
     std::vector<std::vector<double>> bolts; // numbers of Tightening::state()
   };

@@ -8,6 +8,7 @@
 #include <slipstick/qp/kernels.h>
 #include <slipstick/qp/small_dense.h>
 
+#include <cmath>
 #include <deque>
 #include <utility>
 #include <vector>
@@ -29,6 +30,20 @@ namespace slipstick::qp
       }
   }
 
+  /// What rounding leaves wrong of a product F p in the norm of residuals, of the sum of the squares of p and of that norm of F p:
+  /// |F| is near 1, and a product is right to a few times the unit roundoff.
+  inline double rounding_of_product(const double squares)
+  {
+    return 1e-15 * std::sqrt(squares);
+  }
+
+  /// Those squares, of the owned entries. @param weights of the norm of residuals.
+  template <typename Vector>
+  double local_squares(const double *weights, const Vector &p, const Vector &Fp)
+  {
+    return local_dot(p, p) + local_weighted_dot(weights, Fp, Fp);
+  }
+
   /// Directions p, G p = 0, with F p, the latest ones; and p'F p of all pairs.
   template <typename Vector>
   class DirectionStore
@@ -38,7 +53,7 @@ namespace slipstick::qp
     {
       Vector              p, Fp;
       std::vector<double> pFp;   // with all directions that were there when this one came, itself the last
-      double              error; // of Fp beyond rounding, weighted, an estimate
+      double              error; // of Fp by rounding, an estimate in the norm of residuals
     };
 
     /// @param capacity the oldest directions go when there are more.
@@ -62,7 +77,7 @@ namespace slipstick::qp
     }
 
     template <typename Reduction>
-    void push(Vector p, Vector Fp, const Reduction &reduction, const double error = 0)
+    void push(Vector p, Vector Fp, const double error, const Reduction &reduction)
     {
       if (directions.size() == capacity)
         directions.pop_front();

@@ -21,12 +21,6 @@
 
 namespace slipstick::qp
 {
-  namespace detail
-  {
-    // What rounding leaves wrong of F p, weighted, over |p| and the weighted |F p|: a few times the unit roundoff. |F| is near 1.
-    constexpr double rounding_of_products = 1e-15;
-  } // namespace detail
-
   template <typename Vector>
   struct FaceSolution
   {
@@ -118,8 +112,8 @@ namespace slipstick::qp
           multiply(p, Fp);
           Vector Ap(Fp); // (F + C) p
           add_compliance(turns, p, Ap);
-          const auto [pr, pFp, pp] =
-            reduction.sum(std::array<double, 3>{{local_dot(p, r), local_dot(p, Ap), local_dot(p, p)}});
+          const auto [pr, pFp, pp, squares] = reduction.sum(
+            std::array<double, 4>{{local_dot(p, r), local_dot(p, Ap), local_dot(p, p), local_squares(weights, p, Fp)}});
           if (!std::isfinite(pr) || !std::isfinite(pFp) || !(pr > 0))
             return ended(Status::stagnated);
           if (pFp <= options.smallest_curvature * largest * pp)
@@ -127,13 +121,13 @@ namespace slipstick::qp
           largest = std::max(largest, pFp / pp);
           add(pr / pFp, p, x);
           add(pr / pFp, Fp, Fx);
-          error               = std::hypot(error, pr / pFp * rounding_of(p, Fp));
-          const double before = norm_r;
+          const double error_of_own = rounding_of_product(squares), before = norm_r;
+          error = std::hypot(error, pr / pFp * error_of_own);
           update_residual();
           ++counts.cg_steps;
           own.emplace_back(p, std::move(Ap));
           energies.push_back(pFp);
-          keep(std::move(p), std::move(Fp));
+          keep(std::move(p), std::move(Fp), error_of_own);
           if (stagnates(before))
             return ended(Status::stagnated);
         }
@@ -167,15 +161,16 @@ namespace slipstick::qp
           Vector p = preconditioned();
           Vector Fp(p);
           multiply(p, Fp);
-          Vector       q            = image(p, Fp);
-          const double first        = norm(q, reduction);
-          double       error_of_own = rounding_of(p, Fp);
+          Vector       q       = image(p, Fp);
+          const auto   made_of = reduction.sum(std::array<double, 2>{{local_dot(q, q), local_squares(weights, p, Fp)}});
+          const double first   = std::sqrt(made_of[0]);
+          double       error_of_own = rounding_of_product(made_of[1]);
           for (unsigned int pass = 0; pass < 2; ++pass) // twice is enough
             {
               if (known)
                 {
                   const auto c = recycled.coefficients(known->solve(recycled.combined(dots(q, images))));
-                  error_of_own = std::hypot(error_of_own, rounding_of(c));
+                  error_of_own = std::hypot(error_of_own, error_of(c));
                   recycled.add_combination(
                     -1.,
                     c,
@@ -231,13 +226,13 @@ namespace slipstick::qp
     struct Made
     {
       Vector p, Fp;
-      double error_of_product;
+      double error; // of Fp
     };
 
     FaceSolution<Vector> ended(const Status status)
     {
-      for (auto &[p, Fp, error_of_product] : made)
-        store.push(std::move(p), std::move(Fp), reduction, error_of_product);
+      for (auto &[p, Fp, error_of_Fp] : made)
+        store.push(std::move(p), std::move(Fp), error_of_Fp, reduction);
       return {status, std::move(x), std::move(Fx), norm_r, error, counts};
     }
 
@@ -254,31 +249,16 @@ namespace slipstick::qp
         coefficients,
         [this](const std::size_t j) -> const Vector & { return store[j].Fp; },
         Fx);
-      error = std::hypot(error, rounding_of(coefficients));
+      error = std::hypot(error, error_of(coefficients));
       update_residual();
     }
 
-    // What rounding leaves wrong of a product, weighted, ...
-    double rounding_of(const Vector &v, const Vector &Fv) const
+    // By rounding, of the products of a combination of the store.
+    double error_of(const std::vector<double> &coefficients) const
     {
-      return detail::rounding_of_products * std::sqrt(reduction.sum(std::array<double, 1>{
-                                              {local_dot(v, v) + local_weighted_dot(weights, Fv, Fv)}})[0]);
-    }
-
-    // ... and of a combination of those of the store.
-    double rounding_of(const std::vector<double> &coefficients)
-    {
-      if (sizes.empty())
-        {
-          for (std::size_t j = 0; j < n_recycled; ++j)
-            sizes.push_back(local_dot(store[j].p, store[j].p) + local_weighted_dot(weights, store[j].Fp, store[j].Fp));
-          sum_all(sizes, reduction);
-        }
       double square = 0;
       for (std::size_t j = 0; j < n_recycled; ++j)
-        square +=
-          coefficients[j] * coefficients[j] *
-          (detail::rounding_of_products * detail::rounding_of_products * sizes[j] + store[j].error * store[j].error);
+        square += coefficients[j] * coefficients[j] * store[j].error * store[j].error;
       return std::sqrt(square);
     }
 
@@ -286,19 +266,24 @@ namespace slipstick::qp
     // van der Vorst, Ye 2000), if that is more accurate.
     bool is_true(const double target)
     {
-      if (error <= options.accuracy * target || is_replaced || !(rounding_of(x, Fx) <= options.accuracy * target))
+      const double trusted = options.accuracy * target;
+      if (error <= trusted || is_replaced)
+        return true;
+      const double least =
+        rounding_of_product(reduction.sum(std::array<double, 1>{{local_squares(weights, x, Fx)}})[0]);
+      if (!(least <= trusted))
         return true;
       is_replaced = true;
       multiply(x, Fx);
-      error = rounding_of(x, Fx);
+      error = least;
       update_residual();
       return norm_r <= target;
     }
 
     // Into the store at the end: until then its numbering is that of the combinations.
-    void keep(Vector p, Vector Fp, const double error_of_product = 0)
+    void keep(Vector p, Vector Fp, const double error_of_Fp)
     {
-      made.push_back({std::move(p), std::move(Fp), error_of_product});
+      made.push_back({std::move(p), std::move(Fp), error_of_Fp});
     }
 
     bool stagnates(const double before)
@@ -437,13 +422,12 @@ namespace slipstick::qp
     detail::Recycled<Vector> recycled;
     const std::size_t        n_recycled;
 
-    Vector              x, Fx, r, w;
-    double              norm_r      = 0;
-    double              error       = 0; // of Fx
-    bool                is_replaced = false;
-    std::vector<double> sizes; // squares of what rounding_of() of the directions of the store goes by
-    unsigned int        n_stuck = 0;
-    std::vector<Made>   made;
-    Counts              counts;
+    Vector            x, Fx, r, w;
+    double            norm_r      = 0;
+    double            error       = 0; // of Fx
+    bool              is_replaced = false;
+    unsigned int      n_stuck     = 0;
+    std::vector<Made> made;
+    Counts            counts;
   };
 } // namespace slipstick::qp

@@ -325,7 +325,11 @@ namespace slipstick::qp
         ++counts.hessian_multiplications;
         add(1., product, Fy);
         if (s[0] > short_step * short_step * s[1]) // else G step = 0 holds to few digits
-          store.push(std::move(step), std::move(product), problem.reduction());
+          {
+            const double squares = problem.reduction().sum(
+              std::array<double, 1>{{local_squares(residual_weights(problem, 0), step, product)}})[0];
+            store.push(std::move(step), std::move(product), rounding_of_product(squares), problem.reduction());
+          }
       }
 
       // A short step along the preconditioned residual of the face goes with the one onto its bounds: F is multiplied anyway.
