@@ -232,26 +232,21 @@ namespace slipstick::app
   {
     if (residual_energy > allowed_part * discretization_error)
       return false;
-    try
-      {
-        Answer answer;
-        answer.recovery = tfeti::recover(dual(), iterate.multipliers, iterate.free);
-        evaluate(answer, iterate, t);
-        const auto &checks           = answer.contact->checks;
-        discretization_error         = std::sqrt(answer.stress->error_squared);
-        const double algebraic_error = std::sqrt(checks.error_energy);
-        log.line(format("accuracy     algebraic error below %.3g, discretisation error about %.3g sqrt(N mm)",
-                        algebraic_error,
-                        discretization_error));
-        if (algebraic_error > allowed_part * discretization_error || !(checks.worst().second <= check_limit(1)))
-          return false;
-        accepted = std::make_unique<Answer>(std::move(answer));
-        return true;
-      }
-    catch (const NoEquilibrium &) // of this iterate, on all ranks alike
-      {
-        return false;
-      }
+    if (tfeti::is_driven(dual(), iterate.multipliers, iterate.free))
+      return false;
+    Answer answer;
+    answer.recovery = tfeti::recover(dual(), iterate.multipliers, iterate.free, true);
+    evaluate(answer, iterate, t);
+    const auto &checks           = answer.contact->checks;
+    discretization_error         = std::sqrt(answer.stress->error_squared);
+    const double algebraic_error = std::sqrt(checks.error_energy);
+    log.line(format("accuracy     algebraic error below %.3g, discretisation error about %.3g sqrt(N mm)",
+                    algebraic_error,
+                    discretization_error));
+    if (algebraic_error > allowed_part * discretization_error || !(checks.worst().second <= check_limit(1)))
+      return false;
+    accepted = std::make_unique<Answer>(std::move(answer));
+    return true;
   }
 
   template <int dim>
@@ -321,23 +316,13 @@ namespace slipstick::app
   template <int dim>
   tfeti::Recovery StepSolver<dim>::recovered(const bool bounds_follow)
   {
-    try
-      {
-        // motions that nothing resists and no load drives are kept at zero
-        return tfeti::recover(dual(), the_solution.multipliers, the_solution.free, true);
-      }
-    catch (const UndeterminedPosition &)
-      {
-        throw;
-      }
-    catch (const NoEquilibrium &) // on all ranks alike
-      {
-        if ((the_solution.status == qp::Status::converged && !bounds_follow) || problem.is_pruned())
-          throw;
-        if (the_solution.status == qp::Status::converged)
-          the_solution.status = qp::Status::stagnated;
-        return tfeti::recover(dual(), the_solution.multipliers, std::vector<bool>(the_solution.free.size(), true));
-      }
+    const bool is_proof = problem.is_pruned() || (the_solution.status == qp::Status::converged && !bounds_follow);
+    if (is_proof || !tfeti::is_driven(dual(), the_solution.multipliers, the_solution.free))
+      // motions that nothing resists and no load drives are kept at zero
+      return tfeti::recover(dual(), the_solution.multipliers, the_solution.free, true);
+    if (the_solution.status == qp::Status::converged)
+      the_solution.status = qp::Status::stagnated;
+    return tfeti::recover(dual(), the_solution.multipliers, std::vector<bool>(the_solution.free.size(), true));
   }
 
   template <int dim>

@@ -48,6 +48,21 @@ namespace slipstick::tfeti
       return amount;
     }
 
+    /// Adds to the free rows those rows with friction forces that hold the loose motions. @return are there enough of them?
+    bool add_rows_with_friction(const DualProblem              &dual,
+                                const std::vector<RigidMotion> &loose,
+                                const DistributedVector        &x,
+                                std::vector<bool>              &free)
+    {
+      const Constraints        &rows  = dual.constraints();
+      const double              noise = force_rounding * x.linfty_norm();
+      const std::vector<double> equal(free.size(), 1.);
+      std::vector<bool>         is_candidate(free.size());
+      for (unsigned int r = 0; r < free.size(); ++r)
+        is_candidate[r] = !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
+      return dual.loose_bodies().hold_by(loose, is_candidate, equal, free);
+    }
+
     /// The free rows and those rows with friction forces that hold the loose motions or, if nothing drives these, some
     /// of all rows. @return whether they are rows with forces.
     bool rows_that_fix(const DualProblem              &dual,
@@ -56,18 +71,13 @@ namespace slipstick::tfeti
                        const bool                      keeps_still,
                        std::vector<bool>              &free)
     {
-      const Constraints        &rows  = dual.constraints();
-      const double              noise = force_rounding * x.linfty_norm();
-      const std::vector<double> equal(free.size(), 1.);
-      std::vector<bool>         is_candidate(free.size());
-      for (unsigned int r = 0; r < free.size(); ++r)
-        is_candidate[r] = !free[r] && rows.kind[r] == RowKind::tangential && std::abs(x.local_element(r)) > noise;
-      if (dual.loose_bodies().hold_by(loose, is_candidate, equal, free))
+      if (add_rows_with_friction(dual, loose, x, free))
         return true;
       if (!keeps_still || plainest(loose).work > 0)
         require_support(loose, dual.body_motions().names());
-      for (unsigned int r = 0; r < free.size(); ++r)
-        is_candidate[r] = !free[r];
+      const std::vector<double> equal(free.size(), 1.);
+      std::vector<bool>         is_candidate(free);
+      is_candidate.flip();
       if (!dual.loose_bodies().hold_by(loose, is_candidate, equal, free))
         require_support(loose, dual.body_motions().names());
       return false;
@@ -161,6 +171,15 @@ namespace slipstick::tfeti
     for (unsigned int r = 0; r < rows.compliance.size(); ++r)
       missing.local_element(r) += free[r] ? rows.compliance[r] * of.multipliers.local_element(r) : 0.;
     return missing;
+  }
+
+  bool is_driven(const DualProblem &dual, const DistributedVector &x, const std::vector<bool> &free)
+  {
+    const auto loose = dual.body_motions().free(free);
+    if (loose.empty() || !(plainest(loose).work > 0))
+      return false;
+    std::vector<bool> fixed = free;
+    return !add_rows_with_friction(dual, loose, x, fixed);
   }
 
   Recovery recover(const DualProblem       &dual,

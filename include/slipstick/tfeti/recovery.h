@@ -13,6 +13,9 @@ namespace slipstick::tfeti
     std::vector<RigidMotion>     unresisted;  // motions that nothing resists and no load drives: they are set to zero
   };
 
+  /// Do loads drive a motion that neither rows with `free` nor rows with friction forces resist? Then recover() throws. Collective.
+  bool is_driven(const DualProblem &dual, const DistributedVector &x, const std::vector<bool> &free);
+
   /// Displacements u = K+(f - B'x) + R a. First x is corrected, only on the rows with `free`, until G x = e holds to
   /// rounding, so that u is in equilibrium with it; then the amplitudes a of the rigid motions fit those rows (which
   /// hold with equality) in the sense of least squares. Bodies that slide on all their contacts are placed such that
