@@ -266,11 +266,6 @@ namespace slipstick::mesh
         else
           mesh = body_from_shape(scene, body);
         check_names(scene, b, mesh);
-        if (body.boundary_refinements > 0 &&
-            !std::all_of(mesh.piece.cells.begin(), mesh.piece.cells.end(), is_simplex<dim>))
-          throw InputError("Body " + body.name + "/Refine levels = " + std::to_string(body.boundary_refinements) +
-                             ": hexahedra cannot be refined towards a boundary",
-                           "mesh the body with tetrahedra, grade the mesh itself, or set Refinements");
         refine_towards_boundaries(body, mesh);
         keep_good_middles(mesh.piece);
         mesh.piece.body = b;

@@ -1,3 +1,4 @@
+#include <slipstick/mesh/hexahedra_refinement.h>
 #include <slipstick/mesh/refinement.h>
 
 #include <cmath>
@@ -169,6 +170,10 @@ namespace slipstick::mesh
 
     constexpr unsigned int cells_of_nine = 9;
 
+    // Where hexahedra at several boundaries would become more cells than this many times those at each of them, the marks have
+    // spread from where the boundaries meet.
+    constexpr double spread = 2;
+
     Template nine_cells()
     {
       Template cells;
@@ -251,7 +256,8 @@ namespace slipstick::mesh
       for (const auto &face : piece.boundary_faces)
         if (ids.count(face.id) > 0)
           for (const unsigned int v : face.vertices)
-            on_boundary[v] = true;
+            if (v != MeshPiece<dim>::no_vertex)
+              on_boundary[v] = true;
       for (unsigned int c = 0; c < piece.cells.size(); ++c)
         for (unsigned int k = 0; k < n_corners<dim>(piece.cells[c]); ++k)
           if (on_boundary[piece.cells[c][k]])
@@ -351,11 +357,27 @@ namespace slipstick::mesh
   template <int dim>
   MeshPiece<dim> refined_towards(const MeshPiece<dim> &piece, const std::set<dealii::types::boundary_id> &ids)
   {
-    return refined_at(piece, touching(piece, ids)).piece;
+    const auto touches = touching(piece, ids);
+    if constexpr (dim == 3)
+      if (!is_simplex<dim>(piece.cells.front()))
+        {
+          std::size_t n = 0;
+          for (const auto id : ids)
+            n += n_hexahedra_refined_at(piece, touching(piece, {id}));
+          if (n_hexahedra_refined_at(piece, touches) > spread * n)
+            {
+              MeshPiece<dim> finer = piece;
+              for (const auto id : ids)
+                finer = refined_at(finer, touching(finer, {id})).piece;
+              return finer;
+            }
+        }
+    return refined_at(piece, touches).piece;
   }
 
   template MeshPiece<2>    refined(const MeshPiece<2> &);
   template MeshPiece<2>    in_quadrilaterals(const MeshPiece<2> &);
   template RefinedPiece<2> refined_at(const MeshPiece<2> &, const std::vector<bool> &);
   template MeshPiece<2>    refined_towards(const MeshPiece<2> &, const std::set<dealii::types::boundary_id> &);
+  template MeshPiece<3>    refined_towards(const MeshPiece<3> &, const std::set<dealii::types::boundary_id> &);
 } // namespace slipstick::mesh

@@ -29,8 +29,9 @@ namespace slipstick::mesh
     constexpr double many_subdomains     = 1e4;   // beyond this the message names them
     constexpr double bytes_of_a_cell     = 40;    // in a mesh file
     constexpr double around_an_edge      = 13;    // cells that come with an edge refined by 3, all levels together
-    constexpr double usable              = 0.9;   // of the memory that is free
-    constexpr double finest = 1e-8; // edges of cells over their distance from the origin: 8 digits are left
+    constexpr double around_a_face       = 6;   // the same in space, where layers of 27 and 22 for one come with a face
+    constexpr double usable              = 0.9; // of the memory that is free
+    constexpr double finest = 1e-8;             // edges of cells over their distance from the origin: 8 digits are left
 
     struct Count
     {
@@ -142,9 +143,10 @@ namespace slipstick::mesh
     for (const auto &body : scene.bodies)
       {
         const Count  count   = count_of(scene, body);
-        const double towards = body.refined_boundaries.empty()
-                                 ? 0
-                                 : count.outline * around_an_edge * (std::pow(3., body.boundary_refinements) - 1);
+        const double towards = body.refined_boundaries.empty() ? 0
+                               : dim == 2
+                                 ? count.outline * around_an_edge * (std::pow(3., body.boundary_refinements) - 1)
+                                 : count.outline * around_a_face * (std::pow(9., body.boundary_refinements) - 1);
         size.cells += count.cells + towards;
         if (count.cells + towards > most)
           {

@@ -191,6 +191,27 @@ namespace slipstick::mesh
         }
   }
 
+  Point on_parabola(const Point &from, const Point &middle, const Point &to, const double s)
+  {
+    return Point((1 - s) * (1 - 2 * s) * Tensor(from) + 4 * s * (1 - s) * Tensor(middle) +
+                 s * (2 * s - 1) * Tensor(to));
+  }
+
+  FaceSurface part_of(const FaceSurface &patch, const std::vector<FaceSurface::Place> &corners)
+  {
+    const unsigned int n = patch.n_corners();
+    std::vector<Point> nodes;
+    for (unsigned int i = 0; i < patch.n_nodes; ++i)
+      {
+        const auto         N = FacetShapes::linear(n, FacetShapes::node(n, i));
+        FaceSurface::Place at;
+        for (unsigned int k = 0; k < n; ++k)
+          at += N[k] * corners[k];
+        nodes.push_back(patch.point(at));
+      }
+    return FaceSurface::patch(nodes);
+  }
+
   FaceSurface part_of(const Piece::BoundaryFace &whole, const Piece::Face &face, const Piece &finer)
   {
     const FaceSurface &surface = whole.curve;
@@ -217,38 +238,29 @@ namespace slipstick::mesh
     std::sort(corners.begin(), corners.end(), [&](const auto &p, const auto &q) {
       return std::atan2(p[1] - center[1], p[0] - center[0]) < std::atan2(q[1] - center[1], q[0] - center[0]);
     });
-    std::vector<Point> nodes;
-    for (unsigned int i = 0; i < surface.n_nodes; ++i)
-      {
-        const auto         N = FacetShapes::linear(n, FacetShapes::node(n, i));
-        FaceSurface::Place at;
-        for (unsigned int k = 0; k < n; ++k)
-          at += N[k] * corners[k];
-        nodes.push_back(surface.point(at));
-      }
-    return FaceSurface::patch(nodes);
+    return part_of(surface, corners);
   }
 
-  void refine_middles(const Piece &coarse, const std::map<Piece::Line, unsigned int> &middle_of, Piece &finer)
+  void refine_middles(const Piece &coarse, const VerticesOnLines &dividing, Piece &finer)
   {
     const auto put = [&finer](const unsigned int a, const unsigned int b, const Point &x) {
       if (x.distance(between(finer.vertices[a], finer.vertices[b])) >
           on_chord * finer.vertices[a].distance(finer.vertices[b]))
         finer.line_middles.emplace(Piece::Line{{std::min(a, b), std::max(a, b)}}, x);
     };
-    for (const auto &[line, x] : coarse.line_middles) // parabolas
+    for (const auto &[line, x] : coarse.line_middles)
       {
-        const auto &[a, b] = line;
-        const auto found   = middle_of.find(line);
-        if (found == middle_of.end())
+        const auto found = dividing.find(line);
+        auto       ends  = found != dividing.end() ? found->second : VerticesOnLines::mapped_type();
+        ends.emplace_back(1., line[1]);
+        std::pair<double, unsigned int> last(0., line[0]);
+        for (const auto &next : ends)
           {
-            put(a, b, x);
-            continue;
+            put(last.second,
+                next.second,
+                on_parabola(coarse.vertices[line[0]], x, coarse.vertices[line[1]], (last.first + next.first) / 2));
+            last = next;
           }
-        const unsigned int m = found->second;
-        const Tensor       from(coarse.vertices[a]), to(coarse.vertices[b]);
-        put(a, m, Point(0.375 * from + 0.75 * Tensor(x) - 0.125 * to));
-        put(m, b, Point(0.375 * to + 0.75 * Tensor(x) - 0.125 * from));
       }
     for (const auto &face : finer.boundary_faces)
       if (face.curve.kind == FaceSurface::Kind::patch && face.bends_cell)

@@ -1,3 +1,4 @@
+#include <slipstick/mesh/hexahedra_refinement.h>
 #include <slipstick/mesh/refinement.h>
 #include <slipstick/mesh/solid_middles.h>
 
@@ -69,18 +70,25 @@ namespace slipstick::mesh
         finer.vertices  = piece.vertices;
       }
 
-      Piece run()
+      RefinedPiece<3> run()
       {
-        for (const auto &cell : piece.cells)
-          !is_simplex<3>(cell) ? divide_hexahedron(cell) : halved ? divide_halved(cell) : divide_tetrahedron(cell);
-        std::map<Line, unsigned int> of_lines;
+        std::vector<CellOrigin> origins;
+        for (unsigned int c = 0; c < piece.cells.size(); ++c)
+          {
+            const auto &cell = piece.cells[c];
+            !is_simplex<3>(cell) ? divide_hexahedron(cell) : halved ? divide_halved(cell) : divide_tetrahedron(cell);
+            const unsigned int n = finer.cells.size() - origins.size();
+            for (unsigned int child = 0; child < n; ++child)
+              origins.push_back({c, child, n == 1 || n == 8, n == 1});
+          }
+        VerticesOnLines dividing;
         for (const auto &entry : piece.line_middles)
           if (const auto found = middles.find({entry.first[0], entry.first[1]}); found != middles.end())
-            of_lines[entry.first] = found->second;
-        refine_middles(piece, of_lines, finer);
+            dividing[entry.first] = {{0.5, found->second}};
+        refine_middles(piece, dividing, finer);
         finer.global_vertices.resize(finer.vertices.size());
         std::iota(finer.global_vertices.begin(), finer.global_vertices.end(), GlobalVertex(0));
-        return std::move(finer);
+        return {std::move(finer), std::move(origins)};
       }
 
     private:
@@ -268,24 +276,13 @@ namespace slipstick::mesh
   template <>
   MeshPiece<3> refined(const MeshPiece<3> &piece)
   {
-    return SolidRefiner(piece).run();
+    return SolidRefiner(piece).run().piece;
   }
 
   template <>
-  MeshPiece<3> refined_towards(const MeshPiece<3> &piece, const std::set<dealii::types::boundary_id> &ids)
+  RefinedPiece<3> refined_at(const MeshPiece<3> &piece, const std::vector<bool> &marked)
   {
-    std::vector<bool> is_on_boundary(piece.vertices.size(), false), red;
-    for (const auto &face : piece.boundary_faces)
-      if (ids.count(face.id) > 0)
-        for (const unsigned int v : face.vertices)
-          if (v != Piece::no_vertex)
-            is_on_boundary[v] = true;
-    for (const auto &cell : piece.cells)
-      {
-        Assert(is_simplex<3>(cell), dealii::ExcMessage("hexahedra are refined as a whole only"));
-        red.push_back(
-          std::any_of(cell.begin(), cell.begin() + 4, [&](const unsigned int v) { return is_on_boundary[v]; }));
-      }
-    return SolidRefiner(piece, halved_lines(piece, std::move(red))).run();
+    return is_simplex<3>(piece.cells.front()) ? SolidRefiner(piece, halved_lines(piece, marked)).run()
+                                              : hexahedra_refined_at(piece, marked);
   }
 } // namespace slipstick::mesh

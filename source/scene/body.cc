@@ -69,8 +69,6 @@ namespace slipstick::scene
           {"File", {Shape::mesh}},
           {"Part", {Shape::mesh}},
           {"Scale", {Shape::mesh}},
-          {"Refine towards", {Shape::mesh}},
-          {"Refine levels", {Shape::mesh}},
         };
       return dim == 3 ? of_space : of_plane;
     }
@@ -255,7 +253,7 @@ namespace slipstick::scene
               body.boundary_refinements,
               0,
               max_refinements,
-              dim == 3 ? "tetrahedra: how many times: each divides their edges by 2"
+              dim == 3 ? "how many times: each divides edges of hexahedra by 3, of tetrahedra by 2"
                        : "how many times: each divides edges of quadrilaterals by 3, of triangles by 2");
   }
 

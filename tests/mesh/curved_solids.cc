@@ -225,37 +225,40 @@ TEST(CurvedSolid, mid_nodes_of_other_formats_of_gmsh)
     }
 }
 
-// Refined twice, all new nodes lie on the surface z = x^2 / 10 and the edges follow it.
+// Refined twice as a whole, or of hexahedra and tetrahedra cells at one side, all new nodes lie on the surface z = x^2 / 10 and the
+// edges follow it.
 TEST(CurvedSolid, refinement_stays_on_the_surface)
 {
   using S            = CurvedSolid;
   const auto map     = [](const S::Point &x) { return S::Point(x[0], x[1], x[2] + 0.1 * x[0] * x[0]); };
   const auto inverse = [](const S::Point &x) { return S::Point(x[0], x[1], x[2] - 0.1 * x[0] * x[0]); };
   for (const auto &cell : S::cells())
-    {
-      auto piece = S::read(cell, map).piece;
-      for (unsigned int level = 0; level < 2; ++level)
-        {
-          piece = mesh::refined(piece);
-          std::set<unsigned int> outside;
-          for (const auto &face : piece.boundary_faces)
-            for (const unsigned int v : face.vertices)
-              if (v != S::Piece::no_vertex)
-                outside.insert(v);
-          for (const unsigned int v : outside)
-            {
-              const auto   x = inverse(piece.vertices[v]); // on the cube or tetrahedron
-              const double to_plane =
-                std::min({x[0],
-                          x[1],
-                          x[2],
-                          cell.corners.size() == 4 ? 1 - x[0] - x[1] - x[2] : 1 - std::max({x[0], x[1], x[2]})});
-              EXPECT_NEAR(to_plane, 0, 1e-12) << cell.kind;
-            }
-          EXPECT_LT(S::off(piece, map, inverse), 1e-12) << cell.kind << level;
-          EXPECT_EQ(mesh::keep_good_middles(piece), 0u);
-        }
-    }
+    for (const bool is_whole : {true, false})
+      {
+        auto piece                 = S::read(cell, map).piece;
+        piece.boundary_faces[0].id = 7;
+        for (unsigned int level = 0; level < 2; ++level)
+          {
+            piece = is_whole ? mesh::refined(piece) : mesh::refined_towards(piece, {7});
+            std::set<unsigned int> outside;
+            for (const auto &face : piece.boundary_faces)
+              for (const unsigned int v : face.vertices)
+                if (v != S::Piece::no_vertex)
+                  outside.insert(v);
+            for (const unsigned int v : outside)
+              {
+                const auto   x = inverse(piece.vertices[v]); // on the cube or tetrahedron
+                const double to_plane =
+                  std::min({x[0],
+                            x[1],
+                            x[2],
+                            cell.corners.size() == 4 ? 1 - x[0] - x[1] - x[2] : 1 - std::max({x[0], x[1], x[2]})});
+                EXPECT_NEAR(to_plane, 0, 1e-12) << cell.kind;
+              }
+            EXPECT_LT(S::off(piece, map, inverse), 1e-12) << cell.kind << level;
+            EXPECT_EQ(mesh::keep_good_middles(piece), 0u);
+          }
+      }
 }
 
 // Edges inside of a body that only touch its curved surface belong to cells of other subdomains, too.

@@ -1,7 +1,7 @@
 // Refinement of plain lists of cells, without hanging nodes. New vertices on edges with curves lie on these.
 #pragma once
 
-#include <slipstick/mesh/mesh_piece.h>
+#include <slipstick/mesh/refined_piece.h>
 
 #include <set>
 
@@ -22,29 +22,14 @@ namespace slipstick::mesh
   /// templates for one to three marked corners (after R. Schneiders, Refining quadrilateral and hexahedral element
   /// meshes, 1996; the templates for two opposite and three corners are our own and keep the marks from spreading).
   /// Triangles are divided into four, their neighbours into two (red-green). Cells must be of one kind. Vertices keep
-  /// their numbers. In space tetrahedra alone: into eight, their neighbours into two or four.
+  /// their numbers. Tetrahedra are divided into eight, their neighbours into two or four; hexahedra as in hexahedra_refinement.h,
+  /// at one boundary after the other if the marks of all would spread from where boundaries meet.
   template <int dim>
   MeshPiece<dim> refined_towards(const MeshPiece<dim> &piece, const std::set<dealii::types::boundary_id> &ids);
-  template <>
-  MeshPiece<3> refined_towards(const MeshPiece<3> &piece, const std::set<dealii::types::boundary_id> &ids);
-
-  /// Where a cell of a finer mesh comes from.
-  struct CellOrigin
-  {
-    unsigned int parent     = 0;    // cell of the coarser mesh
-    unsigned int child      = 0;    // of its children, counted as they are added
-    bool         is_regular = true; // of the parent's shape, or the parent itself: not made by a template between sizes
-    bool         is_parent  = true; // it was left as it is
-  };
-
-  template <int dim>
-  struct RefinedPiece
-  {
-    MeshPiece<dim>          piece;
-    std::vector<CellOrigin> origins; // by cell
-  };
 
   /// Refines the cells for which @p marked holds, once, as refined_towards() does those at a boundary.
   template <int dim>
   RefinedPiece<dim> refined_at(const MeshPiece<dim> &piece, const std::vector<bool> &marked);
+  template <>
+  RefinedPiece<3> refined_at(const MeshPiece<3> &piece, const std::vector<bool> &marked);
 } // namespace slipstick::mesh

@@ -48,16 +48,25 @@ namespace slipstick::mesh
   /// Gives the edges of the faces on balls and cylinders (BoundaryFace::curve) their middles.
   void bend_lines(MeshPiece<3> &piece);
 
+  /// On the parabola through both ends and the middle of an edge, @p s from 0 to 1.
+  dealii::Point<3> on_parabola(const dealii::Point<3> &from,
+                               const dealii::Point<3> &middle,
+                               const dealii::Point<3> &to,
+                               const double            s);
+
+  /// The part of a patch with these corners, around.
+  FaceSurface part_of(const FaceSurface &patch, const std::vector<FaceSurface::Place> &corners);
+
   /// What part @p face (vertices of @p finer, which halve edges) of a face stands for.
   FaceSurface part_of(const MeshPiece<3>::BoundaryFace &whole,
                       const MeshPiece<3>::Face         &face,
                       const MeshPiece<3>               &finer);
 
-  /// Gives the edges of a refined piece on its curved faces and edges their middles. @param middle_of the vertices in the middle of
-  /// curved edges of @p coarse that were halved.
-  void refine_middles(const MeshPiece<3>                               &coarse,
-                      const std::map<MeshPiece<3>::Line, unsigned int> &middle_of,
-                      MeshPiece<3>                                     &finer);
+  /// Vertices that divide edges, and where on these: from 0 at the end with the lower number to 1, in this order.
+  using VerticesOnLines = std::map<MeshPiece<3>::Line, std::vector<std::pair<double, unsigned int>>>;
+
+  /// Gives the edges of a refined piece on its curved faces and edges their middles. @param dividing the curved edges of @p coarse.
+  void refine_middles(const MeshPiece<3> &coarse, const VerticesOnLines &dividing, MeshPiece<3> &finer);
 
   /// Takes the middles from edges of cells that a map of degree 2 would turn over or flatten, and marks the faces there
   /// (BoundaryFace::bends_cell). @return number of these cells.
