@@ -180,10 +180,21 @@ namespace slipstick::qp
                 has_met_goal = true;
                 tolerance    = options.tightening * left;
               }
+            tell_sets(residual + violation / goal.reference);
             if (!step())
               return ended(Status::stagnated);
           }
         return ended(Status::iteration_limit);
+      }
+
+      // A face that is solved to the goal, but on a set whose bounds are violated by far more than before. Where that happens again, sets
+      // are told by gradients below the goal (compliances that are far apart), and faces are solved to less.
+      void tell_sets(const double natural_residual)
+      {
+        if (residual <= goal.tolerance &&
+            natural_residual > options.astray * std::max(goal.tolerance, last_natural_residual) && ++n_astray > 1)
+          tolerance = std::min(tolerance, options.tightening * residual);
+        last_natural_residual = natural_residual;
       }
 
       // Where gaps of open contact make the reference, the forces may be next to nothing beside it.
@@ -475,7 +486,9 @@ namespace slipstick::qp
       Vector                y, Fy, gy; // where the present step leads
       std::vector<double>   merits;    // natural residuals of all x so far
       std::optional<Vector> best;      // where the natural residual is least
-      double                residual    = HUGE_VAL;
+      double                residual              = HUGE_VAL;
+      double                last_natural_residual = std::numeric_limits<double>::infinity(); // over the reference
+      unsigned int          n_astray              = 0;
       double                error_of_Fx = 0, error_of_Fy = 0; // by rounding, weighted, estimates
       bool                  is_stuck = false;                 // the last step did not lower the residual
       bool                  is_rough; // the start, and no step was made yet in spite of the residual
