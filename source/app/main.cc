@@ -11,11 +11,14 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
+#include <cstring>
 #include <iostream>
 #include <vector>
 
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 extern "C" void dgemm_(const char *,
                        const char *,
@@ -35,15 +38,16 @@ namespace
 {
   using namespace slipstick;
 
-  // OpenBLAS allocates a buffer at its first product of matrices, and tries forever if it cannot get one.
+  // OpenBLAS allocates a buffer at its first product of matrices, newer versions already when it is loaded, and tries forever if it
+  // cannot get one.
   constexpr std::size_t least_free_space = 256u << 20; // bytes of address space: the buffer and its surroundings
 
-  /// Where the address space is limited (ulimit -v): allocates the buffer before anything else.
-  void check_address_space()
+  /// Whether the address space is limited (ulimit -v); throws where too little of it is left.
+  bool has_limited_address_space()
   {
     rlimit limit;
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
-      return;
+      return false;
     void *const space = mmap(nullptr, least_free_space, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (space == MAP_FAILED)
       throw InputError("the address space is limited to " + std::to_string(limit.rlim_cur >> 20) +
@@ -51,11 +55,37 @@ namespace
                          " MB are left at the start",
                        "raise or lift the limit: ulimit -v unlimited");
     munmap(space, least_free_space);
+    return true;
+  }
+
+  /// Where the address space is limited: allocates the buffer before anything else.
+  void check_address_space()
+  {
+    if (!has_limited_address_space())
+      return;
     constexpr int       n   = 64;
     const double        one = 1;
     std::vector<double> a(n * n, 1.), c(n * n, 0.);
     dgemm_("N", "N", &n, &n, &n, &one, a.data(), &n, a.data(), &n, &one, c.data(), &n);
   }
+
+  /// Before the constructors of the libraries. Streams are not there yet, nor is MPI: every rank ends, the first one tells.
+  void check_address_space_before_libraries()
+  {
+    try
+      {
+        has_limited_address_space();
+      }
+    catch (const InputError &error)
+      {
+        const char *const rank = std::getenv("OMPI_COMM_WORLD_RANK");
+        const std::string text = std::string("error: ") + error.what() + "\n";
+        const bool        told = (rank && std::strcmp(rank, "0") != 0) ||
+                          ::write(STDERR_FILENO, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+        ::_exit(told ? static_cast<int>(ExitStatus::bad_input) : static_cast<int>(ExitStatus::internal_error));
+      }
+  }
+  [[gnu::section(".preinit_array"), gnu::used]] void (*before_libraries)() = check_address_space_before_libraries;
 
   template <int dim>
   ExitStatus run_scene(const app::CommandLine &command_line, const MPI_Comm comm)
