@@ -10,6 +10,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -78,9 +79,14 @@ namespace
       }
     catch (const InputError &error)
       {
-        const char *const rank = std::getenv("OMPI_COMM_WORLD_RANK");
+        const auto is_other = [](const char *variable) { // of Open MPI, PMIx, MPICH, Slurm
+          const char *const rank = std::getenv(variable);
+          return rank && std::strcmp(rank, "0") != 0;
+        };
+        constexpr std::array<const char *, 4> ranks = {
+          {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"}};
         const std::string text = std::string("error: ") + error.what() + "\n";
-        const bool        told = (rank && std::strcmp(rank, "0") != 0) ||
+        const bool        told = std::any_of(ranks.begin(), ranks.end(), is_other) ||
                           ::write(STDERR_FILENO, text.data(), text.size()) == static_cast<ssize_t>(text.size());
         ::_exit(told ? static_cast<int>(ExitStatus::bad_input) : static_cast<int>(ExitStatus::internal_error));
       }

@@ -232,10 +232,11 @@ namespace slipstick::app
   {
     if (residual_energy > allowed_part * discretization_error)
       return false;
-    if (tfeti::is_driven(dual(), iterate.multipliers, iterate.free))
+    auto recovery = tfeti::recover_if_held(dual(), iterate.multipliers, iterate.free);
+    if (!recovery)
       return false;
     Answer answer;
-    answer.recovery = tfeti::recover(dual(), iterate.multipliers, iterate.free, true);
+    answer.recovery = *std::move(recovery);
     evaluate(answer, iterate, t);
     const auto &checks           = answer.contact->checks;
     discretization_error         = std::sqrt(answer.stress->error_squared);
@@ -316,13 +317,16 @@ namespace slipstick::app
   template <int dim>
   tfeti::Recovery StepSolver<dim>::recovered(const bool bounds_follow)
   {
-    const bool is_proof = problem.is_pruned() || (the_solution.status == qp::Status::converged && !bounds_follow);
-    if (is_proof || !tfeti::is_driven(dual(), the_solution.multipliers, the_solution.free))
-      // motions that nothing resists and no load drives are kept at zero
-      return tfeti::recover(dual(), the_solution.multipliers, the_solution.free, true);
+    const bool  is_proof = problem.is_pruned() || (the_solution.status == qp::Status::converged && !bounds_follow);
+    const auto &x        = the_solution.multipliers;
+    const auto &free     = the_solution.free;
+    if (is_proof)
+      return tfeti::recover(dual(), x, free, true); // motions that nothing resists and no load drives are kept at zero
+    if (auto recovery = tfeti::recover_if_held(dual(), x, free))
+      return *std::move(recovery);
     if (the_solution.status == qp::Status::converged)
       the_solution.status = qp::Status::stagnated;
-    return tfeti::recover(dual(), the_solution.multipliers, std::vector<bool>(the_solution.free.size(), true));
+    return tfeti::recover(dual(), x, std::vector<bool>(free.size(), true));
   }
 
   template <int dim>

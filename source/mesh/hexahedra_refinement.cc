@@ -1,6 +1,5 @@
-// 27 hexahedra for one where it is wanted, and templates around them: after R. Schneiders, Refining quadrilateral and hexahedral
-// element meshes (1996), whose marked corners they go by.
 #include <slipstick/mesh/hexahedra_refinement.h>
+#include <slipstick/mesh/hexahedron_templates.h>
 #include <slipstick/mesh/solid_middles.h>
 
 #include <algorithm>
@@ -17,195 +16,34 @@ namespace slipstick::mesh
     using Point  = dealii::Point<3>;
     using Tensor = dealii::Tensor<1, 3>;
 
-    // Corners of cells and templates are numbered as deal.II does: bit d is set where coordinate d is 1.
-    constexpr unsigned int n_corners_of_cell = 8;
-
-    // Of the edges of a cell; positions on it are whole numbers of them.
-    constexpr unsigned int n_parts = 6;
-
-    using Place      = std::array<unsigned int, 3>; // in a cell
-    using Hexahedron = std::array<Place, n_corners_of_cell>;
-    using Template   = std::vector<Hexahedron>;
-    using Quad       = std::array<Place, 4>; // corners around
-
-    // From three segments below (height 1) to one above (height 3): (along, height) in thirds of an edge.
-    constexpr std::array<std::array<std::array<unsigned int, 2>, 4>, 4> three_to_one = {
-      {{{{{0, 1}}, {{1, 1}}, {{1, 2}}, {{0, 3}}}},
-       {{{{1, 1}}, {{2, 1}}, {{2, 2}}, {{1, 2}}}},
-       {{{{2, 1}}, {{3, 1}}, {{3, 3}}, {{2, 2}}}},
-       {{{{1, 2}}, {{2, 2}}, {{3, 3}}, {{0, 3}}}}}};
-
-    Tensor vector_of(const Place &place)
+    Marks marks_of(const Piece::Cell &cell, const std::vector<bool> &is_marked)
     {
-      return Tensor({double(place[0]), double(place[1]), double(place[2])});
+      Marks marks = 0;
+      for (unsigned int v = 0; v < cell.size(); ++v)
+        marks |= unsigned(is_marked[cell[v]]) << v;
+      return marks;
     }
 
-    /// The hexahedron between two quadrilaterals.
-    Hexahedron between(const Quad &p, const Quad &q)
+    /// Vertices of the marked cells, and those that neighbours need so that there is a template for each of them.
+    std::vector<bool> marked_vertices(const Piece &piece, const std::vector<bool> &marked)
     {
-      Tensor up, along, across;
-      for (unsigned int k = 0; k < 4; ++k)
-        up += vector_of(q[k]) - vector_of(p[k]);
-      for (const Quad &face : {p, q})
+      std::vector<bool> is_marked(piece.vertices.size(), false);
+      for (std::size_t c = 0; c < piece.cells.size(); ++c)
+        if (marked[c])
+          for (const unsigned int v : piece.cells[c])
+            is_marked[v] = true;
+      for (bool has_changed = true; has_changed;)
         {
-          along += vector_of(face[1]) + vector_of(face[2]) - vector_of(face[0]) - vector_of(face[3]);
-          across += vector_of(face[3]) + vector_of(face[2]) - vector_of(face[0]) - vector_of(face[1]);
+          has_changed = false;
+          for (const auto &cell : piece.cells)
+            {
+              const Marks before = marks_of(cell, is_marked), after = convex(before);
+              for (unsigned int v = 0; v < cell.size() && before != after; ++v)
+                if (after >> v & 1)
+                  is_marked[cell[v]] = has_changed = true;
+            }
         }
-      const bool  is_upright = cross_product_3d(along, across) * up > 0;
-      const Quad &low = is_upright ? p : q, &high = is_upright ? q : p;
-      return {{low[0], low[1], low[3], low[2], high[0], high[1], high[3], high[2]}};
-    }
-
-    Hexahedron small_cube(const unsigned int i, const unsigned int j, const unsigned int k)
-    {
-      const auto square = [&](const unsigned int z) {
-        return Quad{
-          {{{2 * i, 2 * j, z}}, {{2 * i + 2, 2 * j, z}}, {{2 * i + 2, 2 * j + 2, z}}, {{2 * i, 2 * j + 2, z}}}};
-      };
-      return between(square(2 * k), square(2 * k + 2));
-    }
-
-    Template at_corner()
-    {
-      Template cells = {small_cube(0, 0, 0)};
-      for (unsigned int d = 0; d < 3; ++d)
-        {
-          const auto square = [d](const unsigned int size) {
-            Quad quad;
-            for (unsigned int k = 0; k < 4; ++k)
-              {
-                quad[k][d]           = size;
-                quad[k][(d + 1) % 3] = k == 1 || k == 2 ? size : 0;
-                quad[k][(d + 2) % 3] = k >= 2 ? size : 0;
-              }
-            return quad;
-          };
-          cells.push_back(between(square(2), square(n_parts)));
-        }
-      return cells;
-    }
-
-    // Along x at y = z = 0. Cells around it meet on the plane y = z.
-    Template at_edge()
-    {
-      Template cells;
-      for (unsigned int i = 0; i < 3; ++i)
-        cells.push_back(small_cube(i, 0, 0));
-      for (const unsigned int across : {1, 2})
-        for (const auto &corners : three_to_one)
-          {
-            Quad outside, inside;
-            for (unsigned int k = 0; k < 4; ++k)
-              {
-                const unsigned int x = 2 * corners[k][0], height = 2 * corners[k][1];
-                outside[k]         = {{x, 0, 0}};
-                outside[k][across] = height;
-                inside[k]          = {{x, height, height}};
-              }
-            cells.push_back(between(outside, inside));
-          }
-      return cells;
-    }
-
-    // At z = 0: nine cubes, above them three times the way from three segments along y to one, which leave three along x for the
-    // last cell.
-    Template at_face()
-    {
-      Template cells;
-      for (unsigned int j = 0; j < 3; ++j)
-        for (unsigned int i = 0; i < 3; ++i)
-          cells.push_back(small_cube(i, j, 0));
-      // heights 1, 2, 3 of the way, in columns of constant x
-      constexpr std::array<std::array<unsigned int, 3>, 4> heights = {
-        {{{2, 4, 6}}, {{2, 3, 4}}, {{2, 3, 4}}, {{2, 4, 6}}}};
-      for (unsigned int i = 0; i < 3; ++i)
-        for (const auto &corners : three_to_one)
-          {
-            const auto on_column = [&](const unsigned int column) {
-              Quad quad;
-              for (unsigned int k = 0; k < 4; ++k)
-                quad[k] = {{2 * column, 2 * corners[k][0], heights[column][corners[k][1] - 1]}};
-              return quad;
-            };
-            cells.push_back(between(on_column(i), on_column(i + 1)));
-          }
-      const auto last = [](const unsigned int y) { return Quad{{{{2, y, 4}}, {{4, y, 4}}, {{6, y, 6}}, {{0, y, 6}}}}; };
-      cells.push_back(between(last(0), last(n_parts)));
-      return cells;
-    }
-
-    Template everywhere()
-    {
-      Template cells;
-      for (unsigned int k = 0; k < 3; ++k)
-        for (unsigned int j = 0; j < 3; ++j)
-          for (unsigned int i = 0; i < 3; ++i)
-            cells.push_back(small_cube(i, j, k));
-      return cells;
-    }
-
-    /// Corners of a cell, as bits.
-    using Marks = unsigned int;
-
-    constexpr Marks all_corners = 0xff;
-
-    /// The template for every set of marks that has one: one corner, an edge, a face, all.
-    std::map<Marks, Template> templates_by_marks()
-    {
-      std::map<Marks, Template> result;
-      for (const auto &[marks, cells] : {std::pair<Marks, Template>(0x01, at_corner()),
-                                         {0x03, at_edge()},
-                                         {0x0f, at_face()},
-                                         {all_corners, everywhere()}})
-        {
-          std::array<unsigned int, 3> axes = {{0, 1, 2}};
-          do // turned and mirrored in all ways
-            for (unsigned int mirrored = 0; mirrored < n_corners_of_cell; ++mirrored)
-              {
-                const auto moved = [&, &axes = axes](const Place &place) {
-                  Place at;
-                  for (unsigned int d = 0; d < 3; ++d)
-                    at[axes[d]] = mirrored >> d & 1 ? n_parts - place[d] : place[d];
-                  return at;
-                };
-                Marks now = 0;
-                for (unsigned int c = 0; c < n_corners_of_cell; ++c)
-                  if (marks >> c & 1)
-                    {
-                      const Place at = moved({{n_parts * (c & 1), n_parts * (c >> 1 & 1), n_parts * (c >> 2 & 1)}});
-                      now |= 1u << (at[0] / n_parts + 2 * (at[1] / n_parts) + 4 * (at[2] / n_parts));
-                    }
-                if (result.count(now) > 0)
-                  continue;
-                for (const auto &cell : cells)
-                  {
-                    const auto face = [&](const unsigned int first) {
-                      return Quad{
-                        {moved(cell[first]), moved(cell[first + 1]), moved(cell[first + 3]), moved(cell[first + 2])}};
-                    };
-                    result[now].push_back(between(face(0), face(4)));
-                  }
-              }
-          while (std::next_permutation(axes.begin(), axes.end()));
-        }
-      return result;
-    }
-
-    /// The corners of the smallest corner, edge, face or cell that has all of @p marks.
-    Marks convex(const Marks marks)
-    {
-      Marks all = n_corners_of_cell - 1, any = 0; // coordinates that are 1 at all, at any of them
-      for (unsigned int c = 0; c < n_corners_of_cell; ++c)
-        if (marks >> c & 1)
-          {
-            all &= c;
-            any |= c;
-          }
-      Marks result = 0;
-      for (unsigned int c = 0; c < n_corners_of_cell && marks != 0; ++c)
-        if ((c & all) == all && (c | any) == any)
-          result |= 1u << c;
-      return result;
+      return is_marked;
     }
 
     class HexahedraRefiner
@@ -215,23 +53,8 @@ namespace slipstick::mesh
         : piece(piece_)
         , boundary(boundary_by_vertices(piece_))
         , middles(piece, boundary)
-        , is_marked(piece_.vertices.size(), false)
+        , is_marked(marked_vertices(piece_, marked))
       {
-        for (std::size_t c = 0; c < piece.cells.size(); ++c)
-          if (marked[c])
-            for (const unsigned int v : piece.cells[c])
-              is_marked[v] = true;
-        for (bool has_changed = true; has_changed;)
-          {
-            has_changed = false;
-            for (const auto &cell : piece.cells)
-              {
-                const Marks before = marks_of(cell), after = convex(before);
-                for (unsigned int v = 0; v < cell.size() && before != after; ++v)
-                  if (after >> v & 1)
-                    is_marked[cell[v]] = has_changed = true;
-              }
-          }
         for (const auto &entry : boundary)
           if (const auto &surface = entry.second.curve;
               surface && surface.kind != FaceSurface::Kind::patch && entry.second.bends_cell)
@@ -244,21 +67,13 @@ namespace slipstick::mesh
         finer.vertices  = piece.vertices;
       }
 
-      std::size_t n_cells() const
-      {
-        std::size_t n = 0;
-        for (const auto &cell : piece.cells)
-          n += marks_of(cell) == 0 ? 1 : templates.at(marks_of(cell)).size();
-        return n;
-      }
-
       RefinedPiece<3> run()
       {
         std::vector<CellOrigin> origins;
         for (unsigned int c = 0; c < piece.cells.size(); ++c)
           {
             const auto &cell  = piece.cells[c];
-            const Marks marks = marks_of(cell);
+            const Marks marks = marks_of(cell, is_marked);
             if (marks == 0)
               {
                 finer.cells.push_back(cell);
@@ -268,7 +83,7 @@ namespace slipstick::mesh
                     finer.boundary_faces.push_back(found->second);
                 continue;
               }
-            const Template &parts = templates.at(marks);
+            const Template &parts = templates_by_marks().at(marks);
             for (unsigned int child = 0; child < parts.size(); ++child)
               {
                 add(cell, parts[child]);
@@ -286,14 +101,6 @@ namespace slipstick::mesh
     private:
       // Bilinear weights of vertices, by which the cells around know a place.
       using Weights = std::vector<std::pair<unsigned int, unsigned int>>;
-
-      Marks marks_of(const Piece::Cell &cell) const
-      {
-        Marks marks = 0;
-        for (unsigned int v = 0; v < cell.size(); ++v)
-          marks |= unsigned(is_marked[cell[v]]) << v;
-        return marks;
-      }
 
       static unsigned int weight(const Place &place, const unsigned int corner)
       {
@@ -332,15 +139,16 @@ namespace slipstick::mesh
         finer.cells.push_back(added);
         for (unsigned int f = 0; f < n_faces<3>(cell); ++f)
           {
+            const auto found = boundary.find(face_of_cell<3>(cell, f));
+            if (found == boundary.end())
+              continue;
             const unsigned int d = f / 2, at = f % 2 * n_parts;
             for (unsigned int g = 0; g < n_faces<3>(cell); ++g)
               {
                 std::array<unsigned int, 4> corners;
                 for (unsigned int v = 0; v < 4; ++v)
                   corners[v] = dealii::GeometryInfo<3>::face_to_cell_vertices(g, v);
-                if (std::any_of(corners.begin(), corners.end(), [&](const unsigned int v) { return part[v][d] != at; }))
-                  continue;
-                if (const auto found = boundary.find(face_of_cell<3>(cell, f)); found != boundary.end())
+                if (std::all_of(corners.begin(), corners.end(), [&](const unsigned int v) { return part[v][d] == at; }))
                   add_face(found->second, cell, part, corners, face_of_cell<3>(added, g));
               }
           }
@@ -464,11 +272,10 @@ namespace slipstick::mesh
       }
 
       const Piece                                     &piece;
-      const std::map<Marks, Template>                  templates = templates_by_marks();
       const std::map<Piece::Face, Piece::BoundaryFace> boundary;
       const SolidMiddles                               middles;
       std::map<Piece::Line, const FaceSurface *>       surfaces; // balls and cylinders, of curved edges
-      std::vector<bool>                                is_marked;
+      const std::vector<bool>                          is_marked;
       Piece                                            finer;
       std::map<Weights, unsigned int>                  vertices;
       VerticesOnLines                                  on_lines;
@@ -477,7 +284,14 @@ namespace slipstick::mesh
 
   std::size_t n_hexahedra_refined_at(const MeshPiece<3> &piece, const std::vector<bool> &marked)
   {
-    return HexahedraRefiner(piece, marked).n_cells();
+    const auto  is_marked = marked_vertices(piece, marked);
+    std::size_t n         = 0;
+    for (const auto &cell : piece.cells)
+      {
+        const Marks marks = marks_of(cell, is_marked);
+        n += marks == 0 ? 1 : templates_by_marks().at(marks).size();
+      }
+    return n;
   }
 
   RefinedPiece<3> hexahedra_refined_at(const MeshPiece<3> &piece, const std::vector<bool> &marked)

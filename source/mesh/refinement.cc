@@ -359,7 +359,7 @@ namespace slipstick::mesh
   {
     const auto touches = touching(piece, ids);
     if constexpr (dim == 3)
-      if (!is_simplex<dim>(piece.cells.front()))
+      if (!is_simplex<dim>(piece.cells.front()) && ids.size() > 1)
         {
           std::size_t n = 0;
           for (const auto id : ids)

@@ -63,26 +63,6 @@ namespace slipstick::tfeti
       return dual.loose_bodies().hold_by(loose, is_candidate, equal, free);
     }
 
-    /// The free rows and those rows with friction forces that hold the loose motions or, if nothing drives these, some
-    /// of all rows. @return whether they are rows with forces.
-    bool rows_that_fix(const DualProblem              &dual,
-                       const std::vector<RigidMotion> &loose,
-                       const DistributedVector        &x,
-                       const bool                      keeps_still,
-                       std::vector<bool>              &free)
-    {
-      if (add_rows_with_friction(dual, loose, x, free))
-        return true;
-      if (!keeps_still || plainest(loose).work > 0)
-        require_support(loose, dual.body_motions().names());
-      const std::vector<double> equal(free.size(), 1.);
-      std::vector<bool>         is_candidate(free);
-      is_candidate.flip();
-      if (!dual.loose_bodies().hold_by(loose, is_candidate, equal, free))
-        require_support(loose, dual.body_motions().names());
-      return false;
-    }
-
     /// Removes the loose motions from u.
     void remove_motions(const DualProblem &dual, const std::vector<RigidMotion> &loose, std::vector<Eigen::VectorXd> &u)
     {
@@ -160,6 +140,77 @@ namespace slipstick::tfeti
           next += k;
         }
     }
+    /// The motions that the free rows leave, and the rows that place them.
+    struct Placement
+    {
+      std::vector<RigidMotion> loose;
+      std::vector<bool>        fixed;             // the free rows, and more where they leave motions
+      bool                     has_forces = true; // these are rows with friction forces
+    };
+
+    Placement placed_by_forces(const DualProblem &dual, const DistributedVector &x, const std::vector<bool> &free)
+    {
+      Placement result{dual.body_motions().free(free), free};
+      result.has_forces = result.loose.empty() || add_rows_with_friction(dual, result.loose, x, result.fixed);
+      return result;
+    }
+
+    bool is_driven(const Placement &placement)
+    {
+      return !placement.has_forces && plainest(placement.loose).work > 0;
+    }
+
+    /// Takes any rows where there are none with forces.
+    void place_by_any_row(const DualProblem &dual, Placement &placement)
+    {
+      const std::vector<double> equal(placement.fixed.size(), 1.);
+      std::vector<bool>         is_candidate(placement.fixed);
+      is_candidate.flip();
+      if (!dual.loose_bodies().hold_by(placement.loose, is_candidate, equal, placement.fixed))
+        require_support(placement.loose, dual.body_motions().names());
+    }
+
+    Recovery recover_placed(const DualProblem       &dual,
+                            const DistributedVector &x,
+                            const std::vector<bool> &free,
+                            Placement                placement)
+    {
+      const auto &[loose, fixed, is_at_rest] = placement;
+      if (!is_at_rest)
+        place_by_any_row(dual, placement);
+      const auto       &systems = dual.subdomains();
+      const Projector   on_free(dual.projector(),
+                              fixed,
+                              dual.communicator(),
+                              std::vector<qp::Tie>(),
+                              dual.residual_weights());
+      Recovery          result{{}, dual.zero(), {}};
+      DistributedVector step{dual.zero()};
+      result.multipliers = x;
+      for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
+        {
+          on_free.particular(dual.e() - dual.projector().multiply(result.multipliers), step);
+          result.multipliers += step;
+        }
+
+      result.u = dual.dual_operator().forces(result.multipliers);
+      auto &u  = result.u;
+      for (unsigned int p = 0; p < systems.size(); ++p)
+        {
+          u[p] = systems[p]->load() - u[p];
+          systems[p]->apply_pseudo_inverse(u[p]);
+        }
+
+      fit_motions(dual, on_free, fixed, result);
+      if (!is_at_rest)
+        {
+          remove_motions(dual, loose, result.u);
+          result.unresisted = loose;
+        }
+      if (!loose.empty())
+        slide_apart(dual, loose, free, x, result);
+      return result;
+    }
   } // namespace
 
   DistributedVector misfit(const DualProblem &dual, const Recovery &of, const std::vector<bool> &free)
@@ -173,55 +224,25 @@ namespace slipstick::tfeti
     return missing;
   }
 
-  bool is_driven(const DualProblem &dual, const DistributedVector &x, const std::vector<bool> &free)
-  {
-    const auto loose = dual.body_motions().free(free);
-    if (loose.empty() || !(plainest(loose).work > 0))
-      return false;
-    std::vector<bool> fixed = free;
-    return !add_rows_with_friction(dual, loose, x, fixed);
-  }
-
   Recovery recover(const DualProblem       &dual,
                    const DistributedVector &x,
                    const std::vector<bool> &free,
                    const bool               keeps_still)
   {
-    const auto       &systems    = dual.subdomains();
-    const auto        loose      = dual.body_motions().free(free);
-    std::vector<bool> fixed      = free;
-    const bool        is_at_rest = loose.empty() || rows_that_fix(dual, loose, x, keeps_still, fixed);
-    const Projector   on_free(dual.projector(),
-                            fixed,
-                            dual.communicator(),
-                            std::vector<qp::Tie>(),
-                            dual.residual_weights());
-    Recovery          result{{}, dual.zero(), {}};
-    DistributedVector step{dual.zero()};
-    result.multipliers = x;
-    for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
-      {
-        on_free.particular(dual.e() - dual.projector().multiply(result.multipliers), step);
-        result.multipliers += step;
-      }
+    Placement placement = placed_by_forces(dual, x, free);
+    if (!placement.has_forces && (!keeps_still || is_driven(placement)))
+      require_support(placement.loose, dual.body_motions().names());
+    return recover_placed(dual, x, free, std::move(placement));
+  }
 
-    result.u = dual.dual_operator().forces(result.multipliers);
-    auto &u  = result.u;
-    for (unsigned int p = 0; p < systems.size(); ++p)
-      {
-        u[p] = systems[p]->load() - u[p];
-        systems[p]->apply_pseudo_inverse(u[p]);
-      }
-
-    fit_motions(dual, on_free, fixed, result);
-    if (!is_at_rest)
-      {
-        remove_motions(dual, loose, result.u);
-        result.unresisted = loose;
-      }
-    if (!loose.empty())
-      slide_apart(dual, loose, free, x, result);
-    return result;
+  std::optional<Recovery> recover_if_held(const DualProblem       &dual,
+                                          const DistributedVector &x,
+                                          const std::vector<bool> &free)
+  {
+    Placement placement = placed_by_forces(dual, x, free);
+    if (is_driven(placement))
+      return {};
+    return recover_placed(dual, x, free, std::move(placement));
   }
 
   void correct(const DualProblem &dual, Recovery &at, const DistributedVector &step, const std::vector<bool> &free)

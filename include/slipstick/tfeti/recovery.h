@@ -3,6 +3,8 @@
 
 #include <slipstick/tfeti/dual_problem.h>
 
+#include <optional>
+
 namespace slipstick::tfeti
 {
   /// The primal solution and the multipliers that belong to it.
@@ -12,9 +14,6 @@ namespace slipstick::tfeti
     DistributedVector            multipliers; // [N]
     std::vector<RigidMotion>     unresisted;  // motions that nothing resists and no load drives: they are set to zero
   };
-
-  /// Do loads drive a motion that neither rows with `free` nor rows with friction forces resist? Then recover() throws. Collective.
-  bool is_driven(const DualProblem &dual, const DistributedVector &x, const std::vector<bool> &free);
 
   /// Displacements u = K+(f - B'x) + R a. First x is corrected, only on the rows with `free`, until G x = e holds to
   /// rounding, so that u is in equilibrium with it; then the amplitudes a of the rigid motions fit those rows (which
@@ -27,6 +26,12 @@ namespace slipstick::tfeti
                    const DistributedVector &x,
                    const std::vector<bool> &free,
                    const bool               keeps_still = false);
+
+  /// As recover() with keeps_still; nothing where that throws, since loads drive a motion that neither rows with `free` nor rows
+  /// with friction forces resist. Collective.
+  std::optional<Recovery> recover_if_held(const DualProblem       &dual,
+                                          const DistributedVector &x,
+                                          const std::vector<bool> &free);
 
   /// u += -K+ B'step + R a, x += step, with the a that fits the free rows in the sense of least squares. G step = 0
   /// is assumed. The present u is kept, so that rounding of x, under which a slender subdomain bends far more than u,
