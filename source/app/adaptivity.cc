@@ -18,7 +18,7 @@ namespace slipstick::app
     // Cells with this part of the error are refined, unless fewer reach the accuracy (Doerfler 1996).
     constexpr double most_of_error = 0.6;
     // What is left of the additive error of a cell after it is refined; on smooth solutions of degree 1 it is 1/9 for nine
-    // quadrilaterals and 1/4 for four triangles, at singular points more.
+    // quadrilaterals, 1/4 for four triangles and eight tetrahedra, at singular points more.
     constexpr double left_of_error = 0.25;
     // Cells whose errors agree up to this part are refined together: rounding must not choose between them.
     constexpr double alike = 1e-6;
@@ -31,12 +31,13 @@ namespace slipstick::app
     using Entry = std::pair<double, mesh::CellKey>;
   } // namespace
 
-  std::vector<LeftOut> point_forces(const scene::Scene<2>      &scene,
-                                    const mesh::Mesh<2>        &mesh,
-                                    const mechanics::Spaces<2> &spaces,
-                                    const unsigned int          n_supports)
+  template <int dim>
+  std::vector<LeftOut<dim>> point_forces(const scene::Scene<dim>      &scene,
+                                         const mesh::Mesh<dim>        &mesh,
+                                         const mechanics::Spaces<dim> &spaces,
+                                         const unsigned int            n_supports)
   {
-    std::vector<LeftOut> list;
+    std::vector<LeftOut<dim>> list;
     for (const auto &point : mechanics::singular_points(scene, mesh, spaces, n_supports))
       if (point.what.rfind("the point", 0) == 0) // others have finite energy
         {
@@ -52,10 +53,11 @@ namespace slipstick::app
     return list;
   }
 
-  CellErrors energy_errors(const mesh::Mesh<2>           &mesh,
-                           const mechanics::StressResult &stress,
-                           const std::vector<LeftOut>    &left_out,
-                           const double                   accuracy)
+  template <int dim>
+  CellErrors energy_errors(const mesh::Mesh<dim>           &mesh,
+                           const mechanics::StressResult   &stress,
+                           const std::vector<LeftOut<dim>> &left_out,
+                           const double                     accuracy)
   {
     CellErrors   errors;
     const double all = stress.energy_squared + stress.error_squared;
@@ -97,7 +99,8 @@ namespace slipstick::app
     return errors;
   }
 
-  std::size_t mark(const mesh::Mesh<2> &mesh, const CellErrors &errors, mesh::Refinement &refinement)
+  template <int dim>
+  std::size_t mark(const mesh::Mesh<dim> &mesh, const CellErrors &errors, mesh::Refinement &refinement)
   {
     std::vector<Entry> own;
     for (unsigned int p = 0; p < errors.of_cells.size(); ++p)
@@ -147,4 +150,23 @@ namespace slipstick::app
         }
     return worst;
   }
+
+  template std::vector<LeftOut<2>> point_forces(const scene::Scene<2> &,
+                                                const mesh::Mesh<2> &,
+                                                const mechanics::Spaces<2> &,
+                                                const unsigned int);
+  template std::vector<LeftOut<3>> point_forces(const scene::Scene<3> &,
+                                                const mesh::Mesh<3> &,
+                                                const mechanics::Spaces<3> &,
+                                                const unsigned int);
+  template CellErrors              energy_errors(const mesh::Mesh<2> &,
+                                                 const mechanics::StressResult &,
+                                                 const std::vector<LeftOut<2>> &,
+                                                 const double);
+  template CellErrors              energy_errors(const mesh::Mesh<3> &,
+                                                 const mechanics::StressResult &,
+                                                 const std::vector<LeftOut<3>> &,
+                                                 const double);
+  template std::size_t             mark(const mesh::Mesh<2> &, const CellErrors &, mesh::Refinement &);
+  template std::size_t             mark(const mesh::Mesh<3> &, const CellErrors &, mesh::Refinement &);
 } // namespace slipstick::app

@@ -1,8 +1,10 @@
 #include <slipstick/app/error_bars.h>
+#include <slipstick/base/box_tree.h>
 #include <slipstick/base/text.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -26,54 +28,190 @@ namespace slipstick::app
     // Figures and bars below this part of the largest of their unit are rounding, and not printed.
     constexpr double nothing = 1e-9;
 
-    /// The nodes of a pair, along its arc.
+    // In space: pressures are compared with those of so many nodes nearest to the largest one; it is at the edge of its surface
+    // where that many of them leave an angle free.
+    constexpr unsigned int n_beside = 4, n_around = 8;
+    constexpr double       angle_at_edge = 150 * M_PI / 180;
+
+    /// The nodes of a pair.
     std::vector<ContactNode> of_pair(const std::vector<ContactNode> &nodes, const unsigned int pair)
     {
-      std::vector<ContactNode> line;
-      std::copy_if(nodes.begin(), nodes.end(), std::back_inserter(line), [&](const ContactNode &node) {
+      std::vector<ContactNode> list;
+      std::copy_if(nodes.begin(), nodes.end(), std::back_inserter(list), [&](const ContactNode &node) {
         return node.pair == pair;
       });
-      std::stable_sort(line.begin(), line.end(), [](const ContactNode &a, const ContactNode &b) {
-        return a.arc_length < b.arc_length;
-      });
-      return line;
+      return list;
     }
 
-    /// Length of the nodes for which @p is_in holds, and of the elements between those in and those out.
-    template <class IsIn>
-    output::ErrorBar length(const std::string &name, const std::vector<ContactNode> &line, const IsIn &is_in)
+    bool sticks(const ContactNode &node)
     {
-      constexpr double half = .5;
-      output::ErrorBar bar{name, "mm", 0, 0., ""};
-      for (std::size_t i = 0; i < line.size(); ++i)
+      return node.is_closed && node.status == contact::ContactStatus::stick;
+    }
+
+    /// What the mesh makes of a largest pressure: nothing, if it cannot be resolved.
+    /// @param drops from there to the nodes beside.
+    std::optional<double> resolution(const double pressure, const std::vector<double> &drops, const bool is_at_end)
+    {
+      double sum = 0;
+      for (const double drop : drops)
         {
-          bar.value += is_in(line[i]) ? line[i].length : 0.;
-          if (i > 0 && is_in(line[i - 1]) != is_in(line[i]))
-            *bar.error += half * (line[i].arc_length - line[i - 1].arc_length);
+          if (drop > (is_at_end ? peak_at_end : peak) * pressure)
+            return {};
+          sum += drop;
         }
-      return bar;
+      return of_second_difference * sum;
     }
 
-    /// What the mesh makes of the largest pressure: nothing, if it cannot be resolved.
-    std::optional<double> resolution(const std::vector<ContactNode> &line)
+    auto with_largest_pressure(const std::vector<ContactNode> &nodes)
     {
-      const auto at = std::max_element(line.begin(), line.end(), [](const ContactNode &a, const ContactNode &b) {
+      return std::max_element(nodes.begin(), nodes.end(), [](const ContactNode &a, const ContactNode &b) {
         return a.pressure < b.pressure;
       });
-      if (at == line.end())
-        return 0.;
-      const bool is_end            = at == line.begin() || at + 1 == line.end();
-      double     second_difference = 0;
-      for (const int side : {-1, 1})
-        {
-          if (side < 0 ? at == line.begin() : at + 1 == line.end())
-            continue;
-          const double drop = at->pressure - (at + side)->pressure;
-          if (drop > (is_end ? peak_at_end : peak) * at->pressure)
-            return {};
-          second_difference += drop;
-        }
-      return of_second_difference * second_difference;
+    }
+
+    /// Contact nodes along a line of the plane.
+    class ContactLine
+    {
+    public:
+      static constexpr const char *measure = "length", *unit = "mm";
+
+      explicit ContactLine(std::vector<ContactNode> nodes)
+        : line(std::move(nodes))
+      {
+        std::stable_sort(line.begin(), line.end(), [](const ContactNode &a, const ContactNode &b) {
+          return a.arc_length < b.arc_length;
+        });
+      }
+
+      /// Length of the nodes for which @p is_in holds, and half of the elements between those in and those out.
+      template <class IsIn>
+      std::pair<double, double> size(const IsIn &is_in) const
+      {
+        std::pair<double, double> result{0, 0};
+        for (std::size_t i = 0; i < line.size(); ++i)
+          {
+            result.first += is_in(line[i]) ? line[i].length : 0.;
+            if (i > 0 && is_in(line[i - 1]) != is_in(line[i]))
+              result.second += (line[i].arc_length - line[i - 1].arc_length) / 2;
+          }
+        return result;
+      }
+
+      std::optional<double> resolution() const
+      {
+        const auto at = with_largest_pressure(line);
+        if (at == line.end())
+          return 0.;
+        std::vector<double> drops;
+        if (at != line.begin())
+          drops.push_back(at->pressure - (at - 1)->pressure);
+        if (at + 1 != line.end())
+          drops.push_back(at->pressure - (at + 1)->pressure);
+        return app::resolution(at->pressure, drops, drops.size() < 2);
+      }
+
+    private:
+      std::vector<ContactNode> line;
+    };
+
+    /// Contact nodes on a surface; beside each other are those that are near.
+    class ContactSurface
+    {
+    public:
+      static constexpr const char *measure = "area", *unit = "mm^2";
+
+      explicit ContactSurface(std::vector<ContactNode> nodes_)
+        : nodes(std::move(nodes_))
+        , tree(boxes())
+      {}
+
+      /// Area of the nodes for which @p is_in holds, and half of that of those beside one for which it does not.
+      template <class IsIn>
+      std::pair<double, double> size(const IsIn &is_in) const
+      {
+        std::pair<double, double> result{0, 0};
+        for (const auto &node : nodes)
+          if (is_in(node))
+            {
+              result.first += node.length;
+              const auto beside = nearest(node, n_beside);
+              if (std::any_of(beside.begin(), beside.end(), [&](const unsigned int k) { return !is_in(nodes[k]); }))
+                result.second += node.length / 2;
+            }
+        return result;
+      }
+
+      std::optional<double> resolution() const
+      {
+        const auto at = with_largest_pressure(nodes);
+        if (at == nodes.end())
+          return 0.;
+        std::vector<double> drops;
+        for (const unsigned int k : nearest(*at, n_beside))
+          drops.push_back(at->pressure - nodes[k].pressure);
+        return app::resolution(at->pressure, drops, is_at_edge(*at));
+      }
+
+    private:
+      using Point  = dealii::Point<3>;
+      using Tensor = dealii::Tensor<1, 3>;
+
+      static Point place(const ContactNode &node)
+      {
+        return {node.position[0], node.position[1], node.position[2]};
+      }
+
+      std::vector<BoxTree<3>::Box> boxes() const
+      {
+        std::vector<BoxTree<3>::Box> result;
+        for (const auto &node : nodes)
+          result.push_back(BoxTree<3>::box_around({place(node)}));
+        return result;
+      }
+
+      std::vector<unsigned int> nearest(const ContactNode &node, const unsigned int n) const
+      {
+        std::vector<unsigned int> found;
+        tree.for_each_by_distance(
+          place(node),
+          [] { return std::numeric_limits<double>::infinity(); },
+          [&](const unsigned int k) {
+            if (nodes[k].position != node.position)
+              found.push_back(k);
+            return found.size() < n;
+          });
+        return found;
+      }
+
+      bool is_at_edge(const ContactNode &node) const
+      {
+        const Tensor normal({node.normal[0], node.normal[1], node.normal[2]});
+        Tensor       first; // in the tangent plane
+        first[std::abs(normal[0]) < std::abs(normal[1]) ? 0 : 1] = 1;
+        first -= first * normal * normal;
+        const Tensor        second = cross_product_3d(normal, first);
+        std::vector<double> angles;
+        for (const unsigned int k : nearest(node, n_around))
+          angles.push_back(
+            std::atan2((place(nodes[k]) - place(node)) * second, (place(nodes[k]) - place(node)) * first));
+        if (angles.empty())
+          return true;
+        std::sort(angles.begin(), angles.end());
+        double widest = 2 * M_PI + angles.front() - angles.back();
+        for (std::size_t k = 1; k < angles.size(); ++k)
+          widest = std::max(widest, angles[k] - angles[k - 1]);
+        return widest > angle_at_edge;
+      }
+
+      const std::vector<ContactNode> nodes;
+      const BoxTree<3>               tree;
+    };
+
+    template <class Surface, class IsIn>
+    output::ErrorBar size_of(const Surface &surface, const std::string &name, const IsIn &is_in)
+    {
+      const auto [value, error] = surface.size(is_in);
+      return {name + Surface::measure, Surface::unit, value, error, ""};
     }
 
     /// What is printed, by the names of goals.
@@ -90,14 +228,12 @@ namespace slipstick::app
       for (const auto &probe : results.probes)
         if (probe.is_point)
           {
-            values[probe.name + ".u_x"] = probe.points.front().displacement[0];
-            values[probe.name + ".u_y"] = probe.points.front().displacement[1];
+            for (unsigned int d = 0; d < 3; ++d)
+              values[probe.name + ".u_" + "xyz"[d]] = probe.points.front().displacement[d];
           }
       for (const auto &support : results.forces.supports)
-        {
-          values[support.name + ".force_x"] = support.sum.force[0];
-          values[support.name + ".force_y"] = support.sum.force[1];
-        }
+        for (unsigned int d = 0; d < 3; ++d)
+          values[support.name + ".force_" + "xyz"[d]] = support.sum.force[d];
       return values;
     }
 
@@ -111,11 +247,13 @@ namespace slipstick::app
     }
   } // namespace
 
-  std::vector<output::ErrorBar> error_bars(const std::vector<GoalError>             &goals,
-                                           const output::ResultSummary              &results,
-                                           const std::vector<contact::ContactNode>  &nodes,
-                                           const std::vector<scene::ContactPair<2>> &pairs)
+  template <int dim>
+  std::vector<output::ErrorBar> error_bars(const std::vector<GoalError>               &goals,
+                                           const output::ResultSummary                &results,
+                                           const std::vector<contact::ContactNode>    &nodes,
+                                           const std::vector<scene::ContactPair<dim>> &pairs)
   {
+    using Surface = std::conditional_t<dim == 2, ContactLine, ContactSurface>;
     std::vector<output::ErrorBar> bars;
     for (const auto &goal : goals)
       {
@@ -136,13 +274,13 @@ namespace slipstick::app
         }
     for (unsigned int k = 0; k < pairs.size(); ++k)
       {
-        const auto line     = of_pair(nodes, k);
-        const auto pressure = std::find_if(bars.begin(), bars.end(), [&](const output::ErrorBar &bar) {
+        const Surface surface(of_pair(nodes, k));
+        const auto    pressure = std::find_if(bars.begin(), bars.end(), [&](const output::ErrorBar &bar) {
           return bar.quantity == pairs[k].name + ".max_pressure";
         });
         if (pressure == bars.end())
           continue;
-        const auto resolved = resolution(line);
+        const auto resolved = surface.resolution();
         if (!resolved)
           {
             pressure->error.reset();
@@ -151,14 +289,20 @@ namespace slipstick::app
           }
         else if (pressure->error)
           *pressure->error += *resolved;
-        bars.push_back(
-          length(pairs[k].name + ".contact_length", line, [](const ContactNode &n) { return n.is_closed; }));
-        bars.push_back(length(pairs[k].name + ".stick_length", line, [](const ContactNode &n) {
-          return n.is_closed && n.status == contact::ContactStatus::stick;
-        }));
+        bars.push_back(size_of(surface, pairs[k].name + ".contact_", [](const ContactNode &n) { return n.is_closed; }));
+        bars.push_back(size_of(surface, pairs[k].name + ".stick_", sticks));
       }
     return bars;
   }
+
+  template std::vector<output::ErrorBar> error_bars(const std::vector<GoalError> &,
+                                                    const output::ResultSummary &,
+                                                    const std::vector<contact::ContactNode> &,
+                                                    const std::vector<scene::ContactPair<2>> &);
+  template std::vector<output::ErrorBar> error_bars(const std::vector<GoalError> &,
+                                                    const output::ResultSummary &,
+                                                    const std::vector<contact::ContactNode> &,
+                                                    const std::vector<scene::ContactPair<3>> &);
 
   void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars)
   {

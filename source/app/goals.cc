@@ -1,8 +1,13 @@
 #include <slipstick/app/goals.h>
 #include <slipstick/base/collective.h>
 #include <slipstick/contact/adjoint.h>
+#include <slipstick/interface/gap_defect.h>
 
 #include <deal.II/base/mpi.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +16,6 @@ namespace slipstick::app
 {
   namespace
   {
-    constexpr int dim = 2;
-
     // Components of directions below this are rounding.
     constexpr double along_axis = 1e-9;
 
@@ -31,11 +34,17 @@ namespace slipstick::app
       std::string         reason; // why there is no estimate; empty: there is one
     };
 
+    std::string component(const unsigned int d)
+    {
+      return {"xyz"[d]};
+    }
+
     /// The figures of a scene, from multipliers and displacements.
+    template <int dim>
     class Functionals
     {
     public:
-      Functionals(const StepSolver<2> &solver_, const mechanics::Probes<dim> &probes_, const StepAnswer &answer_)
+      Functionals(const StepSolver<dim> &solver_, const mechanics::Probes<dim> &probes_, const StepAnswer &answer_)
         : solver(solver_)
         , probes(probes_)
         , answer(answer_)
@@ -52,21 +61,21 @@ namespace slipstick::app
         for (unsigned int k = 0; k < scene.contacts.size(); ++k)
           {
             const std::string name = scene.contacts[k].name;
-            list.push_back(force(name + ".normal_force", k, true));
-            list.push_back(force(name + ".tangential_force", k, false));
+            list.push_back(normal_force(name + ".normal_force", k));
+            list.push_back(tangential_force(name + ".tangential_force", k));
             list.push_back(pressure(name + ".max_pressure", k));
           }
         for (unsigned int s = 0; s < solver.n_given_supports(); ++s)
           for (unsigned int d = 0; d < dim; ++d)
             {
-              auto goal = reaction(scene.supports[s].name + (d == 0 ? ".force_x" : ".force_y"), s, d);
+              auto goal = reaction(scene.supports[s].name + ".force_" + component(d), s, d);
               if (holds(goal))
                 list.push_back(std::move(goal));
             }
         for (unsigned int k = 0; k < scene.probes.size(); ++k)
           if (scene.probes[k].ends.size() == 1)
             for (unsigned int d = 0; d < dim; ++d)
-              list.push_back(displacement_at(scene.probes[k].name + (d == 0 ? ".u_x" : ".u_y"), k, d));
+              list.push_back(displacement_at(scene.probes[k].name + ".u_" + component(d), k, d));
         return list;
       }
 
@@ -98,21 +107,44 @@ namespace slipstick::app
         return dealii::Utilities::MPI::sum(sum, comm);
       }
 
-      Functional force(const std::string &name, const unsigned int pair, const bool is_normal) const
+      Functional normal_force(const std::string &name, const unsigned int pair) const
       {
         Functional goal{name, "N", 0, std::vector<double>(n_rows, 0.), {}, {}};
         for_points_of(pair, [&](const tfeti::ContactPoint &point) {
-          if (const unsigned int row = is_normal ? point.normal_row : point.tangential_row; row != tfeti::invalid_row)
-            goal.jumps[row] = 1;
+          if (point.normal_row != tfeti::invalid_row)
+            goal.jumps[point.normal_row] = 1;
         });
         goal.value = value_of(goal.jumps);
-        if (!is_normal && slides(pair)) // as a whole: friction follows the pressure
+        return goal;
+      }
+
+      /// The sum of the nodal forces along the tangent, in space of their magnitudes.
+      Functional tangential_force(const std::string &name, const unsigned int pair) const
+      {
+        Functional goal{name, "N", 0, std::vector<double>(n_rows, 0.), {}, {}};
+        for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+          const double size = tangential(point);
+          for (const unsigned int row : {point.tangential_row, point.second_row})
+            if (row != tfeti::invalid_row)
+              goal.jumps[row] = dim == 2 ? 1. : size > 0 ? x.local_element(row) / size : 0.;
+        });
+        goal.value = value_of(goal.jumps);
+        if (slides(pair)) // as a whole: friction follows the pressure
           for_points_of(pair, [&](const tfeti::ContactPoint &point) {
             if (point.normal_row != tfeti::invalid_row && point.tangential_row != tfeti::invalid_row &&
                 !solver.solution().free[point.tangential_row] && x.local_element(point.normal_row) > 0)
-              goal.jumps[point.normal_row] = x.local_element(point.tangential_row) / x.local_element(point.normal_row);
+              goal.jumps[point.normal_row] = tangential(point) / x.local_element(point.normal_row);
           });
         return goal;
+      }
+
+      /// In space the length of the tangential force on a node [N].
+      double tangential(const tfeti::ContactPoint &point) const
+      {
+        const double along = point.tangential_row != tfeti::invalid_row ? x.local_element(point.tangential_row) : 0.;
+        if (dim == 2)
+          return along;
+        return std::hypot(along, point.second_row != tfeti::invalid_row ? x.local_element(point.second_row) : 0.);
       }
 
       /// Do nodes that slip at a bound which follows the pressure bear nearly all of its friction? Where others bear a part,
@@ -125,7 +157,7 @@ namespace slipstick::app
         for_points_of(pair, [&](const tfeti::ContactPoint &point) {
           if (point.tangential_row == tfeti::invalid_row)
             return;
-          const double force = std::abs(x.local_element(point.tangential_row));
+          const double force = std::abs(tangential(point));
           all += force;
           sticks += solver.solution().free[point.tangential_row] ? force : 0.;
         });
@@ -190,7 +222,7 @@ namespace slipstick::app
           {
             goal.loads.push_back(Eigen::VectorXd::Zero(u[p].size()));
             for (unsigned int i = 0; i < u[p].size() / dim; ++i)
-              if (const double size = u[p].segment<dim>(dim * i).norm(); size > largest)
+              if (const double size = u[p].template segment<dim>(dim * i).norm(); size > largest)
                 {
                   largest = size;
                   at_p    = p;
@@ -203,11 +235,12 @@ namespace slipstick::app
         if (!(goal.value > 0))
           goal.reason = "nothing moves";
         else if (best == rank)
-          goal.loads[at_p].segment<dim>(dim * at_node) = u[at_p].segment<dim>(dim * at_node) / largest;
+          goal.loads[at_p].template segment<dim>(dim * at_node) =
+            u[at_p].template segment<dim>(dim * at_node) / largest;
         return goal;
       }
 
-      const StepSolver<2>            &solver;
+      const StepSolver<dim>          &solver;
       const mechanics::Probes<dim>   &probes;
       const StepAnswer               &answer;
       const tfeti::Constraints       &rows;
@@ -217,10 +250,11 @@ namespace slipstick::app
     };
 
     /// Energy products of the errors of the answer with those of other displacements.
+    template <int dim>
     class ErrorProducts
     {
     public:
-      ErrorProducts(const StepSolver<2> &solver_, const StepAnswer &answer_, const double t_)
+      ErrorProducts(const StepSolver<dim> &solver_, const StepAnswer &answer_, const double t_)
         : solver(solver_)
         , answer(answer_)
         , t(t_)
@@ -252,12 +286,6 @@ namespace slipstick::app
         return dealii::Utilities::MPI::max(size, solver.mesh().comm);
       }
 
-      /// Was it not solved for, on some rank?
-      bool is_missing(const Fields &z) const
-      {
-        return dealii::Utilities::MPI::max(z.size() < answer.recovery.u.size() ? 1 : 0, solver.mesh().comm) > 0;
-      }
-
       /// The sums over the cells.
       void add_up(GoalError &goal) const
       {
@@ -283,32 +311,94 @@ namespace slipstick::app
                                          t);
       }
 
-      const StepSolver<2> &solver;
-      const StepAnswer    &answer;
-      const double         t;
+      const StepSolver<dim> &solver;
+      const StepAnswer      &answer;
+      const double           t;
     };
 
-    /// From the displacement @p z that belongs to the figure.
-    void complete(const StepAnswer &answer, const ErrorProducts &products, const Fields &z, GoalError &goal)
+    /// What gaps told by nodes alone change in a figure: its derivative by the gap of a node times the defect there, on the cells
+    /// behind the node.
+    template <int dim>
+    class GapErrors
     {
-      if (products.is_missing(z))
+    public:
+      GapErrors(const StepSolver<dim> &solver_, const double t)
+        : solver(solver_)
+        , defects(interface::gap_defects(solver.discrete_scene(), solver.mesh(), solver.spaces(), t))
+      {}
+
+      /// @param y derivatives of the figure by the right-hand sides of the rows. Collective.
+      void add(const tfeti::DistributedVector &y, const double factor, GoalError &goal) const
+      {
+        const auto        &contacts = solver.discrete_scene().contacts;
+        std::vector<Share> own;
+        for (const auto &point : solver.dual().constraints().contact_points)
+          if (const auto found = defects.of_pairs[point.pair].find(point.key);
+              point.normal_row != tfeti::invalid_row && found != defects.of_pairs[point.pair].end())
+            if (const double part = -factor * found->second * y.local_element(point.normal_row); part != 0)
+              own.push_back({{point.pair, point.key}, part / defects.n_parts[point.pair].at(point.key)});
+        std::map<std::pair<unsigned int, mechanics::NodeKey>, double> parts;
+        for (const auto &list : dealii::Utilities::MPI::all_gather(solver.mesh().comm, own))
+          for (const auto &[of, part] : list)
+            parts[of] += part;
+        if (parts.empty())
+          return;
+        for (unsigned int p = 0; p < goal.cells.size(); ++p)
+          for_boundary_faces(p, [&](const unsigned int cell, const auto &face) {
+            for (unsigned int k = 0; k < contacts.size(); ++k)
+              if (contacts[k].slave.body == face.body && solver.mesh().on_boundary(contacts[k].slave, face.boundary))
+                for (unsigned int i = 0; i < face.n_nodes; ++i)
+                  if (const auto found = parts.find({k, face.keys[i]}); found != parts.end())
+                    goal.cells[p][cell] += found->second;
+          });
+      }
+
+    private:
+      using Share = std::pair<std::pair<unsigned int, mechanics::NodeKey>, double>;
+
+      template <class F>
+      void for_boundary_faces(const unsigned int p, const F &f) const
+      {
+        const auto &subdomain = *solver.mesh().subdomains[p];
+        for (const auto &cell : solver.spaces().dof_handlers[p]->active_cell_iterators())
+          for (const unsigned int face : cell->face_indices())
+            if (cell->face(face)->at_boundary() && cell->face(face)->boundary_id() != mesh::cut_id)
+              f(cell->active_cell_index(), mechanics::surface_part(subdomain, solver.spaces(), cell, face));
+      }
+
+      const StepSolver<dim>           &solver;
+      const interface::GapDefects<dim> defects;
+    };
+
+    /// From the displacement @p z that belongs to the figure, if it was found.
+    template <int dim>
+    void complete(const StepAnswer                              &answer,
+                  const ErrorProducts<dim>                      &products,
+                  const GapErrors<dim>                          &gaps,
+                  const std::optional<contact::Adjoint::Answer> &z,
+                  GoalError                                     &goal)
+    {
+      if (!z)
         {
           goal.reason = "its linear problem was not solved";
           return;
         }
-      if (products.largest(z) > 0)
-        goal.cells = products.with(z);
+      if (products.largest(z->u) > 0)
+        goal.cells = products.with(z->u);
       else // what nothing but given forces determines
         for (const auto &part : answer.stress->subdomains)
           goal.cells.push_back(Eigen::VectorXd::Zero(part.error.size()));
+      gaps.add(z->multipliers, 1, goal);
       products.add_up(goal);
     }
 
     /// With w, the displacement that the gaps force on bodies without loads: |e|^2 / 2 - a(e, w).
-    GoalError energy_error(const StepSolver<2>       &solver,
+    template <int dim>
+    GoalError energy_error(const StepSolver<dim>     &solver,
                            const StepAnswer          &answer,
                            const std::vector<double> &gaps,
-                           const ErrorProducts       &products,
+                           const ErrorProducts<dim>  &products,
+                           const GapErrors<dim>      &gap_errors,
                            contact::Adjoint          &adjoint)
     {
       const MPI_Comm comm = solver.mesh().comm;
@@ -331,25 +421,27 @@ namespace slipstick::app
       if (dealii::Utilities::MPI::max(largest_gap, comm) > 0)
         {
           const auto w = adjoint.solve(gaps);
-          if (products.is_missing(w))
+          if (!w)
             {
               goal.reason = "its linear problem was not solved";
               return goal;
             }
-          if (products.largest(w) > 0)
+          if (products.largest(w->u) > 0)
             {
-              const auto product = products.with(w);
+              const auto product = products.with(w->u);
               for (unsigned int p = 0; p < product.size(); ++p)
                 goal.cells[p] -= product[p];
             }
+          gap_errors.add(w->multipliers, -1, goal);
         }
       products.add_up(goal);
       return goal;
     }
   } // namespace
 
-  std::vector<GoalError> goal_errors(StepSolver<2>                  &solver,
-                                     const mechanics::Probes<2>     &probes,
+  template <int dim>
+  std::vector<GoalError> goal_errors(StepSolver<dim>                &solver,
+                                     const mechanics::Probes<dim>   &probes,
                                      const StepAnswer               &answer,
                                      const double                    t,
                                      const std::vector<std::string> &quantities)
@@ -357,12 +449,13 @@ namespace slipstick::app
     const auto wanted = [&](const std::string &name) {
       return quantities.empty() || std::find(quantities.begin(), quantities.end(), name) != quantities.end();
     };
-    const auto             gaps        = solver.dual().constraints().c; // before the adjoint problems change them
-    const auto             functionals = Functionals(solver, probes, answer).all();
-    const ErrorProducts    products(solver, answer, t);
-    contact::Adjoint       adjoint(solver.dual_for_adjoints(), solver.solution().free, scene::SolverOptions().pcpg);
-    const std::string      loose = "bodies slide on all of their contacts";
-    std::vector<GoalError> errors;
+    const auto               gaps        = solver.dual().constraints().c; // before the adjoint problems change them
+    const auto               functionals = Functionals<dim>(solver, probes, answer).all();
+    const ErrorProducts<dim> products(solver, answer, t);
+    const GapErrors<dim>     gap_errors(solver, t);
+    contact::Adjoint         adjoint(solver.dual_for_adjoints(), solver.solution().free, scene::SolverOptions().pcpg);
+    const std::string        loose = "bodies slide on all of their contacts";
+    std::vector<GoalError>   errors;
     for (const auto &functional : functionals)
       if (wanted(functional.quantity))
         {
@@ -376,14 +469,14 @@ namespace slipstick::app
               const auto z = functional.jumps.empty()
                                ? adjoint.solve(functional.loads, std::vector<double>(gaps.size(), 0.))
                                : adjoint.solve(functional.jumps);
-              complete(answer, products, z, error);
+              complete(answer, products, gap_errors, z, error);
             }
           errors.push_back(std::move(error));
         }
     if (wanted("strain_energy"))
       {
         if (adjoint.is_possible())
-          errors.push_back(energy_error(solver, answer, gaps, products, adjoint));
+          errors.push_back(energy_error(solver, answer, gaps, products, gap_errors, adjoint));
         else
           {
             GoalError error;
@@ -396,4 +489,15 @@ namespace slipstick::app
       }
     return errors;
   }
+
+  template std::vector<GoalError> goal_errors(StepSolver<2> &,
+                                              const mechanics::Probes<2> &,
+                                              const StepAnswer &,
+                                              const double,
+                                              const std::vector<std::string> &);
+  template std::vector<GoalError> goal_errors(StepSolver<3> &,
+                                              const mechanics::Probes<3> &,
+                                              const StepAnswer &,
+                                              const double,
+                                              const std::vector<std::string> &);
 } // namespace slipstick::app

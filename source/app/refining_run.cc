@@ -1,6 +1,7 @@
 #include <slipstick/app/refining_run.h>
 #include <slipstick/app/report.h>
 #include <slipstick/base/memory.h>
+#include <slipstick/base/text.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -9,11 +10,12 @@
 
 namespace slipstick::app
 {
-  RefiningRun::RefiningRun(const scene::Scene<dim>        &scene_,
-                           const scene::AdaptivityOptions &options_,
-                           const output::OutputDirectory  &directory_,
-                           const Log                      &log_,
-                           const MPI_Comm                  comm_)
+  template <int dim>
+  RefiningRun<dim>::RefiningRun(const scene::Scene<dim>        &scene_,
+                                const scene::AdaptivityOptions &options_,
+                                const output::OutputDirectory  &directory_,
+                                const Log                      &log_,
+                                const MPI_Comm                  comm_)
     : scene(scene_)
     , options(options_)
     , directory(directory_)
@@ -22,7 +24,8 @@ namespace slipstick::app
     , comm(comm_)
   {}
 
-  ExitStatus RefiningRun::run(std::optional<Run<dim>> &steps)
+  template <int dim>
+  ExitStatus RefiningRun<dim>::run(std::optional<Run<dim>> &steps)
   {
     print_header(log, scene, comm);
     log.line(format("accuracy     %g %% of %s is to be reached, with at most %u meshes and %u unknowns",
@@ -59,7 +62,8 @@ namespace slipstick::app
       }
   }
 
-  std::string RefiningRun::what() const
+  template <int dim>
+  std::string RefiningRun<dim>::what() const
   {
     std::string names;
     for (const std::string &goal : options.goals)
@@ -67,24 +71,25 @@ namespace slipstick::app
     return names.empty() ? "the energy norm" : names;
   }
 
-  void RefiningRun::leave_out(std::vector<LeftOut> places)
+  template <int dim>
+  void RefiningRun<dim>::leave_out(std::vector<LeftOut<dim>> places)
   {
     left_out = std::move(places);
     for (const auto &place : left_out)
       {
-        notes.push_back(
-          format("the accuracy leaves out what is within %.3g mm of (%.6g, %.6g) of body %s, %s: the energy "
-                 "is infinite there; spread the force over an edge to have it estimated",
-                 place.radius,
-                 place.position[0],
-                 place.position[1],
-                 scene.bodies[place.body].name.c_str(),
-                 place.what.c_str()));
+        notes.push_back(format("the accuracy leaves out what is within %.3g mm of %s of body %s, %s: the energy "
+                               "is infinite there; spread the force over %s to have it estimated",
+                               place.radius,
+                               point_text(place.position, dim).c_str(),
+                               scene.bodies[place.body].name.c_str(),
+                               place.what.c_str(),
+                               dim == 2 ? "an edge" : "a part of the surface"));
         log.line("             warning: " + notes.back());
       }
   }
 
-  void RefiningRun::add(const Run<dim> &steps, const output::Summary &summary)
+  template <int dim>
+  void RefiningRun<dim>::add(const Run<dim> &steps, const output::Summary &summary)
   {
     output::MeshRow row;
     row.cells        = summary.problem.cells;
@@ -99,7 +104,12 @@ namespace slipstick::app
     row.seconds      = summary.time_s.total;
     rows.push_back(row);
     if (rows.size() == 1)
-      log.line("              mesh      cells   unknowns  energy norm   error    time [s]");
+      {
+        for (const auto &remark : steps.mesh().remarks)
+          if (remark.rfind("warning: ", 0) != 0) // those are told with the result
+            log.line("             " + remark);
+        log.line("              mesh      cells   unknowns  energy norm   error    time [s]");
+      }
     reached = is_known && row.error <= options.accuracy && summary.status == output::RunStatus::converged;
     log.line(format("             %5zu %10llu %10llu %10.2g %% %8s %10.2f",
                     rows.size(),
@@ -110,7 +120,8 @@ namespace slipstick::app
                     row.seconds));
   }
 
-  void RefiningRun::find_counted(const std::vector<output::ErrorBar> &bars)
+  template <int dim>
+  void RefiningRun<dim>::find_counted(const std::vector<output::ErrorBar> &bars)
   {
     counted = options.goals;
     unknown.clear();
@@ -128,7 +139,8 @@ namespace slipstick::app
     counted = dealii::Utilities::MPI::broadcast(comm, counted);
   }
 
-  std::string RefiningRun::why_to_stop(const Run<dim> &steps, const output::Summary &summary)
+  template <int dim>
+  std::string RefiningRun<dim>::why_to_stop(const Run<dim> &steps, const output::Summary &summary)
   {
     if (reached)
       return "";
@@ -146,7 +158,7 @@ namespace slipstick::app
         cells    = errors_of(steps);
         n_marked = mark(steps.mesh(), cells, refinement);
       }
-    // nine cells for one, and templates around them
+    // nine quadrilaterals or eight tetrahedra for one, and templates around them
     constexpr double cells_for_one = 12;
     const double     growth        = 1 + cells_for_one * n_marked / summary.problem.cells;
     if (n_marked == 0)
@@ -165,7 +177,8 @@ namespace slipstick::app
     return "";
   }
 
-  std::vector<GoalError> RefiningRun::goals_of(const Run<dim> &steps) const
+  template <int dim>
+  std::vector<GoalError> RefiningRun<dim>::goals_of(const Run<dim> &steps) const
   {
     std::vector<GoalError> goals;
     for (const auto &goal : steps.goals())
@@ -174,8 +187,12 @@ namespace slipstick::app
     return goals;
   }
 
-  CellErrors RefiningRun::errors_of(const Run<dim> &steps) const
+  template <int dim>
+  CellErrors RefiningRun<dim>::errors_of(const Run<dim> &steps) const
   {
     return energy_errors(steps.mesh(), steps.stress(), left_out, options.goals.empty() ? options.accuracy : 0.);
   }
+
+  template class RefiningRun<2>;
+  template class RefiningRun<3>;
 } // namespace slipstick::app

@@ -161,12 +161,9 @@ namespace slipstick::app
   }
 
   template <int dim>
-  std::vector<LeftOut> Run<dim>::point_forces() const
+  std::vector<LeftOut<dim>> Run<dim>::point_forces() const
   {
-    if constexpr (dim == 2)
-      return app::point_forces(scene, solver.mesh(), solver.spaces(), solver.n_given_supports());
-    else
-      return {}; // the scene knows no goals in space
+    return app::point_forces(scene, solver.mesh(), solver.spaces(), solver.n_given_supports());
   }
 
   template <int dim>
@@ -364,17 +361,14 @@ namespace slipstick::app
   template <int dim>
   void Run<dim>::estimate_errors(const double t, output::Summary &summary)
   {
-    if constexpr (dim == 2) // the scene knows no error bars in space
-      {
-        clock.enter("recovery");
-        errors = goal_errors(solver, probes, *last, t, *wanted);
-        summary.error_bars =
-          error_bars(errors,
-                     summary.results,
-                     contact_steps.empty() ? std::vector<contact::ContactNode>() : contact_steps.back().nodes,
-                     scene.contacts);
-        clock.leave();
-      }
+    clock.enter("recovery");
+    errors = goal_errors(solver, probes, *last, t, *wanted);
+    summary.error_bars =
+      error_bars(errors,
+                 summary.results,
+                 contact_steps.empty() ? std::vector<contact::ContactNode>() : contact_steps.back().nodes,
+                 scene.contacts);
+    clock.leave();
   }
 
   template <int dim>

@@ -43,9 +43,8 @@ namespace slipstick::app
     std::optional<Run<dim>>       steps;
     try
       {
-        if constexpr (dim == 2) // the scene knows no refinement in space
-          if (adaptivity.refines())
-            return RefiningRun(scene, adaptivity, directory, log, comm).run(steps);
+        if (adaptivity.refines())
+          return RefiningRun<dim>(scene, adaptivity, directory, log, comm).run(steps);
         std::optional<std::vector<std::string>> wanted;
         if (adaptivity.error_bars)
           wanted.emplace();

@@ -17,7 +17,7 @@ namespace slipstick::contact
     , face(dual.face(free))
   {}
 
-  std::vector<Eigen::VectorXd> Adjoint::solve(std::vector<Eigen::VectorXd> loads, std::vector<double> jumps)
+  std::optional<Adjoint::Answer> Adjoint::solve(std::vector<Eigen::VectorXd> loads, std::vector<double> jumps)
   {
     dual.set_step(std::move(loads), std::move(jumps));
     auto x = dual.zero(), b = dual.zero(), range = dual.zero();
@@ -37,10 +37,11 @@ namespace slipstick::contact
     work += result.counts;
     ++work.hessian_multiplications;
     x += result.x;
-    return tfeti::recover(dual, x, free).u;
+    auto recovery = tfeti::recover(dual, x, free);
+    return Answer{std::move(recovery.u), std::move(recovery.multipliers)};
   }
 
-  std::vector<Eigen::VectorXd> Adjoint::solve(std::vector<double> jumps)
+  std::optional<Adjoint::Answer> Adjoint::solve(std::vector<double> jumps)
   {
     std::vector<Eigen::VectorXd> loads;
     for (const auto &system : dual.subdomains())

@@ -8,8 +8,9 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // Normal equations, scaled to a unit diagonal, count as singular when a pivot falls below this.
-    constexpr double least_pivot = 1e-8;
+    // Normal equations, scaled to a unit diagonal, tell their coefficients when no pivot falls below this: a polynomial that is
+    // barely determined is far off at a vertex in the corner of its points.
+    constexpr double least_pivot = 1e-3;
 
     /// Monomials of degree 2 in the distance from a vertex: 1, x, y, xx, xy, yy.
     template <int dim>
@@ -34,7 +35,21 @@ namespace slipstick::mechanics
                                      PatchRecovery<dim>::n_monomials,
                                      PatchRecovery<dim>::max_components>;
 
-    /// Coefficients from the sums of one vertex; nothing if they do not determine them.
+    /// The first n_functions coefficients; nothing if the normal equations do not determine them.
+    template <int n_functions, class Matrix, class Right>
+    std::optional<Eigen::Matrix<double, n_functions, Eigen::Dynamic>> solved(const Matrix &matrix, const Right &right)
+    {
+      const Eigen::Matrix<double, n_functions, n_functions> part =
+        matrix.template topLeftCorner<n_functions, n_functions>();
+      const Eigen::Matrix<double, n_functions, 1> scale = part.diagonal().cwiseSqrt().cwiseInverse();
+      const Eigen::LDLT<Eigen::Matrix<double, n_functions, n_functions>> factor(scale.asDiagonal() * part *
+                                                                                scale.asDiagonal());
+      if (!(factor.vectorD().minCoeff() > least_pivot))
+        return {};
+      return scale.asDiagonal() * factor.solve(scale.asDiagonal() * right.template topRows<n_functions>());
+    }
+
+    /// Coefficients from the sums of one vertex: of degree 2, else of degree 1; nothing if they determine neither.
     template <int dim>
     std::optional<Polynomial<dim>> fitted(const Eigen::RowVectorXd &sums, const unsigned int n_components)
     {
@@ -50,11 +65,15 @@ namespace slipstick::mechanics
           right(i, c) = sums[next++];
       if (!(matrix.diagonal().minCoeff() > 0))
         return {};
-      const Eigen::Matrix<double, n, 1>              scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
-      const Eigen::LDLT<Eigen::Matrix<double, n, n>> factor(scale.asDiagonal() * matrix * scale.asDiagonal());
-      if (!(factor.vectorD().minCoeff() > least_pivot))
+      if (const auto quadratic = solved<n>(matrix, right))
+        return Polynomial<dim>(*quadratic);
+      constexpr unsigned int n_linear = dim + 1;
+      const auto             linear   = solved<n_linear>(matrix, right);
+      if (!linear)
         return {};
-      return Polynomial<dim>(scale.asDiagonal() * factor.solve(scale.asDiagonal() * right));
+      Polynomial<dim> result   = Polynomial<dim>::Zero(n, n_components);
+      result.topRows(n_linear) = *linear;
+      return result;
     }
   } // namespace
 

@@ -69,4 +69,5 @@ namespace slipstick::mesh
   }
 
   template AdaptedPiece<2> adapted(const MeshPiece<2> &, std::set<CellPath> &);
+  template AdaptedPiece<3> adapted(const MeshPiece<3> &, std::set<CellPath> &);
 } // namespace slipstick::mesh

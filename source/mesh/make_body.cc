@@ -75,6 +75,26 @@ namespace slipstick::mesh
     }
 
     template <int dim>
+    void refine_cells(BodyMesh<dim> &mesh, std::set<CellPath> &refined, std::vector<CellPath> &paths)
+    {
+      auto finer = adapted(mesh.piece, refined);
+      mesh.piece = std::move(finer.piece);
+      paths      = std::move(finer.paths);
+    }
+
+    /// Templates for hexahedra spread too far where errors say what is to be refined.
+    void divide_into_tetrahedra(const scene::Body<3> &body, BodyMesh<3> &mesh)
+    {
+      const auto &cells = mesh.piece.cells;
+      if (std::all_of(cells.begin(), cells.end(), [](const auto &cell) { return is_simplex<3>(cell); }))
+        return;
+      mesh.piece = in_tetrahedra(mesh.piece);
+      mesh.remarks.push_back("body " + body.name +
+                             ": its hexahedra are refined where the error is large, so each of them is " +
+                             "divided into six tetrahedra");
+    }
+
+    template <int dim>
     void refine_towards_boundaries(const scene::Body<dim> &body, BodyMesh<dim> &mesh)
     {
       if (body.boundary_refinements == 0 || body.refined_boundaries.empty())
@@ -266,7 +286,11 @@ namespace slipstick::mesh
         else
           mesh = body_from_shape(scene, body);
         check_names(scene, b, mesh);
+        if (refined)
+          divide_into_tetrahedra(body, mesh);
         refine_towards_boundaries(body, mesh);
+        if (refined)
+          refine_cells(mesh, *refined, *paths);
         keep_good_middles(mesh.piece);
         mesh.piece.body = b;
         place_in_scene(scene, b, mesh.piece);
@@ -297,11 +321,7 @@ namespace slipstick::mesh
           }
         refine_towards_boundaries(body, mesh);
         if (refined)
-          {
-            auto finer = adapted(mesh.piece, *refined);
-            mesh.piece = std::move(finer.piece);
-            *paths     = std::move(finer.paths);
-          }
+          refine_cells(mesh, *refined, *paths);
         mesh.piece.body = b;
         place_in_scene(scene, b, mesh.piece);
         add_boundary_parts(scene, b, mesh);

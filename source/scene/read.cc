@@ -125,8 +125,7 @@ namespace slipstick::scene
       declare(prm, options.friction);
       declare(prm, options.solver);
       declare(prm, options.output);
-      if (dim == 2)
-        declare(prm, adaptivity);
+      declare(prm, adaptivity);
     }
 
     template <int dim>
@@ -166,10 +165,9 @@ namespace slipstick::scene
         "preset of Tolerance, Operator precision and Prune contact of the solver, Friction/Tolerance and "
         "Discretization/Degree (values that the scene sets take precedence); or the relative error to reach by refining "
         "meshes, in the energy norm or that of Goal",
-        choice_prefix + "draft, engineering, reference" + (dim == 2 ? ", or a percentage such as 1 %" : ""),
+        choice_prefix + "draft, engineering, reference, or a percentage such as 1 %",
         [presets](const std::string &text) {
-          return (dim == 2 && accuracy_of(text) > 0) ||
-                 std::any_of(presets.begin(), presets.end(), [&text](const auto &preset) {
+          return accuracy_of(text) > 0 || std::any_of(presets.begin(), presets.end(), [&text](const auto &preset) {
                    return preset.first == text;
                  });
         },
@@ -180,8 +178,7 @@ namespace slipstick::scene
             if (word == text)
               options.accuracy = accuracy;
         });
-      if (dim == 2)
-        declare_goals(prm, adaptivity);
+      declare_goals(prm, adaptivity);
       for (const NamedKind &kind : named_kinds)
         add_entry(
           prm,

@@ -352,9 +352,8 @@ class Refused(Solids):
         for name, value, *words in (
                 ('Dimension', 4, "Dimension = '4'", '2 (plane), 3 (space)'),
                 ('Plane state', 'plane stress', "Plane state = 'plane stress'", 'the plane (Dimension = 2) only'),
-                ('Accuracy', '1 %', "Accuracy = '1 %'", 'draft, engineering, reference'),
-                ('Error bars', 'true', "Error bars = 'true'", 'the plane'), ('Goal', 'strain_energy', 'Goal', 'the plane'),
-                ('Adaptivity/Max meshes', 3, 'Adaptivity/Max meshes', 'the plane'),
+                ('Accuracy', '0 %', "Accuracy = '0 %'", 'draft, engineering, reference'),
+                ('Goal', 'strain_energy', 'Goal', 'no accuracy'),
                 ('Contact sphere/Master', 'cube/top', 'Contact sphere: cube/bottom and cube/top'),
                 ('Body cube/Shape', 'disc', "Shape = 'disc'", 'cuboid'), ('Body cube/Size', '10, 10', "Size = '10, 10'"),
                 ('Body cube/Thickness', 2, 'Thickness', 'the plane'),

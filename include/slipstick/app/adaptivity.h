@@ -18,25 +18,28 @@ namespace slipstick::app
   };
 
   /// Where the exact energy is infinite, so that its error does not fall: the surroundings of a point force.
+  template <int dim>
   struct LeftOut
   {
-    unsigned int     body = 0;
-    dealii::Point<2> position;
-    double           radius = 0; // of the cells around it on the first mesh [mm]
-    std::string      what;       // "the point load tip"
+    unsigned int       body = 0;
+    dealii::Point<dim> position;
+    double             radius = 0; // of the cells around it on the first mesh [mm]
+    std::string        what;       // "the point load tip"
   };
 
   /// Of all point loads and point supports. Collective.
-  std::vector<LeftOut> point_forces(const scene::Scene<2>      &scene,
-                                    const mesh::Mesh<2>        &mesh,
-                                    const mechanics::Spaces<2> &spaces,
-                                    const unsigned int          n_supports);
+  template <int dim>
+  std::vector<LeftOut<dim>> point_forces(const scene::Scene<dim>      &scene,
+                                         const mesh::Mesh<dim>        &mesh,
+                                         const mechanics::Spaces<dim> &spaces,
+                                         const unsigned int            n_supports);
 
   /// Of the estimate in the energy norm: squares over that of the displacement. Collective.
-  CellErrors energy_errors(const mesh::Mesh<2>           &mesh,
-                           const mechanics::StressResult &stress,
-                           const std::vector<LeftOut>    &left_out,
-                           const double                   accuracy);
+  template <int dim>
+  CellErrors energy_errors(const mesh::Mesh<dim>           &mesh,
+                           const mechanics::StressResult   &stress,
+                           const std::vector<LeftOut<dim>> &left_out,
+                           const double                     accuracy);
 
   /// Of goals: magnitudes over the figures, the sum of all. Collective.
   CellErrors errors_of_goals(const std::vector<GoalError> &goals, const double accuracy, const MPI_Comm comm);
@@ -44,7 +47,8 @@ namespace slipstick::app
   /// Puts the cells with the largest errors into @p refinement: the fewest that make the error small enough if it falls as on
   /// smooth solutions, at most those with `most_of_error` of it. Collective.
   /// @return their number.
-  std::size_t mark(const mesh::Mesh<2> &mesh, const CellErrors &errors, mesh::Refinement &refinement);
+  template <int dim>
+  std::size_t mark(const mesh::Mesh<dim> &mesh, const CellErrors &errors, mesh::Refinement &refinement);
 
   /// Relative error of the worst of the goals; nothing if one of them has none. On rank 0.
   std::optional<double> worst_error(const std::vector<output::ErrorBar> &bars, const std::vector<std::string> &goals);

@@ -6,14 +6,15 @@
 
 namespace slipstick::app
 {
-  /// Bars of the goals, and of the lengths of contact and stick, whose ends are known to half an element.
+  /// Bars of the goals, and of the lengths of contact and stick, whose ends are known to half an element; in space of their areas.
   /// @param results what is printed: a goal that does not reproduce its figure there (of a pair some of whose nodes supports
   /// hold) has no bar.
   /// @param nodes of the last load step; on rank 0, whose result counts.
-  std::vector<output::ErrorBar> error_bars(const std::vector<GoalError>             &goals,
-                                           const output::ResultSummary              &results,
-                                           const std::vector<contact::ContactNode>  &nodes,
-                                           const std::vector<scene::ContactPair<2>> &pairs);
+  template <int dim>
+  std::vector<output::ErrorBar> error_bars(const std::vector<GoalError>               &goals,
+                                           const output::ResultSummary                &results,
+                                           const std::vector<contact::ContactNode>    &nodes,
+                                           const std::vector<scene::ContactPair<dim>> &pairs);
 
   /// A line a figure.
   void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars);

@@ -24,13 +24,15 @@ namespace slipstick::app
 
   /// Dual weighted residuals (Becker, Rannacher, Acta Numerica 2001): the error of a figure is the energy product of the
   /// errors of the solution and of the displacement that the figure stands for, a linear problem on the set of the solution
-  /// (contact::Adjoint); both errors are those of recovered stresses, as in the estimate of the energy norm. Bounds of
+  /// (contact::Adjoint); added is what the gaps between the nodes would change (interface::gap_defects). Both errors of energy products are those of recovered stresses, as in the estimate of the energy norm. Bounds of
   /// friction stay as they are in that problem; in the tangential force of a pair that slides as a whole they follow the
-  /// pressure.
+  /// pressure. In space friction forces of slipping nodes keep their directions, too, and the tangential force is the sum of their
+  /// magnitudes.
   /// @param quantities of which errors are wanted; empty: all.
   /// The dual problem of @p solver is changed: for the last load step. Collective.
-  std::vector<GoalError> goal_errors(StepSolver<2>                  &solver,
-                                     const mechanics::Probes<2>     &probes,
+  template <int dim>
+  std::vector<GoalError> goal_errors(StepSolver<dim>                &solver,
+                                     const mechanics::Probes<dim>   &probes,
                                      const StepAnswer               &answer,
                                      const double                    t,
                                      const std::vector<std::string> &quantities);

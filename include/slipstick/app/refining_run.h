@@ -6,11 +6,10 @@
 namespace slipstick::app
 {
   /// Solve, estimate, mark, refine.
+  template <int dim>
   class RefiningRun
   {
   public:
-    static constexpr int dim = 2;
-
     /// @param options with an accuracy to be reached.
     RefiningRun(const scene::Scene<dim>        &scene,
                 const scene::AdaptivityOptions &options,
@@ -25,7 +24,7 @@ namespace slipstick::app
     /// What is to be accurate.
     std::string what() const;
 
-    void leave_out(std::vector<LeftOut> places);
+    void leave_out(std::vector<LeftOut<dim>> places);
 
     /// One line a mesh.
     void add(const Run<dim> &steps, const output::Summary &summary);
@@ -49,7 +48,7 @@ namespace slipstick::app
     const MPI_Comm                  comm;
     mesh::Refinement                refinement;
     std::vector<output::MeshRow>    rows;
-    std::vector<LeftOut>            left_out;
+    std::vector<LeftOut<dim>>       left_out;
     std::vector<std::string>        notes;
     std::vector<std::string>        counted; // goals ...
     std::vector<std::string>        unknown; // ... and on rank 0 what the others lack

@@ -58,8 +58,7 @@ namespace slipstick::app
     {
       return solver.mesh();
     }
-    /// Of a scene in the plane.
-    std::vector<LeftOut> point_forces() const;
+    std::vector<LeftOut<dim>> point_forces() const;
 
   private:
     /// Takes over what an earlier run has found. @return its summary.

@@ -8,9 +8,9 @@
 namespace slipstick::mechanics
 {
   /// Superconvergent patch recovery (Zienkiewicz, Zhu 1992) on one subdomain: around every vertex the stresses of the
-  /// cells there, at given points, are fitted by a polynomial of degree 2. The sums of the normal equations add up over
-  /// the copies of a vertex, so that patches reach across subdomains. For degree 2: a node in the middle of an edge
-  /// gets the mean of the polynomials of its ends.
+  /// cells there, at given points, are fitted by a polynomial of degree 2, where they are too few for that of degree 1. The sums
+  /// of the normal equations add up over the copies of a vertex, so that patches reach across subdomains. For degree 2: a node
+  /// in the middle of an edge gets the mean of the polynomials of its ends.
   template <int dim>
   class PatchRecovery
   {

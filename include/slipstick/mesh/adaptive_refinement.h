@@ -15,7 +15,7 @@ namespace slipstick::mesh
   /// that, then of each child. Independent of what is refined elsewhere.
   using CellPath = std::vector<std::uint32_t>;
 
-  /// Cells by their global vertices, sorted; no_vertex is the last of a triangle.
+  /// Cells by their global vertices, sorted; no_vertex is the last of a triangle. Solids are tetrahedra here.
   using CellKey = std::array<GlobalVertex, 4>;
 
   /// The key of a cell with the global vertices @p vertices.
@@ -37,9 +37,9 @@ namespace slipstick::mesh
     std::vector<CellPath> paths; // by cell: what to refine to make it smaller
   };
 
-  /// @p whole with the cells of @p refined divided (nine quadrilaterals, four triangles), all others as templates between
+  /// @p whole with the cells of @p refined divided (nine quadrilaterals, four triangles, eight tetrahedra), all others as templates between
   /// cells of different sizes want it. Templates are never divided themselves: where that would be needed their parent is
-  /// added to @p refined, so that angles stay those of one template. Cells must be of one kind.
+  /// added to @p refined, so that angles stay those of one template. Cells must be of one kind, solids tetrahedra.
   template <int dim>
   AdaptedPiece<dim> adapted(const MeshPiece<dim> &whole, std::set<CellPath> &refined);
 } // namespace slipstick::mesh

@@ -10,7 +10,7 @@ namespace slipstick::mesh
   /// body of triangles and quadrilaterals is converted to quadrilaterals if it is refined towards a boundary or if its
   /// parts of one kind are many and small.
   /// @param refined cells that are refined further, as adapted() says, with the @p paths of the cells; such a body has
-  /// one kind of cells, too.
+  /// one kind of cells, too, in space tetrahedra.
   /// @throws InputError as body_from_file() does, and if a boundary or point that the scene uses is missing or
   /// incomplete.
   template <int dim>

@@ -18,6 +18,11 @@ namespace slipstick::mesh
   template <int dim>
   MeshPiece<dim> in_quadrilaterals(const MeshPiece<dim> &piece);
 
+  /// Divides every hexahedron into six tetrahedra that share its vertex with the lowest number; faces are cut along the diagonal from
+  /// theirs. Vertices keep their numbers.
+  /// @throws InputError for a hexahedron so distorted that one of them would be turned inside out.
+  MeshPiece<3> in_tetrahedra(const MeshPiece<3> &piece);
+
   /// Refines the cells that touch a boundary of @p ids, once. Quadrilaterals are divided into nine, their neighbours by
   /// templates for one to three marked corners (after R. Schneiders, Refining quadrilateral and hexahedral element
   /// meshes, 1996; the templates for two opposite and three corners are our own and keep the marks from spreading).
