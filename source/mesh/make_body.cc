@@ -83,13 +83,16 @@ namespace slipstick::mesh
     }
 
     /// Templates for hexahedra spread too far where errors say what is to be refined.
-    void divide_into_tetrahedra(const scene::Body<3> &body, BodyMesh<3> &mesh)
+    void divide_into_tetrahedra(const scene::Scene<3> &scene, const unsigned int b, BodyMesh<3> &mesh)
     {
       const auto &cells = mesh.piece.cells;
       if (std::all_of(cells.begin(), cells.end(), [](const auto &cell) { return is_simplex<3>(cell); }))
         return;
-      mesh.piece = in_tetrahedra(mesh.piece);
-      mesh.remarks.push_back("body " + body.name +
+      MeshPiece<3> placed;
+      placed.vertices = mesh.piece.vertices;
+      place_in_scene(scene, b, placed);
+      mesh.piece = in_tetrahedra(mesh.piece, placed.vertices);
+      mesh.remarks.push_back("body " + scene.bodies[b].name +
                              ": its hexahedra are refined where the error is large, so each of them is " +
                              "divided into six tetrahedra");
     }
@@ -287,7 +290,7 @@ namespace slipstick::mesh
           mesh = body_from_shape(scene, body);
         check_names(scene, b, mesh);
         if (refined)
-          divide_into_tetrahedra(body, mesh);
+          divide_into_tetrahedra(scene, b, mesh);
         refine_towards_boundaries(body, mesh);
         if (refined)
           refine_cells(mesh, *refined, *paths);

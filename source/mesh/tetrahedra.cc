@@ -10,14 +10,30 @@ namespace slipstick::mesh
     using Solid   = MeshPiece<3>;
     using Corners = std::array<unsigned int, 3>;
 
-    /// The triangles of a quadrilateral face (vertices in rows), cut along the diagonal from its lowest vertex.
-    std::array<Corners, 2> halves(const Solid::Face &rows)
+    // Vertices are ordered along it: vertices of lattices are never beside each other.
+    const dealii::Tensor<1, 3> oblique({1, 0.6180339887, 0.3247179572});
+
+    /// For every vertex its position in the order.
+    std::vector<unsigned int> positions_along(const dealii::Tensor<1, 3>          &direction,
+                                              const std::vector<dealii::Point<3>> &x)
+    {
+      std::vector<std::pair<double, unsigned int>> sorted;
+      for (unsigned int v = 0; v < x.size(); ++v)
+        sorted.emplace_back(direction * x[v], v);
+      std::sort(sorted.begin(), sorted.end());
+      std::vector<unsigned int> positions(x.size());
+      for (unsigned int k = 0; k < sorted.size(); ++k)
+        positions[sorted[k].second] = k;
+      return positions;
+    }
+
+    /// The triangles of a quadrilateral face (vertices in rows), cut along the diagonal from its first vertex.
+    std::array<Corners, 2> halves(const Solid::Face &rows, const std::vector<unsigned int> &position)
     {
       constexpr std::array<unsigned int, 4> around = {{0, 1, 3, 2}};
-      const auto lowest = [&](const unsigned int k, const unsigned int l) { return rows[around[k]] < rows[around[l]]; };
-      unsigned int first = 0;
+      unsigned int                          first  = 0;
       for (unsigned int k = 1; k < 4; ++k)
-        if (lowest(k, first))
+        if (position[rows[around[k]]] < position[rows[around[first]]])
           first = k;
       const auto corner = [&](const unsigned int k) { return rows[around[(first + k) % 4]]; };
       return {{{{corner(0), corner(1), corner(2)}}, {{corner(0), corner(2), corner(3)}}}};
@@ -78,9 +94,10 @@ namespace slipstick::mesh
     }
   } // namespace
 
-  MeshPiece<3> in_tetrahedra(const MeshPiece<3> &piece)
+  MeshPiece<3> in_tetrahedra(const MeshPiece<3> &piece, const std::vector<dealii::Point<3>> &places)
   {
-    Solid result;
+    const auto position = positions_along(oblique, places);
+    Solid      result;
     result.subdomain       = piece.subdomain;
     result.body            = piece.body;
     result.vertices        = piece.vertices;
@@ -92,16 +109,18 @@ namespace slipstick::mesh
             result.cells.push_back(cell);
             continue;
           }
-        const unsigned int lowest = *std::min_element(cell.begin(), cell.end());
+        const unsigned int first = *std::min_element(cell.begin(), cell.end(), [&](const auto v, const auto w) {
+          return position[v] < position[w];
+        });
         for (unsigned int f = 0; f < 6; ++f)
           {
             const auto rows = rows_of_face(cell, f);
-            if (std::find(rows.begin(), rows.end(), lowest) != rows.end())
+            if (std::find(rows.begin(), rows.end(), first) != rows.end())
               continue;
-            const bool is_high =
-              f % 2 == 1; // rows are counterclockwise seen from where the coordinate across the face grows
-            for (const auto &half : halves(rows))
-              add_tetrahedron(lowest, half, is_high, result);
+            // rows are counterclockwise seen from where the coordinate across the face grows
+            const bool is_high = f % 2 == 1;
+            for (const auto &half : halves(rows, position))
+              add_tetrahedron(first, half, is_high, result);
           }
       }
     const auto boundary = boundary_by_vertices(piece);
@@ -111,7 +130,7 @@ namespace slipstick::mesh
     for (const auto &cell : piece.cells)
       for (unsigned int f = 0; f < 6 && !is_simplex<3>(cell); ++f)
         if (const auto found = boundary.find(face_of_cell<3>(cell, f)); found != boundary.end())
-          for (const auto &half : halves(rows_of_face(cell, f)))
+          for (const auto &half : halves(rows_of_face(cell, f), position))
             {
               const auto &whole = found->second;
               Solid::Face face  = {{half[0], half[1], half[2], Solid::no_vertex}};

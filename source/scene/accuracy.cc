@@ -58,7 +58,7 @@ namespace slipstick::scene
     return accuracy_of(preset) > 0 ? of_percentage : Knobs();
   }
 
-  void apply_accuracy(const Parameters &parameters, dealii::ParameterHandler &prm)
+  void apply_accuracy(const Parameters &parameters, const unsigned int dim, dealii::ParameterHandler &prm)
   {
     const auto preset = parameters.value(name), mesh = parameters.value(adaptive_mesh.first);
     if (preset) // a word that is not a preset is refused by apply()
@@ -68,5 +68,9 @@ namespace slipstick::scene
       for (const auto &[path, value] : of_percentage)
         if (path != degree)
           set_value(prm, path, value);
+    // bodies are refined as tetrahedra there, which are stiff with degree 1
+    const bool refines = (preset && accuracy_of(*preset) > 0) || (mesh && *mesh == adaptive_mesh.second);
+    if (dim == 3 && refines)
+      set_value(prm, degree, "2");
   }
 } // namespace slipstick::scene

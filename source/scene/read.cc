@@ -288,7 +288,7 @@ namespace slipstick::scene
       names[kind.list] = parameters.names(kind);
 
     SceneParameters<dim> declared(names);
-    apply_accuracy(parameters, declared.prm);
+    apply_accuracy(parameters, dim, declared.prm);
     apply_library(parameters, names.at(material_kind.list), declared.prm);
     try
       {

@@ -99,6 +99,11 @@ class SolidAccuracy(Solids):
         result = converged(scene, {'Accuracy': '20 %'})
         self.assertTrue(any('of (2, 3, 4) of body box, the point load tip' in text for text in result.summary['warnings']))
 
+    def test_degree_is_two_unless_the_scene_says_so(self):
+        for more, degree in (({}, 2), ({'Discretization/Degree': 1}, 1)):
+            result = converged(solid('smooth', **SMOOTH), {'Accuracy': '90 %', **more})
+            self.assertIn('degree {},'.format(degree), result.stdout)
+
     def test_limits_are_told(self):
         result = self.stopped({**COARSE, 'Accuracy': '1 %', 'Adaptivity/Max meshes': 2})
         self.assertIn('Adaptivity/Max meshes', result.stderr)

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <set>
 
 namespace
 {
@@ -99,7 +100,9 @@ namespace
 
 TEST(AdaptiveSolid, six_tetrahedra_fill_a_hexahedron_whatever_its_numbers)
 {
-  std::mt19937 random(3);
+  using Corners = std::set<std::vector<double>>; // of a cell, by their places
+  std::mt19937      random(3);
+  std::set<Corners> first;
   for (unsigned int trial = 0; trial < 20; ++trial)
     {
       scene::Body<3> body;
@@ -117,13 +120,24 @@ TEST(AdaptiveSolid, six_tetrahedra_fill_a_hexahedron_whatever_its_numbers)
       for (auto &face : piece.boundary_faces)
         for (auto &v : face.vertices)
           v = number[v];
-      const auto whole = mesh::in_tetrahedra(piece);
+      const auto whole = mesh::in_tetrahedra(piece, piece.vertices);
       EXPECT_EQ(whole.cells.size(), 6 * piece.cells.size());
       EXPECT_EQ(whole.vertices, piece.vertices);
       EXPECT_NEAR(AdaptiveSolid::volume(whole), 12, 1e-12);
       for (const auto &cell : whole.cells)
         EXPECT_GT(AdaptiveSolid::volume(whole, cell), 0.1);
       AdaptiveSolid::expect_conforming(whole);
+      std::set<Corners> cells; // so that surfaces of bodies that match still do
+      for (const auto &cell : whole.cells)
+        {
+          Corners corners;
+          for (unsigned int k = 0; k < 4; ++k)
+            corners.insert({whole.vertices[cell[k]][0], whole.vertices[cell[k]][1], whole.vertices[cell[k]][2]});
+          cells.insert(corners);
+        }
+      if (trial == 0)
+        first = cells;
+      EXPECT_EQ(cells, first);
       EXPECT_EQ(whole.boundary_faces.size(), 2 * piece.boundary_faces.size());
       for (const auto &[id, area] : AdaptiveSolid::areas(whole))
         EXPECT_NEAR(area, id < 2 ? 4 : 6, 1e-12);
@@ -136,7 +150,7 @@ TEST(AdaptiveSolid, distorted_hexahedra_are_refused)
   body.size         = {1, 1, 1};
   auto piece        = mesh::rectangle_piece<3>(body, {{1, 1, 1}}, {{1, 1, 1}}, {{0, 0, 0}});
   piece.vertices[7] = {.2, .2, -.1};
-  EXPECT_THROW(mesh::in_tetrahedra(piece), InputError);
+  EXPECT_THROW(mesh::in_tetrahedra(piece, piece.vertices), InputError);
 }
 
 TEST(AdaptiveSolid, patches_of_faces_are_cut_with_them)
@@ -158,7 +172,7 @@ TEST(AdaptiveSolid, patches_of_faces_are_cut_with_them)
                                              on_patch(.5, 1),
                                              on_patch(0, .5),
                                              on_patch(.5, .5)});
-  const auto   whole   = mesh::in_tetrahedra(piece);
+  const auto   whole   = mesh::in_tetrahedra(piece, piece.vertices);
   unsigned int patches = 0;
   for (const auto &face : whole.boundary_faces)
     if (face.id == 5)

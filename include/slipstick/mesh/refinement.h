@@ -18,10 +18,11 @@ namespace slipstick::mesh
   template <int dim>
   MeshPiece<dim> in_quadrilaterals(const MeshPiece<dim> &piece);
 
-  /// Divides every hexahedron into six tetrahedra that share its vertex with the lowest number; faces are cut along the diagonal from
-  /// theirs. Vertices keep their numbers.
+  /// Divides every hexahedron into six tetrahedra that share its first vertex along a direction oblique to all axes; faces are cut along
+  /// the diagonal from theirs, so that surfaces of two bodies that match still do. Vertices keep their numbers.
+  /// @param places of the vertices in the scene, by which they are ordered.
   /// @throws InputError for a hexahedron so distorted that one of them would be turned inside out.
-  MeshPiece<3> in_tetrahedra(const MeshPiece<3> &piece);
+  MeshPiece<3> in_tetrahedra(const MeshPiece<3> &piece, const std::vector<dealii::Point<3>> &places);
 
   /// Refines the cells that touch a boundary of @p ids, once. Quadrilaterals are divided into nine, their neighbours by
   /// templates for one to three marked corners (after R. Schneiders, Refining quadrilateral and hexahedral element

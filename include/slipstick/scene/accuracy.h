@@ -15,8 +15,8 @@ namespace slipstick::scene
   /// The single knobs that a preset sets, with their values: {"Solver/Tolerance", "1e-3"}.
   std::vector<std::pair<std::string, std::string>> knobs_of_accuracy(const std::string &preset);
 
-  /// Sets the knobs of the preset that @p parameters names. To be called before Parameters::apply(), so that a knob that
+  /// Sets the knobs of the preset that @p parameters names; where meshes of solids are refined, degree 2 in any case. To be called before Parameters::apply(), so that a knob that
   /// the file or an override sets wins.
   /// @throws InputError when there is no such preset.
-  void apply_accuracy(const Parameters &parameters, dealii::ParameterHandler &prm);
+  void apply_accuracy(const Parameters &parameters, const unsigned int dim, dealii::ParameterHandler &prm);
 } // namespace slipstick::scene
