@@ -205,21 +205,21 @@ class ContactSurfacePainter:
         self.run, self.wanted = run, wanted
         self.steps = sorted({int(row["step"]) for row in run.contact})
 
-    def faces(self, step, n):
-        """Of contact_NNN.vtp, whose nodes are in the order of contact.csv."""
+    def triangles(self, step, n):
+        """The polygons of contact_NNN.vtp, whose nodes are in the order of contact.csv, as fans."""
         file = self.run.folder / f"contact_{step:03d}.vtp"
         if not file.is_file():
-            return np.zeros((0, 4), int)
+            return np.zeros((0, 3), int)
         reader = vtkXMLPolyDataReader()
         reader.SetFileName(str(file))
         reader.Update()
         surface = reader.GetOutput()
         if surface.GetNumberOfPoints() != n or surface.GetNumberOfPolys() == 0:
-            return np.zeros((0, 4), int)
+            return np.zeros((0, 3), int)
         connectivity = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
         first = vtk_to_numpy(surface.GetPolys().GetOffsetsArray())
-        corners = np.minimum(np.arange(4)[None, :], np.diff(first)[:, None] - 1)  # the last one of a triangle twice
-        return connectivity[first[:-1, None] + corners]
+        return np.array([[connectivity[begin], connectivity[k], connectivity[k + 1]]
+                         for begin, end in zip(first[:-1], first[1:]) for k in range(begin + 1, end - 1)])
 
     def draw(self, step):
         rows = [row for row in self.run.contact if int(row["step"]) == step]
@@ -230,7 +230,7 @@ class ContactSurfacePainter:
         names = self.wanted or names
         if not names:
             return None
-        faces = self.faces(step, len(rows))
+        triangles = self.triangles(step, len(rows))
         pair = np.array([row["pair"] for row in rows])
         figure, all_axes = plt.subplots(len(names), 2, squeeze=False, figsize=(13, 5.6 * len(names) + 0.6), layout="constrained")
         handles = []
@@ -238,7 +238,7 @@ class ContactSurfacePainter:
             chosen = np.flatnonzero(pair == name)
             number = np.full(len(rows), -1)
             number[chosen] = np.arange(len(chosen))
-            own = number[faces]
+            own = number[triangles]
             handles = self.draw_pair(figure, axes, name, [rows[k] for k in chosen], own[(own >= 0).all(axis=1)])
         title = self.run.summary.get("case", "")
         if len(self.steps) > 1:
@@ -246,7 +246,7 @@ class ContactSurfacePainter:
         bands.add(figure, [title + ": contact surface, seen from the other side"], handles, legend_above=True)
         return figure
 
-    def draw_pair(self, figure, axes, name, rows, faces):
+    def draw_pair(self, figure, axes, name, rows, triangles):
         def columns(*wanted):
             return np.array([[float(row[column]) for column in wanted] for row in rows])
         x, n = columns("x", "y", "z"), columns("normal_x", "normal_y", "normal_z").mean(axis=0)
@@ -260,8 +260,7 @@ class ContactSurfacePainter:
         pressure = columns("pressure")[:, 0]
         status = np.array([row["status"] for row in rows])
         labels = ["".join(f"{'+' if v > 0 else '-'}{'xyz'[k]}" for k, v in enumerate(way) if abs(v) > 0.5) for way in (right, up)]
-        if len(faces):
-            triangles = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
+        if len(triangles):
             image = axes[0].tripcolor(matplotlib.tri.Triangulation(flat[:, 0], flat[:, 1], triangles), pressure, shading="gouraud",
                                       cmap="turbo", rasterized=True)
         else:

@@ -1,5 +1,6 @@
 """scripts/render and scripts/report on the folder of a small run. Status 77 (skipped) where what it needs is not installed."""
 
+import math
 import os
 import pathlib
 import re
@@ -15,7 +16,7 @@ sys.path.insert(0, str(SCRIPTS))
 try:
     import matplotlib.pyplot
     import numpy
-    from results import contact_plot, fields, film, folder, formula, painters, pictures, probe_plot, report_page, scene_drawing
+    from results import contact_plot, fields, film, folder, formula, painters, pictures, probe_plot, report_page, scene_drawing, solids
 except ImportError as error:
     print('skipped: {}; scripts/setup --render'.format(error))
     sys.exit(77)
@@ -31,6 +32,26 @@ class WithRun(unittest.TestCase):
 
     def run_of(self, **what):
         return folder.Run(run_folder.write(self.place / 'run', **what))
+
+
+class ContactSurfaces(WithRun):
+    def test_polygons_of_any_number_of_corners_are_drawn_whole(self):
+        """Around corners of triangles of degree 2 there are five to eight middles of edges."""
+        run = self.run_of()
+        angles = numpy.arange(6) * math.pi / 3
+        x = numpy.concatenate([numpy.stack([numpy.cos(angles), numpy.sin(angles)], axis=1), [[2., 0], [2., 1]]])
+        array = '<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="ascii">{}</DataArray>'
+        (run.folder / 'contact_000.vtp').write_text(
+            '<VTKFile type="PolyData"><PolyData><Piece NumberOfPoints="8" NumberOfPolys="2"><Points>{}</Points><Polys>{}{}</Polys>'
+            '</Piece></PolyData></VTKFile>'.format(
+                array.format('Float64', 'points', 3, ' '.join('{} {} 0'.format(*row) for row in x)),
+                array.format('Int64', 'connectivity', 1, '0 1 2 3 4 5 0 6 7'), array.format('Int64', 'offsets', 1, '6 9')))
+        triangles = solids.ContactSurfacePainter(run).triangles(0, 8)
+        self.assertEqual(triangles.shape, (5, 3))
+        sides = x[triangles[:, 1:]] - x[triangles[:, :1]]
+        area = abs(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]).sum() / 2
+        self.assertAlmostEqual(area, 1.5 * math.sqrt(3) + 0.5)
+        self.assertEqual(len(solids.ContactSurfacePainter(run).triangles(1, 8)), 0)  # no such file
 
 
 class Formulas(unittest.TestCase):
