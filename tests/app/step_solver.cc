@@ -1,9 +1,12 @@
 // The load steps of a scene: answers that pass their checks, pruning that is taken back, what is refused.
 #include "torn.h"
 
+#include <slipstick/app/restart.h>
 #include <slipstick/app/run_summary.h>
 #include <slipstick/app/step_solver.h>
 #include <slipstick/base/exceptions.h>
+
+#include <filesystem>
 
 using namespace slipstick;
 using namespace slipstick::test;
@@ -107,4 +110,46 @@ TEST(StepSolver, no_equilibrium_is_thrown_on_all_ranks)
   touch(scene, 0, "bottom", {5, -20}, 20, "");
   load(scene, 0, "top", "0", "1"); // away from the circle, held by nothing
   EXPECT_THROW(Steps{scene}, NoEquilibrium);
+}
+
+TEST(StepSolver, state_is_the_same_after_it_was_written_and_taken_over)
+{
+  Scene scene        = cut(box_on_circle(16, "500"), metis(4));
+  scene.load_factors = {.5, 1};
+  Log                log(MPI_COMM_WORLD, Verbosity::quiet);
+  StageClock         clock;
+  app::StepSolver<2> solver(scene, log, clock, MPI_COMM_WORLD), other(scene, log, clock, MPI_COMM_WORLD);
+  solver.build();
+  solver.solve(0, 0);
+  app::RunState run;
+  run.solver = solver.state();
+  run.summary.steps.resize(1);
+  std::string path = (std::filesystem::temp_directory_path() / "slipstick-XXXXXX").string();
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+    ASSERT_NE(mkdtemp(path.data()), nullptr);
+  path = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, path);
+  const output::OutputDirectory directory(path, MPI_COMM_WORLD);
+  app::write_restart(directory, scene, run, MPI_COMM_WORLD);
+  other.resume(0, app::read_restart(directory, scene, MPI_COMM_WORLD).solver);
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+    std::filesystem::remove_all(path);
+
+  const auto before = solver.state(), after = other.state();
+  EXPECT_EQ(after.multipliers, before.multipliers);
+  EXPECT_EQ(after.u, before.u);
+  EXPECT_EQ(after.reference, before.reference);
+  ASSERT_EQ(after.directions.size(), before.directions.size());
+  ASSERT_GT(after.directions.size(), 2u);
+  double largest = 0;
+  for (std::size_t k = 0; k < after.directions.size(); ++k)
+    {
+      EXPECT_EQ(after.directions[k].p, before.directions[k].p);
+      EXPECT_EQ(after.directions[k].Fp, before.directions[k].Fp);
+      EXPECT_EQ(after.directions[k].error, before.directions[k].error);
+      largest = std::max(largest, after.directions[k].error);
+    }
+  EXPECT_GT(largest, 0);
+  const auto next = other.solve(1, 0), expected = solver.solve(1, 0);
+  EXPECT_EQ(next->contact->checks.energy, expected->contact->checks.energy);
 }
