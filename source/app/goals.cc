@@ -29,9 +29,10 @@ namespace slipstick::app
     {
       std::string         quantity, unit;
       double              value = 0; // the same on all ranks
-      std::vector<double> jumps;     // of the owned rows; empty: loads
-      Fields              loads;
-      std::string         reason; // why there is no estimate; empty: there is one
+      std::vector<double> jumps;     // of the owned rows, for a figure of multipliers
+      Fields              loads;     // for a figure of displacements
+      std::string         reason;    // why there is no estimate; empty: there is one
+      bool                is_of_multipliers = true;
     };
 
     std::string component(const unsigned int d)
@@ -82,7 +83,7 @@ namespace slipstick::app
     private:
       Functional displacement_at(const std::string &name, const unsigned int probe, const unsigned int d) const
       {
-        Functional goal{name, "mm", 0, {}, probes.unit_force(probe, d), {}};
+        Functional goal{name, "mm", 0, {}, probes.unit_force(probe, d), {}, false};
         double     own = 0;
         for (unsigned int p = 0; p < goal.loads.size(); ++p)
           own += goal.loads[p].dot(answer.recovery.u[p]);
@@ -214,7 +215,7 @@ namespace slipstick::app
       /// Along the largest displacement, at its node.
       Functional displacement() const
       {
-        Functional   goal{"max_displacement", "mm", 0, {}, {}, {}};
+        Functional   goal{"max_displacement", "mm", 0, {}, {}, {}, false};
         double       largest = -1;
         unsigned int at_p = 0, at_node = 0;
         const auto  &u = answer.recovery.u;
@@ -466,9 +467,9 @@ namespace slipstick::app
           error.reason   = adjoint.is_possible() ? functional.reason : loose;
           if (error.reason.empty())
             {
-              const auto z = functional.jumps.empty()
-                               ? adjoint.solve(functional.loads, std::vector<double>(gaps.size(), 0.))
-                               : adjoint.solve(functional.jumps);
+              const auto z = functional.is_of_multipliers
+                               ? adjoint.solve(functional.jumps)
+                               : adjoint.solve(functional.loads, std::vector<double>(gaps.size(), 0.));
               complete(answer, products, gap_errors, z, error);
             }
           errors.push_back(std::move(error));

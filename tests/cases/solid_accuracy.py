@@ -80,6 +80,16 @@ class SolidAccuracy(Solids):
         self.assertLess(abs(area['value'] - 16.2), area['error'])
         self.assertRegex(result.stdout, r'sphere\.contact_area +\d')
 
+    def test_ranks_without_rows_or_subdomains(self):
+        for case, overrides, ranks in ((shipped('oblique_blocks'), {}, 2), (shipped('hertz'), {'Decomposition/Subdomains': 2}, 3)):
+            with self.subTest(case):
+                first, other = (bars(converged(case, {'Error bars': 'true', **overrides}, ranks=n).summary) for n in (1, ranks))
+                self.assertEqual(list(first), list(other))
+                for name, bar in first.items():
+                    self.assertAlmostEqual(bar['value'], other[name]['value'], delta=1e-4 * abs(bar['value']) + 1e-6, msg=name)
+                    if bar['error']:
+                        self.assertAlmostEqual(bar['error'], other[name]['error'], delta=1e-2 * bar['error'] + 1e-6, msg=name)
+
     def test_punch_has_no_bar_of_its_largest_pressure(self):
         """The edge of a block: infinite pressure."""
         blocks = {'low': {'Size': '12, 4, 12', 'Cells': '12, 4, 12', 'Material': 'elastic'},
