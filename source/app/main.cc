@@ -2,6 +2,7 @@
 #include <slipstick/app/new_scene.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/base/collective.h>
+#include <slipstick/base/memory.h>
 #include <slipstick/base/printable.h>
 #include <slipstick/mesh/size_check.h>
 #include <slipstick/scene/read.h>
@@ -15,6 +16,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
+#include <new>
 #include <vector>
 
 #include <sys/mman.h>
@@ -182,6 +184,13 @@ int main(int argc, char **argv)
   try
     {
       return run_program(argc, argv, MPI_COMM_WORLD);
+    }
+  catch (const std::bad_alloc &)
+    {
+      std::cerr << "error: " << out_of_memory().what() << std::endl;
+      if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1) // perhaps on this rank alone
+        MPI_Abort(MPI_COMM_WORLD, static_cast<int>(ExitStatus::bad_input));
+      return static_cast<int>(ExitStatus::bad_input);
     }
   catch (const std::exception &error)
     {

@@ -1,7 +1,9 @@
 #include <slipstick/base/collective.h>
-#include <slipstick/base/exceptions.h>
+#include <slipstick/base/memory.h>
 
 #include <deal.II/base/mpi.h>
+
+#include <new>
 
 namespace slipstick
 {
@@ -39,6 +41,10 @@ namespace slipstick
       catch (const NumericalError &error)
         {
           return {Kind::numerical, error.what()};
+        }
+      catch (const std::bad_alloc &)
+        {
+          return {Kind::input, out_of_memory().what()};
         }
       catch (const std::exception &error)
         {

@@ -9,6 +9,12 @@
 
 namespace slipstick
 {
+  InputError out_of_memory()
+  {
+    return {"out of memory",
+            "use fewer Cells, Blocks, Refinements or Refine levels, or more memory (lift limits such as ulimit -v, more nodes)"};
+  }
+
   double free_memory_mb(const unsigned int n_ranks)
   {
     double        free = std::numeric_limits<double>::infinity();

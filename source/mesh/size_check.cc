@@ -3,6 +3,7 @@
 #include <slipstick/base/memory.h>
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/mesh_file.h>
+#include <slipstick/mesh/shapes.h>
 #include <slipstick/mesh/size_check.h>
 
 #include <deal.II/base/mpi.h>
@@ -105,13 +106,23 @@ namespace slipstick::mesh
             }
           case scene::Shape::ball: // a cube of a quarter of the edges a side, and twice as many around it
           case scene::Shape::half_ball:
-          case scene::Shape::cylinder:
-          case scene::Shape::tube:
             {
               const double n = body.cells_along_arc;
               count          = {n * n * n / 16 * refined, 2 * n * n * refined};
               break;
             }
+          case scene::Shape::cylinder: // a disc along the axis
+          case scene::Shape::tube:
+            if constexpr (dim == 3)
+              {
+                const auto   bar     = round_bar_cells(body);
+                const double n       = body.cells_along_arc;
+                const bool   is_tube = bar.across > 0;
+                const double section = is_tube ? n * bar.across : n * n / 8;
+                count                = {section * bar.along * refined,
+                                        (2 * section + (is_tube ? 2 : 1) * n * bar.along) * refined};
+              }
+            break;
           case scene::Shape::mesh:
             {
               std::error_code error;

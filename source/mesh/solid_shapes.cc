@@ -3,6 +3,7 @@
 #include <slipstick/mesh/shapes.h>
 #include <slipstick/mesh/solid_middles.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -79,7 +80,7 @@ namespace slipstick::mesh
     MeshPiece<3> round_bar(const scene::Scene<3> &scene, const scene::Body<3> &body)
     {
       const bool      is_tube = body.shape == scene::Shape::tube;
-      const double    edge    = 2 * dealii::numbers::PI * body.radius / body.cells_along_arc;
+      const auto      cells   = round_bar_cells(body);
       scene::Scene<2> plane;
       scene::Body<2>  section;
       plane.discretization.refinements = scene.discretization.refinements;
@@ -91,16 +92,11 @@ namespace slipstick::mesh
       section.cells_along_arc          = body.cells_along_arc;
       section.has_smooth_outline       = body.has_smooth_outline;
       if (is_tube)
-        section.cells = std::array<unsigned int, 2>{
-          {body.cells_along_arc,
-           static_cast<unsigned int>(std::max(1., std::round((body.radius - body.inner_radius) / edge)))}};
-      const unsigned int n = body.cells_along_axis > 0
-                               ? body.cells_along_axis
-                               : static_cast<unsigned int>(std::max(1., std::round(body.length / edge)));
+        section.cells = std::array<unsigned int, 2>{{body.cells_along_arc, cells.across}};
       return extruded(body_from_shape<2>(plane, section).piece,
                       body.center[2],
                       body.length,
-                      n << (scene.discretization.refinements + body.refinements),
+                      cells.along << (scene.discretization.refinements + body.refinements),
                       is_tube ? 2 : 1);
     }
 
@@ -269,6 +265,17 @@ namespace slipstick::mesh
       std::vector<unsigned int> outer;             // first vertex of the layers, by that of the lattice
     };
   } // namespace
+
+  RoundBarCells round_bar_cells(const scene::Body<3> &body)
+  {
+    constexpr double most     = 1e9; // more are refused by check_size()
+    const double     edge     = 2 * dealii::numbers::PI * body.radius / body.cells_along_arc;
+    const auto       cells_on = [&](const double length) {
+      return static_cast<unsigned int>(std::clamp(std::round(length / edge), 1., most));
+    };
+    return {body.shape == scene::Shape::tube ? cells_on(body.radius - body.inner_radius) : 0,
+            body.cells_along_axis > 0 ? body.cells_along_axis : cells_on(body.length)};
+  }
 
   template <>
   BodyMesh<3> body_from_shape(const scene::Scene<3> &scene, const scene::Body<3> &body)

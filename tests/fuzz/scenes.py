@@ -114,14 +114,15 @@ def mutated_lines(rng, text):
 NUMBER = r'-?[0-9][0-9.]*(?:e[+-]?[0-9]+)?'
 
 
-def mutated_values(rng, text):
-    """Numbers of the scene times a factor, mostly within what a scene may mean."""
+def mutated_values(rng, text, is_mild=False):
+    """Numbers of the scene times a factor, mostly (or, mild, nearly always) within what a scene may mean."""
     lines = text.split('\n')
     values = [k for k, line in enumerate(lines) if re.search('=.*[0-9]', line) and not line.startswith('#')]
     for _ in range(rng.randint(1, 4)):
         k = rng.choice(values or [0])
         name, _, value = lines[k].partition('=')
-        factor = rng.choice([rng.uniform(0.3, 3), rng.uniform(0.9, 1.1), -1, 10 ** rng.uniform(-4, 4), 10 ** rng.uniform(-320, 300)])
+        factor = rng.choice([rng.uniform(0.3, 3), rng.uniform(0.9, 1.1), 10 ** rng.uniform(-2, 2)] if is_mild else
+                            [rng.uniform(0.3, 3), rng.uniform(0.9, 1.1), -1, 10 ** rng.uniform(-4, 4), 10 ** rng.uniform(-320, 300)])
         number = rng.choice(list(re.finditer(NUMBER, value)) or [None])
         if number:
             changed = float(number.group()) * factor
@@ -219,16 +220,32 @@ def make_case(seed, folder, parameters):
     text, given = scene_of(rng, folder)
     arguments = [word for setting in given for word in ('--set', setting)]
     what = rng.random()
-    if what < 0.5:
+    if what < 0.35:
         text = mutated_lines(rng, text)
-    if 0.4 < what < 0.9:
-        text = mutated_values(rng, text)
-    if rng.random() < 0.3:
+    if 0.3 < what < 0.9:
+        text = mutated_values(rng, text, is_mild=what > 0.5)
+    if rng.random() < 0.2:
         arguments += ['--set', random_setting(rng, text, parameters)]
     if rng.random() < 0.1:
         text = with_include(rng, text, folder)
+    if rng.random() < 0.2:
+        arguments += [word for setting in wish_for_accuracy(rng, text) for word in ('--set', setting)]
     case.write_text(text, encoding=rng.choice(['utf-8', 'utf-8', 'latin1']), errors='replace')
     return case, arguments
+
+
+def wish_for_accuracy(rng, text):
+    """Settings that ask for error bars or for refined meshes, to an accuracy that costs little."""
+    pairs = re.findall('^ *subsection Contact (.+)$', text, re.MULTILINE)
+    goal = 'Goal=' + rng.choice(['max_displacement', 'strain_energy'] + [
+        '{}.{}'.format(pair, figure) for pair in pairs for figure in ('max_pressure', 'normal_force', 'tangential_force', 'contact_length')])
+    return rng.choice([
+        ['Error bars=true'],
+        ['Error bars=true', 'Discretization/Degree=2'],
+        ['Accuracy={:.2g} %'.format(rng.uniform(5, 25))],
+        ['Accuracy={:.2g} %'.format(rng.uniform(5, 25)), goal],
+        ['Accuracy=draft', 'Mesh=adaptive'],
+    ])
 
 
 def random_setting(rng, text, parameters):

@@ -13,6 +13,14 @@ namespace slipstick::mesh
   template <int dim>
   std::array<unsigned int, dim> rectangle_cells(const scene::Scene<dim> &scene, const scene::Body<dim> &body);
 
+  struct RoundBarCells
+  {
+    unsigned int across, along; // from the inner to the outer surface (0: no tube); along the axis
+  };
+
+  /// Of a cylinder or tube, before refinements.
+  RoundBarCells round_bar_cells(const scene::Body<3> &body);
+
   /// Boundary ids of a built-in shape, in the order of scene::boundary_names(); in space (@p dim = 3) rectangles are cuboids.
   std::map<std::string, dealii::types::boundary_id> shape_boundary_ids(const scene::Shape shape,
                                                                        const unsigned int dim = 2);

@@ -123,7 +123,8 @@ namespace slipstick::qp
         const Status status = iterate();
         if (status != Status::converged && best)
           {
-            x = std::move(*best);
+            x        = std::move(best->x);
+            residual = best->residual;
             set.predict(x, zero_like(x));
           }
         set.put_on_bounds(x); // ties to the last bit
@@ -132,6 +133,12 @@ namespace slipstick::qp
       }
 
     private:
+      struct Found
+      {
+        Vector x, gradient;
+        double residual; // over the reference
+      };
+
       using Face = decltype(std::declval<Problem>().face(std::vector<bool>(), std::vector<Tie>(), std::vector<Turn>()));
 
       // Gradients are differences of entries of d and F x.
@@ -170,7 +177,7 @@ namespace slipstick::qp
               }
             if (left <= goal.tolerance)
               {
-                best = y;
+                best = Found{y, gy, residual};
                 if (left <= options.least_part * goal.tolerance ||
                     (tells_forces(left) && (!is_right || is_right(y, error_on(*face)))))
                   {
@@ -209,7 +216,9 @@ namespace slipstick::qp
       {
         if (!has_met_goal)
           return status;
-        x = *best;
+        x        = std::move(best->x);
+        residual = best->residual;
+        set.predict(x, best->gradient);
         return Status::converged;
       }
 
@@ -427,7 +436,7 @@ namespace slipstick::qp
             error_of_Fy = std::max(error_of_Fx, error_of_Fy);
           }
         if (!has_met_goal && merit < *std::min_element(merits.begin(), merits.end()))
-          best = y;
+          best = Found{y, gy, merit / goal.reference};
         if (!(merit < merits.back()) && (t == 1 || !set.balance_finely()))
           set.soften();
         go_to_y(merit);
@@ -485,7 +494,7 @@ namespace slipstick::qp
       Vector                x, Fx, g;  // where the method is
       Vector                y, Fy, gy; // where the present step leads
       std::vector<double>   merits;    // natural residuals of all x so far
-      std::optional<Vector> best;      // where the natural residual is least
+      std::optional<Found>  best;      // where the natural residual is least, or where the goal was met last
       double                residual              = HUGE_VAL;
       double                last_natural_residual = std::numeric_limits<double>::infinity(); // over the reference
       unsigned int          n_astray              = 0;
