@@ -10,6 +10,12 @@
 
 namespace slipstick::app
 {
+  namespace
+  {
+    // Finer meshes may resolve what a figure lacks an estimate for (a pressure of a single node).
+    constexpr unsigned int most_without_estimate = 3; // meshes, one after another
+  }                                                   // namespace
+
   template <int dim>
   RefiningRun<dim>::RefiningRun(const scene::Scene<dim>        &scene_,
                                 const scene::AdaptivityOptions &options_,
@@ -136,7 +142,13 @@ namespace slipstick::app
               unknown.push_back("the accuracy leaves out " + bar.quantity + ": " +
                                 (is_infinite ? "the energy is infinite where forces act at points" : bar.reason));
           }
-    counted = dealii::Utilities::MPI::broadcast(comm, counted);
+    counted          = dealii::Utilities::MPI::broadcast(comm, counted);
+    without_estimate = counted.empty() ? "none of the figures has an estimate" : "";
+    for (const auto &bar : bars)
+      if (without_estimate.empty() && std::find(counted.begin(), counted.end(), bar.quantity) != counted.end() &&
+          (!bar.error || bar.value == 0))
+        without_estimate = bar.quantity + (bar.error ? " is 0" : " has no estimate: " + bar.reason);
+    without_estimate = dealii::Utilities::MPI::broadcast(comm, without_estimate);
   }
 
   template <int dim>
@@ -147,7 +159,10 @@ namespace slipstick::app
     const std::string so_far =
       format("the accuracy of %g %% of %s is not reached: ", 100 * options.accuracy, what().c_str()) +
       (is_known ? format("the error is %.2g %% after %zu meshes", 100 * rows.back().error, rows.size())
-                : format("after %zu meshes there is no estimate", rows.size()));
+                : format("after %zu meshes %s", rows.size(), without_estimate.c_str()));
+    n_without = is_known ? 0 : n_without + 1;
+    if (n_without == most_without_estimate)
+      return so_far;
     if (rows.size() >= options.max_meshes)
       return so_far + "; allow more of them (Adaptivity/Max meshes), or begin with a finer one";
     auto cells =

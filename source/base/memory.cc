@@ -6,13 +6,15 @@
 #include <string>
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 namespace slipstick
 {
   InputError out_of_memory()
   {
-    return {"out of memory",
-            "use fewer Cells, Blocks, Refinements or Refine levels, or more memory (lift limits such as ulimit -v, more nodes)"};
+    return {
+      "out of memory",
+      "use fewer Cells, Blocks, Refinements or Refine levels, or more memory (lift limits such as ulimit -v, more nodes)"};
   }
 
   double free_memory_mb(const unsigned int n_ranks)
@@ -33,7 +35,13 @@ namespace slipstick
       }
     rlimit limit;
     if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-      free = std::min(free, n_ranks * (limit.rlim_cur / 1048576.));
+      {
+        std::ifstream size("/proc/self/statm"); // first: pages of the address space
+        double        pages = 0;
+        size >> pages;
+        const double left = limit.rlim_cur - pages * sysconf(_SC_PAGESIZE);
+        free              = std::min(free, n_ranks * (std::max(0., left) / 1048576.));
+      }
     return free;
   }
 } // namespace slipstick

@@ -10,6 +10,43 @@ namespace slipstick::mesh
   namespace
   {
     constexpr unsigned int most_bisected = 8; // parts
+    // METIS has integers for weights, and adds them up in 32 bits.
+    constexpr double weight_of_mean_face = 100, largest_sum = 1e9;
+
+    template <int dim>
+    double size_of(const MeshPiece<dim> &piece, const typename MeshPiece<dim>::Face &face)
+    {
+      const auto x = [&](const unsigned int k) { return piece.vertices[face[k]]; };
+      if constexpr (dim == 2)
+        return x(0).distance(x(1));
+      else
+        {
+          const auto area =
+            [&](const unsigned int a, const unsigned int b, const unsigned int c, const unsigned int d) {
+              return dealii::cross_product_3d(x(b) - x(a), x(d) - x(c)).norm() / 2;
+            };
+          if (face.back() == MeshPiece<dim>::no_vertex)
+            return area(0, 1, 0, 2);
+          // half the product of the diagonals: vertices are sorted, and other pairs of lines give less
+          return std::max({area(0, 1, 2, 3), area(0, 2, 1, 3), area(0, 3, 1, 2)});
+        }
+    }
+
+    /// Of every face with its cell: its size over the geometric mean of those of the cell's faces.
+    template <int dim>
+    std::vector<double> relative_sizes(const MeshPiece<dim>                                                      &piece,
+                                       const std::vector<std::pair<typename MeshPiece<dim>::Face, unsigned int>> &faces)
+    {
+      std::vector<double> sizes, means(piece.cells.size(), 0.); // logarithms of means
+      for (const auto &[face, cell] : faces)
+        {
+          sizes.push_back(std::max(size_of(piece, face), std::numeric_limits<double>::min()));
+          means[cell] += std::log(sizes.back()) / n_faces<dim>(piece.cells[cell]);
+        }
+      for (std::size_t k = 0; k < faces.size(); ++k)
+        sizes[k] /= std::exp(means[faces[k].second]);
+      return sizes;
+    }
 
     /// Sub-piece of the given cells.
     template <int dim>
@@ -253,14 +290,19 @@ namespace slipstick::mesh
       for (std::size_t k = 1; k < faces.size(); ++k)
         if (faces[k].first == faces[k - 1].first)
           {
-            f(faces[k].second, faces[k - 1].second);
-            f(faces[k - 1].second, faces[k].second);
+            f(faces[k].second, faces[k - 1].second, k);
+            f(faces[k - 1].second, faces[k].second, k);
           }
     };
-    for_neighbours([&first](const unsigned int c, const unsigned int) { ++first[c + 1]; });
+    for_neighbours([&first](const unsigned int c, const unsigned int, const std::size_t) { ++first[c + 1]; });
     std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<idx_t> neighbours(first.back()), next(first.begin(), first.end() - 1);
-    for_neighbours([&](const unsigned int c, const unsigned int other) { neighbours[next[c]++] = other; });
+    std::vector<idx_t> neighbours(first.back()), weights(first.back()), next(first.begin(), first.end() - 1);
+    const auto         sizes = relative_sizes(piece, faces);
+    const double scale = std::min(weight_of_mean_face, largest_sum / std::accumulate(sizes.begin(), sizes.end(), 1.));
+    for_neighbours([&](const unsigned int c, const unsigned int other, const std::size_t k) {
+      weights[next[c]]      = std::max(1., std::round(scale * std::sqrt(sizes[k] * sizes[k - 1])));
+      neighbours[next[c]++] = other;
+    });
 
     idx_t options[METIS_NOPTIONS];
     METIS_SetDefaultOptions(options);
@@ -278,7 +320,7 @@ namespace slipstick::mesh
                                  neighbours.data(),
                                  nullptr,
                                  nullptr,
-                                 nullptr,
+                                 weights.data(),
                                  &parts,
                                  nullptr,
                                  nullptr,

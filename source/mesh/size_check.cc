@@ -119,8 +119,7 @@ namespace slipstick::mesh
                 const double n       = body.cells_along_arc;
                 const bool   is_tube = bar.across > 0;
                 const double section = is_tube ? n * bar.across : n * n / 8;
-                count                = {section * bar.along * refined,
-                                        (2 * section + (is_tube ? 2 : 1) * n * bar.along) * refined};
+                count = {section * bar.along * refined, (2 * section + (is_tube ? 2 : 1) * n * bar.along) * refined};
               }
             break;
           case scene::Shape::mesh:

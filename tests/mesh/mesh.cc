@@ -282,7 +282,8 @@ TEST(Cut, ring_that_closes_at_a_vertex_is_one_piece_with_the_stiffness_of_one)
   const auto                 pieces = mesh::cut(unit_cells(3, 3), {0, 0, 0, 0, 1, 0, 0, 0, 1});
   const mesh::Mesh<2>        mesh   = mesh_of(pieces[0]);
   const mechanics::Spaces<2> spaces(mesh, 1);
-  const auto eigenvalues = tfeti::symmetric_eigenvalues(full(mechanics::assemble(scene, mesh, spaces, 1.)[0].stiffness));
+  const auto                 eigenvalues =
+    tfeti::symmetric_eigenvalues(full(mechanics::assemble(scene, mesh, spaces, 1.)[0].stiffness));
   EXPECT_EQ((eigenvalues.array() < 1e-10 * eigenvalues.maxCoeff()).count(), 3);
 }
 
@@ -331,4 +332,39 @@ TEST(Cut, metis_gives_a_part_to_every_cell)
         }
       EXPECT_EQ(n_cells, 63u);
     }
+}
+
+namespace
+{
+  /// Of the parts of a piece: the largest ratio of the edges of their boxes.
+  template <int dim>
+  double most_slender(const mesh::MeshPiece<dim> &piece, const unsigned int n)
+  {
+    double worst = 1;
+    for (const auto &part : mesh::cut(piece, mesh::metis_parts(piece, n)))
+      {
+        const dealii::BoundingBox<dim> box(part.vertices);
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int e = 0; e < dim; ++e)
+            worst = std::max(worst, box.side_length(d) / box.side_length(e));
+      }
+    return worst;
+  }
+} // namespace
+
+TEST(Cut, flat_cells_make_no_flat_parts)
+{
+  auto plate = unit_cells(64, 64); // 64 x 4: cells 16 times as long as high
+  for (auto &vertex : plate.vertices)
+    vertex[1] /= 16;
+  EXPECT_LT(most_slender(plate, 16), 6); // 19 where all faces count alike
+
+  scene::Body<3> body;
+  body.size  = {8, 8, 8};
+  auto block = mesh::rectangle_piece<3>(body, {{8, 8, 8}}, {{1, 1, 1}}, {{0, 0, 0}});
+  for (auto &vertex : block.vertices)
+    vertex[2] /= 8;
+  for (const auto &[piece, name] :
+       {std::pair(block, "hexahedra"), std::pair(mesh::in_tetrahedra(block, block.vertices), "tetrahedra")})
+    EXPECT_LT(most_slender(piece, 16), 6) << name;
 }

@@ -190,6 +190,12 @@ class Accuracy(unittest.TestCase):
         self.assertEqual(len(result.summary['meshes']), 2)
         self.assertTrue(any('Max meshes' in warning for warning in result.summary['warnings']))
 
+    def test_a_goal_without_an_estimate_ends_after_three_meshes(self):
+        result = solve(shipped('clamp'), {'Accuracy': '1 %', 'Goal': 'back.max_pressure', 'Output/VTU': 'false'})
+        self.assertEqual(result.status, 3, result)
+        self.assertEqual(len(result.summary['meshes']), 3)
+        self.assertIn('after 3 meshes back.max_pressure has no estimate: a peak at a single node', result.stderr)
+
     def test_what_is_refused(self):
         for overrides, words in (({'Goal': 'touch.max_pressure'}, ('Goal', 'set Accuracy', 'Mesh = adaptive')),
                                  ({'Accuracy': '1 %', 'Goal': 'touch.max_presure'}, ("did you mean 'touch.max_pressure'",)),

@@ -50,8 +50,10 @@ namespace slipstick::app
     std::vector<output::MeshRow>    rows;
     std::vector<LeftOut<dim>>       left_out;
     std::vector<std::string>        notes;
-    std::vector<std::string>        counted; // goals ...
-    std::vector<std::string>        unknown; // ... and on rank 0 what the others lack
+    std::vector<std::string>        counted;          // goals ...
+    std::vector<std::string>        unknown;          // ... and on rank 0 what the others lack
+    std::string                     without_estimate; // a goal that counts, and why; empty: there is none
+    unsigned int                    n_without = 0;    // meshes, one after another
     bool                            reached = false, is_known = false;
   };
 } // namespace slipstick::app

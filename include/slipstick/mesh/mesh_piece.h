@@ -172,8 +172,8 @@ namespace slipstick::mesh
   template <int dim>
   std::vector<MeshPiece<dim>> cut(const MeshPiece<dim> &whole, const std::vector<unsigned int> &part);
 
-  /// METIS partition of the cells of @p piece, which must be connected through faces. @return a part number for
-  /// every cell.
+  /// METIS partition of the cells of @p piece, which must be connected through faces, with short interfaces: faces count by their
+  /// size over that of the other faces of their cells, so that flat cells do not make flat parts. @return a part number for every cell.
   template <int dim>
   std::vector<unsigned int> metis_parts(const MeshPiece<dim> &piece,
                                         const unsigned int    n_parts,

@@ -491,17 +491,17 @@ namespace slipstick::qp
       DirectionStore<Vector>                       &store;
       std::vector<Tie>                              ties; // of the present face
 
-      Vector                x, Fx, g;  // where the method is
-      Vector                y, Fy, gy; // where the present step leads
-      std::vector<double>   merits;    // natural residuals of all x so far
-      std::optional<Found>  best;      // where the natural residual is least, or where the goal was met last
-      double                residual              = HUGE_VAL;
-      double                last_natural_residual = std::numeric_limits<double>::infinity(); // over the reference
-      unsigned int          n_astray              = 0;
-      double                error_of_Fx = 0, error_of_Fy = 0; // by rounding, weighted, estimates
-      bool                  is_stuck = false;                 // the last step did not lower the residual
-      bool                  is_rough; // the start, and no step was made yet in spite of the residual
-      Counts                counts;
+      Vector               x, Fx, g;  // where the method is
+      Vector               y, Fy, gy; // where the present step leads
+      std::vector<double>  merits;    // natural residuals of all x so far
+      std::optional<Found> best;      // where the natural residual is least, or where the goal was met last
+      double               residual              = HUGE_VAL;
+      double               last_natural_residual = std::numeric_limits<double>::infinity(); // over the reference
+      unsigned int         n_astray              = 0;
+      double               error_of_Fx = 0, error_of_Fy = 0; // by rounding, weighted, estimates
+      bool                 is_stuck = false;                 // the last step did not lower the residual
+      bool                 is_rough; // the start, and no step was made yet in spite of the residual
+      Counts               counts;
     };
   } // namespace detail
 
