@@ -224,13 +224,19 @@ namespace slipstick::app
           "or raise Friction/Max iterations; with a large friction coefficient there may be no or many solutions");
         return;
       }
-    const bool   limit   = solution.status == qp::Status::iteration_limit;
-    const double reached = std::max(solution.projected_gradient, solution.equality);
-    if (reached <= tolerance) // no tolerance would help
+    const bool   limit     = solution.status == qp::Status::iteration_limit;
+    const double reached   = std::max(solution.projected_gradient, solution.equality);
+    const bool   is_linear = solution.algorithm == "pcg";
+    const bool   balances  = solution.equality <= tolerance;
+    if (reached <= tolerance || (!is_linear && !limit && !balances)) // no tolerance would help
       {
         log.warning(
-          format("not converged: friction and normal forces do not come to agree (residuals of %.1e of |Pd|)",
-                 reached) +
+          (balances
+             ? format("not converged: friction and normal forces do not come to agree (residuals of %.1e of |Pd|)",
+                      reached)
+             : format(
+                 "not converged: the contact forces found do not balance the loads (violation of G x = e of %.1e of |Pd|)",
+                 solution.equality)) +
           largest +
           "; the results are not a solution\n  remedy: support bodies that friction alone holds, press them together (before they are "
           "loaded along the contact: Load steps/Factors), or lower the load");

@@ -72,6 +72,8 @@ namespace slipstick::app
               scene.pretensions[*longest].name.c_str(),
               tensions[*longest]),
             "let supports or contact hold both ends of the bolt against what it is to clamp");
+        if (so_far.are_vague())
+          of_solver = std::max(sharpest, sharper * of_solver);
         problem.reload(t);
         options.tolerance        = of_solver;
         the_solution.multipliers = answer->recovery.multipliers;

@@ -123,6 +123,7 @@ namespace slipstick::mechanics
         for (Eigen::Index b = 0; b < m; ++b)
           stiffness(a, b) = J(given[a], given[b]);
       }
+    tensions_are_vague         = false;
     n_loose                    = any_loose ? n_loose + 1 : 0;
     const Eigen::VectorXd step = stiffness.partialPivLu().solve(missing);
     for (Eigen::Index a = 0; a < m; ++a)
@@ -133,6 +134,12 @@ namespace slipstick::mechanics
         if (m == 1)
           (missing[a] > 0 ? low : high) = s[i];
         s[i] += is_loose(i, N) && s[i] > 0 ? std::pow(growth, n_loose - 1) * plain : by;
+        if (m == 1 &&
+            J(i, i) * (high - low) < std::abs(missing[a])) // stretched from one to the other it still misses its force
+          {
+            forget_bounds();
+            tensions_are_vague = true;
+          }
         if (m == 1)
           keep_within_bounds(i);
       }

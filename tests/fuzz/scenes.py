@@ -234,6 +234,9 @@ def make_case(seed, folder, parameters):
     return case, arguments
 
 
+MOST_UNKNOWNS = 'Adaptivity/Max unknowns=20000'
+
+
 def wish_for_accuracy(rng, text):
     """Settings that ask for error bars or for refined meshes, to an accuracy that costs little."""
     pairs = re.findall('^ *subsection Contact (.+)$', text, re.MULTILINE)
@@ -242,9 +245,9 @@ def wish_for_accuracy(rng, text):
     return rng.choice([
         ['Error bars=true'],
         ['Error bars=true', 'Discretization/Degree=2'],
-        ['Accuracy={:.2g} %'.format(rng.uniform(5, 25))],
-        ['Accuracy={:.2g} %'.format(rng.uniform(5, 25)), goal],
-        ['Accuracy=draft', 'Mesh=adaptive'],
+        ['Accuracy={:.2g} %'.format(rng.uniform(5, 25)), MOST_UNKNOWNS],
+        ['Accuracy={:.2g} %'.format(rng.uniform(5, 25)), goal, MOST_UNKNOWNS],
+        ['Accuracy=draft', 'Mesh=adaptive', MOST_UNKNOWNS],
     ])
 
 

@@ -357,7 +357,7 @@ TEST(Cut, flat_cells_make_no_flat_parts)
   auto plate = unit_cells(64, 64); // 64 x 4: cells 16 times as long as high
   for (auto &vertex : plate.vertices)
     vertex[1] /= 16;
-  EXPECT_LT(most_slender(plate, 16), 6); // 19 where all faces count alike
+  EXPECT_LT(most_slender(plate, 16), 6); // 32 where all faces count alike
 
   scene::Body<3> body;
   body.size  = {8, 8, 8};

@@ -48,6 +48,12 @@ namespace slipstick::mechanics
     /// By how much the tensions of take() miss those that are wanted, over the largest of these.
     double miss() const;
 
+    /// Did the tensions contradict each other when move() was called last? Then the solver left too large errors in them.
+    bool are_vague() const
+    {
+      return tensions_are_vague;
+    }
+
     /// What later steps go by, as numbers.
     std::vector<std::vector<double>> state() const;
     void                             restore(const std::vector<std::vector<double>> &state);
@@ -63,8 +69,9 @@ namespace slipstick::mechanics
     std::vector<double>                s_known, N_known; // of the attempt before it
     Eigen::MatrixXd                    J;                // dN/ds [N/mm]
     std::vector<std::optional<double>> wanted;
-    bool                               has_known = true; // are s_known, N_known of the same loads?
-    unsigned int                       n_loose   = 0;    // attempts without tension
-    double low = -HUGE_VAL, high = HUGE_VAL;             // of a single bolt: too short a way, too long a way [mm]
+    bool                               has_known          = true; // are s_known, N_known of the same loads?
+    bool                               tensions_are_vague = false;
+    unsigned int                       n_loose            = 0; // attempts without tension
+    double low = -HUGE_VAL, high = HUGE_VAL;                   // of a single bolt: too short a way, too long a way [mm]
   };
 } // namespace slipstick::mechanics
