@@ -23,25 +23,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-extern "C" void dgemm_(const char *,
-                       const char *,
-                       const int *,
-                       const int *,
-                       const int *,
-                       const double *,
-                       const double *,
-                       const int *,
-                       const double *,
-                       const int *,
-                       const double *,
-                       double *,
-                       const int *);
+extern "C" void dpotrf_(const char *, const int *, double *, const int *, int *);
 
 namespace
 {
   using namespace slipstick;
 
-  // OpenBLAS allocates a buffer at its first product of matrices, newer versions already when it is loaded, and tries forever if it
+  // OpenBLAS allocates a buffer of 128 MB at its first factorisation, newer versions already when it is loaded, and tries forever if it
   // cannot get one.
   constexpr std::size_t least_free_space = 256u << 20; // bytes of address space: the buffer and its surroundings
 
@@ -66,10 +54,10 @@ namespace
   {
     if (!has_limited_address_space())
       return;
-    constexpr int       n   = 64;
-    const double        one = 1;
-    std::vector<double> a(n * n, 1.), c(n * n, 0.);
-    dgemm_("N", "N", &n, &n, &n, &one, a.data(), &n, a.data(), &n, &one, c.data(), &n);
+    const int n = 1; // small products of matrices do without it
+    double    a = 1;
+    int       info;
+    dpotrf_("L", &n, &a, &n, &info);
   }
 
   /// Before the constructors of the libraries. Streams are not there yet, nor is MPI: every rank ends, the first one tells.

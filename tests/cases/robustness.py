@@ -82,6 +82,7 @@ class Robustness(unittest.TestCase):
         # as one subdomain, whose factor grows faster than its unknowns
         self.refused(shipped('cube_on_sphere'), {'Decomposition/Method': 'none', 'Body cube/Cells': '90, 90, 90'}, 'MB are free')
         self.refused(shipped('hertz'), {'Body cylinder/Refinements': 10, 'Discretization/Refinements': 10}, 'unknowns')
+        self.refused(shipped('ring_on_shaft'), {'Body shaft/Cells along axis': 1000000}, 'Body shaft: ', 'MB are free')
 
     def test_force_overrides_the_estimate_of_memory(self):
         # more than the limit of the process, by the estimate
@@ -91,6 +92,13 @@ class Robustness(unittest.TestCase):
         self.assertEqual(refused.returncode, 2, refused)
         self.assertIn('MB are free', refused.stderr)
         self.assertIn('--force', refused.stderr)
+
+    def test_memory_that_runs_out_is_no_internal_error(self):
+        process, directory = limited(write(BLOCK.replace('Cells = 10, 4', 'Cells = 1200, 480')), ('--force', '--quiet'), RLIMIT_AS=1000 << 20)
+        self.assertEqual(process.returncode, 2, process)
+        self.assertIn('memory', process.stderr)
+        self.assertEqual(process.stderr.count('remedy: '), 1, process)
+        self.assertEqual([name for name in (os.listdir(directory) if directory.exists() else []) if name.endswith('.tmp')], [])
 
     def test_address_space_that_is_too_small(self):
         for megabytes in (600, 700):
