@@ -134,14 +134,14 @@ namespace slipstick::mechanics
         if (m == 1)
           (missing[a] > 0 ? low : high) = s[i];
         s[i] += is_loose(i, N) && s[i] > 0 ? std::pow(growth, n_loose - 1) * plain : by;
-        if (m == 1 &&
-            J(i, i) * (high - low) < std::abs(missing[a])) // stretched from one to the other it still misses its force
+        if (m > 1)
+          continue;
+        if (J(i, i) * (high - low) < std::abs(missing[a])) // stretched from one to the other it still misses its force
           {
             forget_bounds();
             tensions_are_vague = true;
           }
-        if (m == 1)
-          keep_within_bounds(i);
+        keep_within_bounds(i);
       }
     for (const unsigned int i : given)
       if (s[i] > length[i])
