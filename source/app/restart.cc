@@ -153,8 +153,8 @@ namespace slipstick
     template <class Archive>
     void serialize(Archive &a, StepState &x, const unsigned int)
     {
-      a &x.kept_part &x.largest_load &x.history &x.rows &x.labels &x.multipliers &x.reference &x.weighted_reference &x
-        .largest_traction &x.u &x.directions &x.bolts;
+      a &x.kept_part &x.largest_load &x.history &x.rows &x.labels &x.multipliers &x.has_gradient &x.gradient &x
+        .reference &x.weighted_reference &x.largest_traction &x.u &x.directions &x.bolts;
     }
     template <class Archive>
     void serialize(Archive &a, RunState &x, const unsigned int)
@@ -171,7 +171,7 @@ namespace slipstick::app
   {
     const std::string head_name = "restart.bin";
     // Format of the files: another layout gets another number.
-    constexpr unsigned int format_number = 4;
+    constexpr unsigned int format_number = 5;
 
     /// Content of restart.bin: to which run the files belong.
     struct Head

@@ -132,12 +132,15 @@ namespace slipstick::app
   StepState StepSolver<dim>::state() const
   {
     StepState state;
-    state.kept_part          = problem.kept_part();
-    state.largest_load       = problem.largest_load();
-    state.history            = history;
-    state.rows               = rows;
-    state.labels             = dual().constraints().label;
-    state.multipliers        = values_of(the_solution.multipliers);
+    state.kept_part    = problem.kept_part();
+    state.largest_load = problem.largest_load();
+    state.history      = history;
+    state.rows         = rows;
+    state.labels       = dual().constraints().label;
+    state.multipliers  = values_of(the_solution.multipliers);
+    state.has_gradient = the_solution.gradient.has_value();
+    if (state.has_gradient)
+      state.gradient = values_of(*the_solution.gradient);
     state.reference          = the_solution.reference;
     state.weighted_reference = the_solution.weighted_reference;
     state.largest_traction   = the_solution.largest_traction;
@@ -170,7 +173,9 @@ namespace slipstick::app
     });
     for (const auto &part : state.u)
       u.push_back(Eigen::Map<const Eigen::VectorXd>(part.data(), part.size()));
-    the_solution.multipliers        = vector_of(state.multipliers, dual());
+    the_solution.multipliers = vector_of(state.multipliers, dual());
+    if (state.has_gradient)
+      the_solution.gradient = vector_of(state.gradient, dual());
     the_solution.reference          = state.reference;
     the_solution.weighted_reference = state.weighted_reference;
     the_solution.largest_traction   = state.largest_traction;

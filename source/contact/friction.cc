@@ -224,6 +224,7 @@ namespace slipstick::contact
             solution.weighted_reference = std::max(start->weighted_reference, tfeti::residual_norm(dual, load));
             ++solution.counts.hessian_multiplications;
             set_bounds(law.bounds(start->multipliers));
+            gradient = start->gradient;
             return start->multipliers;
           }
         Vector from                      = start_by_smalbe(feasible);
@@ -291,6 +292,7 @@ namespace slipstick::contact
         solution.projected_gradient = result.projected_gradient;
         solution.equality           = 0;
         solution.multipliers        = std::move(result.x);
+        solution.gradient           = std::move(result.gradient);
         if (bounds_follow && law.depends_on_pressure())
           {
             solution.friction_iterations = result.counts.outer_iterations;
@@ -487,6 +489,7 @@ namespace slipstick::contact
         solution.equality           = result.equality_residual;
         solution.reference          = result.reference;
         gradient                    = result.gradient;
+        solution.gradient.reset();
         if (reached)
           *reached = qp::SmalbeStart<Vector>{result.x, result.shift};
         return unshifted(box, bounds_of(set), from, result.x);
@@ -528,9 +531,10 @@ namespace slipstick::contact
       const ProgressObserver       &observer;
       const AccuracyTest           &is_accurate;
 
-      Box                   box;
-      std::optional<Vector> gradient; // where SMALBE-M ended
-      DualSolution          solution;
+      Box box;
+      std::optional<Vector>
+                   gradient; // that tells Newton's method its first set: where SMALBE-M or the step before ended
+      DualSolution solution;
 
       double                       size_of_forces = 0; // of the least forces found that balance the loads [N]
       std::optional<TractionError> tractions;

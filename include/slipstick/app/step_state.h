@@ -18,6 +18,8 @@ namespace slipstick::app
     std::vector<output::ConvergenceRow> rows;                   // of convergence.csv
     std::vector<std::uint64_t>          labels;                 // of the owned rows
     std::vector<double>                 multipliers;            // of the owned rows [N]
+    bool                                has_gradient = false;   // contact::DualSolution::gradient ...
+    std::vector<double>                 gradient;               // ... of the owned rows [N]
     double                              reference          = 0; // as in contact::DualSolution
     double                              weighted_reference = 0;
     double                              largest_traction   = 0;

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,19 +17,24 @@ namespace slipstick::contact
   {
     qp::Status               status = qp::Status::converged;
     tfeti::DistributedVector multipliers; // [N], owned rows
-    std::vector<double>      slip_bound;  // [N], owned rows: the bounds that the multipliers keep
-    std::vector<bool>        free;        // owned rows: the multiplier is strictly inside its bounds
-    qp::Counts               counts;
-    double                   projected_gradient = 0; // |gP| / |P d|
-    double                   reference          = 0; // that the residuals are relative to
-    double                   weighted_reference = 0; // the same with the weights of DualProblem::residual_weights()
-    double                   largest_traction   = 0; // norm in L2 of a pair's, of all steps so far [sqrt(N MPa)]
-    double                   equality           = 0; // |G x - e| / |P d|, scaled
-    unsigned long long       active_constraints = 0; // inequality rows at a bound, over all ranks
-    std::string              algorithm;              // "smalbe", "semismooth newton", "pcg"
-    unsigned int             fallbacks           = 0;
-    unsigned int             friction_iterations = 0; // updates of the slip bounds
-    double                   bound_change        = 0; // their last relative change
+
+    /// F x - d + G'a at the multipliers, over the norm of F [N], as Newton's method left it: gaps that stay open tell a
+    /// later solve with the same rows which touch. None where another method ended.
+    std::optional<tfeti::DistributedVector> gradient;
+
+    std::vector<double> slip_bound; // [N], owned rows: the bounds that the multipliers keep
+    std::vector<bool>   free;       // owned rows: the multiplier is strictly inside its bounds
+    qp::Counts          counts;
+    double              projected_gradient = 0; // |gP| / |P d|
+    double              reference          = 0; // that the residuals are relative to
+    double              weighted_reference = 0; // the same with the weights of DualProblem::residual_weights()
+    double              largest_traction   = 0; // norm in L2 of a pair's, of all steps so far [sqrt(N MPa)]
+    double              equality           = 0; // |G x - e| / |P d|, scaled
+    unsigned long long  active_constraints = 0; // inequality rows at a bound, over all ranks
+    std::string         algorithm;              // "smalbe", "semismooth newton", "pcg"
+    unsigned int        fallbacks           = 0;
+    unsigned int        friction_iterations = 0; // updates of the slip bounds
+    double              bound_change        = 0; // their last relative change
 
     /// Products with F from this solve and those it started from; of use for any other solve with the same rows.
     std::shared_ptr<qp::DirectionStore<tfeti::DistributedVector>> directions;

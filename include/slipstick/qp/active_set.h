@@ -68,6 +68,12 @@ namespace slipstick::qp
           }
       }
 
+      /// s times the norm of F, of an entry of weight 1.
+      double step_length() const
+      {
+        return step;
+      }
+
       const Sides &sides() const
       {
         return active;

@@ -72,7 +72,8 @@ namespace slipstick::qp
     Vector            x;                  // free entries within their bounds when converged, the others at them
     std::vector<bool> free;               // owned entries
     double            projected_gradient; // |gP| over the reference of the goal
-    Counts            counts;
+    Vector gradient; // F x - d + G'a, before x was put on its bounds: tells the first set of a similar problem
+    Counts counts;
   };
 
   namespace detail
@@ -124,12 +125,13 @@ namespace slipstick::qp
         if (status != Status::converged && best)
           {
             x        = std::move(best->x);
+            g        = std::move(best->gradient);
             residual = best->residual;
             set.predict(x, zero_like(x));
           }
         set.put_on_bounds(x); // ties to the last bit
         set.project_on_bounds(x);
-        return {status, std::move(x), set.free(), residual, counts};
+        return {status, std::move(x), set.free(), residual, std::move(g), counts};
       }
 
     private:
@@ -171,19 +173,13 @@ namespace slipstick::qp
             if (left <= goal.tolerance)
               left += imbalance(*face);
             if (is_accepted())
-              {
-                std::swap(x, y);
-                return Status::converged;
-              }
+              return converged_at_y();
             if (left <= goal.tolerance)
               {
                 best = Found{y, gy, residual};
                 if (left <= options.least_part * goal.tolerance ||
                     (tells_forces(left) && (!is_right || is_right(y, error_on(*face)))))
-                  {
-                    std::swap(x, y);
-                    return Status::converged;
-                  }
+                  return converged_at_y();
                 has_met_goal = true;
                 tolerance    = options.tightening * left;
               }
@@ -192,6 +188,13 @@ namespace slipstick::qp
               return ended(Status::stagnated);
           }
         return ended(Status::iteration_limit);
+      }
+
+      Status converged_at_y()
+      {
+        std::swap(x, y);
+        std::swap(g, gy);
+        return Status::converged;
       }
 
       // A face that is solved to the goal, but on a set whose bounds are violated by far more than before. Where that happens again, sets
@@ -217,8 +220,9 @@ namespace slipstick::qp
         if (!has_met_goal)
           return status;
         x        = std::move(best->x);
+        g        = std::move(best->gradient);
         residual = best->residual;
-        set.predict(x, best->gradient);
+        set.predict(x, g);
         return Status::converged;
       }
 
@@ -282,8 +286,21 @@ namespace slipstick::qp
         ++counts.hessian_multiplications;
         gradient_on(*face, x, Fx, g);
         merits.push_back(set.natural_residual(x, g));
-        set.predict(x, g);
+        predict(g);
         return true;
+      }
+
+      // The set that x and the gradient tell. Natural residuals with different s cannot be compared: those of the last steps
+      // are taken for as much larger or smaller with the new one as that of x is.
+      void predict(const Vector &gradient)
+      {
+        const double before = set.step_length();
+        set.predict(x, gradient);
+        if (set.step_length() == before || !(merits.back() > 0))
+          return;
+        const double factor = set.natural_residual(x, g) / merits.back();
+        for (double &merit : merits)
+          merit *= factor;
       }
 
       // g = F x - d + G'a with the a that makes it, with what the turns of forces add, least on the free entries.
@@ -376,7 +393,7 @@ namespace slipstick::qp
         Vector known(g);
         if (t == 1)
           set.clear_solved(x, known);
-        set.predict(x, known);
+        predict(known);
         return true;
       }
 
@@ -388,7 +405,7 @@ namespace slipstick::qp
         is_stuck = true;
         if (is_changed)
           merits = {set.natural_residual(x, g)};
-        set.predict(x, g);
+        predict(g);
         return is_changed || is_first;
       }
 
@@ -404,7 +421,7 @@ namespace slipstick::qp
         is_stuck = false;
         Vector known(g);
         set.clear_solved(x, known);
-        set.predict(x, known);
+        predict(known);
         return true;
       }
 
