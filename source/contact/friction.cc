@@ -40,8 +40,9 @@ namespace slipstick::contact
     constexpr double takeover_reduction = 0.3;
     // ... down to this one: where Newton's method fails even there, rounding is in its way.
     constexpr double last_takeover = 1e-3;
-    // Newton's steps on solids that slide: 40 random ones and all shipped ones end within 24; loads that friction does not bear never do.
-    constexpr unsigned int most_steps_in_space = 30;
+    // Newton's steps on solids that slide after which it is asked whether friction bears the loads at all: where it does not,
+    // more of them find nothing.
+    constexpr unsigned int steps_before_overload = 30;
     // In the plane one for so many bodies, if that is more than usual: an arch of 400 stones takes 44, one of 1000 127.
     constexpr unsigned int bodies_per_step = 5;
     // Multiplications after which Newton's method and its fallback give up.
@@ -113,7 +114,7 @@ namespace slipstick::contact
                 solution.multipliers = from;
                 return finished();
               }
-            if (newton(from, true, !start))
+            if (newton_from(from, !start))
               return finished();
             refuse_overload();
             ++solution.fallbacks;
@@ -260,17 +261,37 @@ namespace slipstick::contact
         return [this](const Vector &x, const Vector &g) { return accepts(x, g); };
       }
 
+      /// Newton's method from a start; in space loads that friction cannot bear end it early, with an error.
+      bool newton_from(const Vector &from, const bool is_rough)
+      {
+        if (!law.has_discs())
+          return newton(from, true, is_rough);
+        if (newton(from, true, is_rough, steps_before_overload))
+          return true;
+        if (solution.status != qp::Status::iteration_limit)
+          return false;
+        refuse_overload();
+        gradient = solution.gradient;
+        const bool is_solved = newton(Vector(solution.multipliers), true);
+        if (law.depends_on_pressure())
+          solution.friction_iterations += steps_before_overload;
+        return is_solved;
+      }
+
       /// Semismooth Newton, with bounds that follow the solution or (a Tresca problem) as they are. @return convergence.
-      /// @param is_rough is the start far from the solution?
-      bool newton(const Vector &from, const bool bounds_follow, const bool is_rough = false)
+      /// @param is_rough is the start far from the solution? @param most_steps at most, if given.
+      bool newton(const Vector      &from,
+                  const bool         bounds_follow,
+                  const bool         is_rough   = false,
+                  const unsigned int most_steps = 0)
       {
         Vector d = dual.d();
         d /= dual.norm();
         qp::NewtonOptions how    = options.newton;
         const auto        bodies = static_cast<unsigned int>(dual.body_motions().names().size());
         how.max_outer_iterations = std::max(how.max_outer_iterations, bodies / bodies_per_step);
-        if (law.has_discs())
-          how.max_outer_iterations = std::min(how.max_outer_iterations, most_steps_in_space);
+        if (most_steps > 0)
+          how.max_outer_iterations = most_steps;
         auto followed = law.fixed_discs(solution.slip_bound, !bounds_follow);
         if (bounds_follow)
           followed.insert(followed.begin(), law.pressure_bounds().begin(), law.pressure_bounds().end());

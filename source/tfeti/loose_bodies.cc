@@ -154,6 +154,59 @@ namespace slipstick::tfeti
       held_by_contact.set_loads(motions.loads());
   }
 
+  bool LooseBodies::stop_driven(const std::vector<RigidMotion> &loose,
+                                const std::vector<double>      &gaps,
+                                std::vector<bool>              &free) const
+  {
+    Eigen::VectorXd loads(loose.size());
+    for (std::size_t m = 0; m < loose.size(); ++m)
+      loads[m] = loose[m].load;
+    if (loads.isZero(0.))
+      return false;
+    const Eigen::MatrixXd            own = motions.jumps(loose).toDense();
+    std::vector<std::vector<double>> numbers; // gap, shares
+    std::vector<std::uint64_t>       labels;
+    for (unsigned int r = 0; r < free.size(); ++r)
+      if (!free[r] && rows.kind[r] == RowKind::normal && !own.row(r).isZero(0.))
+        {
+          numbers.push_back({gaps[r]});
+          for (std::size_t m = 0; m < loose.size(); ++m)
+            numbers.back().push_back(own(r, m));
+          labels.push_back(rows.label[r]);
+        }
+    const auto closing = gathered_by_label(labels, numbers, comm);
+
+    std::set<std::uint64_t> stopped;
+    Eigen::MatrixXd         open = Eigen::MatrixXd::Identity(loose.size(), loose.size()); // projector on what is left
+    for (std::size_t n = 0; n < loose.size(); ++n)
+      {
+        const Eigen::VectorXd driven = open * loads;
+        if (driven.norm() <= least_hold * loads.norm())
+          break;
+        double          least = HUGE_VAL;
+        std::uint64_t   first = 0;
+        Eigen::VectorXd held;
+        for (const auto &[label, row] : closing)
+          {
+            const Eigen::Map<const Eigen::VectorXd> share(row.data() + 1, loose.size());
+            const double                            rate = share.dot(driven) / driven.norm();
+            if (rate > least_hold && row[0] / rate < least)
+              {
+                least = row[0] / rate;
+                first = label;
+                held  = open * share;
+              }
+          }
+        if (least == HUGE_VAL)
+          break;
+        stopped.insert(first);
+        open -= held * held.transpose() / held.squaredNorm();
+      }
+    for (unsigned int r = 0; r < free.size(); ++r)
+      free[r] = free[r] || stopped.count(rows.label[r]) > 0;
+    return !stopped.empty();
+  }
+
   bool LooseBodies::hold_by(const std::vector<RigidMotion> &loose,
                             const std::vector<bool>        &is_candidate,
                             const std::vector<double>      &scale,
@@ -202,7 +255,9 @@ namespace slipstick::tfeti
                                       const std::vector<qp::Turn> &turns) const
   {
     std::vector<bool> result = free;
-    const auto        loose  = motions.free(free, well ? weak_resistance : BodyMotions::rounding_of_resistance, turns);
+    auto              loose  = motions.free(free, well ? weak_resistance : BodyMotions::rounding_of_resistance, turns);
+    if (!well && !loose.empty() && stop_driven(loose, gaps, result))
+      loose = motions.free(result, BodyMotions::rounding_of_resistance, turns);
     if (loose.empty())
       return result;
     const double largest =
@@ -211,7 +266,7 @@ namespace slipstick::tfeti
     std::vector<double> scale(free.size(), 1.);
     for (unsigned int r = 0; r < free.size(); ++r)
       {
-        is_candidate[r] = !free[r];
+        is_candidate[r] = !result[r];
         scale[r]        = 1 / (least_gap + (largest > 0 ? gaps[r] / largest : 0.));
       }
     hold_by(loose, is_candidate, scale, result, turns);

@@ -25,8 +25,9 @@ namespace slipstick::tfeti
     /// Takes over the present loads of the subdomains.
     void update_loads();
 
-    /// The free rows and as many of the others as are needed to hold the bodies that the free rows leave loose,
-    /// preferring the smallest gaps [of any unit]. Only the free rows if nothing is loose, or nothing can hold it.
+    /// The free rows and as many of the others as are needed to hold the bodies that the free rows leave loose. Bodies that
+    /// the loads drive move until contact stops them; else the smallest gaps [of any unit] are preferred. Only the free rows
+    /// if nothing is loose, or nothing can hold it.
     /// @param well bodies that free rows hardly hold are held, too. @param turns rows that count as turned.
     std::vector<bool> hold(const std::vector<bool>     &free,
                            const std::vector<double>   &gaps,
@@ -61,6 +62,12 @@ namespace slipstick::tfeti
                                      const double               below = 1) const;
 
   private:
+    // Loose bodies move as the loads drive them, first until a gap closes, then along what is still open: the normal rows that stop
+    // them become free. @return whether there are any.
+    bool stop_driven(const std::vector<RigidMotion> &loose,
+                     const std::vector<double>      &gaps,
+                     std::vector<bool>              &free) const;
+
     const BodyMotions &motions;
     const Constraints &rows;
     MPI_Comm           comm;
