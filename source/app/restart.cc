@@ -154,7 +154,7 @@ namespace slipstick
     void serialize(Archive &a, StepState &x, const unsigned int)
     {
       a &x.kept_part &x.largest_load &x.history &x.rows &x.labels &x.multipliers &x.has_gradient &x.gradient &x
-        .reference &x.weighted_reference &x.largest_traction &x.u &x.directions &x.bolts;
+        .reference &x.weighted_reference &x.largest_forces &x.largest_traction &x.u &x.directions &x.bolts;
     }
     template <class Archive>
     void serialize(Archive &a, RunState &x, const unsigned int)

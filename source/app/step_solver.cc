@@ -143,6 +143,7 @@ namespace slipstick::app
       state.gradient = values_of(*the_solution.gradient);
     state.reference          = the_solution.reference;
     state.weighted_reference = the_solution.weighted_reference;
+    state.largest_forces     = the_solution.largest_forces;
     state.largest_traction   = the_solution.largest_traction;
     state.bolts              = tightening().state();
     for (const auto &part : u)
@@ -178,6 +179,7 @@ namespace slipstick::app
       the_solution.gradient = vector_of(state.gradient, dual());
     the_solution.reference          = state.reference;
     the_solution.weighted_reference = state.weighted_reference;
+    the_solution.largest_forces     = state.largest_forces;
     the_solution.largest_traction   = state.largest_traction;
     problem.tightening().restore(state.bolts);
     if (state.directions.empty())

@@ -135,6 +135,7 @@ namespace slipstick::contact
       Vector feasible_start(const DualSolution *start)
       {
         const auto loads = dual.particular();
+        forces_before    = start ? start->largest_forces : 0.;
         tractions.emplace(dual, options.tolerance, loads.linfty_norm(), start ? start->largest_traction : 0.);
         if (start && loads.l2_norm() <= rounding_of_loads * start->reference) // unloaded to zero
           return dual.zero();
@@ -271,7 +272,7 @@ namespace slipstick::contact
         if (solution.status != qp::Status::iteration_limit)
           return false;
         refuse_overload();
-        gradient = solution.gradient;
+        gradient             = solution.gradient;
         const bool is_solved = newton(Vector(solution.multipliers), true);
         if (law.depends_on_pressure())
           solution.friction_iterations += steps_before_overload;
@@ -300,7 +301,7 @@ namespace slipstick::contact
                                             d,
                                             qp::AdmissibleSet<Vector>{box, std::move(followed)},
                                             qp::NewtonStart<Vector>{from, gradient, solution.directions, is_rough},
-                                            qp::Goal(options.tolerance, solution.weighted_reference),
+                                            qp::Goal(options.tolerance, solution.weighted_reference, forces_before),
                                             how,
                                             counted(),
                                             acceptance(),
@@ -541,6 +542,7 @@ namespace slipstick::contact
             n += !solution.free[r];
           }
         solution.active_constraints = dealii::Utilities::MPI::sum(n, dual.communicator());
+        solution.largest_forces     = std::max(forces_before, solution.multipliers.l2_norm());
         solution.largest_traction   = tractions->largest(solution.multipliers);
         return std::move(solution);
       }
@@ -558,6 +560,7 @@ namespace slipstick::contact
       DualSolution solution;
 
       double                       size_of_forces = 0; // of the least forces found that balance the loads [N]
+      double                       forces_before  = 0; // as DualSolution::largest_forces
       std::optional<TractionError> tractions;
     };
   } // namespace

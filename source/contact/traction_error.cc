@@ -14,8 +14,10 @@ namespace slipstick::contact
     constexpr double traction_error = 100;
     // ... and no more than this.
     constexpr double largest_traction_error = 0.05;
-    // Tractions of a pair below this part of the largest, of any pair in any step so far, count as this part.
+    // Tractions of a pair below this part of the largest of any pair count as this part, ...
     constexpr double negligible_pair = 1e-3;
+    // ... and below this part of the largest in any earlier step: errors are no less than the tolerance over these.
+    constexpr double negligible_remainder = 1 / traction_error;
     // ... and so do those below this part of what balances the loads, on one contact node: of pairs that no load reaches.
     constexpr double negligible_force = 1e-6;
   } // namespace
@@ -33,17 +35,17 @@ namespace slipstick::contact
   bool TractionError::is_small(const Vector &x, const Vector &error) const
   {
     const auto squares = squares_of_pairs(x, error);
-    double     largest = largest_before * largest_before;
+    double     largest = 0;
     for (std::size_t k = 0; k < squares.size(); k += 2)
       largest = std::max(largest, squares[k]);
     double area = 0;
     for (const auto &point : dual.constraints().contact_points)
       area = std::max(area, point.traction_area);
-    area              = dealii::Utilities::MPI::max(area, dual.communicator());
-    const double none = area > 0 ? negligible_force * balance / std::sqrt(area) : 0.;
+    area               = dealii::Utilities::MPI::max(area, dual.communicator());
+    const double none  = area > 0 ? negligible_force * balance / std::sqrt(area) : 0.;
+    const double least = std::max({negligible_pair * std::sqrt(largest), negligible_remainder * largest_before, none});
     for (std::size_t k = 0; k < squares.size(); k += 2)
-      if (squares[k + 1] >
-          part * part * std::max({squares[k], negligible_pair * negligible_pair * largest, none * none}))
+      if (squares[k + 1] > part * part * std::max(squares[k], least * least))
         return false;
     return true;
   }

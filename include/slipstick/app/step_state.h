@@ -22,6 +22,7 @@ namespace slipstick::app
     std::vector<double>                 gradient;               // ... of the owned rows [N]
     double                              reference          = 0; // as in contact::DualSolution
     double                              weighted_reference = 0;
+    double                              largest_forces     = 0;
     double                              largest_traction   = 0;
     std::vector<std::vector<double>>    u; // of this rank's subdomains [mm]
 

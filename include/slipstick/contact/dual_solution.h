@@ -28,6 +28,7 @@ namespace slipstick::contact
     double              projected_gradient = 0; // |gP| / |P d|
     double              reference          = 0; // that the residuals are relative to
     double              weighted_reference = 0; // the same with the weights of DualProblem::residual_weights()
+    double              largest_forces     = 0; // |multipliers| of all steps so far [N]
     double              largest_traction   = 0; // norm in L2 of a pair's, of all steps so far [sqrt(N MPa)]
     double              equality           = 0; // |G x - e| / |P d|, scaled
     unsigned long long  active_constraints = 0; // inequality rows at a bound, over all ranks

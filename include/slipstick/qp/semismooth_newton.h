@@ -210,8 +210,13 @@ namespace slipstick::qp
       // Where gaps of open contact make the reference, the forces may be next to nothing beside it.
       bool tells_forces(const double left) const
       {
-        return left * goal.reference <=
-               options.gaps_over_forces * goal.tolerance * norm * qp::norm(y, problem.reduction());
+        return left * goal.reference <= options.gaps_over_forces * goal.tolerance * norm * size_of_forces(y);
+      }
+
+      // Forces that are left of larger ones, as where loads end, are small beside these.
+      double size_of_forces(const Vector &forces) const
+      {
+        return std::max(std::isfinite(goal.forces) ? goal.forces : 0., qp::norm(forces, problem.reduction()));
       }
 
       // Residuals below the goal that do not fall any more are at rounding.
@@ -234,7 +239,7 @@ namespace slipstick::qp
         set.put_on_bounds(at);
         Vector balanced = at;
         face.balance(balanced);
-        const double size = qp::norm(balanced, problem.reduction());
+        const double size = size_of_forces(balanced);
         add(-1., at, balanced);
         const double missing = qp::norm(balanced, problem.reduction());
         return missing > 0 ? missing * std::max(norm / goal.reference, 1 / size) : 0.;

@@ -80,7 +80,7 @@ namespace slipstick::qp
 
     double tolerance;
     double reference;
-    double forces; // size of those that balance the loads, beside which |G x| must not be gross
+    double forces; // size of those that balance the loads, beside which errors must not be gross; infinite: not known
   };
 
   /// Reduction of a single process.
