@@ -256,7 +256,7 @@ namespace slipstick::tfeti
   {
     std::vector<bool> result = free;
     auto              loose  = motions.free(free, well ? weak_resistance : BodyMotions::rounding_of_resistance, turns);
-    if (!well && !loose.empty() && stop_driven(loose, gaps, result))
+    if (!well && !tell_sets() && !loose.empty() && stop_driven(loose, gaps, result))
       loose = motions.free(result, BodyMotions::rounding_of_resistance, turns);
     if (loose.empty())
       return result;

@@ -68,6 +68,17 @@ class Statics(unittest.TestCase):
                 self.assertAlmostEqual(pair['normal_force'] / wanted, 1, places=4)
                 self.assertAlmostEqual(abs(pair['tangential_force']) / wanted, mu, places=4)
 
+    def test_wedge_released(self):
+        """Drawn out again: nothing is left, told beside what there was, and at no price of its own."""
+        result = converged(family_scenes.wedge(Variant(subdomains=32), mu=0.3, driven='displacement').write(
+            pathlib.Path(tempfile.mkdtemp(dir=WORK))), {'Solver/Tolerance': 1e-8})
+        steps = result.summary['steps']
+        largest = max(pair['normal_force'] for step in steps for pair in step['contact'])
+        for pair in steps[-1]['contact']:
+            self.assertLess(pair['normal_force'], 1e-8 * largest)
+        products = [step['hessian_multiplications'] for step in steps]
+        self.assertLess(products[-1], products[0], products)
+
     def test_ring_twisted_on_its_shaft(self):
         pressure, mu = family_scenes.rigid_bore_pressure(0.01), 0.2
         fitted, twisted = solved(family_scenes.twisted_ring(Variant(exchanged=True), 0.5, (32, 40), mu))

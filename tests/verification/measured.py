@@ -39,6 +39,7 @@ def checked(case, overrides=None, ranks=2, vtu=False):
 def cost(result):
     summary = result.summary
     return {'unknowns': summary['problem']['primal_dofs'], 'products': summary['solver']['hessian_multiplications'],
+            'products_of_steps': [step['hessian_multiplications'] for step in summary['steps']],
             'time': summary['time_s']['total'], 'memory': summary['memory_mb']['peak_total']}
 
 
