@@ -146,14 +146,14 @@ namespace slipstick::contact
         return std::move(point.x);
       }
 
-      /// Where no solution was found: is friction, at the normal forces that the search came to, too weak for the loads along a
-      /// motion that nothing else resists?
+      /// Where no solution was found: is friction, at the normal forces that the search came to (this time, or in one of its
+      /// attempts before), too weak for the loads along a motion that nothing else resists?
       void refuse_overload() const
       {
         if (!law.depends_on_pressure())
           return;
-        const auto overload = weakest_motion(dual, law, solution.multipliers, 1);
-        if (overload)
+        const auto here = weakest_motion(dual, law, solution.multipliers, 1);
+        if (const auto &overload = here ? here : seen_overload)
           throw NoEquilibrium(
             (overload->held > 1 - nearness_of_limit ? "friction is at the limit of equilibrium: "
                                                     : "friction is too weak: ") +
@@ -343,6 +343,8 @@ namespace slipstick::contact
         const auto before = solution;
         if (newton(before.multipliers, true))
           return true;
+        if (!seen_overload && law.depends_on_pressure())
+          seen_overload = weakest_motion(dual, law, solution.multipliers, 1);
         const auto counts = solution.counts;
         solution          = before;
         solution.counts   = counts;
@@ -562,6 +564,8 @@ namespace slipstick::contact
       double                       size_of_forces = 0; // of the least forces found that balance the loads [N]
       double                       forces_before  = 0; // as DualSolution::largest_forces
       std::optional<TractionError> tractions;
+
+      std::optional<tfeti::Overload> seen_overload; // where Newton's method ended in vain
     };
   } // namespace
 
