@@ -18,17 +18,17 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // Newton steps of one search; piecewise quadratic functions of a few variables take some five.
+    // Maximum number of Newton steps of one search; piecewise quadratic functions of a few variables take about five.
     constexpr unsigned int most_search_steps = 50;
-    // A step must lower what is out of balance by this part times its length, or is halved, down to the shortest.
+    // A step must reduce the imbalance by this part times its length; otherwise it is halved, down to the shortest.
     constexpr double search_decrease = 1e-4, shortest_search_step = 1e-6;
-    // Rounds of Newton's method with bounds as they are, then with bounds that follow.
+    // Maximum number of rounds: Newton's method with fixed bounds, then with bounds that follow the normal forces.
     constexpr unsigned int max_rounds = 5;
-    // Forces are out of balance by less than this part of all of them: rounding.
+    // Equilibrium to rounding: imbalance below this part of the sum of all forces.
     constexpr double balanced = 1e-12;
-    // Motions that no row inside its bounds resists are resisted by this part of what all rows would.
+    // Regularisation of motions that no row inside its bounds resists: this part of the stiffness of all rows.
     constexpr double regularization = 1e-10;
-    // Jumps below this part of the largest are rounding of none.
+    // Jumps below this part of the largest are rounding of zero.
     constexpr double negligible_share = 1e-10;
   } // namespace
 
@@ -43,7 +43,7 @@ namespace slipstick::tfeti
     if (motions.empty())
       return;
 
-    using Jumps = std::vector<std::pair<unsigned int, double>>; // of a row: motion, by how much
+    using Jumps = std::vector<std::pair<unsigned int, double>>; // of a row: motion, jump under the unit motion
     const Eigen::SparseMatrix<double, Eigen::RowMajor> jumps = bodies.jumps(motions);
     const double                                       largest =
       dealii::Utilities::MPI::max(jumps.nonZeros() > 0 ? jumps.coeffs().abs().maxCoeff() : 0., comm);
@@ -138,7 +138,7 @@ namespace slipstick::tfeti
     return forces;
   }
 
-  // Derivative of clipped() by what is moved, times k; bounds do not follow.
+  // Derivative of clipped() with respect to `moved`, times k, for fixed bounds.
   Eigen::VectorXd BodyEquilibrium::stiffness_of(const std::vector<Row> &rows, const Eigen::VectorXd &moved)
   {
     Eigen::VectorXd stiffness(rows.size());
@@ -147,7 +147,7 @@ namespace slipstick::tfeti
     return stiffness;
   }
 
-  // Along a + s p: the slope is sum_i -S_i p clip(t_i - k_i (slip_i + s along_i)) + L'p, which grows with s.
+  // Minimum along a + s p: the slope is sum_i -S_i p clip(t_i - k_i (slip_i + s along_i)) + L'p, which grows with s.
   double BodyEquilibrium::line_minimum(const std::vector<Row> &rows,
                                        const Eigen::VectorXd  &slips,
                                        const Eigen::VectorXd  &along,
@@ -181,7 +181,7 @@ namespace slipstick::tfeti
       return s0;
     const double s1 = low < kinks.size() ? kinks[low] : s0 + std::max(1., s0), f1 = slope(s1);
     if (!(f1 > f0))
-      return HUGE_VAL; // nothing resists any more: loads that friction does not bear
+      return HUGE_VAL; // no further resistance: friction cannot bear the loads
     return s0 - f0 * (s1 - s0) / (f1 - f0);
   }
 
@@ -223,7 +223,7 @@ namespace slipstick::tfeti
     return loads.norm() + (magnitudes.transpose() * forces.cwiseAbs()).norm();
   }
 
-  // Out of balance, of all forces; and with the bounds that follow, its derivative.
+  // Imbalance and the sum of magnitudes of all forces; with bounds that follow normal forces, also the derivative.
   Eigen::VectorXd BodyEquilibrium::imbalance(const Eigen::VectorXd       &loads,
                                              std::vector<Row>            &rows,
                                              const Eigen::VectorXd       &a,
@@ -240,10 +240,10 @@ namespace slipstick::tfeti
     if (derivative)
       {
         const Eigen::VectorXd               stiffness = stiffness_of(rows, moved);
-        std::vector<Eigen::Triplet<double>> entries; // of the forces by the slips
+        std::vector<Eigen::Triplet<double>> entries; // derivatives of the forces with respect to the slips
         for (std::size_t i = 0; i < rows.size(); ++i)
           entries.emplace_back(i, i, -stiffness[i]);
-        for (std::size_t i = 0; i < rows.size(); ++i) // where bounds follow
+        for (std::size_t i = 0; i < rows.size(); ++i) // rows whose bounds follow
           if (const int n = rows[i].follows; n >= 0 && forces[n] > 0)
             {
               const double length = std::abs(moved[i]);
@@ -257,7 +257,7 @@ namespace slipstick::tfeti
     return loads - shares.transpose() * forces;
   }
 
-  // Newton's method for the bounds that follow, on which the potential does not depend.
+  // Newton's method on the imbalance, with bounds that follow normal forces (the potential does not contain them).
   bool BodyEquilibrium::follow(const Eigen::VectorXd &loads, std::vector<Row> &rows, Eigen::VectorXd &a) const
   {
     double                      size, largest = 0;

@@ -12,9 +12,10 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // Below this estimate of 1 / condition number (square of the ratio of extreme pivots) the factor is noise.
+    // Below this estimate of 1 / condition number (square of the ratio of extreme pivots) the factor is only rounding
+    // error.
     constexpr double smallest_reciprocal_condition = 1e-15;
-    // Analyses that are kept: blocks of a rectangle have some ten patterns, METIS parts one each.
+    // Cached analyses: the blocks of a rectangle have about ten patterns; each METIS part has its own.
     constexpr std::size_t max_analyses = 32;
 
     /// Fill-reducing permutation (CAMD) that keeps the given unknowns last.
@@ -38,7 +39,7 @@ namespace slipstick::tfeti
       return permutation;
     }
 
-    /// Nested dissection of all but the given unknowns, which come last; each separator's columns follow each other.
+    /// Nested dissection of all but the given unknowns, which come last; the columns of each separator are contiguous.
     std::vector<int> dissection(const cholmod_sparse &A, const std::vector<unsigned int> &last, cholmod_common &common)
     {
       std::vector<int> place(A.nrow, 0), others;
@@ -142,7 +143,7 @@ namespace slipstick::tfeti
     auto permutation =
       ordering == Ordering::minimum_degree ? constrained_ordering(A, last, common) : dissection(A, last, common);
     common.method[0].ordering = CHOLMOD_GIVEN;
-    common.postorder          = 0; // done within the groups; another one may mix them
+    common.postorder          = 0; // done within the groups; a global postorder may mix them
     return cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common);
   }
 

@@ -12,8 +12,9 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // The Schur complement in the changing unknowns is a dense matrix when these are no more than this times the square root
-    // of all (that bounds it by 16 n numbers): then its factors cost less than sparse ones of the whole matrix.
+    // The Schur complement on the changing unknowns is a dense matrix if their number is at most this times the square
+    // root of the number of all unknowns (so that it has at most 16 n entries): its factors are then cheaper than
+    // sparse ones of the whole matrix.
     constexpr double most_changing = 4;
     // Pivots below this part of their diagonal entry are rounding.
     constexpr double smallest_pivot = 1e-15;
@@ -48,7 +49,7 @@ namespace slipstick::tfeti
       return all;
     }
 
-    /// Lower triangle and diagonal of a symmetric matrix; zeros are kept.
+    /// Lower triangle and diagonal of a symmetric matrix; explicit zeros are kept.
     struct LowerTriangle
     {
       LowerTriangle(const std::size_t n, const CoarseSolver::Entries &entries, const CoarseSolver::Entries &more = {})
@@ -65,10 +66,10 @@ namespace slipstick::tfeti
           triplets.emplace_back(i, i, 0.);
         matrix.setFromTriplets(triplets.begin(), triplets.end());
         for (std::size_t i = 0; i < n; ++i)
-          diagonal[i] = matrix.valuePtr()[matrix.outerIndexPtr()[i]]; // first of the column, which is sorted
+          diagonal[i] = matrix.valuePtr()[matrix.outerIndexPtr()[i]]; // the first entry of the sorted column
       }
 
-      /// A_ij s_i s_j with s = 1 / sqrt of the diagonal, where that is positive; 1 elsewhere.
+      /// Replaces A_ij by s_i A_ij s_j with s_i = 1 / sqrt(A_ii) where A_ii is positive, 1 elsewhere.
       /// @return s
       Eigen::VectorXd scale()
       {
@@ -84,7 +85,7 @@ namespace slipstick::tfeti
     };
   } // namespace
 
-  /// Of one matrix A + C; the same on every rank.
+  /// Factor of one matrix A + C; the same on every rank.
   class CoarseSolver::Factor
   {
   public:
@@ -96,7 +97,7 @@ namespace slipstick::tfeti
     virtual std::size_t n_nonzeros() const = 0;
   };
 
-  /// What the factors of A + C have in common. The same on every rank.
+  /// The part shared by the factors of all A + C. The same on every rank.
   class CoarseSolver::Elimination
   {
   public:
@@ -156,8 +157,8 @@ namespace slipstick::tfeti
     class WithComplement;
     class Whole;
 
-    /// L L' = s (A + D) s with the changing unknowns last, where D, the diagonal of A there, makes it definite: their part
-    /// of L L' less D is the Schur complement.
+    /// L L' = s (A + D) s with the changing unknowns last, where D, the diagonal of A there, makes the matrix definite.
+    /// The trailing block of L L' minus D is the Schur complement.
     void eliminate_all_but(const std::vector<unsigned int> &changing, const Entries &all)
     {
       LowerTriangle A(n, all);
@@ -187,18 +188,18 @@ namespace slipstick::tfeti
     int                             n = 0;
     std::vector<int>                first_of_rank, n_of_rank;
     std::shared_ptr<CholmodSession> session;
-    Entries                         entries; // where there is no complement: A
+    Entries                         entries; // without a complement: entries of A
 
     std::unique_ptr<const Cholesky> of_staying;
     Eigen::VectorXd                 scale;      // s
-    std::vector<int>                place;      // of the unknowns among the changing ones in the order of L; -1: stays
-    Eigen::MatrixXd                 L;          // the changing unknowns' part
+    std::vector<int>                place;      // among the changing unknowns in the order of L; -1: stays
+    Eigen::MatrixXd                 L;          // trailing block: changing unknowns
     Eigen::MatrixXd                 complement; // of s A s
     Eigen::VectorXd                 diagonal;   // of s A s, the changing unknowns
   };
 
-  /// S = Schur complement of s (A + C) s: with y = L^-1 b the changing unknowns are x_c = S^-1 L_c y_c, and L' x = y with
-  /// L_c'x_c in the place of y_c has the others.
+  /// S = Schur complement of s (A + C) s. With y = L^-1 b the changing unknowns are x_c = S^-1 L_c y_c; the others
+  /// follow from L' x = y with y_c replaced by L_c'x_c.
   class CoarseSolver::Elimination::WithComplement : public CoarseSolver::Factor
   {
   public:
@@ -258,7 +259,7 @@ namespace slipstick::tfeti
     Eigen::LLT<Eigen::MatrixXd> factor;
   };
 
-  /// Sparse factor of the whole matrix, analysed with the first one of its pattern.
+  /// Sparse factor of the whole matrix; the symbolic analysis is that of the first matrix with its pattern.
   class CoarseSolver::Elimination::Whole : public CoarseSolver::Factor
   {
   public:

@@ -31,7 +31,7 @@ namespace slipstick::tfeti
   std::vector<bool> ambiguous(const DualProblem &dual, const std::vector<bool> &free)
   {
     const auto       &compliance = dual.constraints().compliance;
-    std::vector<bool> rigid      = free; // rows that yield are determined by that
+    std::vector<bool> rigid      = free; // rows with compliance are uniquely determined by it
     for (unsigned int r = 0; r < compliance.size(); ++r)
       rigid[r] = rigid[r] && compliance[r] == 0;
     if (dual.preconditioner())

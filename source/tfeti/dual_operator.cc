@@ -151,7 +151,7 @@ namespace slipstick::tfeti
     });
   }
 
-  // K+ at the touched unknowns
+  // Applies K+ to forces at the touched unknowns.
   void DualOperator::solve(const unsigned int p, const Eigen::VectorXd &force, Eigen::VectorXd &at_touched) const
   {
     const auto     &touched = subdomains[p]->touched();

@@ -8,7 +8,8 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    /// A number in (-1, 1) from a label: the start of Lanczos' method is the same for every number of ranks.
+    /// A number in (-1, 1) from a label, so that the start vector of Lanczos' method does not depend on the number of
+    /// ranks.
     double random_number(std::uint64_t label)
     {
       label ^= label >> 33; // finaliser of MurmurHash3
@@ -90,7 +91,7 @@ namespace slipstick::tfeti
     set_dual_load();
   }
 
-  // d = B K+ f - c, and e
+  // Computes d = B K+ f - c, and e.
   void DualProblem::set_dual_load()
   {
     dual_load = F->jumps(parts->unconstrained());
@@ -131,7 +132,7 @@ namespace slipstick::tfeti
       y.local_element(r) += rows.compliance[r] * x.local_element(r);
   }
 
-  // Lanczos 1950: the largest Ritz value, from below.
+  // Largest Ritz value, a lower bound (Lanczos 1950).
   double DualProblem::lanczos(const DualOptions &options) const
   {
     DistributedVector x = zero(), y = zero(), q = zero(), before = zero();

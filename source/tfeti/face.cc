@@ -11,7 +11,7 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // What the projection leaves of a residual is rounding below this part of it: bodies that supports move without deforming them.
+    // A projected residual below this part of the residual is rounding: supports move bodies without deforming them.
     constexpr double rounding_of_projection = 1e-14;
   } // namespace
 
@@ -38,7 +38,7 @@ namespace slipstick::tfeti
       {
         make_projectors();
       }
-    catch (const NumericalError &) // to rounding the free rows leave a motion open; the same on every rank
+    catch (const NumericalError &) // the free rows leave a motion open up to rounding; the same on every rank
       {
         projector.reset();
         tied.reset();
@@ -63,7 +63,8 @@ namespace slipstick::tfeti
       }
   }
 
-  // A row that yields by kappa on top of 1/k has the stiffness 1/(kappa + 1/k). Empty without turned rows.
+  // A row with stiffness k and an additional compliance kappa has the stiffness 1/(kappa + 1/k). Empty without turned
+  // rows.
   std::vector<double> Face::softened_weights()
   {
     if (turns.empty())
@@ -97,7 +98,7 @@ namespace slipstick::tfeti
     return problem.reduction();
   }
 
-  // Twice where the rounding of the first shows. Of turned rows.
+  // Projects turned rows; a second time if the rounding of the first projection is significant.
   void Face::projected(const Projection project, const DistributedVector &x, DistributedVector &y) const
   {
     (*projector.*project)(x, y);
@@ -167,13 +168,13 @@ namespace slipstick::tfeti
         M.apply(*weights, at, z);
         soften(z);
       }
-    for (std::size_t row = 0; row < yielding.size(); ++row) // their own stiffness bears what is smooth, too
+    for (std::size_t row = 0; row < yielding.size(); ++row) // their own stiffness also bears smooth loads
       z.local_element(row) +=
         (1 - yielding[row] * yielding[row]) * metric.weights()[row] * metric.least() * r.local_element(row);
     z *= problem.norm();
   }
 
-  // x itself where no rows are turned.
+  // Returns x itself if no rows are turned.
   const DistributedVector &Face::turned(const DistributedVector &x, std::optional<DistributedVector> &copy) const
   {
     if (turns.empty())
@@ -183,7 +184,7 @@ namespace slipstick::tfeti
     return *copy;
   }
 
-  // Half of what the compliance of rows and of turned ones does to M.
+  // Square root of the effect that the compliance of rows and of turned rows has on M.
   void Face::soften(DistributedVector &x) const
   {
     const std::vector<double> &yielding = metric.yielding();

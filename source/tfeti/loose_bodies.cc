@@ -10,29 +10,29 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // Rows hold loose motions if the shares of a choice of them differ by no more than this factor.
+    // A set of rows holds loose motions if the pivots of their shares differ by no more than this factor.
     constexpr double least_hold = 1e-8;
-    // Motions that free rows resist by less than this part of the best held one count as weakly held.
+    // Motions count as weakly held if the free rows resist them by less than this part of the best held motion.
     constexpr double weak_resistance = 1e-3;
-    // Gaps below this part of the largest count alike.
+    // Gaps below this part of the largest are treated as equal.
     constexpr double least_gap = 1e-6;
-    // Rows with one bound resist by this times all two-sided ones and the loads.
+    // Rows with one bound resist by this factor times the sum of all two-sided bounds and the loads.
     constexpr double barrier = 10;
     // |t| is smoothed to sqrt(t^2 + eps^2), eps from the largest |g| down by this factor ...
     constexpr double smoothing_reduction = 0.1;
     // ... to this part of it, ...
     constexpr double least_smoothing = 1e-6;
-    // ... each minimised by so many Newton steps at most.
+    // ... each minimised by at most this number of Newton steps.
     constexpr unsigned int max_newton_steps = 30;
-    // A step must lower the sum by this part of its slope, or is halved, down to the shortest; ...
+    // A step must reduce the sum by this part of its slope; otherwise it is halved, down to the shortest; ...
     constexpr double least_decrease = 1e-4, shortest_step = 1e-10;
-    // ... the search ends where the slope promises less than this part of the sum.
+    // ... the search ends when the predicted reduction is less than this part of the sum.
     constexpr double least_gain = 1e-12;
-    // Products of shares in each of its Newton steps above which no motion is looked for: some hundred steps take seconds.
+    // Limit on the products of shares in each of its Newton steps; above it the search is skipped (about a hundred
+    // steps take seconds).
     constexpr double most_products = 1e8;
 
-    /// A row of a loose body, or in space both tangential ones of a node, whose forces together are no larger than the
-    /// capacity.
+    /// A row of a loose body, or in space both tangential rows of a node, whose resultant is bounded by the capacity.
     struct LooseRow
     {
       double          g, capacity; // capacity infinite: one-sided
@@ -59,7 +59,7 @@ namespace slipstick::tfeti
             all += std::isfinite(row.capacity) ? row.capacity : 0.;
           }
         if (largest == 0)
-          largest = 1; // any length
+          largest = 1; // any positive value
         for (LooseRow &row : rows)
           if (!std::isfinite(row.capacity))
             {
@@ -70,7 +70,7 @@ namespace slipstick::tfeti
             one_sided.push_back(false);
       }
 
-      /// What the rows bear of the loads along a, at least; one-sided rows must not be moved against.
+      /// Lower bound of the part of the loads along a that the rows bear; one-sided rows must not be moved against.
       double held_part(const Eigen::VectorXd &a) const
       {
         double bears = 0;
@@ -177,7 +177,7 @@ namespace slipstick::tfeti
     const auto closing = gathered_by_label(labels, numbers, comm);
 
     std::set<std::uint64_t> stopped;
-    Eigen::MatrixXd         open = Eigen::MatrixXd::Identity(loose.size(), loose.size()); // projector on what is left
+    Eigen::MatrixXd         open = Eigen::MatrixXd::Identity(loose.size(), loose.size()); // projector: motions not held
     for (std::size_t n = 0; n < loose.size(); ++n)
       {
         const Eigen::VectorXd driven = open * loads;
@@ -230,14 +230,14 @@ namespace slipstick::tfeti
           labels.push_back(rows.label[r]);
         }
     const auto all = gathered_by_label(labels, candidates, comm);
-    if (all.empty()) // Eigen's decomposition of a matrix without columns reads out of bounds
+    if (all.empty()) // Eigen's decomposition reads out of bounds for a matrix without columns
       return false;
     Eigen::MatrixXd shares(loose.size(), all.size());
     unsigned int    column = 0;
     for (const auto &candidate : all)
       shares.col(column++) = Eigen::Map<const Eigen::VectorXd>(candidate.second.data(), loose.size());
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted(shares);
-    // of unit motions; shares that are only rounding hold nothing
+    // for unit motions; shares at rounding level hold nothing
     pivoted.setThreshold(least_hold * std::max(1., 1 / std::max(pivoted.maxPivot(), least_hold)));
     if (pivoted.rank() < static_cast<Eigen::Index>(loose.size()))
       return false;
@@ -320,7 +320,7 @@ namespace slipstick::tfeti
         if (free[r] || is_second[r] || capacity[r] < 0 ||
             (own.row(r).isZero(0.) && !(is_pair && !own.row(second[r]).isZero(0.))))
           continue;
-        const double unit = 1; // any gap: what counts is how the sum grows far away
+        const double unit = 1; // any gap: only the growth of the sum far away matters
         numbers.push_back({std::isfinite(capacity[r]) ? 0. : unit, capacity[r]});
         for (std::size_t m = 0; m < loose.size(); ++m)
           numbers.back().push_back(own(r, m));
@@ -346,7 +346,7 @@ namespace slipstick::tfeti
     RigidMotion motion = loose.front();
     motion.amplitudes.setZero();
     for (std::size_t m = 0; m < loose.size(); ++m)
-      motion.amplitudes -= a[m] * loose[m].amplitudes; // bodies move against G'a
+      motion.amplitudes -= a[m] * loose[m].amplitudes; // G'a is opposite to the motion of the bodies
     motion.amplitudes.normalize();
     return Overload{motion, held, -loads.dot(a) / a.norm()};
   }

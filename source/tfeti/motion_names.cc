@@ -1,4 +1,4 @@
-// What free rigid motions are called.
+// Names of free rigid motions.
 #include <slipstick/base/log.h>
 #include <slipstick/tfeti/rigid_motions.h>
 
@@ -6,11 +6,11 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // A component of a motion is named when it is at least this part of the largest.
+    // A component of a motion is named if it is at least this part of the largest.
     constexpr double named_part = 1e-3;
-    // A motion is called a rotation when that moves the rim of the body by this part of the translation or more.
+    // A motion is called a rotation if the rotation moves the rim of the body by at least this part of the translation.
     constexpr double turning_part = 0.02;
-    // Loads push along a motion when their work is at least this part of what it could be.
+    // Loads push along a motion if their work is at least this part of its maximum over all directions.
     constexpr double least_work = 1e-9;
     // Coordinates below this part of a body's size are zero.
     constexpr double negligible_coordinate = 1e-4;
@@ -26,7 +26,7 @@ namespace slipstick::tfeti
       return format("(%.3g, %.3g, %.3g)", unit[0], unit[1], unit[2]);
     }
 
-    /// Of one body: t + w x (x - centre) / length, w along the axis of a rotation.
+    /// Motion of one body: t + w x (x - centre) / length, w along the axis of a rotation.
     std::string in_space(const Eigen::VectorXd &part, const BodyFrame &frame)
     {
       const Eigen::Vector3d t = part.head<3>(), w = part.tail<3>();
@@ -70,7 +70,7 @@ namespace slipstick::tfeti
           text += format("translation along (%.3g, %.3g)",
                          translation[0] / translation.norm(),
                          translation[1] / translation.norm());
-        else // u = t + rotation (-(y - y_c), x - x_c) / length vanishes there
+        else // point where u = t + rotation (-(y - y_c), x - x_c) / length vanishes
           {
             const BodyFrame &frame = motion.frames[b];
             text += format("rotation about (%s, %s)",
@@ -103,7 +103,7 @@ namespace slipstick::tfeti
     for (unsigned int m = 0; m < result.size(); ++m)
       {
         result[m].amplitudes = basis.row(m).normalized();
-        result[m].work       = 0; // not told
+        result[m].work       = 0; // not computed
         result[m].load       = 0;
       }
     return result;

@@ -13,10 +13,11 @@ namespace slipstick::tfeti
   {
     using Matrix = Eigen::SparseMatrix<double>;
 
-    // Steps of the power method. A start with all components: no symmetry of the bodies leaves one out.
+    // Steps of the power method. Its start vector has components along all eigenvectors, whatever the symmetry of the
+    // bodies.
     constexpr unsigned int power_steps = 30;
 
-    /// Entries of the parts that no element of the matrix joins.
+    /// Connected parts of the matrix: index sets that no entry couples.
     std::vector<std::vector<int>> connected_parts(const Matrix &matrix)
     {
       std::vector<int> root(matrix.cols());
@@ -41,7 +42,7 @@ namespace slipstick::tfeti
       return parts;
     }
 
-    /// Are all eigenvalues above the limit? Rounding in a pivot near zero costs no more than the dense solver.
+    /// Whether all eigenvalues are above the limit. A misjudged pivot near zero only costs a call of the dense solver.
     bool is_above(const Matrix &matrix, const double limit)
     {
       Matrix shifted = matrix;

@@ -13,14 +13,15 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // Rates of one core (benchmarks/cholesky.cc, bandwidth.cc): dense inverse of a factor, reading of a factor or block.
+    // Measured rates of one core (benchmarks/cholesky.cc, bandwidth.cc): dense inverse of a factor, reading a factor or
+    // block.
     constexpr double operations_per_second = 40e9;
     constexpr double bytes_per_second      = 15e9;
-    // Numbers stored of the Cholesky factor with the touched unknowns last over n log2 n, plane meshes (4.5e5 to 6.4e5 at
-    // n = 5202), and seconds that a factorisation takes over n^1.5 (2.9 ms there).
+    // Number of entries of the Cholesky factor with the touched unknowns last over n log2 n, plane meshes (4.5e5 to
+    // 6.4e5 at n = 5202), and seconds per factorisation over n^1.5 (2.9 ms there).
     constexpr double factor_growth = 8;
     constexpr double factor_time   = 8e-9;
-    // Multiplications with F that a run makes at least: norm estimate and solution.
+    // Minimum number of multiplications with F in a run: norm estimate and solution.
     constexpr double expected_multiplications = 40;
     // Part of a process's memory share that the dense blocks may take.
     constexpr double memory_part = 0.5;
@@ -47,7 +48,7 @@ namespace slipstick::tfeti
       estimate.bytes += packed * size(options.preconditioner_precision);
     estimate.setup = 2. / 3. * t * t * t / operations_per_second;
     if (!options.keeps_factors)
-      estimate.setup += factor_time * std::pow(n, 1.5); // for the recovery
+      estimate.setup += factor_time * std::pow(n, 1.5); // factorisation for the recovery
     estimate.saving = (2 * sizeof(double) * factor - packed * size(options.operator_precision)) / bytes_per_second;
     return estimate;
   }

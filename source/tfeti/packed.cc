@@ -32,30 +32,32 @@ extern "C" void dtrtri_(const char *uplo, const char *diag, const int *n, double
 
 extern "C" void dlauum_(const char *uplo, const int *n, double *a, const int *lda, int *info);
 
-// Vector instructions of the processor at hand where the compiler can choose at run time. Not under AddressSanitizer: GCC
-// 12 aligns a frame to 64 bytes on the stack, but not where AddressSanitizer puts it to detect use after return, and stores
-// to it by instructions that need 64 (vmovapd of zmm registers, to an address of 32 modulo 64).
+// Function clones for the vector instructions of the processor, selected at run time where the compiler can. Not under
+// AddressSanitizer: GCC 12 aligns stack frames to 64 bytes, but not those that AddressSanitizer allocates to detect use
+// after return, and still stores to them with instructions that need 64-byte alignment (vmovapd of zmm registers, to an
+// address of 32 modulo 64).
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
 #  define SLIPSTICK_VECTOR_CLONES __attribute__((target_clones("avx512f", "avx2,fma", "default")))
 #else
 #  define SLIPSTICK_VECTOR_CLONES
 #endif
 
-// What a clone consists of is compiled for its processor only within it.
+// Functions called by a clone are compiled for its processor only if they are inlined.
 #define SLIPSTICK_INLINE __attribute__((always_inline)) inline
 
 namespace slipstick::tfeti
 {
   namespace
   {
-    // Columns of L that L L' takes at a time, and tiles in which a triangle is mirrored.
+    // Number of columns of L per step of L L', and tile size for mirroring a triangle.
     constexpr int panel_width = 64;
     constexpr int tile_width  = 32;
-    // Triangles up to this size are left to LAPACK.
+    // Triangles up to this size are inverted by LAPACK.
     constexpr int small_triangle = 16;
 
-    /// Inverts the lower triangle of n columns at L in place, by halves: (A 0; B C)^-1 = (A^-1 0; -C^-1 B A^-1 C^-1). Nearly all
-    /// of it are products: 3.4 times as fast as dtrtri of OpenBLAS 0.3.21, of 200 and of 400 columns.
+    /// Inverts the lower triangle of n columns at L in place, recursively by halves: (A 0; B C)^-1 = (A^-1 0; -C^-1 B
+    /// A^-1 C^-1). Nearly all operations are matrix products: 3.4 times as fast as dtrtri of OpenBLAS 0.3.21 for 200
+    /// and for 400 columns.
     void invert_lower(double *L, const int n, const int stride)
     {
       if (n <= small_triangle)
@@ -85,8 +87,8 @@ namespace slipstick::tfeti
               matrix(j, i) = matrix(i, j);
     }
 
-    constexpr unsigned int n_lanes   = 8; // rows of a panel that are stored together
-    constexpr unsigned int n_columns = 4; // of a panel
+    constexpr unsigned int n_lanes   = 8; // rows of a panel stored together
+    constexpr unsigned int n_columns = 4; // columns of a panel
     using Doubles                    = double __attribute__((vector_size(n_lanes * sizeof(double))));
     using Floats                     = float __attribute__((vector_size(n_lanes * sizeof(float))));
 
@@ -95,7 +97,7 @@ namespace slipstick::tfeti
       return (n + n_lanes - 1) / n_lanes * n_lanes;
     }
 
-    /// First row that is stored of the panel that begins with a column.
+    /// First stored row of the panel that starts with this column.
     unsigned int first_row(const unsigned int column)
     {
       return column / n_lanes * n_lanes;
@@ -148,7 +150,8 @@ namespace slipstick::tfeti
       return result;
     }
 
-    /// y += A x; x and y padded to m entries. The diagonal is stored halved: it is met as a part of its column and of its row.
+    /// y += A x; x and y padded to m entries. The diagonal is stored halved, since each entry is added once by column
+    /// and once by row.
     template <class Number>
     SLIPSTICK_INLINE void add_product_of(const Number *a, const unsigned int n, const double *x, double *y)
     {
@@ -219,7 +222,7 @@ namespace slipstick::tfeti
     : n(order.size())
   {
     const auto fill = [&](auto &stored) {
-      stored.resize(n_stored(n)); // zeros
+      stored.resize(n_stored(n)); // initialised to zero
       for_each_entry(n, [&](const unsigned int row, const unsigned int column, const std::size_t position) {
         stored[position] = matrix(order[row], order[column]) * (row == column ? 0.5 : 1.);
       });

@@ -8,9 +8,9 @@
 #include <dlfcn.h>
 #include <string>
 
-// Present when the BLAS is OpenBLAS.
+// Defined if the BLAS is OpenBLAS.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
-// Present where CHOLMOD is built with OpenMP, whose regions ask for four threads whatever OMP_NUM_THREADS says.
+// Defined if CHOLMOD is built with OpenMP; its parallel regions request four threads regardless of OMP_NUM_THREADS.
 extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
 
 namespace
@@ -18,8 +18,9 @@ namespace
   bool opens_regions = false;
 }
 
-// Replaces the one of libgomp. CHOLMOD opens thousands of parallel regions a factorisation, each of which ends in a system call,
-// of one thread too: a seventh of the time of factors of 5000 unknowns (perf). Here a region is a call.
+// Replaces the function of libgomp. CHOLMOD opens thousands of parallel regions per factorisation; each ends in a
+// system call, even with one thread, which takes a seventh of the time for factors of 5000 unknowns (perf). Here a
+// region is a plain call.
 extern "C" void GOMP_parallel(void (*body)(void *), void *data, unsigned int n_threads, unsigned int flags)
 {
   using Parallel             = void (*)(void (*)(void *), void *, unsigned int, unsigned int);
@@ -42,24 +43,26 @@ namespace slipstick::tfeti
         omp_set_max_active_levels(0);
     }
 
-    /// Open MPI 4 and 5 at the price of what the run needs; what the user has set wins, unknown names are ignored.
+    /// Restricts Open MPI 4 and 5 to the components that the run needs. Settings of the user take precedence; unknown
+    /// names are ignored.
     void prepare_open_mpi()
     {
       const auto set  = [](const char *name, const char *value) { setenv(name, value, 0); };
       const auto size = std::getenv("OMPI_COMM_WORLD_SIZE"), on_node = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
       const bool is_alone = !size && !std::getenv("PMI_RANK") && !std::getenv("PMIX_RANK");
-      // A daemon is started where mpirun has not: 0.1 s. Folders for it in one that the last process to end removes, even
-      // while the next one starts and then fails (one of 80 runs, four at a time).
+      // Without mpirun Open MPI would start a daemon: 0.1 s. It would keep its folders in one that the last process to
+      // end removes, even while the next one starts and then fails (one of 80 runs, four at a time).
       set("OMPI_MCA_ess_singleton_isolated", "1");
       if (is_alone)
         set("OMPI_MCA_orte_create_session_dirs", "0");
-      // On one node memory is the network. Libraries of others are loaded all the same, and Omni-Path's measures the
-      // processor's clock for 0.2 s (strace).
+      // On one node the processes communicate through shared memory. Libraries of other networks are loaded
+      // nevertheless, and that of Omni-Path measures the processor's clock for 0.2 s (strace).
       if (is_alone || (size && on_node && std::string(size) == on_node))
         {
           set("OMPI_MCA_pml", "ob1");
           set("OMPI_MCA_btl", is_alone ? "self" : "^ofi,openib,uct,usnic");
-          // 5 complains on every rank where the node's interfaces do not reach each other (open-mpi/ompi#14079)
+          // Open MPI 5 prints an error on every rank if the node's interfaces cannot reach each other
+          // (open-mpi/ompi#14079)
           set("OMPI_MCA_btl_tcp_if_include", "lo");
         }
     }
@@ -72,8 +75,8 @@ namespace slipstick::tfeti
       , tpetra(&n_arguments, &arguments)
     {}
 
-    // Kokkos, below Tpetra, and PETSc, below deal.II, have options of their own (and a --help), and PETSc complains of
-    // others: they get to see a name only
+    // Kokkos (below Tpetra) and PETSc (below deal.II) parse options of their own (including --help), and PETSc
+    // complains about unknown ones: pass them only a program name.
     char name[10] = "slipstick", *names[2] = {name, nullptr}, **arguments = names;
     int  n_arguments = 1;
 

@@ -15,11 +15,11 @@
 
 namespace slipstick::tfeti
 {
-  namespace projection // not without a name: a member of Projector::Motions is of a type in it
+  namespace projection // named namespace, since a member of Projector::Motions has a type defined in it
   {
     constexpr unsigned int most_motions = 6; // rigid ones of a solid in space
 
-    /// Column of G at one row, as far as one subdomain makes it.
+    /// The contribution of one subdomain to the column of G of one row.
     struct ColumnPart
     {
       std::uint64_t                    row   = 0; // global
@@ -39,11 +39,12 @@ namespace slipstick::tfeti
   {
     using projection::ColumnPart;
 
-    /// Sums of outer products of columns of G, as dense blocks: one for every two subdomains that share a row.
+    /// Sum of outer products of columns of G, stored as dense blocks: one per pair of subdomains that share a row.
     class Gram
     {
     public:
-      /// Adds the column that parts (of different subdomains, in ascending order) make up; with weight 0 its pattern alone.
+      /// Adds the column given by its parts (of different subdomains, in ascending order); with weight 0 only its
+      /// pattern.
       void add(const ColumnPart *begin, const ColumnPart *end, const double weight)
       {
         for (const ColumnPart *a = begin; a != end; ++a)
@@ -71,7 +72,7 @@ namespace slipstick::tfeti
       Eigen::MatrixXd &block(const ColumnPart &a, const ColumnPart &b)
       {
         const std::pair<long long, long long> position(a.first, b.first);
-        for (const auto &[known, sum] : recent) // rows come edge by edge
+        for (const auto &[known, sum] : recent) // consecutive rows mostly belong to the same edge
           if (known == position)
             return *sum;
         auto &sum = blocks[position];
@@ -95,7 +96,7 @@ namespace slipstick::tfeti
       return column;
     }
 
-    /// Column of the row that another one is tied to, with the tied one's share.
+    /// Column of a row plus factor times that of a row tied to it.
     std::vector<ColumnPart> sum_of(std::vector<ColumnPart>        column,
                                    const std::vector<ColumnPart> &tied,
                                    const double                   factor)
@@ -116,7 +117,8 @@ namespace slipstick::tfeti
       return column;
     }
 
-    /// G of a subdomain: the rigid motions' share in every row that touches it, and those rows (local ones, ascending).
+    /// G of a subdomain: the jumps of the rigid motions in every row that touches it, and those rows (local numbers,
+    /// ascending).
     std::pair<std::vector<unsigned int>, Eigen::MatrixXd> columns_of(const SubdomainSystem &subdomain,
                                                                      const LocalGluing     &gluing)
     {
@@ -143,7 +145,7 @@ namespace slipstick::tfeti
       std::vector<unsigned int> rows;
       Eigen::MatrixXd           values; // motions x rows
 
-      /// a += G x, x of all rows of the rank and their ghosts.
+      /// a += G x, x of all rows of this rank and their ghosts.
       void add_product(const double *x, double *a) const
       {
         if (values.rows() == in_the_plane)
@@ -162,7 +164,7 @@ namespace slipstick::tfeti
       }
 
     private:
-      static constexpr int in_the_plane = 3; // motions, known to the compiler: 1.7 times as fast (perf)
+      static constexpr int in_the_plane = 3; // motions, known at compile time: 1.7 times as fast (perf)
 
       template <int n>
       void add_product_of(const double *x, double *a) const
@@ -235,11 +237,11 @@ namespace slipstick::tfeti
       gram.add(parts.data() + first_part[row], parts.data() + first_part[row + 1], weight);
     }
 
-    /// The staying rows' part of G M G', eliminated; that of one metric at a time is kept.
+    /// Elimination of the staying rows' part of G M G'; cached for one metric at a time.
     const std::shared_ptr<const CoarseSolver::Elimination> &staying_part(const std::vector<double> &metric,
                                                                          const MPI_Comm             comm) const
     {
-      std::vector<double> of_these; // none on ranks without rows
+      std::vector<double> of_these; // empty on ranks without rows
       for (const unsigned int r : staying)
         of_these.push_back(metric.empty() ? 1. : metric[r]);
       const bool is_other = !of_staying || metric_of_staying != of_these;
@@ -319,7 +321,7 @@ namespace slipstick::tfeti
 
   void Projector::make_coarse(const std::vector<bool> &active, const MPI_Comm comm)
   {
-    // is a row active? owners know, ghosts ask
+    // activity of rows: set by their owners, imported by the ghosts
     indicator.reinit(source);
     const unsigned int n = indicator.locally_owned_size();
     for (unsigned int r = 0; r < n; ++r)
@@ -327,7 +329,7 @@ namespace slipstick::tfeti
     indicator.update_ghost_values();
 
     std::map<unsigned int, std::vector<ColumnPart>>
-      other_columns; // of turned rows, and of those that others are tied to
+      other_columns; // of turned rows and of those to which others are tied
     for (const qp::Turn &turn : turns)
       {
         const auto first = G->column(turn.first), second = G->column(turn.second);
@@ -352,7 +354,7 @@ namespace slipstick::tfeti
         if (const auto column = other_columns.find(r); column != other_columns.end())
           gram.add(column->second.data(), column->second.data() + column->second.size(), weight);
         else
-          G->add(r, weight, gram); // without weight too: all faces have one pattern
+          G->add(r, weight, gram); // zero weights too: all faces share one pattern
       }
     coarse = std::make_unique<CoarseSolver>(G->staying_part(metric, comm), gram.entries());
   }
@@ -361,7 +363,7 @@ namespace slipstick::tfeti
 
   Eigen::VectorXd Projector::multiply(const DistributedVector &x) const
   {
-    if (has_turns) // ghosts may be of turned rows
+    if (has_turns) // ghosts may belong to turned rows
       {
         DistributedVector not_turned(x);
         mask(not_turned);

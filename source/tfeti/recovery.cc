@@ -9,14 +9,16 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // Newton steps of the amounts by which loose bodies slide, and the change at which they end.
+    // Newton's method for the amounts by which loose bodies slide: maximum number of steps, and the change at which it
+    // ends.
     constexpr unsigned int max_slide_steps = 100;
     constexpr double       slide_tolerance = 1e-14;
     // Jumps of a row per unit motion below this are rounding.
     constexpr double least_jump = 1e-8;
 
-    /// Amounts at which the sum of squares of the violated conditions is least, by Newton's method from 0, where the steps
-    /// are as short as possible. Of every condition: a value, then its n derivatives; value + derivatives * amounts >= 0.
+    /// Amounts that minimise the sum of squares of the violated conditions, by Newton's method from 0, with the
+    /// shortest possible steps where they are not unique. A condition is a value followed by its n derivatives: value +
+    /// derivatives * amounts >= 0.
     Eigen::VectorXd least_violation(const std::vector<std::vector<double>> &conditions, const unsigned int n)
     {
       Eigen::VectorXd amount = Eigen::VectorXd::Zero(n);
@@ -48,7 +50,7 @@ namespace slipstick::tfeti
       return amount;
     }
 
-    /// Adds to the free rows those rows with friction forces that hold the loose motions. @return are there enough of them?
+    /// Adds to the free rows those rows with friction forces that hold the loose motions. @return whether all are held.
     bool add_rows_with_friction(const DualProblem              &dual,
                                 const std::vector<RigidMotion> &loose,
                                 const DistributedVector        &x,
@@ -68,7 +70,7 @@ namespace slipstick::tfeti
     {
       const auto       &systems = dual.subdomains();
       const std::size_t n       = loose.size();
-      Eigen::MatrixXd   gram    = Eigen::MatrixXd::Zero(n, n + 1); // the last column: of u
+      Eigen::MatrixXd   gram    = Eigen::MatrixXd::Zero(n, n + 1); // last column: products with u
       for (unsigned int p = 0; p < systems.size(); ++p)
         {
           Eigen::MatrixXd motions(u[p].size(), n);
@@ -86,7 +88,8 @@ namespace slipstick::tfeti
         u[p] -= dual.body_motions().displacements(p, amplitudes);
     }
 
-    /// Moves bodies along loose motions until no row at a bound is on the wrong side: least sum of squares of the violations.
+    /// Moves bodies along loose motions to minimise the sum of squares of the violations: jumps of the wrong sign at
+    /// rows at a bound.
     void slide_apart(const DualProblem              &dual,
                      const std::vector<RigidMotion> &loose,
                      const std::vector<bool>        &free,
@@ -123,7 +126,7 @@ namespace slipstick::tfeti
         at.u[p] += dual.body_motions().displacements(p, amplitudes);
     }
 
-    /// u += R a: a least squares fit of the free rows, to which the projector is restricted.
+    /// u += R a: a least squares fit to the free rows, to which the projector is restricted.
     void fit_motions(const DualProblem &dual, const Projector &on_free, const std::vector<bool> &free, Recovery &at)
     {
       const auto       &systems = dual.subdomains();
@@ -131,7 +134,7 @@ namespace slipstick::tfeti
       Eigen::VectorXd   a = on_free.amplitudes(missing);
       on_free.project_range(missing, range);
       missing -= range;
-      a += on_free.amplitudes(missing); // for the rounding of the first
+      a += on_free.amplitudes(missing); // corrects the rounding of the first fit
       unsigned int next = 0;
       for (unsigned int p = 0; p < systems.size(); ++p)
         {
@@ -140,12 +143,12 @@ namespace slipstick::tfeti
           next += k;
         }
     }
-    /// The motions that the free rows leave, and the rows that place them.
+    /// The loose motions that the free rows leave, and the rows used to place the bodies.
     struct Placement
     {
       std::vector<RigidMotion> loose;
-      std::vector<bool>        fixed;             // the free rows, and more where they leave motions
-      bool                     has_forces = true; // these are rows with friction forces
+      std::vector<bool>        fixed;             // the free rows, and further ones if these leave loose motions
+      bool                     has_forces = true; // whether all of these rows carry friction forces
     };
 
     Placement placed_by_forces(const DualProblem &dual, const DistributedVector &x, const std::vector<bool> &free)
@@ -160,7 +163,7 @@ namespace slipstick::tfeti
       return !placement.has_forces && plainest(placement.loose).work > 0;
     }
 
-    /// Takes any rows where there are none with forces.
+    /// Uses any rows if not enough of them carry forces.
     void place_by_any_row(const DualProblem &dual, Placement &placement)
     {
       const std::vector<double> equal(placement.fixed.size(), 1.);
@@ -187,7 +190,7 @@ namespace slipstick::tfeti
       Recovery          result{{}, dual.zero(), {}};
       DistributedVector step{dual.zero()};
       result.multipliers = x;
-      for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
+      for (unsigned int pass = 0; pass < 2; ++pass) // the second pass corrects the rounding of the first
         {
           on_free.particular(dual.e() - dual.projector().multiply(result.multipliers), step);
           result.multipliers += step;

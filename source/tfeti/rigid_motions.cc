@@ -16,19 +16,19 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // Rows are moved by a translation when that gives more than this part of what it gives with one body.
+    // A translation common to all bodies moves a row if the jump is more than this part of the jump with one body.
     constexpr double rounding_of_translation = 1e-9;
-    // What is left of a vector of unit length that others contain, but for rounding of eigenvectors.
+    // Remainder of a unit vector in the span of others, up to the rounding of eigenvectors.
     constexpr double rounding_of_vectors = 1e-6;
-    // Resultants below this part of the sum of magnitudes are rounding of none.
+    // Resultants below this part of the sum of magnitudes are rounding of zero.
     constexpr double rounding_of_loads = 1e-13;
 
-    /// Frames of all bodies, from the rank that has a subdomain of it.
+    /// Frames of all bodies, each taken from a rank that has a subdomain of the body.
     std::vector<BodyFrame> frames_of_bodies(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                                             const unsigned int                                   n_bodies,
                                             const MPI_Comm                                       comm)
     {
-      constexpr unsigned int n = 4; // numbers a frame
+      constexpr unsigned int n = 4; // numbers per frame
       std::vector<double>    all(n * n_bodies, std::numeric_limits<double>::lowest());
       for (const auto &subdomain : subdomains)
         {
@@ -65,7 +65,7 @@ namespace slipstick::tfeti
       return constraints.kind[owned_row] == RowKind::gluing;
     }
 
-    /// Parts of all rows that this rank owns, gluing left out.
+    /// Parts of all rows that this rank owns, except gluing rows.
     std::vector<RowPart> parts_of_owned_rows(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                                              const std::vector<LocalGluing>                      &gluing,
                                              const Constraints                                   &constraints,
@@ -122,8 +122,8 @@ namespace slipstick::tfeti
     find_levers();
   }
 
-  // What a rotation of all bodies of a row about one point makes of it. A row that translations in common do not move
-  // either is one between bodies.
+  // Jump of a row under a rotation of all its bodies about one point. A row with no jump under common translations of
+  // several bodies connects these bodies.
   void BodyMotions::find_levers()
   {
     if (motions_of_body != 3) // bodies of revolution do not rotate; solids do so about three axes
@@ -149,7 +149,8 @@ namespace slipstick::tfeti
       }
   }
 
-  // Sum over rows of what they see of the motions, times itself; whole on every rank, summed in the order of the ranks.
+  // Sum over rows of the outer product of their jumps with themselves; complete on every rank, summed in the order of
+  // the ranks.
   Eigen::SparseMatrix<double> BodyMotions::resistance_of(const std::vector<bool>  &active,
                                                          const bool                without_levers,
                                                          const std::vector<Share> &of_rows) const
@@ -193,7 +194,7 @@ namespace slipstick::tfeti
     return result;
   }
 
-  // The shares of all rows, those of turned ones as they are after that.
+  // Shares of all rows, with those of turned rows transformed.
   std::vector<BodyMotions::Share> BodyMotions::turned(const std::vector<qp::Turn> &turns) const
   {
     std::map<unsigned int, std::vector<Share>> others; // of the turned rows
@@ -218,7 +219,7 @@ namespace slipstick::tfeti
     return result;
   }
 
-  // Orthonormal.
+  // Returns orthonormal motions.
   std::vector<Eigen::VectorXd> BodyMotions::unresisted(const std::vector<bool>  &active,
                                                        const double              resistance,
                                                        const std::vector<Share> &of_rows) const
@@ -228,12 +229,12 @@ namespace slipstick::tfeti
       return null_vectors(all, resistance * std::max(largest_eigenvalue(all), 1.));
     };
     std::vector<Eigen::VectorXd> result = null_vectors_of(false);
-    if (dealii::Utilities::MPI::min(active.empty() ? 1 : 0, comm) == 0) // a rank may have no rows
+    if (dealii::Utilities::MPI::min(active.empty() ? 1 : 0, comm) == 0) // a rank may own no rows
       return result;
     for (auto &vector :
-         null_vectors_of(true)) // these need not contain the first: a row without its lever may resist more
+         null_vectors_of(true)) // these need not contain the first: a row may resist more without its lever arm
       {
-        for (unsigned int pass = 0; pass < 2; ++pass) // the second for what the first leaves by rounding
+        for (unsigned int pass = 0; pass < 2; ++pass) // the second pass removes the rounding of the first
           for (const auto &other : result)
             vector -= other.dot(vector) * other;
         if (vector.norm() > rounding_of_vectors)
@@ -249,7 +250,7 @@ namespace slipstick::tfeti
     std::vector<RigidMotion> motions;
     for (auto &amplitudes : unresisted(active, resistance, turns.empty() ? shares : turned(turns)))
       motions.push_back({std::move(amplitudes), 0., frames});
-    if (motions.empty()) // as nearly always: the loads are not asked
+    if (motions.empty()) // the usual case; avoids computing the loads
       return motions;
     const Eigen::VectorXd load = loads();
     for (auto &motion : motions)

@@ -30,7 +30,7 @@ namespace slipstick::tfeti
                                   comm);
     for (double &stiffness : relative)
       stiffness /= smallest;
-    for (const auto &point : rows.contact_points) // both tangents of a node alike: discs stay round
+    for (const auto &point : rows.contact_points) // equal stiffness of both tangents of a node: discs stay round
       if (point.tangential_row != invalid_row && point.second_row != invalid_row)
         relative[point.tangential_row] = relative[point.second_row] =
           std::sqrt(relative[point.tangential_row] * relative[point.second_row]);

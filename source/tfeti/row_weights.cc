@@ -13,9 +13,9 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // Blocks of more rows are factorised as sparse ones.
+    // Blocks with more rows are factorised as sparse matrices.
     constexpr unsigned int largest_dense_block = 32;
-    // Shares of rows in a dependence below this are rounding.
+    // Entries of null vectors below this are rounding.
     constexpr double smallest_share = 1e-6;
 
     /// One summand of an entry of W.
@@ -31,7 +31,7 @@ namespace slipstick::tfeti
       }
     };
 
-    /// One summand at its place among the owned rows.
+    /// One summand with its position among the owned rows.
     struct Entry
     {
       unsigned int row, column;
@@ -73,7 +73,7 @@ namespace slipstick::tfeti
     auto received  = dealii::Utilities::MPI::some_to_some(comm, to_send);
     received[rank] = std::move(own);
 
-    // the connected groups of rows, and the entries of W
+    // connected groups of rows, and the entries of W
     std::vector<Entry>        entries;
     std::vector<unsigned int> root(n), size(n, 0);
     std::iota(root.begin(), root.end(), 0);
@@ -100,7 +100,7 @@ namespace slipstick::tfeti
       ++size[find(r)];
 
     constexpr unsigned int    single = -1;
-    std::vector<unsigned int> block_of(n, single), position(n); // of a root; of a row in its block
+    std::vector<unsigned int> block_of(n, single), position(n); // of the root row of a group; of a row in its block
     std::vector<double>       weight_of_single(n, 0.);
     for (unsigned int r = 0; r < n; ++r)
       if (size[find(r)] == 1)
@@ -138,7 +138,7 @@ namespace slipstick::tfeti
   RowWeights::Block RowWeights::restricted(const Block &full, const std::function<bool(unsigned int)> &is_active)
   {
     Block            part;
-    std::vector<int> place(full.rows.size(), -1); // among the active rows
+    std::vector<int> place(full.rows.size(), -1); // positions among the active rows
     for (unsigned int k = 0; k < full.rows.size(); ++k)
       if (is_active(full.rows[k]))
         {
@@ -156,13 +156,13 @@ namespace slipstick::tfeti
     return part;
   }
 
-  // Null vectors of W: e_k - W^- W e_k, which is 0 unless row k was left out of the factor.
+  // Null vectors of W: e_k - W^- W e_k, which is 0 unless the factorisation skipped row k.
   std::vector<bool> RowWeights::ambiguous(const std::vector<bool> &active) const
   {
     std::vector<bool> result(active.size(), false);
     for (const auto &full : blocks)
       {
-        if (full.is_regular) // and so is each part of it
+        if (full.is_regular) // then every principal submatrix is regular
           continue;
         const Block part = restricted(full, [&active](const unsigned int row) { return active[row]; });
         if (part.rows.empty())

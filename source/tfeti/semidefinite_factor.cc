@@ -102,7 +102,7 @@ namespace slipstick::tfeti
         x[k] *= inverse_pivot[k];
         for (int p = first[k]; p < first[k + 1]; ++p)
           x[k] -= value[p] * x[row[p]];
-        // what was left out stays 0
+        // skipped rows stay 0
         if (inverse_pivot[k] == 0)
           x[k] = 0;
         result[order[k]] = x[k];

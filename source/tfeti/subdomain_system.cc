@@ -17,15 +17,15 @@ namespace slipstick::tfeti
     // |K R| over |K| |R| above this means that R is not the kernel.
     constexpr double kernel_tolerance = 1e-8;
 
-    // v'K v over |K| v'v below this, v the answer to random forces, is rounding: measured 1e-19 to 3e-17 with a hinge,
-    // more than 1e-15 without one up to a slenderness of 4000.
+    // v'K v over |K| v'v below this, where v is the solution for random forces, is rounding: measured 1e-19 to 3e-17
+    // with a hinge, more than 1e-15 without one up to a slenderness of 4000.
     constexpr double smallest_stiffness = 2e-16;
-    // Below this single precision (6e-8 of the largest entries) loses the softest deformations: measured 9e-4, 4e-5, 2e-6 for
-    // 10, 50 and 200 cells along an edge, where it does not, 1e-9 and less for strips of cells of 1000 to 1, where it does.
+    // Below this single precision (6e-8 of the largest entries) loses the softest deformations. Measured: 9e-4, 4e-5,
+    // 2e-6 for 10, 50 and 200 cells along an edge (not lost), 1e-9 and less for strips of cells of 1000 to 1 (lost).
     constexpr double smallest_single_stiffness = 2e-7;
 
-    // Blocks at the touched unknowns pay off below this number of entries over that of K. In the plane they always do; cubes
-    // of 8^3 cells in space have 8 times as many.
+    // Blocks at the touched unknowns pay off below this number of entries relative to that of K. In the plane they
+    // always do; cubes of 8^3 cells in space have 8 times as many.
     constexpr double entries_of_blocks = 4;
 
     std::string name_of(const SubdomainMatrices &matrices)
@@ -43,8 +43,9 @@ namespace slipstick::tfeti
                              "look for inverted or degenerate cells in the mesh");
     }
 
-    /// The factor of a matrix that is singular in exact arithmetic may exist; its solutions then lie in the kernel.
-    /// @return stiffness against the softest deformation, nearly, over the largest entry of K.
+    /// K may have a larger kernel than R: the factor of a matrix that is singular in exact arithmetic may exist, but
+    /// its solutions then lie in the kernel.
+    /// @return estimated stiffness against the softest deformation over the largest entry of K.
     double check_no_larger_kernel(const SubdomainMatrices &matrices, const Cholesky &cholesky)
     {
       std::minstd_rand                       random;
@@ -205,7 +206,7 @@ namespace slipstick::tfeti
     u(touched_unknowns)      = x;
     Eigen::VectorXd at_inner = apply_stiffness(u)(inner_unknowns);
     inner->solve(at_inner);
-    u(inner_unknowns) = -at_inner; // forces vanish there
+    u(inner_unknowns) = -at_inner; // no forces at the inner unknowns
     return apply_stiffness(u)(touched_unknowns);
   }
 

@@ -86,7 +86,7 @@ namespace slipstick::tfeti
         if (!is_kept || solutions[p].size() == 0)
           solve_load(p);
         if (explicit_blocks && !options.keeps_factors)
-          system.release(); // one factor at a time
+          system.release(); // keep one factor at a time
       }
     session->forget_analyses();
     dissecting->forget_analyses();

@@ -1,4 +1,5 @@
-// Positions of bodies held by contact alone, for given gaps, in which the clipped contact forces balance the loads.
+// Equilibrium positions of bodies held by contact alone: for given gaps, the clipped contact forces balance the
+// loads.
 #pragma once
 
 #include <slipstick/qp/admissible_set.h>
@@ -6,29 +7,32 @@
 
 namespace slipstick::tfeti
 {
-  /// The motions of bodies which no equality row resists, and the least of
-  /// sum_i psi_i(t_i - k_i S_i a) + L'a,   psi_i' = clip to the bounds of row i, over k_i, S_i the jumps of the motions
-  /// in row i, L the loads along them: there S'z = L with z = clip(t - k S a), so that the forces z, which a projected
-  /// gradient step t = x - k g gives after the motion a, balance the loads up to a part of all forces (only the rest of L
-  /// is balanced). Bounds that depend on normal forces follow these. The function is convex and piecewise quadratic;
-  /// Newton's method with an exact line search. Tangential forces are intervals: discs are not known here.
+  /// For the rigid motions that no equality row resists: the amplitudes a that minimise
+  /// sum_i psi_i(t_i - k_i S_i a) / k_i + L'a,   psi_i' = clip to the bounds of row i,
+  /// where S_i are the jumps of the motions in row i and L the loads along the motions. At the minimum S'z = L with z =
+  /// clip(t - k S a): the contact forces z after a projected gradient step t = x - k g followed by the motion a are in
+  /// equilibrium with the loads, up to a tolerated part of all forces (only the rest of L is balanced). Bounds that
+  /// depend on normal forces follow these. The function is convex and piecewise quadratic; it is minimised by Newton's
+  /// method with an exact line search. Tangential forces are intervals; discs are not supported.
   class BodyEquilibrium
   {
   public:
     /// @param bodies is kept by reference. Collective.
     BodyEquilibrium(const BodyMotions &bodies_, const Constraints &constraints, const MPI_Comm comm_);
 
-    /// Are there no such motions?
+    /// Whether there are no such motions.
     bool empty() const
     {
       return motions.empty();
     }
 
-    /// @param of_bodies as BodyMotions::loads() gives them.
+    /// @param of_bodies loads along the motions of all bodies, as returned by BodyMotions::loads().
     void set_loads(const Eigen::VectorXd &of_bodies);
 
-    /// S a of the owned rows. @param t, k owned rows. @param bounds of them, pressure bounds included. @param tolerated the
-    /// part of all forces by which loads may be out of balance. Collective.
+    /// S a of the owned rows.
+    /// @param t, k of the owned rows.
+    /// @param bounds of the owned rows, pressure bounds included.
+    /// @param tolerated the part of all forces by which loads may remain unbalanced. Collective.
     std::vector<double> shift(const std::vector<double>                  &t,
                               const std::vector<double>                  &k,
                               const qp::AdmissibleSet<DistributedVector> &bounds,
@@ -38,7 +42,7 @@ namespace slipstick::tfeti
     struct Row
     {
       double      t, k, lower, upper;
-      int         follows = -1; // the row that its bounds follow
+      int         follows = -1; // row whose normal force determines the bounds; -1: fixed bounds
       qp::NodeSet forces;       // its admissible forces
     };
 
@@ -64,9 +68,9 @@ namespace slipstick::tfeti
     MPI_Comm                                     comm;
     std::vector<RigidMotion>                     motions;
     Eigen::VectorXd                              all_loads;  // along the motions
-    std::vector<unsigned int>                    own;        // owned rows that see the motions
-    std::vector<int>                             place_of;   // of owned rows among all that do; -1
-    Eigen::SparseMatrix<double, Eigen::RowMajor> shares;     // of all ranks' rows, ordered by their labels ...
+    std::vector<unsigned int>                    own;        // owned rows with a jump under some motion
+    std::vector<int>                             place_of;   // of owned rows: position in `shares`; -1: none
+    Eigen::SparseMatrix<double, Eigen::RowMajor> shares;     // S: rows of all ranks, ordered by their labels ...
     Eigen::SparseMatrix<double>                  by_columns; // ... the same ...
     Eigen::SparseMatrix<double>                  magnitudes; // ... and their absolute values
   };

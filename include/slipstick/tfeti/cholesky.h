@@ -1,4 +1,5 @@
-// Sparse Cholesky factorisation (SuiteSparse CHOLMOD, supernodal), whole or ending in a dense trailing block.
+// Sparse Cholesky factorisation (SuiteSparse CHOLMOD, supernodal), of the whole matrix or with a dense trailing
+// block.
 #pragma once
 
 #include <Eigen/Dense>
@@ -11,11 +12,11 @@
 
 namespace slipstick::tfeti
 {
-  /// Of the unknowns that are not last.
+  /// Ordering of the unknowns that are not required to come last.
   enum class Ordering
   {
-    minimum_degree,   // AMD, CAMD: quick to find, for small matrices
-    nested_dissection // METIS: least fill of large ones in the plane, n log n
+    minimum_degree,   // AMD, CAMD: cheap to compute, for small matrices
+    nested_dissection // METIS: least fill for large plane meshes, n log n
   };
 
   /// CHOLMOD's workspace, shared by the factorisations of a rank, and the analyses of their patterns: matrices with the
@@ -28,16 +29,16 @@ namespace slipstick::tfeti
     CholmodSession(const CholmodSession &)            = delete;
     CholmodSession &operator=(const CholmodSession &) = delete;
 
-    /// Symbolic factor of a matrix with the unknowns `last` ordered last; to be copied, not changed.
+    /// Symbolic factor of a matrix with the unknowns `last` ordered last. The caller copies it and does not change it.
     cholmod_factor *analysis(cholmod_sparse &A, const std::vector<unsigned int> &last);
 
-    /// Patterns analysed so far and not forgotten.
+    /// Number of analyses in the cache.
     std::size_t n_analyses() const
     {
       return analyses.size();
     }
 
-    /// Frees the analyses. Factors made with them stay.
+    /// Frees the cached analyses. Factors made with them stay valid.
     void forget_analyses();
 
     cholmod_common common;
@@ -55,20 +56,21 @@ namespace slipstick::tfeti
     std::vector<Analysis> analyses;
   };
 
-  /// A = L L' of a symmetric positive definite matrix with n unknowns, of which the ones named `last` are ordered last,
-  /// so that their part of L is that of the Schur complement of A on them.
+  /// A = L L' of a symmetric positive definite matrix with n unknowns. The unknowns `last` are ordered last, so that
+  /// the trailing block of L is the Cholesky factor of the Schur complement of A on them.
   class Cholesky
   {
   public:
-    /// For a matrix that turns out not to be positive definite: its description, to follow its name, and the remedy.
+    /// Parts of the error message for a matrix that is not positive definite: a description, printed after its name,
+    /// and a remedy.
     struct Failure
     {
       std::string text, remedy;
     };
-    static const Failure of_stiffness; // of a subdomain
+    static const Failure of_stiffness; // for the stiffness of a subdomain
 
     /// @param lower lower triangle of A, compressed columns, sorted.
-    /// @throws NumericalError when A is not positive definite; @p name says whose matrix it is.
+    /// @throws NumericalError when A is not positive definite; @p name identifies the matrix in the message.
     Cholesky(const std::shared_ptr<CholmodSession> &session,
              const Eigen::SparseMatrix<double>     &lower,
              const std::vector<unsigned int>       &last,
@@ -78,15 +80,15 @@ namespace slipstick::tfeti
     /// x := A^-1 x; n entries.
     void solve(Eigen::VectorXd &x) const;
 
-    /// The two halves of solve(): x := L^-1 x with the unknowns in the order of L, the last ones last and as in
-    /// `last_order`; then x := L^-T x, in the order of A again.
+    /// The two halves of solve(). solve_lower(): x := L^-1 x, the result in the order of L (the last unknowns last, as
+    /// in `last_order`). solve_upper(): x := L^-T x, the result in the order of A again.
     void solve_lower(Eigen::VectorXd &x) const;
     void solve_upper(Eigen::VectorXd &x) const;
 
     /// Dense lower triangular factor of the Schur complement of A on the last unknowns, in the order of `last_order`.
     Eigen::MatrixXd trailing_block() const;
 
-    /// The last unknowns in the order in which the trailing block has them.
+    /// The last unknowns in their order in the trailing block.
     const std::vector<unsigned int> &last_order() const
     {
       return trailing;
@@ -107,7 +109,7 @@ namespace slipstick::tfeti
       void                            operator()(cholmod_dense *dense) const;
     };
 
-    /// One of CHOLMOD's systems.
+    /// Solves one of the linear systems that CHOLMOD numbers (CHOLMOD_A, CHOLMOD_L, ...).
     void solve(const int system, Eigen::VectorXd &x) const;
 
     std::shared_ptr<CholmodSession>                session;

@@ -1,4 +1,4 @@
-// Direct solver for coarse matrices (CHOLMOD, nested dissection) that differ in few of their rows and columns.
+// Direct solver (CHOLMOD, nested dissection) for coarse matrices that differ only in a few rows and columns.
 #pragma once
 
 #include <Eigen/Dense>
@@ -10,14 +10,14 @@
 
 namespace slipstick::tfeti
 {
-  /// Sparse symmetric positive definite matrix, factorised once: L L' of n log n numbers in the plane, unknowns ordered
-  /// by nested dissection (George 1973). Right-hand sides and solutions are distributed over the ranks; the matrix,
-  /// whose size is that of the kernel, is held and factorised by every rank, so that a solve costs one gather
-  /// (benchmarks/coarse_problem.md says up to which size this pays off).
+  /// Sparse symmetric positive definite matrix, factorised once; in the plane L has O(n log n) entries, with the
+  /// unknowns ordered by nested dissection (George 1973). Right-hand sides and solutions are distributed over the
+  /// ranks; the matrix, whose size is that of the kernel, is stored and factorised on every rank, so that a solve costs
+  /// one gather (benchmarks/coarse_problem.md: up to which size this pays off).
   ///
-  /// Matrices A + C_1, A + C_2, .. with C_i in the rows and columns of a few changing unknowns share the elimination of
-  /// all others; each factorises only its Schur complement in the changing ones. If many change, they share the
-  /// ordering and the pattern of L.
+  /// Matrices A + C_1, A + C_2, .. whose C_i are nonzero only in the rows and columns of a few changing unknowns share
+  /// the elimination of all other unknowns; each factorises only its Schur complement on the changing ones. If many
+  /// unknowns change, the matrices share the ordering and the pattern of L.
   /// @code
   /// const CoarseSolver    solver(2, {{0, 0, 2.}, {1, 0, -1.}, {1, 1, 2.}}, MPI_COMM_SELF); // entries above the diagonal follow
   /// const Eigen::VectorXd x = solver.solve(Eigen::Vector2d(3, 0));
@@ -26,8 +26,8 @@ namespace slipstick::tfeti
   class CoarseSolver
   {
   public:
-    /// An entry by global row and column; entries of one position, of any rank, are added. Those above the diagonal
-    /// are not read.
+    /// An entry by global row and column. Entries at the same position, also of different ranks, are added. Entries
+    /// above the diagonal are ignored.
     struct Entry
     {
       long long row, column;
@@ -37,19 +37,20 @@ namespace slipstick::tfeti
 
     class Elimination;
 
-    /// @param n_owned rows of this rank, which follow those of the rank before. Collective.
+    /// @param n_owned number of rows of this rank, numbered after those of the previous rank. Collective.
     /// @throws NumericalError when the matrix is not positive definite.
     CoarseSolver(const unsigned int n_owned, const Entries &entries, const MPI_Comm comm);
 
-    /// Eliminates all but the changing unknowns from A, which need only be semidefinite.
-    /// @param changes of the rows of this rank, in their order. Collective.
+    /// Eliminates all but the changing unknowns from A, which may be semidefinite.
+    /// @param changes for each row of this rank: whether it changes. Collective.
     /// @throws NumericalError when A without the changing rows and columns is not positive definite.
     static std::shared_ptr<const Elimination> eliminate(const Entries           &entries,
                                                         const std::vector<bool> &changes,
                                                         const MPI_Comm           comm);
 
-    /// Of A + C. @param changing entries of C, of changing rows and columns; zeros where other C_i have entries keep
-    /// the pattern the same. Collective.
+    /// Factorises A + C.
+    /// @param changing entries of C, in changing rows and columns; store zeros where other C_i have entries to keep the
+    /// pattern the same. Collective.
     /// @throws NumericalError when the matrix is not positive definite.
     CoarseSolver(std::shared_ptr<const Elimination> staying, const Entries &changing);
     ~CoarseSolver();
@@ -59,7 +60,7 @@ namespace slipstick::tfeti
 
     unsigned long long dimension() const;
 
-    /// Numbers that this rank holds for factors: those that are shared, and its own.
+    /// Numbers stored on this rank for factors, shared ones included.
     std::size_t n_nonzeros() const;
 
   private:

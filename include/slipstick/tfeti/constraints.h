@@ -1,4 +1,4 @@
-// The rows of B: what holds the torn subdomains together, fixes them and keeps them from penetrating.
+// The rows of B: they glue the torn subdomains together, fix them and prevent penetration.
 //
 // Sign conventions of contact rows: see contact/result.h. A row reads b u = c (equality) or b u <= c (normal).
 #pragma once
@@ -26,7 +26,7 @@ namespace slipstick::tfeti
     prescribed  // prescribed displacement [mm], elastic foundation (with compliance)
   };
 
-  /// Are multipliers of this kind without bounds?
+  /// Whether multipliers of this kind are unbounded.
   constexpr bool is_equality(const RowKind kind)
   {
     return kind != RowKind::tangential && kind != RowKind::normal;
@@ -34,28 +34,28 @@ namespace slipstick::tfeti
 
   constexpr unsigned int invalid_row = static_cast<unsigned int>(-1);
 
-  /// A node that may touch. The rows and the interface unknowns of a contact node are owned by one rank.
+  /// A potential contact node. Its rows and interface unknowns are owned by the same rank.
   struct ContactPoint
   {
     unsigned int          pair = 0; // index into Scene::contacts
     std::array<double, 3> position{{0, 0, 0}};
     std::array<double, 3> normal{{0, 0, 0}};  // outward normal of the slave body
-    bool                  has_master = false; // another body, no obstacle
+    bool                  has_master = false; // true: another body; false: an obstacle
     unsigned int          slave_body = 0, master_body = 0;
     std::array<double, 3> master_position{{0, 0, 0}}; // weighted mean of the master nodes, where the force acts
     double                gap           = 0;          // reference configuration [mm]
     double                area          = 0;          // tributary: length times thickness, or of revolution [mm^2]
     double                length        = 0;          // tributary length [mm]
-    double                traction_area = 0; // that tractions are given for: where less than half of the node's
-                                             // full tributary length faces the other side half of it counts, since
-                                             // the force on a sliver over its own area is meaningless [mm^2]
-    double                       traction_length = 0;          // of the node, taken in the same way [mm]
-    std::array<std::uint64_t, 2> key{{0, 0}};                  // the mesh's name of the node
-    unsigned int                 normal_row     = invalid_row; // owned rows; invalid where a support takes their place
-    unsigned int                 tangential_row = invalid_row;
-    unsigned int                 second_row     = invalid_row; // in space: along the other tangent
-    std::array<std::array<double, 3>, 2> tangents{};           // in space
-    unsigned int                         interface_dof = 0;    // owned number of the node's first interface unknown
+    double                traction_area = 0;          // reference area of tractions: `area`, but at least half of the
+                                                      // node's full tributary area: the force on a sliver over the
+                                                      // area of that sliver is meaningless [mm^2]
+    double                               traction_length = 0; // reference length of tractions, by the same rule [mm]
+    std::array<std::uint64_t, 2>         key{{0, 0}};         // identifies the node in the mesh
+    unsigned int                         normal_row     = invalid_row; // owned rows; invalid if a support replaces it
+    unsigned int                         tangential_row = invalid_row;
+    unsigned int                         second_row     = invalid_row; // in space: along the other tangent
+    std::array<std::array<double, 3>, 2> tangents{};                   // in space
+    unsigned int                         interface_dof = 0; // owned number of the node's first interface unknown
 
     bool is_in_space() const
     {
@@ -63,18 +63,19 @@ namespace slipstick::tfeti
     }
   };
 
-  /// What holds a node externally in one direction: supports, foundations, bonds to obstacles.
+  /// An external constraint of a node in one direction: support, foundation or bond to an obstacle.
   struct Reaction
   {
     unsigned int          row = invalid_row; // owned; the force on the node is -multiplier times direction
     std::array<double, 3> direction{{0, 0, 0}};
     std::array<double, 3> position{{0, 0, 0}};
     std::vector<unsigned int>
-      holders; // equal sharers: numbers of supports, behind them foundations, then contact pairs, then the axis
+      holders; // equal shares: numbers of supports, followed by foundations, contact pairs, the axis
   };
 
-  /// B, c and the contact nodes, distributed: every row has one owner; a rank whose subdomains a row touches has it as
-  /// a ghost. Interface unknowns are the displacements of nodes that rows touch, one for all copies of a node.
+  /// B, c and the contact nodes, distributed. Every row has one owner; it is a ghost on the other ranks whose
+  /// subdomains it touches. Interface unknowns are the displacements of nodes touched by rows, one for all copies of a
+  /// node.
   struct Constraints
   {
     struct Entry
@@ -102,33 +103,33 @@ namespace slipstick::tfeti
     std::vector<RowKind>                     kind;       // of the owned rows
     std::vector<double>                      c;          // of the owned rows [mm]
     std::vector<double>                      compliance; // of the owned rows: b u - compliance x = c [mm/N]; empty: 0
-    std::vector<std::uint64_t>               label;      // of the owned rows, the same for every number of ranks
+    std::vector<std::uint64_t>               label;      // of the owned rows; independent of the number of ranks
     std::vector<ContactPoint>                contact_points; // whose rows this rank owns
-    std::vector<ContactPoint>                bonded_points;  // the same of bonded rows: of normal and tangent
+    std::vector<ContactPoint>                bonded_points;  // the same for bonded rows: normal and tangential
     std::vector<Reaction>                    reactions;      // whose rows this rank owns
     Partitioner                              interface_dofs;
     std::vector<std::vector<InterfaceEntry>> interface_blocks; // of the subdomains of this rank
-    std::vector<bool> interface_held; // owned unknowns: does an outside force act (support, contact)?
+    std::vector<bool> interface_held; // owned unknowns: whether an external force acts (support, contact)
     Counts            counts;         // over all ranks
   };
 
-  /// Contact nodes whose gap is prescribed by supports (and bonds), so that they have no normal row; nodes bonded to
-  /// obstacles, too.
+  /// Contact nodes whose gap is prescribed by supports (and bonds), so that they have no normal row; also nodes bonded
+  /// to obstacles.
   struct HeldContacts
   {
     struct Point
     {
       ContactPoint              contact; // without rows
       bool                      is_bonded = false;
-      unsigned int              holder    = 0; // of a bond: itself, as in Reaction
-      std::vector<unsigned int> reactions;     // at the node, numbers in Constraints::reactions; obstacles only
-      std::vector<unsigned int> holders;       // of all nodes of the row, as in Reaction
-      unsigned int              place    = invalid_row; // in Constraints::contact_points, if it has a tangential row
-      bool                      is_known = false;       // do supports alone prescribe the gap?
-      double                    closing  = 0;           // then: by how much they close it [mm]
+      unsigned int              holder    = 0;       // of a bond: its own number, as in Reaction
+      std::vector<unsigned int> reactions;           // at the node, indices into Constraints::reactions; obstacles only
+      std::vector<unsigned int> holders;             // of all nodes of the row, numbered as in Reaction
+      unsigned int              place = invalid_row; // in Constraints::contact_points; invalid: no tangential row
+      bool                      is_known = false;    // whether supports alone prescribe the gap
+      double                    closing  = 0;        // if so: by how much they close it [mm]
     };
 
     std::vector<Point> points;
-    Constraints        gaps; // rows, blocks, kind, c of one row a point: b u = closing of the gap, c = gap
+    Constraints        gaps; // rows, blocks, kind, c; one row per point: b u = closing of the gap, c = gap
   };
 } // namespace slipstick::tfeti

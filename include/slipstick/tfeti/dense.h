@@ -1,11 +1,12 @@
-// Dense decompositions of small matrices, compiled once: Eigen's templates of them are the most costly to compile.
+// Dense decompositions of small matrices, instantiated in one place: Eigen's templates for them take longest to
+// compile.
 #pragma once
 
 #include <Eigen/Dense>
 
 namespace slipstick::tfeti
 {
-  /// Of a symmetric matrix: eigenvalues, ascending, and eigenvectors of unit length as columns.
+  /// Eigenvalues of a symmetric matrix, ascending, and eigenvectors of unit length as columns.
   struct SymmetricEigen
   {
     explicit SymmetricEigen(const Eigen::MatrixXd &matrix);
@@ -14,12 +15,12 @@ namespace slipstick::tfeti
     Eigen::MatrixXd vectors;
   };
 
-  /// The eigenvalues alone, ascending.
+  /// Only the eigenvalues, ascending.
   Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd &matrix);
 
-  /// x with the least |A x - b|; of several the shortest.
+  /// The x that minimises |A x - b|; the shortest one if there are several.
   Eigen::VectorXd shortest_solution(const Eigen::MatrixXd &A, const Eigen::VectorXd &b);
 
-  /// x with the least |A x - b| and no more entries than the rank of A (pivoted QR).
+  /// An x that minimises |A x - b| with at most rank(A) nonzero entries (pivoted QR).
   Eigen::VectorXd basic_solution(const Eigen::MatrixXd &A, const Eigen::VectorXd &b);
 } // namespace slipstick::tfeti

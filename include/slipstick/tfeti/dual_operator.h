@@ -8,7 +8,7 @@
 
 namespace slipstick::tfeti
 {
-  /// B_p of one subdomain with its unknowns numbered among the touched ones.
+  /// B_p of one subdomain, with the unknowns numbered as in SubdomainSystem::touched().
   struct LocalGluing
   {
     struct Entry
@@ -19,15 +19,15 @@ namespace slipstick::tfeti
     };
     std::vector<Entry> entries;
 
-    /// Touched unknowns and the entries renumbered.
+    /// The touched unknowns of a block and its entries in their numbering.
     static std::pair<LocalGluing, std::vector<unsigned int>> make(const std::vector<Constraints::Entry> &block);
   };
 
-  /// Owner of every ghost of a partitioner, in their order.
+  /// The owning rank of every ghost of a partitioner, in the order of the ghosts.
   std::vector<unsigned int> owners_of_ghosts(const Partitioner &rows);
 
-  /// y = F x, F = B K+ B' (symmetric positive semidefinite). Either by sparse solves with every K_p (implicit), or
-  /// with the dense block of K_p+ at the touched unknowns (explicit).
+  /// y = F x, F = B K+ B' (symmetric positive semidefinite): either by sparse solves with every K_p (implicit), or with
+  /// the dense block of K_p+ at the touched unknowns (explicit).
   class DualOperator
   {
   public:
@@ -40,7 +40,7 @@ namespace slipstick::tfeti
     /// y = F x; x: multipliers [N], y: displacement jumps [mm], owned entries. Collective. Farhat, Roux 1991.
     void apply(const DistributedVector &x, DistributedVector &y) const;
 
-    /// The same by sparse solves, in any storage of the blocks. Collective.
+    /// As apply(), by sparse solves even if dense blocks exist. Collective.
     void apply_by_solves(const DistributedVector &x, DistributedVector &y) const;
 
     /// B' x on subdomain p of this rank: forces at the touched unknowns; x needs its ghosts.
@@ -52,15 +52,15 @@ namespace slipstick::tfeti
     /// B u of displacements of this rank's subdomains, owned rows [mm]. Collective.
     DistributedVector jumps(const std::vector<Eigen::VectorXd> &u) const;
 
-    /// The column of B, owned rows, of a touched unknown (its number among them) of a subdomain of one rank.
-    /// Collective.
-    /// @param subdomain on the other ranks: the number of their subdomains
+    /// The column of B (owned rows) that belongs to a touched unknown of a subdomain of one rank. Collective.
+    /// @param subdomain its number on the rank that has it; the other ranks pass the number of their subdomains.
+    /// @param touched index into SubdomainSystem::touched().
     DistributedVector column(const unsigned int subdomain, const unsigned int touched) const;
 
     /// B_p'x of this rank's subdomains, all unknowns [N]: the forces of the multipliers (owned entries). Collective.
     std::vector<Eigen::VectorXd> forces(const DistributedVector &x) const;
 
-    /// A zero vector with ghosts, and one of owned entries only.
+    /// Zero vectors: with ghosts; with owned entries only.
     DistributedVector ghosted() const;
     DistributedVector zero() const;
 
@@ -93,7 +93,7 @@ namespace slipstick::tfeti
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     const std::vector<LocalGluing>                      &of_subdomains;    // B_p
     Partitioner                                          rows, owned_rows; // with and without ghosts
-    const std::vector<PackedSymmetric>                  *blocks;           // null: none
+    const std::vector<PackedSymmetric>                  *blocks;           // null: implicit
     mutable DistributedVector                            source, target;
     mutable unsigned long long                           applications = 0;
   };

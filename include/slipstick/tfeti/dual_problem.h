@@ -17,9 +17,10 @@ namespace slipstick::tfeti
   /// Forces below this fraction of the largest one count as rounding of zero and hold nothing.
   constexpr double force_rounding = 1e-13;
 
-  /// min 1/2 x'F x - x'd  s.t.  G x = e and bounds on x (which the contact layer knows). x: multipliers [N], one a row
-  /// of B. Serves qp's Problem concept with F scaled by |P F P|, so that its norm is about 1 in any units. What else is done
-  /// with it: face.h (the rows that hold), recovery.h (displacements), diagnosis.h (errors in energy, ambiguous forces).
+  /// min 1/2 x'F x - x'd  s.t.  G x = e and bounds on x (handled by the contact layer). x: multipliers [N], one per row
+  /// of B. Implements qp's Problem concept with F scaled by 1 / |P F P|, so that its norm is about 1 in any units.
+  /// Related: face.h (restriction to the free rows), recovery.h (displacements), diagnosis.h (energy errors, ambiguous
+  /// forces).
   ///
   /// A spring pulled towards a wall by 100 N (tests/install/consumer/bar.cc: with two subdomains and a QP solver):
   /// @code
@@ -40,7 +41,7 @@ namespace slipstick::tfeti
   /// rows.interface_blocks           = {{{0, 0}, {1, 1}}};
   /// rows.interface_held             = {true, true};
   /// DualProblem dual(std::move(spring), rows, {}, {"spring"}, MPI_COMM_SELF);
-  /// // both rows bear: G x = e gives x_0 + x_1 = 100 N, the jumps the rest
+  /// both rows are closed: G x = e gives x_0 + x_1 = 100 N, the jumps give the rest
   /// DistributedVector x = dual.particular(); // x_0 = x_1 = 50 N
   /// x(0)                = 40;                // what stretches the spring by 0.4e-3 mm
   /// x(1)                = 60;
@@ -50,16 +51,16 @@ namespace slipstick::tfeti
   class DualProblem
   {
   public:
-    /// What it cost to set up.
+    /// Cost of the set-up.
     struct SetUp
     {
       unsigned long long multiplications       = 0; // by F, for |P F P|
-      double             factorization_seconds = 0; // that this rank spent on Cholesky factors
+      double             factorization_seconds = 0; // time of this rank for Cholesky factors
     };
 
     /// Factorises the subdomains and the coarse problem and estimates |P F P|. Collective.
-    /// @throws NoEquilibrium naming body and motion when the rows of B leave a rigid motion of a body free; if loads
-    /// drive none of them, UnheldMotions.
+    /// @throws NoEquilibrium naming body and motion when no row of B resists a rigid motion of a body; UnheldMotions
+    /// if, in addition, no load drives such a motion.
     /// @throws NumericalError when a subdomain cannot be factorised.
     DualProblem(std::vector<SubdomainMatrices>  matrices,
                 Constraints                     constraints,
@@ -67,28 +68,28 @@ namespace slipstick::tfeti
                 const std::vector<std::string> &body_names,
                 const MPI_Comm                  comm);
 
-    /// The same with @p subdomains from a problem with other rows: only those touched at other unknowns are factorised.
-    /// No other problem may use them at the same time.
+    /// As above, with @p subdomains taken over from a problem with other rows: only those whose touched unknowns differ
+    /// are factorised again. No other problem may use them at the same time.
     DualProblem(std::shared_ptr<Subdomains>     subdomains,
                 Constraints                     constraints,
                 const DualOptions              &options,
                 const std::vector<std::string> &body_names,
                 const MPI_Comm                  comm);
 
-    /// Another load step: loads f_p of this rank's subdomains [N] and right-hand sides c of the owned rows [mm]. K, B
-    /// and everything that depends only on them stay. Collective.
+    /// Starts another load step: loads f_p of this rank's subdomains [N] and right-hand sides c of the owned rows [mm].
+    /// K, B and everything that depends only on them are kept. Collective.
     void set_step(std::vector<Eigen::VectorXd> loads, std::vector<double> c);
 
     /// Changes only the right-hand sides c of the owned rows [mm]. Collective.
     void set_right_hand_side(std::vector<double> c);
 
-    /// With an operator stored in single precision (F~): d := B K+ f - c - (F - F~) x, F in double by sparse solves, so
-    /// that a point that solves the problem with F~ and this d near x solves the one with F. Another load step starts
-    /// from d again. Collective; two multiplications.
-    /// @return by how much this changed P d, in the units of multiply() (d over |P F P|) [N]; 0 in double precision.
+    /// For an operator stored in single precision (F~): d := B K+ f - c - (F - F~) x, with F applied in double
+    /// precision by sparse solves, so that a solution near x of the problem with F~ and this d solves the problem with
+    /// F. The next load step starts from the uncorrected d. Collective; two multiplications.
+    /// @return the change of P d in the units of multiply() (d over |P F P|) [N]; 0 in double precision.
     double refine(const DistributedVector &x);
 
-    /// Is F stored in single precision?
+    /// Whether F is stored in single precision.
     bool is_approximate() const
     {
       return is_single;
@@ -100,26 +101,27 @@ namespace slipstick::tfeti
     const MpiReduction &reduction() const;
 
     /// Weights of the owned rows' residuals for solvers with a preconditioner: stiffnesses relative to the smallest, so
-    /// that residuals count as forces and all bodies are solved equally well. Empty without a preconditioner.
+    /// that residuals are measured as forces and stiff and soft bodies are solved equally well. Empty without a
+    /// preconditioner.
     const std::vector<double> &residual_weights() const
     {
       return row_metric.weights();
     }
 
-    /// |P F P| times the stiffness of the row of weight 1, its neighbours held; 0 where it is not known (without a
-    /// preconditioner) or tells sets no better (solids; doc/decisions/0090).
+    /// |P F P| times the stiffness of the row of weight 1 with its neighbours held. 0 if unknown (without a
+    /// preconditioner) or if it does not improve the prediction of the active set (solids; doc/decisions/0090).
     double point_stiffness() const
     {
       return M && !bodies->are_solids() ? norm_PFP * row_metric.least() : 0.;
     }
 
-    /// The problem on the free rows (owned ones), the others held, or tied to free ones; rows of slipping nodes in space are
-    /// turned ones. Collective.
+    /// The problem on the owned rows with `free`; the other rows are fixed, or tied to free ones. In space, rows of
+    /// slipping nodes are turned. Collective.
     Face face(const std::vector<bool>     &free,
               const std::vector<qp::Tie>  &ties  = {},
               const std::vector<qp::Turn> &turns = {}) const;
 
-    /// What holds the bodies that the free rows leave loose.
+    /// Chooses rows that hold the bodies which the free rows leave loose.
     const LooseBodies &loose_bodies() const
     {
       return *loose;
@@ -170,12 +172,12 @@ namespace slipstick::tfeti
     {
       return *Q;
     }
-    /// Null: none.
+    /// Null if there is no preconditioner.
     const RowPreconditioner *preconditioner() const
     {
       return M.get();
     }
-    /// Without a preconditioner all rows count alike.
+    /// Without a preconditioner all rows have the same weight.
     const RowMetric &metric() const
     {
       return row_metric;
@@ -199,7 +201,7 @@ namespace slipstick::tfeti
     Constraints                                          rows;
     std::vector<LocalGluing>                             gluing;
     std::shared_ptr<Subdomains>                          parts;
-    const std::vector<std::unique_ptr<SubdomainSystem>> &systems; // theirs
+    const std::vector<std::unique_ptr<SubdomainSystem>> &systems; // those of the subdomains
     std::unique_ptr<DualOperator>                        F;
     std::unique_ptr<BodyMotions>                         bodies;
     std::unique_ptr<LooseBodies>                         loose;
@@ -208,7 +210,7 @@ namespace slipstick::tfeti
     RowMetric                                            row_metric;
     DistributedVector                                    dual_load;
     Eigen::VectorXd                                      resultants;
-    DistributedVector                                    correction; // (F - F~) x, taken off the dual load
+    DistributedVector                                    correction; // (F - F~) x, subtracted from d
     bool                                                 is_single = false;
     double                                               norm_PFP  = 1;
     SetUp                                                cost;

@@ -1,4 +1,4 @@
-// The dual problem on the rows that hold.
+// The dual problem restricted to its free rows (face problem).
 #pragma once
 
 #include <slipstick/tfeti/dual_problem.h>
@@ -9,12 +9,13 @@
 
 namespace slipstick::tfeti
 {
-  /// The dual problem on its free rows, as qp's semismooth Newton and PCPG ask for it. Members are collective.
+  /// Face problem: the dual problem on its free rows, as required by qp's semismooth Newton method and PCPG. Members
+  /// are collective.
   class Face
   {
   public:
-    /// @param problem is referred to. @param free owned rows. @param ties rows held at others, @param turns rows of
-    /// slipping nodes in space that count as turned. Collective.
+    /// @param problem is kept by reference. @param free owned rows. @param ties rows tied to others. @param turns rows
+    /// of slipping nodes in space that are treated as turned. Collective.
     Face(const DualProblem           &problem,
          const std::vector<bool>     &free,
          const std::vector<qp::Tie>  &ties  = {},
@@ -27,20 +28,20 @@ namespace slipstick::tfeti
     /// y = Q_f x on the free rows, y = x on the others.
     void project_range(const DistributedVector &x, DistributedVector &y) const;
 
-    /// Changes the free rows of x, and those tied to them, by the smallest amount that makes G x = e.
+    /// Changes the free rows of x, and the rows tied to them, by the smallest amount that makes G x = e.
     void balance(DistributedVector &x) const;
 
-    /// Changes the free rows of p by the smallest amount that makes G p = 0, once the tied rows are factor times
-    /// theirs.
+    /// Changes the free rows of p by the smallest amount that makes G p = 0, with each tied row equal to its factor
+    /// times the row it is tied to.
     void project_kernel(DistributedVector &p) const;
 
-    /// y = G'a on all rows, with the a that minimises v - G'a on the free ones.
+    /// y = G'a on all rows, with the a that minimises |v - G'a| on the free rows.
     void multiplier_shift(const DistributedVector &v, DistributedVector &y) const;
 
     /// z = M r on the free rows, 0 on the others; a copy without a preconditioner.
     void precondition(const DistributedVector &r, DistributedVector &z) const;
 
-    /// Do the free rows hold all bodies?
+    /// Whether the free rows hold all bodies (G G' on them is nonsingular).
     bool is_regular() const
     {
       return projector != nullptr;
@@ -64,13 +65,13 @@ namespace slipstick::tfeti
     std::vector<bool>          free;
     std::vector<qp::Tie>       ties;
     std::vector<qp::Turn>      turns;
-    std::vector<double>        stiffness; // by turns: of the row across the force, over that without compliance
-    std::unique_ptr<Projector> projector; // none if the free rows do not hold the bodies
+    std::vector<double>        stiffness; // by turns: of the row across the force, relative to that without compliance
+    std::unique_ptr<Projector> projector; // null if the free rows do not hold the bodies
     std::unique_ptr<Projector> tied;      // of free and tied rows, if some rank has ties
     std::unique_ptr<RowWeights::Inverse> weights;
   };
 
-  /// Norm of the part of a residual (such as d - F x over norm()) that multipliers can change, with its
-  /// weights; 0 where that is rounding. Collective.
+  /// Weighted norm of the part of a residual (such as d - F x over norm()) that multipliers can change; 0 if that part
+  /// is only rounding. Collective.
   double residual_norm(const DualProblem &problem, const DistributedVector &r);
 } // namespace slipstick::tfeti

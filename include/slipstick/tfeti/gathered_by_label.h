@@ -1,4 +1,4 @@
-// Values of the rows of all ranks, gathered.
+// Gathers values of the rows of all ranks.
 #pragma once
 
 #include <deal.II/base/mpi.h>
@@ -9,8 +9,8 @@
 
 namespace slipstick::tfeti
 {
-  /// Values of rows of all ranks, on every rank, in the order of the labels of the rows (Constraints::label), which is
-  /// the same for every number of ranks. @p Value is packed by Boost. Collective.
+  /// Values of the rows of all ranks, on every rank, ordered by the labels of the rows (Constraints::label), so that
+  /// the order does not depend on the number of ranks. @p Value is packed by Boost. Collective.
   template <typename Value>
   std::map<std::uint64_t, Value> gathered_by_label(const std::vector<std::uint64_t> &labels,
                                                    const std::vector<Value>         &values,

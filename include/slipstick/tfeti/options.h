@@ -1,4 +1,4 @@
-// Choices of the dual problem.
+// Options of the dual problem.
 #pragma once
 
 namespace slipstick::tfeti
@@ -18,7 +18,7 @@ namespace slipstick::tfeti
     implicit
   };
 
-  /// How dense blocks are stored; products add up in double either way.
+  /// Storage of dense blocks; products are accumulated in double precision either way.
   enum class Precision
   {
     double_precision,
@@ -31,9 +31,9 @@ namespace slipstick::tfeti
     Preconditioner   preconditioner           = Preconditioner::automatic;
     Precision        operator_precision       = Precision::double_precision; // single: see DualProblem::refine
     Precision        preconditioner_precision = Precision::single_precision;
-    bool             keeps_factors = true;   // of an explicit operator, whose K+ is applied several times all the
-                                             // same; else factorised anew for every recovery
-    unsigned int max_norm_iterations = 40;   // of Lanczos' method for |PFP|
-    double       norm_tolerance      = 1e-2; // relative change at which it stops
+    bool             keeps_factors            = true; // of an explicit operator: K+ is still applied a few times;
+                                                      // false: factorise again for every recovery
+    unsigned int max_norm_iterations = 40;            // of Lanczos' method for |PFP|
+    double       norm_tolerance      = 1e-2;          // relative change at which it stops
   };
 } // namespace slipstick::tfeti

@@ -6,9 +6,9 @@
 
 namespace slipstick::tfeti
 {
-  /// M = W^-1 B D^-1 S D^-1 B' W^-1 on a choice of rows. S: Schur complement of K on the touched unknowns (Dirichlet;
-  /// Farhat, Mandel, Roux 1994), or K itself there (lumped). D weighs stiff against soft neighbours (Rixen, Farhat
-  /// 1999).
+  /// M = W^-1 B D^-1 S D^-1 B' W^-1 on a selection of rows. S: Schur complement of K on the touched unknowns
+  /// (Dirichlet; Farhat, Mandel, Roux 1994), or K itself there (lumped). D scales by the stiffness of neighbouring
+  /// subdomains (Rixen, Farhat 1999).
   class RowPreconditioner
   {
   public:
@@ -33,15 +33,15 @@ namespace slipstick::tfeti
     std::vector<Eigen::VectorXd> energies(const RowWeights::Inverse &inverse, const DistributedVector &r) const;
 
   private:
-    /// D^-1 B' W^-1 r: the displacements of the touched unknowns of a subdomain. `source` must hold W^-1 r.
+    /// D^-1 B' W^-1 r: displacements of the touched unknowns of a subdomain. `source` must contain W^-1 r.
     Eigen::VectorXd move(const unsigned int p) const;
-    /// S or K times that.
+    /// S or K times the displacements @p move.
     void multiply(const unsigned int p, const Eigen::VectorXd &move, Eigen::VectorXd &force) const;
 
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     const DualOperator                                  &scatter_gather;
     RowWeights                                           row_weights;
-    const std::vector<PackedSymmetric>                  *blocks;            // null: none
+    const std::vector<PackedSymmetric>                  *blocks;            // null: lumped
     std::vector<Eigen::VectorXd>                         inverse_diagonals; // of K at the touched unknowns
     mutable DistributedVector                            source, target;    // with ghosts
   };

@@ -9,18 +9,18 @@ namespace slipstick::tfeti
   class CoarseSolver;
 
   /// Q = G'(G G')^-1 G projects dual vectors on the range of G'. With T from G G' = T^-1 T^-T the rows of T G are
-  /// orthonormal; they are never formed, since |T G x| = |Q x|.
+  /// orthonormal; they are never computed, since |T G x| = |Q x|.
   ///
   /// With a metric M (a positive number per row, the inverse of the row's compliance), "least" refers to that metric:
-  /// G'(G M G')^-1 G M projects residuals [mm], M G'(G M G')^-1 G multipliers [N], one the transpose of the other.
-  /// Stiff and soft bodies then share corrections according to their stiffnesses (Bhardwaj et al. 2000; Klawonn,
-  /// Widlund 2001).
+  /// G'(G M G')^-1 G M projects residuals [mm], M G'(G M G')^-1 G projects multipliers [N]; each is the transpose of
+  /// the other. Corrections are then distributed over stiff and soft bodies according to their stiffnesses (Bhardwaj et
+  /// al. 2000; Klawonn, Widlund 2001).
   class Projector
   {
   public:
-    /// On all rows.
-    /// @param stays true for the owned rows that every restriction has; their part of G G' is summed once.
-    ///        G G' must be nonsingular (see rigid_motions.h). Collective.
+    /// Projector on all rows.
+    /// @param stays owned rows that are active in every restriction; their part of G G' is summed once.
+    /// G G' must be nonsingular (see rigid_motions.h). Collective.
     Projector(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
               const std::vector<LocalGluing>                      &gluing,
               const DualOperator                                  &scatter_gather,
@@ -28,14 +28,14 @@ namespace slipstick::tfeti
               const std::vector<bool>                             &stays,
               const MPI_Comm                                       comm);
 
-    /// A restriction; G is not kept but shared.
-    /// @param all without restriction.
-    /// @param active true for the owned rows that take part; the others count as zero columns of G.
-    /// @param ties owned rows, active too, whose entries are factor times those of another active one: with x = T y of
-    ///        the untied entries y, Q is T (G T)'(G T (G T)')^-1 G then (a projector on vectors that obey the ties).
+    /// Restriction to some of the rows; shares G with @p all.
+    /// @param all the projector on all rows.
+    /// @param active owned rows that take part; the others count as zero columns of G.
+    /// @param ties owned rows, also active, whose entries are a factor times those of another active row: with x = T y
+    /// of the untied entries y, Q is T (G T)'(G T (G T)')^-1 G (a projector on vectors that satisfy the ties).
     /// @param metric of the owned rows; empty: 1.
-    /// @param turns of the owned rows: all that is said of rows holds for turned ones, and all dual vectors, arguments
-    ///        and results, are turned. Collective.
+    /// @param turns owned rows that are turned: everything that applies to rows then applies to the turned ones, and
+    /// all dual vectors, arguments and results, are turned. Collective.
     Projector(const Projector            &all,
               const std::vector<bool>    &active,
               const MPI_Comm              comm,
@@ -44,13 +44,14 @@ namespace slipstick::tfeti
               std::vector<qp::Turn>       turns  = {});
     ~Projector();
 
-    /// y = Q x, owned entries; with a metric that of residuals. Not with ties. Collective.
+    /// y = Q x, owned entries; with a metric, the projection of residuals. Not with ties. Collective.
     void project_range(const DistributedVector &x, DistributedVector &y) const;
 
-    /// The least y with G y = G x, by which multipliers that obey the ties miss the kernel of G. Collective.
+    /// The least y with G y = G x: the correction that moves x, which satisfies the ties, into the kernel of G.
+    /// Collective.
     void excess(const DistributedVector &x, DistributedVector &y) const;
 
-    /// As project_range(), but on all rows: y = G'a with the a that makes x - G'a least on the active ones. Collective.
+    /// As project_range(), but on all rows: y = G'a with the a that minimises x - G'a on the active rows. Collective.
     void extend_range(const DistributedVector &x, DistributedVector &y) const;
 
     /// G x, the rigid motions of this rank's subdomains in turn; inactive rows count as zero. Collective.

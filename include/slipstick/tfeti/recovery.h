@@ -12,30 +12,30 @@ namespace slipstick::tfeti
   {
     std::vector<Eigen::VectorXd> u;           // of this rank's subdomains [mm]
     DistributedVector            multipliers; // [N]
-    std::vector<RigidMotion>     unresisted;  // motions that nothing resists and no load drives: they are set to zero
+    std::vector<RigidMotion>     unresisted;  // motions that no row resists and no load drives; set to zero
   };
 
-  /// Displacements u = K+(f - B'x) + R a. First x is corrected, only on the rows with `free`, until G x = e holds to
-  /// rounding, so that u is in equilibrium with it; then the amplitudes a of the rigid motions fit those rows (which
-  /// hold with equality) in the sense of least squares. Bodies that slide on all their contacts are placed such that
-  /// every slip follows its force and no gap is negative, as close as possible to where they just stop sticking.
-  /// Collective.
+  /// Displacements u = K+(f - B'x) + R a. First x is corrected on the rows with `free` only, until G x = e holds to
+  /// rounding, so that u is in equilibrium with x. Then the amplitudes a of the rigid motions are a least squares fit
+  /// to those rows (which hold with equality). Bodies that slide on all their contacts are placed such that every slip
+  /// has the direction of its force and no gap is negative, as close as possible to the position where they just stop
+  /// sticking. Collective.
   /// @throws NoEquilibrium naming the body when neither free rows nor rows with friction forces fix a.
-  /// @param keeps_still motions that nothing resists and no load drives stay at zero; otherwise they are an error.
+  /// @param keeps_still true: motions that no row resists and no load drives are set to zero; false: they are an error.
   Recovery recover(const DualProblem       &dual,
                    const DistributedVector &x,
                    const std::vector<bool> &free,
                    const bool               keeps_still = false);
 
-  /// As recover() with keeps_still; nothing where that throws, since loads drive a motion that neither rows with `free` nor rows
-  /// with friction forces resist. Collective.
+  /// As recover() with keeps_still, but returns nothing where that throws: loads drive a motion that neither rows with
+  /// `free` nor rows with friction forces resist. Collective.
   std::optional<Recovery> recover_if_held(const DualProblem       &dual,
                                           const DistributedVector &x,
                                           const std::vector<bool> &free);
 
-  /// u += -K+ B'step + R a, x += step, with the a that fits the free rows in the sense of least squares. G step = 0
-  /// is assumed. The present u is kept, so that rounding of x, under which a slender subdomain bends far more than u,
-  /// does not enter again, as it would with recover(). Collective.
+  /// u += -K+ B'step + R a, x += step, with the a that is a least squares fit to the free rows. Assumes G step = 0.
+  /// Updates u instead of recomputing it, so that the rounding error of x, which bends a slender subdomain by far more
+  /// than that of u, does not enter again as with recover(). Collective.
   void correct(const DualProblem &dual, Recovery &at, const DistributedVector &step, const std::vector<bool> &free);
 
   /// c + compliance x - B u on the free rows, 0 on the others [mm]. Collective.

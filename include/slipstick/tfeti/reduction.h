@@ -1,4 +1,4 @@
-// Sums and minima over the ranks, as the solvers in qp need them.
+// Sums and minima over the ranks for the solvers in qp.
 #pragma once
 
 #include <mpi.h>
@@ -7,7 +7,7 @@
 
 namespace slipstick::tfeti
 {
-  /// qp's Reduction over a communicator. Every rank gets the same bits.
+  /// qp's Reduction over a communicator. The result is bitwise the same on every rank.
   class MpiReduction
   {
   public:

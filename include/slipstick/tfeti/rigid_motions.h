@@ -1,4 +1,4 @@
-// Rigid motions of whole bodies: which are free, and what to call them.
+// Rigid motions of whole bodies: detection of free motions, and their names.
 #pragma once
 
 #include <slipstick/base/exceptions.h>
@@ -9,17 +9,17 @@
 
 namespace slipstick::tfeti
 {
-  /// A rigid motion of one or more bodies: amplitudes of translation x, translation y, rotation of every body; of
-  /// bodies of revolution the translation along the axis alone.
+  /// A rigid motion of one or more bodies: amplitudes of translation x, translation y and rotation of every body; for
+  /// bodies of revolution only the translation along the axis.
   struct RigidMotion
   {
-    Eigen::VectorXd        amplitudes; // as many a body as it has motions, of unit length
+    Eigen::VectorXd        amplitudes; // per body as many as it has motions; unit length
     double                 work = 0;   // of the loads along it, over |loads| [-]
     std::vector<BodyFrame> frames;     // of the bodies
     double                 load = 0;   // along it [N]
   };
 
-  /// Motions that no row of B resists, and no load drives.
+  /// Thrown for motions that no row of B resists and no load drives.
   class UnheldMotions : public UndeterminedPosition
   {
   public:
@@ -31,29 +31,30 @@ namespace slipstick::tfeti
     std::vector<RigidMotion> motions; // orthonormal
   };
 
-  /// Jumps of the rows of B under rigid motions of whole bodies (except gluing rows, which move with their body).
+  /// Jumps of the rows of B under rigid motions of whole bodies (gluing rows excepted: both sides move with their
+  /// body).
   class BodyMotions
   {
   public:
-    /// The arguments are not kept, but `subdomains` has to live as long as this. @param names of all bodies. Collective.
+    /// @param subdomains must outlive this. @param names of all bodies. Collective.
     BodyMotions(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                 const std::vector<LocalGluing>                      &gluing,
                 const Constraints                                   &constraints,
                 const std::vector<std::string>                      &names,
                 const MPI_Comm                                       comm);
 
-    /// Of the bodies.
+    /// Names of the bodies.
     const std::vector<std::string> &names() const
     {
       return names_of_bodies;
     }
 
-    /// Motions that no active row of B resists. Rows between bodies never count as resisting a motion that the bodies
-    /// have in common: a gap or an overlap between the joined points looks like a lever but holds nothing. Collective.
+    /// Motions that no active row of B resists. A row between bodies never resists a motion that the bodies have in
+    /// common: a gap or an overlap between the joined points has a lever arm, but no stiffness. Collective.
     /// @param active rows (owned by this rank) that take part; empty: all.
     /// @param resistance below which a motion counts as free: squared jumps of the rows under a unit motion, over the
     ///        largest of all motions. Rounding by default.
-    /// @param turns rows that count as turned, active or not.
+    /// @param turns rows treated as turned, active or not.
     std::vector<RigidMotion> free(const std::vector<bool>     &active,
                                   const double                 resistance = rounding_of_resistance,
                                   const std::vector<qp::Turn> &turns      = {}) const;
@@ -69,7 +70,7 @@ namespace slipstick::tfeti
     /// Displacements of subdomain p of this rank under a motion, all unknowns.
     Eigen::VectorXd displacements(const unsigned int p, const Eigen::VectorXd &amplitudes) const;
 
-    /// Are the bodies solids, in space?
+    /// Whether the bodies are solids, in space.
     bool are_solids() const
     {
       return is_solid(motions_of_body);
@@ -81,7 +82,7 @@ namespace slipstick::tfeti
       unsigned int    row; // owned
       unsigned int    body;
       Eigen::VectorXd values;    // of its motions
-      double          lever = 0; // of these, the part of the rotation that is due to the distance of the joined points
+      double          lever = 0; // part of the rotation in `values` that is due to the distance of the joined points
     };
 
     void                         find_levers();
@@ -103,24 +104,25 @@ namespace slipstick::tfeti
     std::vector<Share>                                   shares; // sorted by row
   };
 
-  /// The motion of whole bodies in amplitudes of the rigid motions of this rank's subdomains (their mean). Collective.
+  /// The motion of whole bodies (mean over the subdomains) from amplitudes of the rigid motions of this rank's
+  /// subdomains. Collective.
   RigidMotion body_motion(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                           const Eigen::VectorXd                               &amplitudes,
                           const unsigned int                                   n_bodies,
                           const MPI_Comm                                       comm);
 
-  /// "body box: translation along (1, 0)", "body a: rotation about (0, 5)", "body pin: translation along the axis";
-  /// names the bodies that move most.
+  /// Names the motion of the bodies that move most: "body box: translation along (1, 0)", "body a: rotation about (0,
+  /// 5)", "body pin: translation along the axis".
   std::string describe(const RigidMotion &motion, const std::vector<std::string> &body_names);
 
-  /// The same motions, each of which moves a component that no other does (reduced echelon form).
+  /// The same motions in reduced echelon form: each moves a component that none of the others moves.
   std::vector<RigidMotion> disentangled(const std::vector<RigidMotion> &motions);
 
-  /// Among the combinations of free motions, the one along which the loads push or, if they push along none, the one
-  /// that moves the fewest components (translations before rotations). @param motions orthonormal, at least one.
+  /// Among the combinations of free motions, the one along which the loads push or, if there is none, the one that
+  /// moves the fewest components (translations before rotations). @param motions orthonormal, at least one.
   RigidMotion plainest(const std::vector<RigidMotion> &motions);
 
-  /// @throws NoEquilibrium naming the plainest of the motions if the loads push along it, else UnheldMotions; nothing when
-  /// there are none.
+  /// @throws NoEquilibrium naming the plainest of the motions if the loads push along it, otherwise UnheldMotions; does
+  /// not throw if there are no motions.
   void require_support(const std::vector<RigidMotion> &motions, const std::vector<std::string> &body_names);
 } // namespace slipstick::tfeti

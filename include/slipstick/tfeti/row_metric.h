@@ -1,4 +1,4 @@
-// Stiffnesses of the rows of B, by which projections and norms of the dual problem weigh residuals.
+// Stiffnesses of the rows of B, used as weights in projections and norms of the dual problem.
 #pragma once
 
 #include <slipstick/tfeti/constraints.h>
@@ -9,17 +9,19 @@
 
 namespace slipstick::tfeti
 {
-  /// The stiffness of a row is the force that opens it by 1 mm, the other rows held, with its own compliance in series.
+  /// The stiffness of a row is the force that opens it by 1 mm with the other rows held, with its own compliance in
+  /// series.
   class RowMetric
   {
   public:
-    /// All rows alike: no weights.
+    /// No weights: all rows have the same stiffness.
     RowMetric() = default;
 
     /// @param stiffnesses of the owned rows without their own compliance [N/mm]. Collective.
     RowMetric(std::vector<double> stiffnesses, const Constraints &rows, const MPI_Comm comm);
 
-    /// Stiffnesses of the owned rows over the least one of all ranks; both tangents of a node alike. Empty: all alike.
+    /// Stiffnesses of the owned rows over the least one of all ranks; the same for both tangents of a node. Empty: all
+    /// equal.
     const std::vector<double> &weights() const
     {
       return relative;
@@ -31,13 +33,15 @@ namespace slipstick::tfeti
       return smallest;
     }
 
-    /// Of the owned rows: root of the stiffness with the row's compliance over that without. Empty: 1.
+    /// Of the owned rows: square root of the ratio of the stiffness with the row's compliance to that without. Empty:
+    /// 1.
     const std::vector<double> &yielding() const
     {
       return roots;
     }
 
-    /// Do stiffnesses differ so much that the rounding of one projection would show in the stiffest rows?
+    /// Whether the stiffnesses differ so much that the rounding of one projection would be visible in the stiffest
+    /// rows.
     bool is_wide() const
     {
       return differs_much;

@@ -11,21 +11,21 @@
 
 namespace slipstick::tfeti
 {
-  /// W = B D^-1 B', D = diag K: couples rows that share nodes, so it consists of blocks, each on one rank: small ones
-  /// of single nodes, large sparse ones where mortar rows are connected. Rows may depend on each other.
+  /// W = B D^-1 B', D = diag K. It couples rows that share nodes and therefore consists of blocks, each on one rank:
+  /// small ones of single nodes, large sparse ones where mortar rows are connected. Rows may be linearly dependent.
   class RowWeights
   {
     /// Inverses of blocks of W.
     class InverseBlocks
     {
     public:
-      /// @param matrix W of some rows. @return whether none of them depends on the others.
+      /// @param matrix W of these rows. @return whether the rows are linearly independent.
       bool add(const std::vector<unsigned int> &rows, const Eigen::SparseMatrix<double> &matrix);
 
       /// A row that shares no unknown with others.
       void add(const unsigned int row, const double weight);
 
-      /// y = W^-1 x on the rows added; the others of y are left alone.
+      /// y = W^-1 x on the rows added; the other entries of y are unchanged.
       void apply(const double *x, double *y) const;
 
     private:
@@ -36,7 +36,7 @@ namespace slipstick::tfeti
       };
       std::vector<unsigned int> single_rows;
       std::vector<double>       single_values;
-      // dense ones, one after another: numbers of rows, the rows, n x n numbers
+      // dense blocks, stored one after another: number of rows, the rows, n x n entries
       std::vector<unsigned int> sizes, dense_rows;
       std::vector<double>       values;
       std::vector<Sparse>       sparse;
@@ -49,22 +49,22 @@ namespace slipstick::tfeti
                const Partitioner                                   &rows,
                const MPI_Comm                                       comm);
 
-    /// 1 / W_rr of the owned rows [N/mm]: the force that opens a row, with the other rows held, divided by the opening.
+    /// 1 / W_rr of the owned rows [N/mm]: force over opening of the row, with the other rows held.
     std::vector<double> stiffnesses() const;
 
-    /// For every owned row, whether its multiplier is undetermined: the active rows are linearly dependent (B'x = 0 for
-    /// some nonzero x on the active rows), and this row takes part. The result does not depend on the partition.
+    /// For every owned row, whether its multiplier is undetermined: B'x = 0 for some x on the active rows with a
+    /// nonzero entry in this row. The result does not depend on the partition.
     std::vector<bool> ambiguous(const std::vector<bool> &active) const;
 
-    /// Inverse of W restricted to the active rows; of rows that depend on others, a generalised inverse.
+    /// Inverse of W restricted to the active rows; a generalised inverse where rows are linearly dependent.
     class Inverse
     {
     public:
       /// @param weights are kept by reference.
-      /// @param active of turned rows, if there are @p turns.
+      /// @param active if there are @p turns: of the turned rows.
       Inverse(const RowWeights &weights, const std::vector<bool> &active, std::vector<qp::Turn> turns = {});
 
-      /// y = W^-1 x on the active rows, 0 on the others; owned entries, not turned.
+      /// y = W^-1 x on the active rows, 0 on the others; owned entries; x and y are not turned.
       void apply(const DistributedVector &x, DistributedVector &y) const;
 
     private:
@@ -79,19 +79,19 @@ namespace slipstick::tfeti
     {
       std::vector<unsigned int>   rows; // owned
       Eigen::SparseMatrix<double> matrix;
-      bool                        is_regular = true; // no row depends on the others
+      bool                        is_regular = true; // its rows are linearly independent
     };
 
     /// W on the active rows of a block, and these rows.
     static Block restricted(const Block &full, const std::function<bool(unsigned int)> &is_active);
 
-    /// The blocks with turned rows, turned; those that turns couple have become one.
-    /// @param singles, taken receive the numbers of the single rows and of the blocks that they are made of.
+    /// The blocks with turned rows, in turned form; blocks coupled by turns are merged.
+    /// @param singles, taken return the numbers of the single rows and of the blocks that were used.
     std::vector<Block> turned(const std::vector<qp::Turn> &turns,
                               std::set<unsigned int>      &singles,
                               std::set<unsigned int>      &taken) const;
 
-    std::vector<unsigned int> single_rows; // nearly all: they share no unknown with others
+    std::vector<unsigned int> single_rows; // nearly all rows: they share no unknown with others
     std::vector<double>       single_weights;
     std::vector<Block>        blocks;
     InverseBlocks             inverse; // with all rows active

@@ -1,4 +1,4 @@
-// Sparse L D L' of a symmetric positive semidefinite matrix whose rows may depend on each other.
+// Sparse L D L' of a symmetric positive semidefinite matrix whose rows may be linearly dependent.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -7,9 +7,9 @@
 
 namespace slipstick::tfeti
 {
-  /// P A P' = L D L' with a fill-reducing order P. A row that depends on those before it, whose pivot is no more than
-  /// rounding of its diagonal entry, is left out: its entry in a solution is 0. Of a right hand side in the range of A
-  /// the result solves A x = b. Up-looking elimination, Davis 2005 (LDL).
+  /// P A P' = L D L' with a fill-reducing order P. A row that depends on those before it (its pivot is no larger than
+  /// the rounding of its diagonal entry) is skipped: its entry in a solution is 0. For a right-hand side in the range
+  /// of A the result solves A x = b. Up-looking elimination, Davis 2005 (LDL).
   /// @code
   /// Eigen::Matrix2d spring; // held nowhere: a translation costs nothing
   /// spring << 2, -2, -2, 2;

@@ -1,4 +1,4 @@
-// What a subdomain gives to the dual problem: plain data, filled by the finite element layer.
+// Input of the dual problem for one subdomain: plain data, filled by the finite element layer.
 #pragma once
 
 #include <Eigen/Dense>
@@ -9,14 +9,14 @@
 
 namespace slipstick::tfeti
 {
-  /// Point about which a body's rotation is measured, and the length that makes it dimensionless.
+  /// Point about which the rotation of a body is measured, and the length that makes it dimensionless.
   struct BodyFrame
   {
     std::array<double, 3> center{{0, 0, 0}}; // [mm]
     double                length = 1;        // [mm]
   };
 
-  /// Eigen 3.4 copies a sparse matrix where a move is meant; K_p would be held three times.
+  /// Eigen 3.4 copies a sparse matrix where a move is intended; K_p would be stored three times.
   class MovableSparseMatrix : public Eigen::SparseMatrix<double>
   {
   public:
@@ -37,14 +37,14 @@ namespace slipstick::tfeti
     }
   };
 
-  /// Are k the rigid motions of a body in space?
+  /// Whether k is the number of rigid motions of a solid in space.
   constexpr bool is_solid(const unsigned int k)
   {
     return k == 6;
   }
 
-  /// How many of the k rigid motions of a body are translations, which come first; the others are rotations. Solids
-  /// have six, sections of the plane three, bodies of revolution one: along their axis.
+  /// Number of translations among the k rigid motions of a body; they come first, followed by the rotations. Solids
+  /// have six motions, plane sections three, bodies of revolution one (along the axis).
   constexpr unsigned int n_translations(const unsigned int k)
   {
     return is_solid(k) ? 3 : k == 3 ? 2 : k;
@@ -58,8 +58,8 @@ namespace slipstick::tfeti
     MovableSparseMatrix       stiffness;     // n x n [N/mm], lower triangle only, columns compressed and sorted
     Eigen::VectorXd           load;          // n [N]
     Eigen::MatrixXd           kernel;        // n x k: motions of unit size about the subdomain's centre
-    Eigen::MatrixXd           body_modes;    // k x k: kernel * body_modes = rigid motions of the body, seen here
-    Eigen::MatrixXd           positions;     // of the nodes, a column each [mm]: where messages say things are
+    Eigen::MatrixXd           body_modes;    // k x k: kernel * body_modes = rigid motions of the body on this subdomain
+    Eigen::MatrixXd           positions;     // of the nodes, one per column [mm]; for messages
     BodyFrame                 frame;         // of the body's motions
     std::vector<unsigned int> boundary_dofs; // unknowns on the boundary of the subdomain, sorted
   };

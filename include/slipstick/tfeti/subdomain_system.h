@@ -1,4 +1,4 @@
-// One floating subdomain: its stiffness, a generalised inverse of it, its rigid motions.
+// One floating subdomain: stiffness, generalised inverse, rigid motions.
 #pragma once
 
 #include <slipstick/tfeti/cholesky.h>
@@ -18,8 +18,8 @@ namespace slipstick::tfeti
   class SubdomainSystem
   {
   public:
-    /// @param touched unknowns that rows of B touch, sorted; the fixing unknowns are taken from them if they can hold
-    ///        the subdomain, else from its boundary.
+    /// @param touched unknowns touched by rows of B, sorted; the fixing unknowns are taken from them if they can hold
+    /// the subdomain, otherwise from its boundary.
     /// @param with_trailing_block order the touched and fixing unknowns last, for the dense blocks below.
     /// @throws NumericalError when the kernel of K is not spanned by R.
     SubdomainSystem(const std::shared_ptr<CholmodSession> &session,
@@ -35,13 +35,13 @@ namespace slipstick::tfeti
       return cholesky.has_value();
     }
 
-    /// Hands over K, f and R for a factor in another order; unusable afterwards.
+    /// Moves K, f and R out, for a factor in another order. The object must not be used afterwards.
     SubdomainMatrices take_matrices()
     {
       return std::move(matrices);
     }
 
-    /// Frees the factor. K+ is then applied by factorising again, every time, in an order with less fill; the dense
+    /// Frees the factor. K+ is then applied by a new factorisation every time, in an order with less fill; the dense
     /// blocks are no longer available.
     void release()
     {
@@ -66,12 +66,12 @@ namespace slipstick::tfeti
     /// Rows and columns of K+ at the touched unknowns, in their order. Needs the trailing block.
     PackedSymmetric pseudo_inverse_block(const Precision precision) const;
 
-    /// Schur complement of K on the touched unknowns (the fixing ones among them or held together with them), in their
-    /// order. Needs the trailing block. Stored in double precision nevertheless where single precision would lose it:
-    /// in subdomains that are far softer in one deformation than in another (strips).
+    /// Schur complement of K on the touched unknowns (the fixing unknowns are among them or held together with them),
+    /// in their order. Needs the trailing block. In subdomains that are far softer in one deformation than in another
+    /// (strips) it is stored in double precision in any case, since single precision would lose the soft deformation.
     PackedSymmetric schur_complement(const Precision precision) const;
 
-    /// Makes the factor that apply_schur_complement() needs, of K at the unknowns that rows do not touch.
+    /// Computes the factor for apply_schur_complement(): of K at the unknowns that rows do not touch.
     void prepare_schur_complement(const std::shared_ptr<CholmodSession> &session);
 
     bool has_schur_complement() const
@@ -79,10 +79,10 @@ namespace slipstick::tfeti
       return inner.has_value();
     }
 
-    /// The Schur complement of K on the touched unknowns times @p x, in their order, without the matrix itself.
+    /// The Schur complement of K on the touched unknowns times @p x, in their order, without forming the matrix.
     Eigen::VectorXd apply_schur_complement(const Eigen::VectorXd &x) const;
 
-    /// Are touched unknowns so many that blocks of them would have far more entries than K?
+    /// Whether the touched unknowns are so many that their dense blocks would have far more entries than K.
     static bool prefers_factors(const SubdomainMatrices &matrices, const std::size_t n_touched);
 
     /// Diagonal of K at the touched unknowns.
@@ -113,7 +113,7 @@ namespace slipstick::tfeti
     {
       return matrices.frame;
     }
-    /// Where the node of an unknown lies [mm].
+    /// Position of the node of an unknown [mm].
     std::array<double, 3> position(const unsigned int unknown) const;
     unsigned int          subdomain() const
     {
@@ -142,15 +142,14 @@ namespace slipstick::tfeti
     std::vector<unsigned int>       touched_unknowns;
     std::vector<unsigned int>       fixing_unknowns;
     double                          regularization; // rho [N/mm]
-    bool                            is_soft;  // against some deformation, by far, compared with the largest entry of K
-    std::optional<Cholesky>         cholesky; // none once released
+    bool                            is_soft;        // far softer in some deformation than the largest entry of K
+    std::optional<Cholesky>         cholesky;       // empty after release()
     std::vector<unsigned int>       inner_unknowns; // not touched
-    std::optional<Cholesky>         inner;          // of K there
+    std::optional<Cholesky>         inner;          // of K at the inner unknowns
   };
 
-  /// As many of the @p candidates as R has columns, chosen by pivoting so that the rows of R there are as independent
-  /// as can be. @return their list, and the smallest pivot (about 1 when they hold all motions well, 0 when they do
-  /// not).
+  /// As many of the @p candidates as R has columns, chosen by pivoting so that the rows of R are as independent as
+  /// possible. @return the unknowns, and the smallest pivot (about 1 if they hold all motions well, 0 if they do not).
   std::pair<std::vector<unsigned int>, double> fixing_unknowns(const Eigen::MatrixXd           &kernel,
                                                                const std::vector<unsigned int> &candidates);
 } // namespace slipstick::tfeti
