@@ -6,7 +6,7 @@ namespace slipstick::contact
 {
   namespace
   {
-    // Residual over the right-hand side; estimates of errors need two digits.
+    // Residual over the right-hand side; error estimates need two digits.
     constexpr double tolerance = 1e-4;
   } // namespace
 

@@ -14,23 +14,23 @@ namespace slipstick::contact
   {
     using tfeti::DistributedVector;
 
-    // Lengths below this fraction of the largest gap or displacement count as zero: rounding leaves some 1e-14 of
-    // these, a tolerance of 1e-10 allows 1e-7 of what remains here.
+    // Lengths below this fraction of the largest gap or displacement count as zero: the rounding level is about 1e-14
+    // of these, and a tolerance of 1e-10 admits errors of 1e-7 of the smallest length that counts.
     constexpr double negligible_part = 1e-6;
-    // Deformations below this fraction of these count as zero: rounding shows in the stiffest of them.
+    // Deformations below this fraction of these lengths count as zero: the stiffest ones are dominated by rounding.
     constexpr double negligible_deformation = 1e-5;
-    // The steps of a history are solved to a tolerance relative to its largest loads: displacements of a step below
-    // this fraction of the largest one of the history count as zero.
+    // The steps of a load history are solved to a tolerance relative to its largest loads: displacements of a step
+    // below this fraction of the largest one of the history count as zero.
     constexpr double part_of_history = 1e-2;
-    // Lower limit on the forces that count for a body, relative to the largest forces on any body.
+    // Lower limit of the reference force of a body, relative to the largest forces on any body.
     constexpr double negligible_load = 1e-3;
-    // Rounding of K u, over the diagonal entry of its row times the largest displacement: the magnitudes of a row add up to some
-    // six times that entry, and displacements are sums themselves.
+    // Rounding of K u, relative to the diagonal entry of the row times the largest displacement: the magnitudes of a
+    // row add up to about six times that entry, and displacements are sums themselves.
     constexpr double rounding_of_forces = 128 * std::numeric_limits<double>::epsilon();
-    // Slip bounds above this multiple of the largest contact force only mean that nodes stick.
+    // Slip bounds above this multiple of the largest contact force are cut off: the nodes stick in any case.
     constexpr double bounds_that_count = 2;
 
-    /// Of the displacement of a node.
+    /// Number of displacement components of a node.
     unsigned int n_components(const tfeti::SubdomainSystem &subdomain)
     {
       return tfeti::is_solid(subdomain.kernel().cols()) ? 3 : 2;
@@ -41,8 +41,8 @@ namespace slipstick::contact
       return scale > 0 ? value / scale : value;
     }
 
-    /// Displacements without the rigid motions of their subdomains, which no force resists: in products with K these
-    /// would contribute nothing but rounding.
+    /// Displacements minus the rigid motions of their subdomains, which no force resists: in products with K these
+    /// would only contribute rounding errors.
     std::vector<Eigen::VectorXd> deformations(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
     {
       std::vector<Eigen::VectorXd> result = u;
@@ -50,13 +50,13 @@ namespace slipstick::contact
         {
           const Eigen::MatrixXd             &R = dual.subdomains()[p]->kernel();
           const Eigen::LDLT<Eigen::MatrixXd> gram(R.transpose() * R);
-          for (unsigned int pass = 0; pass < 2; ++pass) // the second one for the rounding of the first
+          for (unsigned int pass = 0; pass < 2; ++pass) // the second pass corrects the rounding of the first
             result[p] -= R * gram.solve(R.transpose() * result[p]);
         }
       return result;
     }
 
-    /// Nodal forces K u - f of every subdomain, exerted by supports, contact and neighbours.
+    /// Nodal forces K u - f of every subdomain, exerted by supports, contact and neighbouring subdomains.
     std::vector<Eigen::VectorXd> nodal_forces(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
     {
       std::vector<Eigen::VectorXd> forces;
@@ -65,16 +65,16 @@ namespace slipstick::contact
       return forces;
     }
 
-    /// Forces and moments left on the bodies by K u - f + B'x, and the force scales.
+    /// Resultant forces and moments of K u - f + B'x on the bodies, and the force scales.
     struct Balance
     {
       Eigen::MatrixXd left;                // motions x bodies
-      Eigen::VectorXd scale;               // by body: sum of the magnitudes of all outside forces
+      Eigen::VectorXd scale;               // by body: sum of the magnitudes of all external forces
       double          largest         = 0; // nodal: largest load, contact force or reaction
-      double          beyond_rounding = 0; // nodal: what is left beyond the rounding of K u
+      double          beyond_rounding = 0; // nodal: residual in excess of the rounding of K u
     };
 
-    /// @param on_node gets the residual force at a node of this rank.
+    /// @param on_node receives the residual force at a node of this rank.
     Balance balance(const tfeti::DualProblem           &dual,
                     const std::vector<Eigen::VectorXd> &u,
                     const std::vector<Eigen::VectorXd> &nodal_forces,
@@ -82,7 +82,7 @@ namespace slipstick::contact
                     const unsigned int                  n_bodies,
                     Largest                            &on_node)
     {
-      DistributedVector outside = multipliers; // what does not act between the subdomains of a body
+      DistributedVector outside = multipliers; // only forces that are not between subdomains of a body
       for (unsigned int r = 0; r < dual.constraints().kind.size(); ++r)
         if (dual.constraints().kind[r] == tfeti::RowKind::gluing)
           outside.local_element(r) = 0;
@@ -121,15 +121,15 @@ namespace slipstick::contact
       return result;
     }
 
-    /// The numbers that checks are relative to.
+    /// Reference values of the checks.
     struct Scales
     {
-      double length, force, energy; // of this answer, or what rounding leaves of it [mm], [N], [N mm]
-      double no_force, no_strain;   // what counts as zero [N], [mm]
+      double length, force, energy; // of this solution, at least the rounding level [mm], [N], [N mm]
+      double no_force, no_strain;   // thresholds below which values count as zero [N], [mm]
       double no_energy;             // [N mm]
     };
 
-    /// One answer under inspection. The order of the largest values is that of Checks::entries().
+    /// Checks of one solution. The order of the largest values is that of Checks::entries().
     class Inspection
     {
     public:
@@ -189,7 +189,7 @@ namespace slipstick::contact
         energy_norm
       };
 
-      /// Displacements and energies.
+      /// Computes displacements and energies.
       void measure_bodies()
       {
         Checks         &checks   = result.checks;
@@ -210,14 +210,14 @@ namespace slipstick::contact
         checks.energies.assign(energies.data(), energies.data() + energies.size());
       }
 
-      /// By how much a row that holds is off [mm].
+      /// Violation of an equality or closed row [mm].
       double violation(const unsigned int r) const
       {
         const double compliance = constraints.compliance.empty() ? 0. : constraints.compliance[r];
         return jumps.local_element(r) - constraints.c[r] - compliance * multipliers.local_element(r);
       }
 
-      /// Jumps that must not be. @return the energies that closing them would take.
+      /// Checks inadmissible jumps. @return the energies of the displacements that would close them.
       tfeti::JumpEnergies check_rows()
       {
         unsigned int row_of_jump = tfeti::invalid_row;
@@ -264,7 +264,7 @@ namespace slipstick::contact
         result.checks.largest_force = largest_contact;
       }
 
-      /// The law of contact at the nodes, bonded ones aside.
+      /// Checks the contact law at the nodes, except bonded ones.
       void check_nodes()
       {
         for (unsigned int i = 0; i < constraints.contact_points.size(); ++i)
@@ -307,7 +307,7 @@ namespace slipstick::contact
       {
         const double way    = std::max(largest_gap, result.checks.max_displacement);
         const double before = part_of_history * history.displacement;
-        // supports may bear all loads where they act: what is left then is rounding
+        // supports may bear all loads at their points of attack: only rounding is left then
         const double rounding  = tfeti::force_rounding * largest_force;
         const double no_length = std::max(negligible_part * way, before);
         Scales       scales;
@@ -327,7 +327,7 @@ namespace slipstick::contact
       {
         for (unsigned int b = 0; b < n_bodies; ++b)
           {
-            const unsigned int k = on_bodies.left.rows(), n_forces = tfeti::n_translations(k); // the moments come last
+            const unsigned int k = on_bodies.left.rows(), n_forces = tfeti::n_translations(k); // forces, then moments
             const double       scale = std::max(on_bodies.scale[b], scales.no_force);
             largest[force_balance].take(relative(on_bodies.left.col(b).head(n_forces).norm(), scale), {true, b});
             if (k > n_forces)
@@ -335,7 +335,7 @@ namespace slipstick::contact
           }
       }
 
-      /// Of every body; also of stiff bodies among soft ones, which have little of the energy.
+      /// Of every body; also of stiff bodies among soft ones, whose share of the total energy is small.
       void check_energies(const tfeti::JumpEnergies &error_energies, const Balance &on_bodies, const Scales &scales)
       {
         const double least_load = negligible_load * on_bodies.scale.maxCoeff();
@@ -364,7 +364,7 @@ namespace slipstick::contact
         checks.tension         = relative(largest[tension].value, scales.force);
         checks.friction_bound  = relative(largest[friction_bound].value, scales.force);
         checks.complementarity = relative(checks.complementarity, scales.energy);
-        // where nothing bears anything, the displacement of stiff bodies leaves rounding alone
+        // if there are no forces, the displacement of stiff bodies is only rounding
         const double at_nodes    = largest[nodal_equilibrium].value;
         checks.nodal_equilibrium = on_bodies.largest < scales.no_force && !std::isnan(at_nodes)
                                      ? relative(on_bodies.beyond_rounding, scales.no_force)

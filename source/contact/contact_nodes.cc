@@ -11,9 +11,9 @@ namespace slipstick::contact
   {
     using tfeti::DistributedVector;
 
-    /// Moment of the forces on both sides: force on the slave body at its node, the opposite one at the mean of the
-    /// master nodes.
-    /// @param N compressive force, @param T minus the tangential force on the slave body, in the plane.
+    /// Moment of the contact forces on both sides: the force on the slave body acts at its node, the opposite force at
+    /// the mean of the master nodes.
+    /// @param N compressive force. @param T minus the tangential force on the slave body, in the plane.
     std::array<double, 3> moment_mismatch(const tfeti::ContactPoint &point,
                                           const ContactNode         &node,
                                           const double               N,
@@ -34,7 +34,7 @@ namespace slipstick::contact
       return mismatch.moment;
     }
 
-    /// Vectors and lengths of tangential traction and slip.
+    /// Sets vectors and magnitudes of tangential traction and slip.
     void complete_in_space(const tfeti::DualProblem  &dual,
                            const tfeti::ContactPoint &point,
                            const DistributedVector   &multipliers,
@@ -44,7 +44,7 @@ namespace slipstick::contact
       for (const unsigned int k : {0, 1})
         {
           const unsigned int row = k == 0 ? point.tangential_row : point.second_row;
-          if (row == tfeti::invalid_row) // a support holds the node there
+          if (row == tfeti::invalid_row) // a support holds the node in this direction
             continue;
           for (unsigned int d = 0; d < 3; ++d)
             {

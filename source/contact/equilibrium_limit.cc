@@ -11,9 +11,9 @@ namespace slipstick::contact
 {
   namespace
   {
-    // Loads along a motion below this part of the largest force are what rounding leaves of none.
+    // Loads along a motion below this part of the largest force are rounding of zero.
     constexpr double rounding_of_drive = 1e-10;
-    // What friction bears is known to no more decimals than this.
+    // Maximum number of decimals in messages.
     constexpr int most_decimals = 12;
 
     bool is_at_limit(const double held)
@@ -21,7 +21,7 @@ namespace slipstick::contact
       return std::abs(held - 1) < nearness_of_limit;
     }
 
-    /// Enough digits to tell it from 1.
+    /// The number with enough digits to distinguish it from 1.
     std::string part_text(const double held)
     {
       if (!is_at_limit(held))

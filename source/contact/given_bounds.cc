@@ -7,7 +7,7 @@ namespace slipstick::contact
   {
     using Vector = tfeti::DistributedVector;
 
-    /// The entries of a disc have no bounds of their own.
+    /// Removes the bounds of the individual entries of a disc.
     void unbind(const qp::PressureBound &disc, Box &box)
     {
       for (const auto entry : {disc.tangential, disc.second})

@@ -16,7 +16,7 @@ namespace slipstick::contact
       return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     }
 
-    /// On a node that touches [N].
+    /// Force on a contact node [N].
     Components force_on(const tfeti::HeldContacts::Point &point,
                         const tfeti::Constraints         &constraints,
                         const tfeti::DistributedVector   &multipliers)
@@ -75,7 +75,7 @@ namespace slipstick::contact
         const Components force = touches[i] ? force_on(point, dual.constraints(), multipliers) : Components{{0, 0, 0}};
         node.is_closed         = touches[i];
         node.gap               = gaps[i];
-        node.pressure          = (0. - product(force, node.normal)) / node.area; // no -0
+        node.pressure          = (0. - product(force, node.normal)) / node.area; // the sum avoids -0
         if (point.is_bonded)
           {
             node.tangential_traction = product(force, {{-node.normal[1], node.normal[0], 0}}) / node.area;

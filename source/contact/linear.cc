@@ -11,10 +11,9 @@ namespace slipstick::contact
   {
     using Vector = tfeti::DistributedVector;
 
-    // If an accuracy test is given, linear problems are solved in stages, each to this fraction of the previous
-    // residual ...
+    // With an accuracy test, linear problems are solved in stages, each to this fraction of the previous residual ...
     constexpr double part_of_residual = 0.3;
-    // ... from this residual on.
+    // ... starting with this residual.
     constexpr double first_asked = 0.1;
   } // namespace
 
@@ -50,7 +49,7 @@ namespace slipstick::contact
     const auto   face      = dual.face(solution.free);
     auto         b         = homogenised_load(dual, start);
     const double reference = tfeti::residual_norm(dual, b);
-    if (reference == 0) // nothing is deformed
+    if (reference == 0) // no deformation
       {
         solution.multipliers = start;
         solution.status      = qp::Status::converged;
@@ -58,7 +57,7 @@ namespace slipstick::contact
         return solution;
       }
     const auto precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
-    if (goes_on) // from the true residual, not from the recursion of an earlier solve
+    if (goes_on) // continue from the true residual instead of the recursion of an earlier solve
       {
         start = goes_on->multipliers;
         face.balance(start);
@@ -89,11 +88,11 @@ namespace slipstick::contact
         solution.multipliers        = start;
         solution.multipliers += result.x;
         if (result.status == qp::Status::stagnated && !reorthogonalizes)
-          { // rounding has spoilt the conjugacy of the directions
+          { // rounding has destroyed the conjugacy of the directions
             reorthogonalizes         = true;
             pcpg.reorthogonalization = qp::Reorthogonalization::full;
             from                     = {std::move(result.x)};
-            tolerance /= part_of_residual; // the same once more
+            tolerance /= part_of_residual; // repeat the stage
             continue;
           }
         if (result.status != qp::Status::converged || tolerance <= options.tolerance)

@@ -9,7 +9,7 @@ namespace slipstick::contact
 {
   namespace
   {
-    // Overlaps below this part of the first ones are what rounding leaves of none.
+    // Overlaps below this part of the initial ones are rounding of zero.
     constexpr double negligible_overlap = 1e-10;
 
     double largest_of(const std::vector<double> &values, const MPI_Comm comm)
@@ -20,7 +20,7 @@ namespace slipstick::contact
       return dealii::Utilities::MPI::max(largest, comm);
     }
 
-    /// Can the bodies be moved to where nothing overlaps?
+    /// Whether the bodies can be moved apart so that nothing overlaps.
     bool come_apart(const tfeti::DualProblem &dual, const Box &box)
     {
       const auto         &kind    = dual.constraints().kind;

@@ -11,7 +11,8 @@ namespace slipstick::contact
   {
     using tfeti::DistributedVector;
 
-    /// The pair of contact of a row where x (owned rows) is not 0, the same on all ranks; none: nothing. Collective.
+    /// The contact pair of a row where x (owned rows) is not 0, the same on all ranks; nothing if there is none.
+    /// Collective.
     std::optional<unsigned int> pair_of(const tfeti::DualProblem &dual, const DistributedVector &x)
     {
       unsigned int pair = 0; // its number + 1, 0 for none
@@ -30,7 +31,7 @@ namespace slipstick::contact
       return {true, subdomain.body(), subdomain.position(unknown), true, pair.has_value(), pair.value_or(0)};
     }
 
-    /// Is this the first rank on which it is true? Collective.
+    /// Whether this is the first rank with true. Collective.
     bool is_first(const bool says_so, const MPI_Comm comm)
     {
       const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(comm);
@@ -59,7 +60,7 @@ namespace slipstick::contact
                              n[7] > 0,
                              static_cast<unsigned int>(n[8])};
         if (!all.take(n[0], where) && n[0] == all.value && !all.place.is_known)
-          all.place = where; // a rank that knows the value, not the place, came first
+          all.place = where; // an earlier rank had the same value without a place
       }
     *this = all;
   }

@@ -6,11 +6,11 @@ namespace slipstick::contact
 {
   namespace
   {
-    // Corrections before giving up; two reach rounding.
+    // Maximum number of corrections; two are enough to reach rounding.
     constexpr unsigned int max_corrections = 5;
     // Multiplications needed to measure the error of F~.
     constexpr unsigned int multiplications_per_check = 2;
-    // Residual of closing gaps relative to the gaps; rounding of F allows no less in slender subdomains.
+    // Tolerance for closing the gaps, relative to the gaps; rounding of F prevents less in slender subdomains.
     constexpr double closing_tolerance = 1e-4;
   } // namespace
 
@@ -23,7 +23,7 @@ namespace slipstick::contact
                              const AccuracyTest           &is_accurate)
   {
     auto       solution  = solve(dual, law, options, friction, observer, start, is_accurate);
-    const auto reference = [&dual] { // |P (d - F x~)|, as the solvers see it
+    const auto reference = [&dual] { // |P (d - F x~)|, as in the solvers
       auto x = dual.particular(), b = dual.zero(), q = dual.zero();
       dual.multiply(x, b);
       b.sadd(-1., 1. / dual.norm(), dual.d());

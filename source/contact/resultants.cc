@@ -14,7 +14,7 @@ namespace slipstick::contact
   {
     std::vector<Resultant> own(n_holders);
     const auto             add = [&](const unsigned int holder, const std::array<double, 3> &force, const auto &at) {
-      if (holder < n_holders) // else a bond to an obstacle, whose nodes are among those of the pairs
+      if (holder < n_holders) // otherwise a bond to an obstacle, whose nodes are counted with the pairs
         own[holder].add<3>(force, at);
     };
     for (const auto &reaction : dual.constraints().reactions)

@@ -20,7 +20,7 @@ namespace slipstick::contact
         double &lower = box.lower.local_element(r), &upper = box.upper.local_element(r);
         switch (dual.constraints().kind[r])
           {
-            case tfeti::RowKind::tangential: // in space a square around the disc
+            case tfeti::RowKind::tangential: // in space: the square around the disc
               lower = -slip_bound[r];
               upper = slip_bound[r];
               break;
@@ -57,7 +57,7 @@ namespace slipstick::contact
             x[d] = point.position[d];
           const auto &pair   = scene.contacts[point.pair];
           const auto  forces = pair.law.admissible_forces(x, t, point.area, pair.name);
-          if (pair.law.acts_when_open || point.normal_row == tfeti::invalid_row) // supports take the normal force
+          if (pair.law.acts_when_open || point.normal_row == tfeti::invalid_row) // a support takes the normal force
             {
               fixed[point.tangential_row] = forces.closed_radius(0);
               if (point.second_row == tfeti::invalid_row)
@@ -74,7 +74,7 @@ namespace slipstick::contact
     });
     follows_pressure   = dealii::Utilities::MPI::max(rows.empty() ? 0 : 1, dual.communicator()) > 0;
     const bool has_own = !discs.empty() || std::any_of(rows.begin(), rows.end(), [](const auto &row) {
-      return row.is_disc(); // others are intervals, where supports hold one tangent
+      return row.is_disc(); // the others are intervals: supports hold one tangent
     });
     is_in_space        = dealii::Utilities::MPI::max(has_own ? 1 : 0, dual.communicator()) > 0;
   }

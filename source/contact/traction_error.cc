@@ -10,15 +10,16 @@ namespace slipstick::contact
 {
   namespace
   {
-    // Errors of tractions may be this times the tolerance of the solver, over the tractions of the pair: 1 % at 1e-4 ...
+    // Admissible error of the tractions of a pair: this times the tolerance of the solver (1 % at 1e-4) ...
     constexpr double traction_error = 100;
-    // ... and no more than this.
+    // ... and at most this.
     constexpr double largest_traction_error = 0.05;
-    // Tractions of a pair below this part of the largest of any pair count as this part, ...
+    // Lower limits of the reference traction of a pair: this part of the largest traction of any pair, ...
     constexpr double negligible_pair = 1e-3;
-    // ... and below this part of the largest in any earlier step: errors are no less than the tolerance over these.
+    // ... this part of the largest in any earlier step, so that the admissible error is at least the tolerance times
+    // that, ...
     constexpr double negligible_remainder = 1 / traction_error;
-    // ... and so do those below this part of what balances the loads, on one contact node: of pairs that no load reaches.
+    // ... and this part of the forces that balance the loads, on one contact node, for pairs without load.
     constexpr double negligible_force = 1e-6;
   } // namespace
 
@@ -58,7 +59,7 @@ namespace slipstick::contact
     return result;
   }
 
-  // Of every pair in turn: squares of the norms in L2 of the tractions of x and of the error [N MPa].
+  // For each pair: squared L2 norms of the tractions of x and of the error [N MPa].
   std::vector<double> TractionError::squares_of_pairs(const Vector &x, const Vector &error) const
   {
     unsigned int n_pairs = 0;

@@ -58,7 +58,7 @@ namespace slipstick::interface
       return edges;
     }
 
-    /// Walks the lines of one pair.
+    /// Follows the lines of one pair.
     template <int dim>
     class Walk
     {
@@ -76,7 +76,7 @@ namespace slipstick::interface
 
       std::map<mechanics::NodeKey, double> lengths()
       {
-        std::vector<mesh::GlobalVertex> starts; // ends of lines first, then any vertex (closed lines), both by position
+        std::vector<mesh::GlobalVertex> starts; // ends of lines first, then any vertex (closed lines); by position
         for (const bool ends : {true, false})
           {
             std::vector<mesh::GlobalVertex> group;

@@ -5,7 +5,7 @@ namespace slipstick::interface
 {
   namespace
   {
-    // On a part that is small the entries are of very different size.
+    // On a small part of an edge the entries differ by orders of magnitude.
     Eigen::VectorXd scale_of(const Eigen::MatrixXd &mass)
     {
       return mass.diagonal().cwiseSqrt().cwiseInverse();

@@ -50,10 +50,10 @@ namespace slipstick::interface
                                  outline_of(all, pair.slave.body),
                                  outline_of(all, pair.master->body)};
       const auto           distance = facing_distance(sides.slave, sides.master);
-      if (!distance) // of empty sides too
+      if (!distance) // also if a side is empty
         refuse_pair(scene, pair, sides, 0.);
       const double near = pair.reach ? *pair.reach : automatic_reach(sides.slave, sides.master, *distance);
-      // nodes that are farther apart have no rows at first, but are checked again when the solution is known
+      // more distant nodes have no rows at first, but are checked again with the solution
       const double reach = pair.reach || !pair.law.acts_where_closed_alone()
                              ? near
                              : std::max(near, widest_reach(sides.slave, sides.master, *distance));
@@ -71,7 +71,7 @@ namespace slipstick::interface
       return rows;
     }
 
-    /// Connected nodes.
+    /// Connected components of nodes.
     class Groups
     {
     public:

@@ -13,7 +13,7 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Contact nodes that are farther apart than the nearest ones by less than this many mesh sizes keep their rows.
+    // Contact nodes keep their rows if their gap exceeds the smallest one by less than this many mesh sizes.
     constexpr double mesh_sizes = 2;
 
     tfeti::Partitioner make_partitioner(const std::uint64_t                           first,
@@ -24,7 +24,7 @@ namespace slipstick::interface
     {
       dealii::IndexSet owned(n_total), ghosts(n_total);
       owned.add_range(first, first + n_owned);
-      if (n_total == 0) // deal.II 9.4 divides by it when there are several ranks
+      if (n_total == 0) // with several ranks, deal.II 9.4 divides by it
         return std::make_shared<dealii::Utilities::MPI::Partitioner>(owned, comm);
       std::sort(touched.begin(), touched.end());
       touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
@@ -104,7 +104,7 @@ namespace slipstick::interface
     for (const auto &own : extents)
       {
         const double gap = dealii::Utilities::MPI::min(own.gap, mesh.comm);
-        // along the boundary, in space from its area
+        // along the boundary; in space the root of the area
         const double length  = std::pow(dealii::Utilities::MPI::sum(own.length, mesh.comm), 1. / (dim - 1));
         const double n_nodes = std::pow(double(dealii::Utilities::MPI::sum(own.n_nodes, mesh.comm)), 1. / (dim - 1));
         limits.push_back(n_nodes > 0 ? gap + std::max(part * length, mesh_sizes * length / n_nodes) : 0.);

@@ -16,9 +16,9 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Outlines that touch may be apart by rounding: fraction of an edge.
+    // Touching outlines may differ by rounding: fraction of an edge.
     constexpr double touching = 1e-6;
-    // Depth from which on bodies overlap: fraction of an edge.
+    // Bodies overlap from this depth on: fraction of an edge.
     constexpr double overlap = 0.1;
     // Edges are equally fine if they differ by less than this fraction.
     constexpr double same_size = 1e-6;
@@ -95,7 +95,7 @@ namespace slipstick::interface
       return smallest;
     }
 
-    /// Distance to the nearest chord over its length.
+    /// Distance to the nearest chord divided by its length.
     double relative_depth(const ClosedOutline &outline, const dealii::Point<2> &x)
     {
       double best = std::numeric_limits<double>::max(), relative = 0;
@@ -116,7 +116,7 @@ namespace slipstick::interface
       return relative;
     }
 
-    /// Have the two sides a common part, within the reach of the pair?
+    /// Whether the two sides have a common part within the reach of the pair.
     template <int dim>
     bool meet(const Parts<dim> &slave, const Parts<dim> &master, const scene::ContactPair<dim> &pair)
     {
@@ -124,7 +124,7 @@ namespace slipstick::interface
                 .empty();
     }
 
-    /// Inside of what is the whole outline of a body?
+    /// Test for points inside the outline of a body.
     class Inside
     {
     public:
@@ -191,7 +191,7 @@ namespace slipstick::interface
     }
   } // namespace
 
-  // In space bodies that touch along an edge or in a point are none: neighbours across the corner in a wall of blocks.
+  // In space contact along an edge or in a point does not count: diagonal neighbours in a wall of blocks.
   template <int dim>
   std::vector<scene::ContactPair<dim>> find_contacts(const scene::Scene<dim>      &scene,
                                                      const mesh::Mesh<dim>        &mesh,

@@ -5,7 +5,7 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Corners of less than this angle [rad] count as none.
+    // Corners that turn by less than this angle [rad] are ignored.
     constexpr double straight = 1e-9;
 
     const dealii::Point<2> &next(const ConvexPolygon &polygon, const std::size_t i)

@@ -12,12 +12,12 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Parts of an edge (of its length) that are shorter than this are left out.
+    // Parts of an edge shorter than this (relative to its length) are ignored.
     constexpr double smallest_segment = 1e-12;
-    // Crossings at distances that differ by no more than this part of an edge are one: at a node of the master.
+    // Crossings whose distances differ by at most this part of an edge are the same: at a node of the master.
     constexpr double same_place = 1e-9;
 
-    // Of a zero in [0, 1], absolute: rounding of the coordinates.
+    // absolute, for a zero in [0, 1]: rounding of the coordinates
     constexpr double         root_tolerance   = 1e-16;
     constexpr std::uintmax_t most_evaluations = 200;
 
@@ -65,7 +65,8 @@ namespace slipstick::interface
             const auto first = partner(e, s, near);
             if (!first)
               continue;
-            // at a node of the master the side that faces the slave most, however the edges are numbered
+            // at a node of the master take the side that is most opposed to the slave, independent of the numbering of
+            // edges
             const double gap  = hit(e, s, *first)->gap;
             double       best = 0;
             for (const unsigned int m : near)
@@ -113,13 +114,13 @@ namespace slipstick::interface
     return result;
   }
 
-  /// The master edge that the ray from a point of slave edge e meets first and from outside, if any.
+  /// The master edge that the ray from a point of slave edge e hits first and from outside, if any.
   std::optional<unsigned int> CurvePairing::partner(const unsigned int               e,
                                                     const double                     s,
                                                     const std::vector<unsigned int> &near) const
   {
     const Tensor n = field(e, s) / field(e, s).norm();
-    // ahead and behind: the first crossing
+    // ahead and behind: the first crossing counts
     std::array<double, 2>       distance{{reach.ahead, reach.behind}};
     std::array<unsigned int, 2> first{};
     std::array<bool, 2>         is_facing{{false, false}};
@@ -147,7 +148,7 @@ namespace slipstick::interface
     for (const double s : {0., 0.25, 0.5, 0.75, 1.})
       for (const double way : {-reach.behind, reach.ahead})
         around.push_back(slave[e].point(s) + way * field(e, s) / field(e, s).norm());
-    // a little larger: the field of normals turns, and exact touching is on the border
+    // slightly enlarged: the field of normals turns, and touching parts are on the border of the box
     return tree.near(EdgeTree::widened(EdgeTree::box_around(around), 0.05 * slave[e].chord()));
   }
 

@@ -23,7 +23,7 @@ namespace slipstick::interface
   Echelon::Vector Echelon::reduce(Vector row) const
   {
     const double           none = rounding * largest(row);
-    std::set<unsigned int> todo; // rows whose pivots are in the row; a row brings none before itself
+    std::set<unsigned int> todo; // rows whose pivots occur in the row; each adds only pivots of later rows
     for (const auto &[column, value] : row)
       if (const auto found = row_of.find(column); found != row_of.end())
         todo.insert(found->second);

@@ -8,17 +8,17 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Points along an edge, and along each direction of a facet.
+    // Number of points along an edge, and along each direction of a facet.
     constexpr unsigned int n_points_along = 3;
-    // Nodes whose shape functions have less than this part of the mean integral stand for no area.
+    // Nodes whose shape functions have less than this part of the mean integral have no tributary area.
     constexpr double least_share = 1e-6;
 
     /// A point of an edge or facet.
     template <int dim>
     struct PointOfPart
     {
-      dealii::Point<dim>  x;           // of the surface that it stands for
-      double              measure = 0; // of the part, times the weight of the rule
+      dealii::Point<dim>  x;           // on the true surface
+      double              measure = 0; // of the edge or facet, times the quadrature weight
       std::vector<double> shape;       // functions of the nodes
     };
 
@@ -94,7 +94,7 @@ namespace slipstick::interface
       return result;
     }
 
-    /// Rows node to node have the gaps at nodes, the mortar rows in their place would have means.
+    /// Node-to-node rows use the gaps at nodes, mortar rows would use mean gaps.
     template <int dim>
     std::map<mechanics::NodeKey, double> defects_of_bodies(const scene::Scene<dim>                         &scene,
                                                            const scene::ContactPair<dim>                   &pair,
@@ -139,7 +139,7 @@ namespace slipstick::interface
         for (const auto &part : slave)
           for (unsigned int i = 0; i < part.n_nodes; ++i)
             ++result.n_parts[k][part.keys[i]];
-        if (pair.gap) // a gap of its own, the same everywhere
+        if (pair.gap) // prescribed gap, the same everywhere
           continue;
         result.of_pairs[k] =
           pair.master

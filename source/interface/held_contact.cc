@@ -13,11 +13,12 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Support and contact agree when they differ by less than this part of the larger of both displacements ...
+    // Support and contact agree if they differ by less than this part of the larger of both displacements ...
     constexpr double same_gap = 1e-6;
-    // ... or, where nothing is moved, of the length of the node: files give coordinates with some seven digits.
+    // ... or, without displacements, of the tributary length of the node: files give coordinates with about seven
+    // digits.
     constexpr double digits_of_files = 1e-6;
-    // Rounding of coordinates in gaps, part of them.
+    // Rounding of coordinates in gaps, relative to the coordinates.
     constexpr double rounding_of_coordinates = 1e-12;
 
     template <int dim>
@@ -41,7 +42,7 @@ namespace slipstick::interface
                                          const double                      depth)
     {
       const auto &pair = scene.contacts[point.contact.pair];
-      std::string direction; // no -0
+      std::string direction; // the sum avoids -0
       for (unsigned int d = 0; d < dim; ++d)
         direction += format("%s%.3g", d == 0 ? "(" : ", ", point.contact.normal[d] + 0.);
       direction += ")";
@@ -60,7 +61,7 @@ namespace slipstick::interface
           ", leave the supported boundary out of the contact, or change its Offset or Gap");
     }
 
-    /// Refuses the deepest point, that of the first rank with it. Collective.
+    /// Throws for the deepest point, taken from the first rank that has it. Collective.
     template <int dim, class Depth>
     void refuse_deepest(const scene::Scene<dim>   &scene,
                         const tfeti::HeldContacts &held,

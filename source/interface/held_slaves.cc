@@ -16,12 +16,12 @@ namespace slipstick::interface
   {
     using Row = MortarRow<3>;
 
-    // A normal is held if the part of it along other directions is below this.
+    // A normal is held if its part in free directions is below this.
     constexpr double held_normal = 1e-6;
-    // Neighbours count as equally near within this part of the distance.
+    // Neighbours are equally near if their distances differ by less than this part.
     constexpr double equally_near = 1e-6;
 
-    /// Which components supports prescribe, by node of the body.
+    /// Components prescribed by supports, by node of the body.
     std::map<mechanics::NodeKey, std::array<bool, 3>> held_components(const scene::Scene<3>                      &scene,
                                                                       const mesh::Mesh<3>                        &mesh,
                                                                       const std::vector<mechanics::SurfaceFacet> &all,
@@ -38,7 +38,7 @@ namespace slipstick::interface
       return held;
     }
 
-    /// Along its normal.
+    /// Whether supports hold the slave node along its normal.
     bool is_held(const Row &row, const std::map<mechanics::NodeKey, std::array<bool, 3>> &held)
     {
       const auto found = held.find(row.slave);
@@ -75,7 +75,7 @@ namespace slipstick::interface
       row.full_length += part * held.full_length;
     }
 
-    /// Of nodes whose rows go: the nodes of the same facets.
+    /// For nodes whose rows are removed: the nodes of the same facets.
     std::map<mechanics::NodeKey, std::set<mechanics::NodeKey>> neighbours_of(
       const std::vector<Row>                     &rows,
       const std::vector<bool>                    &goes,
@@ -92,7 +92,7 @@ namespace slipstick::interface
       return neighbours;
     }
 
-    /// Of the candidates those that are nearest to a row.
+    /// The candidates nearest to a row.
     std::vector<std::size_t> nearest(const std::vector<Row>         &rows,
                                      const Row                      &row,
                                      const std::vector<std::size_t> &candidates)
@@ -119,7 +119,7 @@ namespace slipstick::interface
       return;
     const auto        held = held_components(scene, mesh, all, slave.front().body);
     std::vector<bool> goes(rows.size());
-    std::map<std::pair<mechanics::NodeKey, unsigned int>, std::size_t> place; // of rows that are not held
+    std::map<std::pair<mechanics::NodeKey, unsigned int>, std::size_t> place; // of the rows that are not held
     for (std::size_t i = 0; i < rows.size(); ++i)
       if (!is_held(rows[i], held))
         place[{rows[i].slave, rows[i].side}] = i;

@@ -47,7 +47,7 @@ namespace slipstick::interface
       return sum / areas.size();
     }
 
-    /// What supports, foundations and obstacles say about the nodes of one boundary face.
+    /// Adds the conditions of supports, foundations and obstacles to the nodes of one boundary face.
     template <int dim>
     void add_face(const scene::Scene<dim>                                      &scene,
                   const mesh::Mesh<dim>                                        &mesh,
@@ -122,13 +122,14 @@ namespace slipstick::interface
       for (unsigned int k = 0; k < scene.contacts.size(); ++k)
         if (const auto &pair = scene.contacts[k]; !pair.master && here(pair.slave))
           for (unsigned int i = 0; i < on_face.size(); ++i)
-            // a bond also acts at nodes that equal pressure puts no force on: an area to give its traction by
+            // a bond also acts at nodes without equivalent nodal force of a uniform pressure; their tractions need an
+            // area
             add_area(*on_face[i],
                      k,
                      pair.law.is_bonded && areas[i].area == 0 ? Tributary{mean_of(areas), 0.} : areas[i]);
     }
 
-    /// A copy of the node of every support, those of boundaries unused. Collective.
+    /// A copy of the node of every point support; entries of supports on boundaries are unused. Collective.
     template <int dim>
     std::vector<mechanics::PointNode<dim>> held_points(const scene::Scene<dim>      &scene,
                                                        const mesh::Mesh<dim>        &mesh,
@@ -152,7 +153,7 @@ namespace slipstick::interface
       return of_support;
     }
 
-    /// What point supports say of one of the copies of their node.
+    /// Adds the conditions of point supports to one copy of their node.
     template <int dim>
     void add_points(const scene::Scene<dim>                      &scene,
                     const mesh::SubdomainMesh<dim>               &subdomain,
@@ -165,7 +166,7 @@ namespace slipstick::interface
           {
             const auto [entry, is_inside] = nodes.emplace(points[s].node, InterfaceNode<dim>());
             auto &node                    = entry->second;
-            if (is_inside) // on no face that is a boundary or a cut: one copy, no key from vertices needed
+            if (is_inside) // on no face of a boundary or a cut: one copy, no key made of vertices
               {
                 node.key    = {{inside_key + subdomain.subdomain, points[s].node}};
                 node.body   = subdomain.body;
@@ -213,7 +214,7 @@ namespace slipstick::interface
       std::sort(node.areas.begin(), node.areas.end());
     }
 
-    /// Bonds to an obstacle hold all components where they are.
+    /// Bonds to an obstacle hold all components.
     template <int dim>
     void hold_bonds(InterfaceNode<dim> &node, const scene::Scene<dim> &scene, const double t)
     {

@@ -10,9 +10,9 @@ namespace slipstick::interface
 {
   namespace
   {
-    // An edge counts as fully covered if no more than this fraction is missing.
+    // An edge is fully covered if at most this fraction is missing.
     constexpr double whole_edge = 1e-9;
-    // Nodes lie on their curve when they are off by no more than this part of the edge.
+    // Nodes are on their curve if their distance is at most this part of the edge.
     constexpr double       on_curve = 1e-12;
     constexpr unsigned int n_gauss  = 5; // per segment; exact between straight parallel edges of both degrees
 
@@ -77,7 +77,7 @@ namespace slipstick::interface
           covered += part.to - part.from;
         if (covered < smallest_cover)
           return;
-        // test functions are made of linear shape functions where a quadratic edge is covered in part
+        // linear test functions on partly covered quadratic edges
         const unsigned int n_test    = covered > 1 - whole_edge ? edge.n_nodes : 2;
         const bool         is_linear = n_test == 2;
 
@@ -98,7 +98,7 @@ namespace slipstick::interface
               const auto   T      = is_linear ? std::array<double, 3>{{1 - s, s, 0}} : N;
               const auto   y      = pairing.hit(e, s, part.master);
               const Edge  &to     = master[part.master];
-              // a Gauss point at the very end of a segment may miss by rounding
+              // rounding may move a Gauss point at the very end of a segment beyond it
               const double r =
                 y ? y->s
                   : (std::abs(pairing.side(e, s, to.node(0))) < std::abs(pairing.side(e, s, to.node(1))) ? 0. : 1.);
@@ -144,7 +144,7 @@ namespace slipstick::interface
       }
 
     public:
-      /// How far the curve is above the edges at a node, along the normal of a row: nothing but for midside nodes of
+      /// Rise of the curve above the edges at a node, along the normal of a row: nonzero only for midside nodes of
       /// straight edges and nodes of edges that could not be bent.
       double rise(const MortarRow<2> &row, const mechanics::NodeKey &key) const
       {
@@ -167,7 +167,7 @@ namespace slipstick::interface
       NodePlaces<2>             nodes;
 
       std::map<mechanics::NodeKey, std::pair<const Edge *, double>>
-        places; // an edge of every node, and where it is there
+        places; // an edge of every node, and the position on it
     };
   } // namespace
 

@@ -11,9 +11,9 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Two supports agree when their values differ by less than this part of the larger.
+    // Two supports agree if their values differ by less than this part of the larger.
     constexpr double same_value_tolerance = 1e-12;
-    // Stiffness of a spring against that across it, below which it is rounding.
+    // Spring stiffnesses below this part of the larger principal one are rounding.
     constexpr double smallest_stiffness = 1e-12;
 
     template <int dim>
@@ -67,7 +67,7 @@ namespace slipstick::interface
       return result;
     }
 
-    /// Adds those who are not there yet.
+    /// Adds the entries that are not contained yet.
     void share(std::vector<unsigned int> &all, const std::vector<unsigned int> &more)
     {
       for (const unsigned int one : more)
@@ -75,7 +75,7 @@ namespace slipstick::interface
           all.push_back(one);
     }
 
-    /// Supports along normals: what edges agree in value is averaged where there is no corner.
+    /// Supports along normals: the normals of edges with equal values are averaged where there is no corner.
     template <int dim>
     void hold_along_normals(InterfaceNode<dim> &node, const scene::Scene<dim> &scene, const double t)
     {
@@ -108,8 +108,9 @@ namespace slipstick::interface
         }
     }
 
-    /// Normals of the edges are averaged where there is no corner, as for supports: else a curved boundary on springs
-    /// along its normal would hold its nodes along the tangent too, by springs so soft that they spoil the scale of F.
+    /// Normals of the edges are averaged where there is no corner, as for supports: otherwise a curved boundary on
+    /// springs along its normal would also have very soft springs along the tangent, which would impair the scaling of
+    /// F.
     template <int dim>
     void add_springs(InterfaceNode<dim> &node, const scene::Scene<dim> &scene)
     {
@@ -188,7 +189,7 @@ namespace slipstick::interface
       return std::abs(tensor<dim>(a.direction) * direction) < std::abs(tensor<dim>(b.direction) * direction);
     });
     share(nearest->by, by);
-    // the value that is implied: sum of w_k value_k with direction = sum of w_k direction_k
+    // the implied value: sum of w_k value_k with direction = sum of w_k direction_k
     const Eigen::VectorXd shares = tfeti::basic_solution(directions_of(node), vector(direction));
     const double          there  = shares.dot(values_of(node));
     const double          size   = std::max(std::abs(value), shares.cwiseAbs().dot(values_of(node).cwiseAbs()));

@@ -20,7 +20,7 @@ namespace slipstick::interface
       return v / v.norm();
     }
 
-    /// With a circle, a ball or, of the ray across its axis, a cylinder.
+    /// Distance to a circle, a ball or (for the ray perpendicular to its axis) a cylinder.
     template <int dim>
     ObstacleContact<dim> with_circle(const scene::Obstacle<dim> &obstacle, const dealii::Tensor<1, dim> &ray)
     {
@@ -37,7 +37,7 @@ namespace slipstick::interface
     {
       const unsigned int n         = points.size() - 1; // segments
       const bool         is_closed = n > 2 && points.front().distance(points.back()) == 0;
-      const auto         left      = [&](const unsigned int k) { // of segment k: where the bodies are
+      const auto         left      = [&](const unsigned int k) { // of segment k: side of the bodies
         const Tensor along = points[k + 1] - points[k];
         return unit(-along[1], along[0]);
       };
@@ -145,7 +145,7 @@ namespace slipstick::interface
           return with_polyline(obstacle.points, x);
         case scene::ObstacleShape::function:
           return with_function(obstacle.height, x, t);
-        case scene::ObstacleShape::cylinder: // not offered in the plane
+        case scene::ObstacleShape::cylinder: // not available in 2D
         case scene::ObstacleShape::bore:
         case scene::ObstacleShape::stl:
           break;
@@ -175,7 +175,7 @@ namespace slipstick::interface
             const auto there = obstacle.surface->nearest(x);
             return {-there.normal, there.distance};
           }
-        case scene::ObstacleShape::polyline: // not offered in space
+        case scene::ObstacleShape::polyline: // not available in space
           break;
       }
     AssertThrow(false, dealii::ExcInternalError());

@@ -12,18 +12,19 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Places on an edge, and along each direction of a face, from which the deepest one in an obstacle is looked for. It is
-    // found where depths rise towards it: balls, cylinders and planes of any size, and corners of polylines and triangulated
-    // surfaces; of height functions peaks that are not much narrower than the distance of these places.
+    // Number of sampling points on an edge, and along each direction of a face, from which the search for the deepest
+    // point in an obstacle starts. It finds the point where depths rise towards it: balls, cylinders and planes of any
+    // size, and corners of polylines and triangulated surfaces; for height functions, peaks that are not much narrower
+    // than the spacing of these points.
     constexpr unsigned int n_places = 33, n_places_across = 9;
-    // The same for height functions, which rise out of nothing.
+    // The same for height functions, which may have narrow peaks.
     constexpr unsigned int n_places_below_function = 257, n_places_across_function = 33;
-    // The search ends with steps of this part of an edge.
+    // The search ends at steps of this part of an edge.
     constexpr double least_step = 1e-6;
-    // Points of surfaces are the same within this part of an edge.
+    // Points of surfaces coincide within this part of an edge.
     constexpr double same_place = 1e-3;
 
-    /// Local coordinates of an edge, or of a face in the unit square, into which triangles are folded.
+    /// Local coordinates of an edge, or of a face in the unit square (triangles are folded into it).
     template <int dim>
     using Place = std::array<double, dim - 1>;
 
@@ -56,7 +57,7 @@ namespace slipstick::interface
       }
     };
 
-    /// Of the lattice of n places along each direction.
+    /// Deepest point of the lattice with n points along each direction.
     template <int dim, class DepthAt>
     DeepPlace<dim> deepest_of_lattice(const unsigned int n, const DepthAt &depth_at)
     {
@@ -71,7 +72,7 @@ namespace slipstick::interface
       return best;
     }
 
-    /// Uphill in ever smaller steps.
+    /// Pattern search for the deepest point with decreasing steps.
     template <int dim, class DepthAt>
     void climb(DeepPlace<dim> &best, double step, const DepthAt &depth_at)
     {
@@ -80,7 +81,7 @@ namespace slipstick::interface
           bool is_better = false;
           for (unsigned int way = 0; way < (dim == 2 ? 2 : 8); ++way)
             {
-              const unsigned int k     = way < 4 ? way : way + 1; // of 9, the middle left out
+              const unsigned int k     = way < 4 ? way : way + 1; // 8 neighbours: of 9 the middle is omitted
               Place<dim>         other = best.place;
               if (dim == 2)
                 other[0] += way == 0 ? -step : step;
@@ -96,8 +97,8 @@ namespace slipstick::interface
         }
     }
 
-    /// Depth in an obstacle; minus infinity where there is no normal (the centre of a circle). For a height function, the
-    /// height decides what is inside: the foot found on a narrow bump may be on its far side.
+    /// Depth in an obstacle; minus infinity where there is no normal (the centre of a circle). For a height function, a
+    /// point is inside if it is below the height: the nearest point found on a narrow bump may be on its far side.
     template <int dim>
     double depth_in_obstacle(const scene::Obstacle<dim> &obstacle, const dealii::Point<dim> &x, const double t)
     {
@@ -114,8 +115,8 @@ namespace slipstick::interface
         }
     }
 
-    /// Points of an obstacle, with a ball around each, that show when it is in a body as a whole, at any size: centres, corners,
-    /// and of a cylinder places on its axis beside the slave boundary.
+    /// Points of an obstacle, each with a ball around it, that show whether an obstacle of any size lies entirely
+    /// inside a body: centres, corners, and for a cylinder points on its axis near the slave boundary.
     template <int dim>
     struct PointsOfObstacle
     {
@@ -176,7 +177,7 @@ namespace slipstick::interface
         };
         auto         best = deepest_of_lattice<dim>(n, depth_at);
         const double step = 1. / (n - 1);
-        if (is_function || best.depth > -2 * step * slave[e].chord()) // distances change by no more than the place does
+        if (is_function || best.depth > -2 * step * slave[e].chord()) // a move changes distances by no more
           climb<dim>(best, step, depth_at);
         take_deeper(deepest, best.depth, at_place(slave[e], best.place), slave[e].chord(), 0.);
       }
@@ -215,7 +216,7 @@ namespace slipstick::interface
       for (unsigned int i = 0; i < facet.n_nodes; ++i)
         nodes.push_back(facet.node(i));
     const auto                    box = BoxTree<3>::box_around(nodes);
-    std::unique_ptr<SolidSurface> body; // made when a point is near it
+    std::unique_ptr<SolidSurface> body; // created when needed
     for (const auto &point : points)
       if (boost::geometry::intersects(BoxTree<3>::box_around({point}), box))
         {

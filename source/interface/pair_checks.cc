@@ -20,13 +20,13 @@ namespace slipstick::interface
 
   namespace
   {
-    // A master is behind its slave when it is deeper than this part of a mean slave edge.
+    // A master is behind its slave if it is deeper than this part of a mean slave edge.
     constexpr double deep = 0.1;
-    // Sides nearer than this part of their extent touch.
+    // Sides touch if they are nearer than this part of their extent.
     constexpr double corner_on_corner = 1e-9;
-    // Normals that are compared for a message, per side.
+    // Number of normals per side that are compared for a message.
     constexpr unsigned int n_compared = 500;
-    // Parts into which an edge, or a face along each direction, is divided to find what faces it between its nodes.
+    // Number of divisions of an edge, or of a face along each direction, to find what faces it between its nodes.
     constexpr unsigned int n_between = 8;
     constexpr double       infinity  = std::numeric_limits<double>::infinity();
 
@@ -39,7 +39,7 @@ namespace slipstick::interface
       return std::acos(std::min(1., std::max(-1., cosine))) * 180 / dealii::numbers::PI;
     }
 
-    /// Is any point of a side inside the body with the outline?
+    /// Whether any point of a side is inside the body with the outline.
     template <class Part>
     bool any_inside(const std::vector<Part> &side, const std::vector<Part> &outline)
     {
@@ -92,7 +92,7 @@ namespace slipstick::interface
         "choose the boundaries that lie between the two bodies, or move, mirror or rotate a body");
     }
 
-    /// Largest displacement that a support prescribes at any load factor [mm].
+    /// Largest displacement prescribed by a support at any load factor [mm].
     template <int dim>
     double largest_prescribed(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh, const Parts<dim> &all)
     {
@@ -123,7 +123,7 @@ namespace slipstick::interface
       return largest;
     }
 
-    /// @param size of the sides, @param gap the smallest one of all load steps.
+    /// @param size of the sides. @param gap smallest gap of all load steps.
     template <int dim>
     void check_automatic_reach(const scene::Scene<dim>       &scene,
                                const mesh::Mesh<dim>         &mesh,
@@ -133,7 +133,7 @@ namespace slipstick::interface
                                const double                   size,
                                const double                   gap)
     {
-      if (gap <= size) // the common case, without a look at the supports
+      if (gap <= size) // the common case; avoids evaluating the supports
         return;
       const double prescribed = largest_prescribed<dim>(scene, mesh, all);
       if (gap > size + prescribed)
@@ -147,7 +147,7 @@ namespace slipstick::interface
                          "move the bodies, or set Contact " + pair.name + "/Reach to more than that gap");
     }
 
-    /// Some places between the nodes with the outward normals there.
+    /// Sampling points between the nodes with their outward normals.
     std::vector<std::pair<dealii::Point<2>, dealii::Tensor<1, 2>>> places_with_normals(
       const mechanics::SurfaceEdge<2> &edge)
     {
@@ -171,8 +171,8 @@ namespace slipstick::interface
       return places;
     }
 
-    /// Largest product of the outward normal with the direction into the obstacle between the nodes: an obstacle that is
-    /// smaller than an edge may face none of them.
+    /// Largest scalar product of the outward normal with the direction into the obstacle between the nodes: the nodes
+    /// may all miss an obstacle that is smaller than an edge.
     template <int dim>
     double cosine_between_nodes(const scene::Scene<dim>       &scene,
                                 const scene::ContactPair<dim> &pair,
@@ -189,7 +189,7 @@ namespace slipstick::interface
     /// Outward normals and gaps at the nodes of a slave boundary against its obstacle.
     struct AgainstObstacle
     {
-      double cosine = -1; // largest product of the outward normal with the direction into the obstacle
+      double cosine = -1; // largest scalar product of the outward normal with the direction into the obstacle
       double gap    = infinity;
     };
 
@@ -260,7 +260,7 @@ namespace slipstick::interface
       if (row.gap > -deep * chords / sides.slave.size())
         return false;
     if (!rows.empty() && sides.slave.front().body == sides.master.front().body)
-      return true; // their outline is one: all points of both are on it
+      return true; // both sides belong to one outline, which contains all their points
     return !rows.empty() && !any_inside(sides.slave, sides.master_outline) &&
            !any_inside(sides.master, sides.slave_outline);
   }

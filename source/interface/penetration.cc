@@ -87,7 +87,7 @@ namespace slipstick::interface
       return !pair.law.is_bonded && !pair.gap;
     }
 
-    /// Slave nodes that have no row within the Reach of the pair, but one without it.
+    /// Slave nodes that have no row within the Reach of the pair, but have one without this limit.
     template <int dim>
     void find_beyond_reach(const scene::ContactPair<dim> &pair,
                            const Parts<dim>              &slave,
@@ -170,8 +170,8 @@ namespace slipstick::interface
       Point               low, high;
     };
 
-    /// How far the outline lies inside of the chord of an edge, @p before and @p now: hollow sides, whose chords reach
-    /// into what they touch.
+    /// Depth of the outline below the chord of an edge, the smaller of @p before and @p now: chords of concave sides
+    /// cut into the bodies that they touch.
     double hollow(const Edge &before, const Edge &now, const double s)
     {
       const Point  on_chord = now.node(0) + s * (now.node(1) - now.node(0));
@@ -179,7 +179,7 @@ namespace slipstick::interface
       return std::max(0., -bend - before.rise(s, before.normal(s)));
     }
 
-    /// Depth of the outline at s inside a body below its outline, 0 when it is not inside.
+    /// Depth of the point at s on a body's outline inside another body, 0 if it is not inside.
     Penetration depth_in(const ClosedOutline &outline,
                          const Edges         &before,
                          const Edge          &edge_before,
@@ -191,13 +191,13 @@ namespace slipstick::interface
         return {};
       const auto  there = outline.nearest(x);
       const auto &other = outline.edges[there.edge];
-      // x is that of a bent edge already, the curve of a straight one may be farther inside
+      // x is on the bent edge already; for a straight edge the true curve may lie farther inside its own body
       const double own   = std::max(0., -edge_before.rise(s, edge_before.normal(s)));
       const double depth = there.distance - hollow(before[there.edge], other, there.s) - own;
       return {std::max(0., depth), {}, other.chord(), 0.};
     }
 
-    /// The same in space. Surfaces are made when they are asked for: most bodies are far from each other.
+    /// The same in space. Surfaces are created when needed: most bodies are far from each other.
     struct Solid
     {
       Solid(Parts<3> before_, const Moves<3> &moves)
@@ -236,7 +236,7 @@ namespace slipstick::interface
       mutable std::unique_ptr<SolidSurface> made_before, made_now;
     };
 
-    /// Nodes and middles of the facets of a.
+    /// Tests nodes and midpoints of the facets of a.
     void find_in_body(const Solid &a, const Solid &b, std::optional<Penetration> &deepest)
     {
       if (!boost::geometry::intersects(a.box, b.box))

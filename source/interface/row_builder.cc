@@ -12,8 +12,9 @@ namespace slipstick::interface
 {
   namespace
   {
-    // In space tangents are held when supports leave less than this of their rows (the slave's part is 1): at the edge of a pair on a
-    // plane of symmetry the weights of master nodes off the plane all but vanish, and such rows are nearly those of the supports.
+    // In space a tangent is held if supports leave less than this of its row (the slave's part is 1): where the edge of
+    // a pair is on a plane of symmetry, the weights of master nodes off the plane nearly vanish, and such rows nearly
+    // depend on those of the supports.
     template <int dim>
     constexpr double held_tangent = dim == 2 ? held_direction_tolerance : 0.05;
 
@@ -34,7 +35,7 @@ namespace slipstick::interface
       return sum;
     }
 
-    /// v less its part along w.
+    /// v minus its component along w.
     std::map<unsigned int, double> without(std::map<unsigned int, double> v, const std::map<unsigned int, double> &w)
     {
       const double part = product(v, w);
@@ -43,7 +44,7 @@ namespace slipstick::interface
       return v;
     }
 
-    // What tells the names of the rows along both tangents of a node apart.
+    // Distinguishes the labels of the rows along the two tangents of a node.
     constexpr std::uint64_t second_tangent = std::uint64_t(1) << 48;
 
     // Sums below this part of their terms are rounding.
@@ -124,7 +125,7 @@ namespace slipstick::interface
         add_reaction(i, row, direction, held.by);
         ++constraints.counts.prescribed;
       }
-    // the contact nodes that were found here a moment ago share these
+    // the contact nodes just found here share these
     std::vector<unsigned int> reactions(constraints.reactions.size() - first_reaction);
     std::iota(reactions.begin(), reactions.end(), first_reaction);
     for (auto point = held.points.rbegin(); point != held.points.rend() && point->contact.key == node.key; ++point)
@@ -170,7 +171,7 @@ namespace slipstick::interface
   {
     constraints.kind.push_back(kind);
     constraints.c.push_back(c);
-    std::uint64_t label = 1469598103934665603ull; // FNV-1a over what names the row
+    std::uint64_t label = 1469598103934665603ull; // FNV-1a hash of the data that identify the row
     for (const std::uint64_t part : {key[0], key[1], std::uint64_t(kind), which})
       label = (label ^ part) * 1099511628211ull;
     constraints.label.push_back(label);
@@ -278,7 +279,7 @@ namespace slipstick::interface
               add_pruned(touch, normal);
             continue;
           }
-        std::vector<Vector> across; // along the tangents that are not held
+        std::vector<Vector> across; // rows along the tangents that are not held
         if (touch.has_tangent && !(!has_normal && is_held_open(held.points.back())))
           across = free_tangents(touch, has_normal ? left : Vector());
         if (!has_normal && across.empty())
@@ -315,7 +316,7 @@ namespace slipstick::interface
     auto                tangents = across(touch.normal);
     std::vector<Vector> rows;
     if constexpr (dim == 3)
-      { // where supports hold a tangent the force is along the other one: the disc becomes an interval
+      { // if a support holds one tangent, the force is along the other one: the disc becomes an interval
         const Vector    a = free_of(jump(touch, tangents[0])), b = free_of(jump(touch, tangents[1]));
         Eigen::Matrix2d gram;
         gram << product(a, a), product(a, b), product(a, b), product(b, b);
@@ -368,7 +369,7 @@ namespace slipstick::interface
         point.closing += part;
         size += std::abs(part);
       }
-    if (std::abs(point.closing) <= rounding_of_sums * size) // both sides are moved alike
+    if (std::abs(point.closing) <= rounding_of_sums * size) // both sides have the same prescribed displacement
       point.closing = 0;
     held.points.push_back(std::move(point));
   }

@@ -11,7 +11,7 @@ namespace slipstick::interface
   {
     using Triangles = std::vector<std::array<unsigned int, 3>>;
 
-    /// Between the nodes of a facet, in its sense.
+    /// Triangles between the nodes of a facet, with its orientation.
     const Triangles &triangles_of(const mechanics::SurfaceFacet &facet)
     {
       static const Triangles triangle{{0, 1, 2}}, quadrilateral{{0, 1, 2}, {0, 2, 3}},

@@ -13,18 +13,20 @@ namespace slipstick::interface
   {
     using Facet = mechanics::SurfaceFacet;
 
-    // Parts that cover more than the facet by this fraction of it lie one behind the other.
+    // If the covered parts exceed the facet by more than this fraction, some lie one behind the other.
     constexpr double overlapping = 1e-9;
-    // Biorthogonal functions need a scaled mass matrix whose eigenvalues are above this (those of whole facets of degree 2 are from 0.25 on).
+    // Biorthogonal functions require a scaled mass matrix with eigenvalues above this (for whole facets of degree 2:
+    // 0.25 or more).
     constexpr double least_eigenvalue = 1e-3;
-    // Symmetric rules on the triangles of a part. Products of shape functions are of fourth order on parallelograms and
-    // triangles, where five is exact; on other quadrilaterals they are rational functions.
+    // Order of the symmetric quadrature on the triangles of a part. Products of shape functions are of fourth order on
+    // parallelograms and triangles, where the fifth-order rule is exact; on other quadrilaterals they are rational
+    // functions.
     constexpr unsigned int n_exact = 3, n_rational = 6;
-    // The same for facets of degree 2, where products are of eighth order at most; the rule is exact for the ninth.
+    // The same for facets of degree 2, where products are of eighth order at most; the rule is exact for ninth order.
     constexpr unsigned int n_exact_quadratic = 5, n_rational_quadratic = 7;
-    // A facet is covered as a whole if no more than this fraction of it is missing.
+    // A facet is fully covered if at most this fraction of it is missing.
     constexpr double whole_facet = 1e-9;
-    // The same of bent facets, where polygons stand for curved edges: less than shares of nodes could be negative for.
+    // The same for bent facets, where polygons replace curved edges; small enough to exclude negative nodal areas.
     constexpr double whole_bent_facet = 1e-3;
 
     bool is_quadratic(const std::vector<Facet> &slave, const std::vector<Facet> &master)
@@ -39,10 +41,10 @@ namespace slipstick::interface
       return twist <= smallest_cover * facet.chord() && !facet.is_bent();
     }
 
-    // Nodes lie on their surface when they are off by no more than this part of the facet.
+    // Nodes are on their surface if their distance is at most this part of the facet.
     constexpr double on_surface = 1e-12;
 
-    /// The shape functions of degree 1 of a facet, as combinations of its own.
+    /// The shape functions of degree 1 of a facet as combinations of its own shape functions.
     Eigen::MatrixXd linear_functions(const Facet &facet)
     {
       Eigen::MatrixXd at_nodes(facet.n_corners(), facet.n_nodes);
@@ -55,7 +57,7 @@ namespace slipstick::interface
       return at_nodes;
     }
 
-    /// Is another master facet nearer at x? Of several at one distance the first counts.
+    /// Whether another master facet is nearer at x. Of several at the same distance the first counts.
     bool is_hidden(const SurfacePairing::View &view, const SurfacePairing::Part &part, const dealii::Point<2> &x)
     {
       const double gap = std::abs(view.gap(part, x));
@@ -106,8 +108,8 @@ namespace slipstick::interface
         return result;
       }
 
-      /// How far the surface is above the facets at a node, along the normal of a row: nothing but for nodes between the corners of
-      /// facets that could not be bent.
+      /// Rise of the surface above the facets at a node, along the normal of a row: nonzero only for nodes between the
+      /// corners of facets that could not be bent.
       double rise(const MortarRow<3> &row, const mechanics::NodeKey &key) const
       {
         const auto found = curved.find(key);
@@ -130,16 +132,16 @@ namespace slipstick::interface
         double               left_out = 0;
       };
 
-      /// Of one facet: <N_a N_b>, <N_a>, <N_a N_j(y)>, <N_a (rise of the master - rise of the slave)>.
+      /// Integrals over one facet: <N_a N_b>, <N_a>, <N_a N_j(y)>, <N_a (rise of the master - rise of the slave)>.
       struct Moments
       {
         Eigen::MatrixXd                               mass;
         Eigen::VectorXd                               areas;
         std::map<mechanics::NodeKey, Eigen::VectorXd> master;
         Eigen::VectorXd                               rises;
-        Facet::Tensor                                 normal; // along which they are measured
+        Facet::Tensor                                 normal; // direction of the rises
         double                                        left_out = 0;
-        bool                                          is_whole = false; // is all of the facet covered?
+        bool                                          is_whole = false; // the facet is fully covered
       };
 
       Moments moments_of(const unsigned int e) const
@@ -216,24 +218,24 @@ namespace slipstick::interface
           }
       }
 
-      /// phi of one facet: phi = of_shapes N, their areas <phi_i>, <phi_i N_k>.
+      /// Test functions of one facet: phi = of_shapes N, their areas <phi_i>, <phi_i N_k>.
       struct TestFunctions
       {
         Eigen::MatrixXd of_shapes;
         Eigen::VectorXd areas;
         Eigen::MatrixXd slave;
-        bool            is_biorthogonal = false; // to all N: then <phi_i N_i> = areas[i], and else 0
+        bool            is_biorthogonal = false; // <phi_i N_k> is areas[i] for i = k and otherwise 0
       };
 
-      /// The corners of bent triangles of degree 2 have little area, of either sign: they get no row, as those of plane ones.
+      /// Corners of bent triangles of degree 2 have small areas of either sign: like those of plane ones they get no
+      /// row.
       static void give_to_edges(Eigen::VectorXd &areas)
       {
         areas.tail(3).array() += areas.head(3).sum() / 3;
         areas.head(3).setZero();
       }
 
-      /// Of degree 2 the functions of degree 1 take the place of N where the facet is covered in part: the areas of its nodes could
-      /// be negative there.
+      /// For partly covered facets of degree 2 linear functions replace N: the nodal areas of N could be negative.
       static TestFunctions test_functions(const Facet &facet, const Moments &moments)
       {
         const bool    is_linear = facet.is_quadratic() && !moments.is_whole;
@@ -259,7 +261,7 @@ namespace slipstick::interface
       NodePlaces<3>                             nodes;
 
       std::map<mechanics::NodeKey, std::pair<const Facet *, unsigned int>>
-        curved; // a facet of every node on a curved surface
+        curved; // a facet for every node on a curved surface
     };
   } // namespace
 

@@ -8,7 +8,7 @@ namespace slipstick::interface
 {
   namespace
   {
-    /// Normal of the curve that the edge stands for.
+    /// Normal of the true curve of the edge.
     dealii::Tensor<1, 2> own_normal(const mechanics::SurfaceEdge<2> &edge, const unsigned int i)
     {
       return edge.outline_normal(mechanics::SurfaceEdge<2>::node_coordinate(i));

@@ -9,13 +9,13 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Points outside a facet by no more than this part of its size are on its edge.
+    // Points outside a facet by at most this part of its size are on its edge.
     constexpr double on_edge = 1e-9;
-    // Parts of a facet (of its area) that are smaller than this are left out.
+    // Parts of a facet smaller than this (relative to its area) are ignored.
     constexpr double smallest_part = 1e-12;
-    // Search boxes are wider by this part of a facet: exact touching is on the border.
+    // Search boxes are enlarged by this part of a facet: touching parts are on the border.
     constexpr double margin = 0.05;
-    // Newton's method for a place on a quadrilateral: steps, and the last one.
+    // Newton's method for a place on a quadrilateral: maximum number of steps, and length of the last one.
     constexpr unsigned int max_steps = 50;
     constexpr double       last_step = 1e-14;
   } // namespace
@@ -24,7 +24,7 @@ namespace slipstick::interface
     : origin(origin)
     , normal(n / n.norm())
   {
-    unsigned int axis = 0; // the one most across
+    unsigned int axis = 0; // the axis most perpendicular to the normal
     for (unsigned int d = 1; d < 3; ++d)
       if (std::abs(normal[d]) < std::abs(normal[axis]))
         axis = d;
@@ -164,7 +164,8 @@ namespace slipstick::interface
           continue;
         Tensor n = of_master.normal(m, master[m].n_nodes, master[m].shape(facet.place_at({0, 0})));
         n /= n.norm();
-        // on an edge of the master the side that faces the slave most, however the facets are numbered
+        // on an edge of the master take the side that is most opposed to the slave, independent of the numbering of
+        // facets
         if (!found || std::abs(gap) < nearest - on_edge * node.size || n * node.normal < *found * node.normal)
           found = n;
         nearest = std::min(nearest, std::abs(gap));
@@ -172,7 +173,8 @@ namespace slipstick::interface
     return found;
   }
 
-  /// Replaces the slave's normals by the means of both sides wherever the slave's own normal meets a master that faces it.
+  /// Replaces the slave's normals by the means of both sides wherever the slave's own normal hits a master that faces
+  /// it.
   void SurfacePairing::average_normals()
   {
     const SurfaceNodes<3> of_master(master);

@@ -10,15 +10,15 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Normals are parallel when their product is above this.
+    // Normals are parallel if their scalar product is above this.
     constexpr double parallel_cosine = 1 - 1e-8;
-    // Tractions are forces over no less than this part of the tributary length: a node at the end of a boundary has
-    // half of that of the others.
+    // The reference area of tractions is at least this part of the tributary area: a node at the end of a boundary has
+    // half the tributary length of the others.
     constexpr double smallest_covered_part = 0.5;
-    // Gaps of the geometry below this part of the coordinates are their rounding.
+    // Geometric gaps below this part of the coordinates are rounding.
     constexpr double rounding_of_gaps = 16 * std::numeric_limits<double>::epsilon();
 
-    /// Gap of a pair at a node: of the geometry or given, and the offset.
+    /// Gap of a pair at a node: geometric or prescribed, plus the offset.
     template <int dim>
     double gap_of(const scene::ContactPair<dim> &pair,
                   const dealii::Point<dim>      &x,

@@ -1,4 +1,4 @@
-// Linear problems on the set of a solution: what is free stays free, what is at a bound stays there.
+// Linear problems on the active set of a solution: free rows stay free, rows at a bound stay at it.
 #pragma once
 
 #include <slipstick/contact/dual_solution.h>
@@ -9,36 +9,38 @@
 
 namespace slipstick::contact
 {
-  /// Displacements that answer loads and jumps on the rows which are free in a solution (closed, sticking, glued). Changes
-  /// loads and right-hand side of the dual problem, which another load step has to set again. Members are collective.
+  /// Solves for displacements due to loads and jumps on the rows that are free in a solution (closed, sticking, glued).
+  /// Overwrites loads and right-hand side of the dual problem; a later load step must set them again. Members are
+  /// collective.
   class Adjoint
   {
   public:
     Adjoint(tfeti::DualProblem &dual, const std::vector<bool> &free, const qp::PcpgOptions &options);
 
-    /// Do the free rows hold all bodies? Else there is no answer.
+    /// Whether the free rows hold all bodies; otherwise there is no solution.
     bool is_possible() const
     {
       return face.is_regular();
     }
 
-    /// Displacements, and multipliers on the free rows.
+    /// Solution: displacements, and multipliers on the free rows.
     struct Answer
     {
       std::vector<Eigen::VectorXd> u;
       tfeti::DistributedVector     multipliers;
     };
 
-    /// u with B u = @p jumps [mm] on the free rows under the loads [N] of this rank's subdomains, whose multipliers vanish on
-    /// the other rows. For a figure g'x of the multipliers x: jumps g, no loads; for a figure of displacements: loads alone.
-    /// Nothing where the solver fails. The energy product of its error with that of the solution is the error of the figure (Becker,
-    /// Rannacher 2001), its multipliers are the derivatives of the figure by the right-hand sides of the rows.
+    /// u with B u = @p jumps [mm] on the free rows under the loads [N] of this rank's subdomains; the multipliers of
+    /// the other rows vanish. For a goal quantity g'x of the multipliers x: jumps g, no loads; for a goal quantity of
+    /// displacements: loads only. Returns nothing if the solver fails. The energy product of the error of the adjoint
+    /// solution with that of the primal solution is the error of the goal quantity (Becker, Rannacher 2001); the
+    /// multipliers of the adjoint solution are its derivatives with respect to the right-hand sides of the rows.
     std::optional<Answer> solve(std::vector<Eigen::VectorXd> loads, std::vector<double> jumps);
 
-    /// The same without loads.
+    /// As above, without loads.
     std::optional<Answer> solve(std::vector<double> jumps);
 
-    /// Work of all solves.
+    /// Counts of all solves together.
     const qp::Counts &counts() const
     {
       return work;

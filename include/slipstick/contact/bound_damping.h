@@ -1,4 +1,4 @@
-// Damping of slip bounds that are updated from solution to solution.
+// Damping of slip bounds in the fixed-point iteration.
 #pragma once
 
 #include <slipstick/qp/box.h>
@@ -7,11 +7,12 @@
 
 namespace slipstick::contact
 {
-  /// The part of the way to the next bounds that an update takes: halved whenever their change has not fallen for a while.
+  /// Relaxation factor for the update of the slip bounds: halved when their change has not decreased for several
+  /// updates.
   class BoundDamping
   {
   public:
-    /// @param change of the bounds, relative.
+    /// @param change relative change of the bounds. @return the relaxation factor.
     double operator()(const double change)
     {
       if (change < (1 - cycling_progress * relaxation) * least_change)
@@ -29,15 +30,15 @@ namespace slipstick::contact
     }
 
   private:
-    // The change must fall by this part, times the damping, of the least ...
+    // Progress: the change falls below the smallest change so far by this part, times the relaxation factor, ...
     static constexpr double cycling_progress = 0.1;
-    // ... within so many updates.
+    // ... within this number of updates.
     static constexpr unsigned int cycling_window = 5;
-    // Damping is halved down to this.
+    // Lower limit of the relaxation factor.
     static constexpr double least_relaxation = 0.1;
 
     double       relaxation     = 1;
     double       least_change   = qp::infinity;
-    unsigned int updates_in_row = 0; // without progress
+    unsigned int updates_in_row = 0; // consecutive updates without progress
   };
 } // namespace slipstick::contact

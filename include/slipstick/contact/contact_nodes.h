@@ -1,4 +1,4 @@
-// Contact nodes of the answer: pressure, traction, gap, slip and status.
+// Contact nodes of the solution: pressure, traction, gap, slip and status.
 #pragma once
 
 #include <slipstick/contact/result.h>
@@ -6,10 +6,10 @@
 
 namespace slipstick::contact
 {
-  /// What the rows do not contain about a contact node: its place.
+  /// A contact node with the data that the rows do not contain: its place.
   ContactNode node_at(const tfeti::ContactPoint &point);
 
-  /// One contact node from the force on it and the jump of displacement there.
+  /// One contact node from the contact force and the displacement jump.
   ContactNode contact_node(const tfeti::DualProblem       &dual,
                            const tfeti::ContactPoint      &point,
                            const tfeti::DistributedVector &multipliers,
@@ -17,13 +17,13 @@ namespace slipstick::contact
                            const std::vector<double>      &slip_bound,
                            const std::vector<bool>        &free);
 
-  /// One node of a bonded pair: it sticks whatever the tractions; a row that others imply carries none.
+  /// One node of a bonded pair: it sticks whatever the tractions; a row that is implied by others carries no traction.
   ContactNode bonded_node(const tfeti::DualProblem       &dual,
                           const tfeti::ContactPoint      &point,
                           const tfeti::DistributedVector &multipliers,
                           const tfeti::DistributedVector &jumps);
 
-  /// Sums over the nodes of all pairs, from the nodes of all ranks.
+  /// Results of all pairs, summed over the nodes of all ranks.
   std::vector<PairResult> pair_results(const std::vector<ContactNode> &nodes,
                                        const std::vector<std::string> &pair_names,
                                        const unsigned int              dim = 2);

@@ -1,4 +1,5 @@
-// The dual problem solved within the bounds of the contact laws; Coulomb friction as a fixed point of the slip bounds.
+// Solution of the dual problem within the bounds of the contact laws; Coulomb friction as a fixed point of the slip
+// bounds.
 #pragma once
 
 #include <slipstick/contact/dual_solution.h>
@@ -12,17 +13,17 @@ namespace slipstick::contact
   std::vector<double> slip_bounds(const scene::Scene<dim> &scene, const tfeti::DualProblem &dual, const double t);
 
   /// The options with `auto` resolved: pcg for linear scenes, semismooth Newton with the Dirichlet preconditioner for
-  /// contact; no preconditioner where it would not be used.
+  /// contact; no preconditioner for methods that do not use one.
   template <int dim>
   scene::SolverOptions resolved_options(const scene::Scene<dim> &scene);
 
   /// Solves min 1/2 x'F x - x'd, G x = e, within the bounds of the law; linear problems by projected conjugate
-  /// gradients. Bounds that depend on the pressure are updated until their relative change is at most that of @p
-  /// friction, with damping if they cycle. The status tells non-convergence. Collective.
+  /// gradients. Bounds that depend on the pressure are updated until their relative change is at most the tolerance in
+  /// @p friction, with damping if they cycle. The returned status reports non-convergence. Collective.
   /// @param start solution of the previous load step (multipliers and reference), if any.
-  /// @param is_accurate ends the solve before the tolerance is reached; not called while an outer loop updates bounds
-  /// that depend on the pressure.
-  /// @throws NoEquilibrium naming body and motion if no multipliers admitted by the law balance the loads.
+  /// @param is_accurate may end the solve before the tolerance is reached; not called while an outer loop updates
+  /// bounds that depend on the pressure.
+  /// @throws NoEquilibrium naming body and motion if no admissible multipliers balance the loads.
   DualSolution solve(const tfeti::DualProblem     &dual,
                      const SlipLaw                &law,
                      const scene::SolverOptions   &options,
@@ -31,7 +32,7 @@ namespace slipstick::contact
                      const DualSolution           *start       = nullptr,
                      const AccuracyTest           &is_accurate = {});
 
-  /// The same with given slip bounds.
+  /// As above, with given slip bounds.
   DualSolution solve(const tfeti::DualProblem   &dual,
                      const std::vector<double>  &slip_bound,
                      const scene::SolverOptions &options,

@@ -1,4 +1,4 @@
-// The dual problem without inequalities, and what linear and contact problems share.
+// The dual problem without inequalities, and functions shared by linear and contact problems.
 #pragma once
 
 #include <slipstick/contact/dual_solution.h>
@@ -6,15 +6,15 @@
 
 namespace slipstick::contact
 {
-  /// b - F x~ scaled as the solvers see it, projected on the kernel of G. One multiplication by F; collective.
+  /// b - F x~ with the scaling of the solvers, projected on the kernel of G. One multiplication by F; collective.
   tfeti::DistributedVector homogenised_load(const tfeti::DualProblem &dual, const tfeti::DistributedVector &start);
 
   /// Energy norm of closing the jumps r of displacements [mm]; sqrt(N mm). Collective.
   double residual_energy(const tfeti::DualProblem &dual, const tfeti::DistributedVector &r);
 
   /// Projected conjugate gradients on a problem without inequality rows.
-  /// @param goes_on point from which to continue, after a correction to G x = e, or null.
-  /// @param is_accurate ends the solve before the tolerance is reached; may be empty. Collective.
+  /// @param goes_on starting point, to be corrected to G x = e; null: none.
+  /// @param is_accurate may end the solve before the tolerance is reached; may be empty. Collective.
   DualSolution solve_linear(const tfeti::DualProblem   &dual,
                             const scene::SolverOptions &options,
                             const ProgressObserver     &observer,

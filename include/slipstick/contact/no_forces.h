@@ -1,4 +1,4 @@
-// Scenes without loads, whose contact forces are zero: their sets have no forces to be told by.
+// Detection of scenes without loads, in which all contact forces vanish.
 #pragma once
 
 #include <slipstick/contact/given_bounds.h>
@@ -7,8 +7,8 @@
 
 namespace slipstick::contact
 {
-  /// Do no loads and no prescribed displacements act on bodies that touch nothing where they are, or, where no slip bound
-  /// resists, can be moved to where nothing touches? Then all forces are zero. Collective.
+  /// Whether all forces are zero because there are no loads and no prescribed displacements, and the bodies either
+  /// touch nothing in their initial position or, where no slip bound acts, can be moved apart. Collective.
   /// @param feasible forces that balance the loads [N]. @param box bounds of the forces [N]. @param slip_bound of the owned rows [N].
   bool bears_nothing(const tfeti::DualProblem       &dual,
                      const tfeti::DistributedVector &feasible,

@@ -1,4 +1,4 @@
-// A contact law evaluated at one node whose forces, motion and slip bound are known, for checks and results.
+// A contact law evaluated at one node with known force, displacement jump and slip bound, for checks and results.
 #pragma once
 
 #include <slipstick/contact/result.h>
@@ -9,8 +9,8 @@
 
 namespace slipstick::contact
 {
-  /// Without friction (a bound of 0) a node that touches is free to slide. A bound that acts on open nodes, too, makes
-  /// them slip as well. @param is_within strictly inside the bound.
+  /// Status of a node. Without friction (bound 0) a closed node slips; an open node slips, too, if its law acts on open
+  /// nodes and the bound is reached. @param is_within the traction is strictly inside the bound.
   inline ContactStatus status_of(const bool is_closed, const double slip_bound, const bool is_within)
   {
     if (!is_within && (slip_bound > 0 || is_closed))
@@ -18,10 +18,9 @@ namespace slipstick::contact
     return is_closed ? ContactStatus::stick : ContactStatus::open;
   }
 
-  /// The part of a jump that is not allowed at a bound [mm]: penetration; slip in the direction in which friction
-  /// pushes.
-  /// @param jump B u - c, @param x multiplier, @param bound of it, if tangential, @param noise forces that are
-  /// rounding.
+  /// The inadmissible part of a jump at a bound [mm]: penetration; slip in the direction of the friction force.
+  /// @param jump B u - c. @param x multiplier. @param bound of a tangential multiplier. @param noise forces up to this
+  /// are rounding.
   inline double inadmissible_jump(const tfeti::RowKind kind,
                                   const double         jump,
                                   const double         x,
@@ -33,8 +32,9 @@ namespace slipstick::contact
     return kind == tfeti::RowKind::tangential && x > 0 ? std::min(jump, 0.) : std::max(jump, 0.);
   }
 
-  /// Friction work missing from the maximum that the law admits (the support function of its disc) [N mm].
-  /// @param work of the tangential force on the slave body, its product with the slip: negative.
+  /// Difference between the largest friction work that the law admits (the support function of its disc) and the actual
+  /// work [N mm].
+  /// @param work of the tangential force on the slave body, i.e. its product with the slip: negative.
   inline double missing_friction_work(const double bound, const double work, const double slip)
   {
     return std::abs(bound * std::abs(slip) + work);

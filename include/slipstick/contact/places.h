@@ -1,4 +1,4 @@
-// Where something is at its largest.
+// Places at which checks take their largest values.
 #pragma once
 
 #include <slipstick/tfeti/diagnosis.h>
@@ -14,12 +14,12 @@ namespace slipstick::contact
     bool                  is_known = false;
     unsigned int          body     = 0;
     std::array<double, 3> position{{0, 0, 0}}; // reference configuration [mm]
-    bool                  is_point = false;    // else the whole body
-    bool                  in_pair  = false;    // of contact
+    bool                  is_point = false;    // otherwise the place is a whole body
+    bool                  in_pair  = false;    // whether a contact pair is given
     unsigned int          pair     = 0;        // index into Scene::contacts
   };
 
-  /// The largest of some numbers (0 if there are none; a NaN persists) and where it is.
+  /// The largest of some numbers (0 if there are none; a NaN is kept) and its place.
   struct Largest
   {
     double value = 0;
@@ -35,15 +35,15 @@ namespace slipstick::contact
       return true;
     }
 
-    /// The first of the ranks with the largest value broadcasts it. Collective.
+    /// Takes the maximum over the ranks, with the place given by the first rank that has it. Collective.
     void over_all_ranks(const MPI_Comm comm);
   };
 
-  /// Maximum over all ranks of the violations of owned rows, with a node that the row touches, on the rank of its
-  /// subdomain. Collective.
+  /// Sets the maximum over all ranks of the violations of owned rows, and its place: a node that the row touches, found
+  /// on the rank of its subdomain. Collective.
   void find_place_of_row(const tfeti::DualProblem &dual, const unsigned int owned_row, Largest &violation);
 
-  /// Where a body has most of the energy of its jumps, and the pair that touches there. Collective.
+  /// Finds where a body has most of the energy of its jumps, and the contact pair there. Collective.
   void find_place_in_body(const tfeti::DualProblem  &dual,
                           const tfeti::JumpEnergies &energies,
                           const unsigned int         body,

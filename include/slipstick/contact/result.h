@@ -1,9 +1,10 @@
-// What contact returns, node by node and pair by pair.
+// Contact results, by node and by pair.
 //
-// Sign conventions: normal = outward normal of the slave body; tangent = normal turned by +90 degrees (2D); in space two
-// tangents across each other, tangential traction and slip are lengths beside their vectors. Positive
-// pressure is compression. Gap >= 0 open, < 0 penetrating, in the deformed configuration (linearised). Slip is the
-// tangential displacement of the slave relative to the other side. Traction acts on the slave body.
+// Sign conventions: normal = outward normal of the slave body; tangent = normal turned by +90 degrees (2D); in space
+// there are two orthogonal tangents, and tangential traction and slip are given as magnitudes in addition to their
+// vectors. Positive pressure is compression. Gap >= 0 open, < 0 penetrating, in the deformed configuration
+// (linearised). Slip is the tangential displacement of the slave relative to the other side. Traction acts on the slave
+// body.
 #pragma once
 
 #include <slipstick/base/resultant.h>
@@ -24,8 +25,8 @@ namespace slipstick::contact
   /// "open", "stick", "slip"
   std::string to_string(const ContactStatus status);
 
-  /// One slave node of a contact pair, as found from the recovered displacement. With a Tresca bound that acts on the
-  /// whole declared boundary even a node that is not closed slips if it reaches the bound; its status is then slip.
+  /// One slave node of a contact pair, computed from the recovered displacement. With a Tresca bound that acts on the
+  /// whole declared boundary, a node that is not closed also slips if it reaches the bound; its status is then slip.
   /// Nodes of bonded pairs are closed and stick; their pressure may be negative, their slip bound is infinite.
   struct ContactNode
   {
@@ -33,7 +34,7 @@ namespace slipstick::contact
     std::array<double, 3> position{{0, 0, 0}}; // reference configuration [mm]
     std::array<double, 3> normal{{0, 0, 0}};
     double                arc_length          = 0; // along the slave boundary from its first node [mm]
-    double                area                = 0; // that tractions are given for, see tfeti::ContactPoint [mm^2]
+    double                area                = 0; // reference area of tractions, see tfeti::ContactPoint [mm^2]
     double                length              = 0; // tributary length; in space area [mm], [mm^2]
     double                gap                 = 0; // [mm]
     double                pressure            = 0; // [MPa]
@@ -43,8 +44,8 @@ namespace slipstick::contact
     std::array<double, 3> slip_vector{{0, 0, 0}};  // ... and the slip [mm]
     double                total_slip = 0;          // of all load steps so far [mm]
     ContactStatus         status     = ContactStatus::open; // see is_closed
-    bool                  is_closed  = false;               // pressed on the other side
-    double                slip_bound = 0;                   // [MPa], of the law: Tresca bound or mu times pressure
+    bool                  is_closed  = false;               // in contact with the other side
+    double                slip_bound = 0;                   // [MPa], from the law: Tresca bound or mu times pressure
     std::array<double, 3> moment_mismatch{{0, 0, 0}};       // of the forces on the two sides [N mm], see PairResult
 
     /// For sending between ranks (Boost serialization, through deal.II's MPI utilities).
@@ -62,15 +63,16 @@ namespace slipstick::contact
     Resultant             on_slave;                   // of the tractions, at the slave nodes
     double                normal_force     = 0;       // sum of pressure times area [N]
     double                tangential_force = 0;       // [N]
-    std::array<double, 3> moment_mismatch{{0, 0, 0}}; // sum of the moments on both sides [N mm]: the linearised gap
-      // leaves gap times force where a node and its mean on the other side are not
-      // on one normal; in the plane about z
-    double       max_pressure    = 0; // [MPa]
+    std::array<double, 3> moment_mismatch{{0, 0, 0}}; // sum of the moments on both sides [N mm]: with a
+                                                      // linearised gap, gap times force remains if a node and
+                                                      // its mean on the other side are not on one normal;
+                                                      // in the plane about z
+    double       max_pressure    = 0;                 // [MPa]
     double       contact_length  = 0; // of the nodes that are not open; in space their area [mm], [mm^2]
     unsigned int contact_nodes   = 0; // closed
     unsigned int open_nodes      = 0; // not closed
     unsigned int stick_nodes     = 0; // closed and not slipping
-    unsigned int open_slip_nodes = 0; // of them, not closed
+    unsigned int open_slip_nodes = 0; // of these, not closed
     unsigned int slip_nodes      = 0; // slip bound reached, see ContactNode on nodes that are not closed
   };
 } // namespace slipstick::contact

@@ -5,8 +5,8 @@
 
 namespace slipstick::contact
 {
-  /// On the bodies, by number of supports, behind them foundations: the sums of the reactions, less what obstacles
-  /// carry at held nodes (add_held_nodes). The same on all ranks. Collective.
+  /// Forces on the bodies from supports, followed by foundations: sums of the reactions, without the part carried by
+  /// obstacles at held nodes (add_held_nodes). The same on all ranks. Collective.
   std::vector<Resultant> reactions(const tfeti::DualProblem                 &dual,
                                    const tfeti::HeldContacts                &held,
                                    const std::vector<std::array<double, 3>> &held_forces,

@@ -1,4 +1,4 @@
-// Slip bounds of the contact laws, and the forces that a law admits.
+// Slip bounds of the contact laws, and the admissible forces.
 #pragma once
 
 #include <slipstick/qp/force_set.h>
@@ -9,14 +9,14 @@ namespace slipstick::contact
 {
   using Box = qp::Box<tfeti::DistributedVector>;
 
-  /// Bounds of the multipliers: normal >= 0, |tangential| <= slip bound, equality rows free [N].
+  /// Bounds of the multipliers: normal >= 0, |tangential| <= slip bound, equality rows unbounded [N].
   Box multiplier_box(const tfeti::DualProblem &dual, const std::vector<double> &slip_bound);
 
-  /// The laws of a scene on the rows of a dual problem: the forces that they admit at every contact node.
+  /// The contact laws of a scene on the rows of a dual problem: the admissible forces at every contact node.
   class SlipLaw
   {
   public:
-    /// Bounds that do not depend on the solution, one an owned row [N].
+    /// Bounds that do not depend on the solution, one per owned row [N].
     explicit SlipLaw(std::vector<double> fixed_bounds);
 
     /// The laws of the scene at load factor t. Collective.
@@ -24,13 +24,13 @@ namespace slipstick::contact
     template <int dim>
     SlipLaw(const scene::Scene<dim> &scene, const tfeti::DualProblem &dual, const double t);
 
-    /// Do the bounds depend on the normal forces (on any rank)?
+    /// Whether the bounds depend on the normal forces (on any rank).
     bool depends_on_pressure() const
     {
       return follows_pressure;
     }
 
-    /// Slip bounds for the multipliers x [N], one an owned row.
+    /// Slip bounds for the multipliers x [N], one per owned row.
     std::vector<double> bounds(const tfeti::DistributedVector &x) const;
 
     /// The bounds that depend on the normal forces, for a solver that updates them itself; entries: owned rows.
@@ -39,23 +39,24 @@ namespace slipstick::contact
       return rows;
     }
 
-    /// Discs of a solver that holds the bounds at these values: of all nodes in space with friction, or, where the solver
-    /// follows the normal forces, of those that depend on none.
+    /// Discs with radii fixed at @p bounds, for a solver.
+    /// @param all true: all nodes in space with friction; false: those whose bound does not depend on a normal force
+    /// (for a solver that follows the normal forces).
     std::vector<qp::PressureBound> fixed_discs(const std::vector<double> &bounds, const bool all) const;
 
-    /// Has it discs (on any rank)?
+    /// Whether there are discs (on any rank).
     bool has_discs() const
     {
       return is_in_space;
     }
 
-    /// All multipliers that some pressure admits.
+    /// The set of multipliers that are admissible for some pressure.
     qp::ForceSet<tfeti::DistributedVector> admissible(const tfeti::DualProblem &dual) const;
 
   private:
     std::vector<double>            fixed; // [N], of every owned row; 0 where the bound follows the pressure
-    std::vector<qp::PressureBound> rows;  // owned, whose bound does
-    std::vector<qp::PressureBound> discs; // owned, in space, whose bound does not
+    std::vector<qp::PressureBound> rows;  // owned rows whose bound follows the pressure
+    std::vector<qp::PressureBound> discs; // owned rows in space whose bound does not
     bool                           follows_pressure = false;
     bool                           is_in_space      = false;
   };

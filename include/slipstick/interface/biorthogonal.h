@@ -5,10 +5,11 @@
 
 namespace slipstick::interface
 {
-  /// How independent functions T are: the least eigenvalue of their mass matrix <T T'> scaled to a diagonal of 1.
+  /// A measure of the linear independence of functions T: the least eigenvalue of their mass matrix <T T'> scaled to a
+  /// diagonal of 1.
   double independence(const Eigen::MatrixXd &mass);
 
-  /// A in phi = A T, so that <phi_i T_k> is <T_i> for i = k and 0 otherwise: diag(<T>) <T T'>^-1.
+  /// A in phi = A T such that <phi_i T_k> is <T_i> for i = k and 0 otherwise: diag(<T>) <T T'>^-1.
   /// @param mass <T T'>. @param measures <T>.
   Eigen::MatrixXd biorthogonal(const Eigen::MatrixXd &mass, const Eigen::VectorXd &measures);
 } // namespace slipstick::interface

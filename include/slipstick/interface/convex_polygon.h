@@ -8,29 +8,29 @@
 
 namespace slipstick::interface
 {
-  /// Corners counter-clockwise.
+  /// Corners in counter-clockwise order.
   using ConvexPolygon = std::vector<dealii::Point<2>>;
 
-  /// Negative for corners that run clockwise.
+  /// Area; negative for clockwise corners.
   double area(const ConvexPolygon &polygon);
 
-  /// Of all together.
+  /// Total area.
   double area(const std::vector<ConvexPolygon> &polygons);
 
-  /// The middle of its area; of its corners when it has none.
+  /// Centroid of the area; mean of the corners if the area is zero.
   dealii::Point<2> centroid(const ConvexPolygon &polygon);
 
-  /// Does no corner point inwards?
+  /// Whether no corner is re-entrant.
   bool is_convex(const ConvexPolygon &polygon);
 
-  /// Is x inside, or outside by no more than @p tolerance?
+  /// Whether x is inside, or outside by at most @p tolerance.
   bool contains(const ConvexPolygon &polygon, const dealii::Point<2> &x, const double tolerance = 0);
 
-  /// What two polygons have in common (Sutherland, Hodgman 1974); empty or without area when they only touch.
+  /// Intersection of two polygons (Sutherland, Hodgman 1974); empty or of zero area when they only touch.
   ConvexPolygon intersection(const ConvexPolygon &a, const ConvexPolygon &b);
 
-  /// Calls f(point, weight) for the points of @p rule, one of the unit triangle, on every triangle from the centroid to an
-  /// edge; a triangle itself is not divided.
+  /// Calls f(point, weight) for the points of @p rule, a rule on the unit triangle, on every triangle formed by the
+  /// centroid and an edge; a triangle is not subdivided.
   template <class F>
   void integrate(const ConvexPolygon &polygon, const dealii::Quadrature<2> &rule, const F &f)
   {

@@ -1,4 +1,4 @@
-// Which points of two curves face each other.
+// Pairing of points on two curves that face each other.
 #pragma once
 
 #include <slipstick/interface/edge_tree.h>
@@ -9,16 +9,16 @@
 
 namespace slipstick::interface
 {
-  /// How far a slave looks for its master along its normal, outwards and (for overlaps) inwards [mm].
+  /// Search distances of a slave for its master along its normal, outwards and (for overlaps) inwards [mm].
   struct Reach
   {
     double ahead = 0, behind = 0;
   };
 
-  /// Slave and master edges joined by rays from the slave along a continuous field of normals: at the nodes the mean of
-  /// both sides' normals, linear in the shape functions between them. Two equal bodies then touch along their plane of
-  /// symmetry, whichever is the slave; with the slave's own normals, the closing of a gap between curved bodies would
-  /// look like slip.
+  /// Pairs slave and master edges by rays from the slave along a continuous field of normals: at the nodes the mean of
+  /// both sides' normals, interpolated by the linear shape functions. Two equal bodies then touch along their plane of
+  /// symmetry, whichever is the slave; with the slave's own normals, closing a gap between curved bodies would cause an
+  /// apparent slip.
   class CurvePairing
   {
   public:
@@ -39,7 +39,7 @@ namespace slipstick::interface
       unsigned int master = 0;       // edge
     };
 
-    /// The edges are not copied.
+    /// The edges are kept by reference.
     CurvePairing(const std::vector<Edge>   &slave,
                  const std::vector<Edge>   &master,
                  const Reach               &reach,
@@ -56,10 +56,10 @@ namespace slipstick::interface
       return own.of_part[e];
     }
 
-    /// Parts of slave edge e over which one master edge faces it within reach; the first crossing decides.
+    /// The parts of slave edge e that are faced by one master edge within reach; the first crossing counts.
     std::vector<Segment> segments(const unsigned int e) const;
 
-    /// Where the ray from slave edge e at s meets master edge m.
+    /// The intersection of the ray from slave edge e at s with master edge m.
     std::optional<Hit> hit(const unsigned int e, const double s, const unsigned int m) const;
 
     /// Unit vector along that ray.
@@ -69,7 +69,7 @@ namespace slipstick::interface
       return n / n.norm();
     }
 
-    /// Distance of y from that ray, positive on its left, times a factor that is the same for all y.
+    /// A positive factor, the same for all y, times the signed distance of y from that ray (positive to the left).
     double side(const unsigned int e, const double s, const dealii::Point<2> &y) const;
 
   private:

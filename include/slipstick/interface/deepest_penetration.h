@@ -13,10 +13,10 @@ namespace slipstick::interface
     double                depth = 0;     // [mm]
     std::array<double, 3> at{{0, 0, 0}}; // reference configuration [mm]
     double                edge = 0;      // length of the shorter of the edges there [mm]
-    double                gap  = 0;      // before loading, beyond_reach: of the node [mm]
+    double                gap  = 0;      // initial gap of the node; beyond_reach only [mm]
   };
 
-  /// Takes a penetration at @p x if there is one and it is deeper than the deepest so far.
+  /// Stores a penetration at @p x if it is deeper than the deepest so far.
   template <int dim>
   void take_deeper(std::optional<Penetration> &deepest,
                    const double                depth,

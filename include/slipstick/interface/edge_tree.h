@@ -16,37 +16,37 @@ namespace slipstick::interface
 
     using BoxTree<2>::box_around;
 
-    /// Smallest box around an edge (curved ones lie in that of their Bezier points).
+    /// Bounding box of an edge (of the Bezier points of curved ones).
     static Box box_around(const mechanics::SurfaceEdge<2> &edge);
   };
 
-  /// The whole outline of a body, holes included; curved edges count as their chords.
+  /// The whole outline of a body, including holes; curved edges are replaced by their chords.
   class ClosedOutline
   {
   public:
-    /// @param edges are not copied.
+    /// @param edges are kept by reference.
     explicit ClosedOutline(const std::vector<mechanics::SurfaceEdge<2>> &edges);
 
-    /// Is x inside? Crossings of the ray along +x are counted.
+    /// Whether x is inside, by counting crossings of the ray along +x.
     bool contains(const dealii::Point<2> &x) const;
 
     struct Nearest
     {
       unsigned int edge     = 0;
-      double       s        = 0; // where on its chord
+      double       s        = 0; // local coordinate on the chord
       double       distance = std::numeric_limits<double>::max();
     };
-    /// The place on the chords that is nearest to x.
+    /// The point on the chords nearest to x.
     Nearest nearest(const dealii::Point<2> &x) const;
 
     const std::vector<mechanics::SurfaceEdge<2>> &edges;
     const EdgeTree                                tree;
 
   private:
-    double right; // end
+    double right; // right end
   };
 
-  /// The whole boundary of a body, holes included.
+  /// The whole boundary of a body, including holes.
   template <class Part>
   class ClosedSurface;
 
@@ -57,19 +57,19 @@ namespace slipstick::interface
     using ClosedOutline::ClosedOutline;
   };
 
-  /// Boxes around facets.
+  /// Tree of the bounding boxes of facets.
   BoxTree<3> facet_tree(const std::vector<mechanics::SurfaceFacet> &facets);
 
   template <>
   class ClosedSurface<mechanics::SurfaceFacet>
   {
   public:
-    /// @param facets are not copied.
+    /// @param facets are kept by reference.
     explicit ClosedSurface(const std::vector<mechanics::SurfaceFacet> &facets)
       : facets(facets)
     {}
 
-    /// Is x inside? By the solid angle of the surface (van Oosterom, Strackee 1983).
+    /// Whether x is inside, by the solid angle of the surface (van Oosterom, Strackee 1983).
     bool contains(const dealii::Point<3> &x) const;
 
   private:

@@ -1,4 +1,4 @@
-// How far two curves or surfaces that face each other are apart.
+// Distance between two curves or surfaces that face each other.
 #pragma once
 
 #include <slipstick/mechanics/surface_facet.h>
@@ -8,16 +8,16 @@
 
 namespace slipstick::interface
 {
-  // Curves and surfaces face each other where the product of their normals is below this.
+  // Curves and surfaces face each other where the scalar product of their normals is below this.
   constexpr double facing_cosine = -0.25; // 104 degrees
 
   /// Nearest point of a triangle (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
   dealii::Point<3> nearest_on_triangle(const std::array<dealii::Point<3>, 3> &corner, const dealii::Point<3> &x);
 
-  /// Smallest distance of two curves or surfaces where they face each other: nodes and middles of the edges or facets of one
-  /// to those of the other, curved edges counted as chords and quadrilaterals as two triangles [mm]; empty when nothing faces
-  /// or nothing is closer than @p bound.
-  /// @tparam Part mechanics::BoundaryPart of the plane or of space.
+  /// Smallest distance of two curves or surfaces where they face each other [mm]: nodes and edge or facet midpoints of
+  /// one against those of the other; curved edges are replaced by chords, quadrilaterals by two triangles. Empty if
+  /// nothing faces each other or nothing is closer than @p bound.
+  /// @tparam Part mechanics::BoundaryPart in 2D or in space.
   template <class Part>
   std::optional<double> facing_distance(const std::vector<Part> &a,
                                         const std::vector<Part> &b,

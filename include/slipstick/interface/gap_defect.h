@@ -1,4 +1,4 @@
-// What gaps at nodes leave out of the gap between them.
+// Difference between the nodal gaps and the gap between the nodes.
 #pragma once
 
 #include <slipstick/interface/body_contact.h>
@@ -8,15 +8,16 @@ namespace slipstick::interface
   template <int dim>
   struct GapDefects
   {
-    /// By contact pair and slave node: the mean over its tributary area of the gap interpolated from the nodes, less that of the
-    /// surfaces [mm]; positive where a convex obstacle is touched.
+    /// By contact pair and slave node: the mean over its tributary area of the gap interpolated from the nodes, minus
+    /// that of the surfaces [mm]; positive for contact with a convex obstacle.
     std::vector<std::map<mechanics::NodeKey, double>> of_pairs;
 
-    /// On how many edges or facets of its side a slave node is.
+    /// Number of edges or facets of its side that contain a slave node.
     std::vector<std::map<mechanics::NodeKey, unsigned int>> n_parts;
   };
 
-  /// Of obstacles, and of pairs of bodies that are coupled node to node; mortar gaps are means already. Known to every rank. Collective.
+  /// For obstacles and for pairs of bodies coupled node to node; mortar gaps are means already. The same on every rank.
+  /// Collective.
   template <int dim>
   GapDefects<dim> gap_defects(const scene::Scene<dim>      &scene,
                               const mesh::Mesh<dim>        &mesh,

@@ -8,16 +8,17 @@
 
 namespace slipstick::interface
 {
-  /// By how much the prescribed gap of a node may differ from 0 and still counts as touching [mm].
+  /// Tolerance within which a prescribed gap counts as closed [mm].
   double held_contact_tolerance(const tfeti::HeldContacts::Point &point);
 
-  /// @throws NoEquilibrium on all ranks when supports alone prescribe a penetration: names both at the deepest place.
+  /// @throws NoEquilibrium on all ranks when supports alone prescribe a penetration; the message names support and pair
+  /// at the deepest place.
   /// Collective.
   template <int dim>
   void refuse_held_penetration(const scene::Scene<dim> &scene, const tfeti::HeldContacts &held, const MPI_Comm comm);
 
-  /// The same of penetrations that bonds and supports prescribe together, which the displacement shows.
-  /// @param gaps of the points after loading [mm], @param noise what the solver leaves in them [mm].
+  /// The same for penetrations prescribed by bonds and supports together, which only the displacement shows.
+  /// @param gaps of the points after loading [mm]. @param noise error of the solver in these gaps [mm].
   template <int dim>
   void refuse_held_penetration(const scene::Scene<dim>   &scene,
                                const tfeti::HeldContacts &held,

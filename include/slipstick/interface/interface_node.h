@@ -1,4 +1,4 @@
-// A node that several subdomains share, or that supports, foundations or contact act on.
+// A node shared by several subdomains, or subject to supports, foundations or contact.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
@@ -9,7 +9,7 @@
 
 namespace slipstick::interface
 {
-  /// What a node stands for on the boundary of a pair: integrals of its shape function.
+  /// Tributary area and length of a node on the boundary of a pair: integrals of its shape function.
   struct Tributary
   {
     double area   = 0; // with thickness or circumference [mm^2]
@@ -34,7 +34,7 @@ namespace slipstick::interface
     }
   };
 
-  /// One copy of a node, or (with several entries in `copies`) everything known about it.
+  /// One copy of a node, or (with several entries in `copies`) all its copies merged.
   template <int dim>
   struct InterfaceNode
   {
@@ -45,7 +45,7 @@ namespace slipstick::interface
       double                  value = 0;   // [mm]
       unsigned int            which = 0;   // component, or dim + k for the k-th along a normal
       std::vector<unsigned int>
-        by; // who prescribes it: as Side::condition, followed by contact pairs (bonds to obstacles), then the axis
+        by; // prescribed by: numbered as Side::condition, followed by contact pairs (bonds to obstacles), then the axis
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)
@@ -57,7 +57,7 @@ namespace slipstick::interface
     /// Contribution of one edge at the node to a support along the normal or to a foundation.
     struct Side
     {
-      unsigned int            condition = 0; // index into Scene::supports, behind them Scene::foundations
+      unsigned int            condition = 0; // index into Scene::supports, followed by Scene::foundations
       std::array<double, dim> normal{};      // outward
       double                  area = 0;      // tributary [mm^2]
 
@@ -86,7 +86,7 @@ namespace slipstick::interface
     std::vector<Held>                                  held;              // independent directions
     std::vector<std::pair<unsigned int, unsigned int>> copies;            // subdomain, node there; sorted
     std::vector<std::pair<unsigned int, Tributary>>    areas;             // by pair with an obstacle; sorted
-    bool                                               is_paired = false; // weights of a pair of bodies touch it
+    bool                                               is_paired = false; // occurs in the weights of a pair of bodies
     std::vector<Side>                                  sides;
     std::vector<Spring>                                springs; // made from the sides, at most dim
 
@@ -104,19 +104,19 @@ namespace slipstick::interface
       return x;
     }
 
-    /// Does an external force act on it: from a support, a foundation or contact?
+    /// Whether an external force acts on it: from a support, a foundation or contact.
     bool is_acted_on() const
     {
       return !held.empty() || !areas.empty() || is_paired || !sides.empty();
     }
 
-    /// The smallest displacement with the values that are prescribed [mm].
+    /// The smallest displacement that takes the prescribed values [mm].
     dealii::Tensor<1, dim> held_displacement() const;
 
-    /// The part of a displacement that supports leave free.
+    /// The part of a displacement that supports do not prescribe.
     dealii::Tensor<1, dim> free_part(const dealii::Tensor<1, dim> &direction) const;
   };
 
-  // A direction whose free part is shorter than this is held.
+  // A direction is held if its free part is shorter than this.
   constexpr double held_direction_tolerance = 1e-8;
 } // namespace slipstick::interface

@@ -1,4 +1,4 @@
-// All nodes that several subdomains share, or that supports, foundations or contact act on.
+// All nodes shared by several subdomains, or subject to supports, foundations or contact.
 #pragma once
 
 #include <slipstick/interface/body_contact.h>
@@ -6,12 +6,12 @@
 
 namespace slipstick::interface
 {
-  /// The interface nodes that this rank owns, complete, sorted by key: nodes of @p contacts on the rank given there,
-  /// others on that of their first copy. Nodes with a single copy on which nothing acts are left out.
+  /// The interface nodes owned by this rank, with all their copies, sorted by key: nodes of @p contacts on the rank
+  /// given there, others on the rank of their first copy. Nodes with a single copy and no conditions are omitted.
   ///
-  /// Supports along the normal hold a node along the average of the outward normals of the edges there, or along each
-  /// of them where they form a corner; a component or normal that the others imply is left out. Bonds to an obstacle
-  /// hold all components. Foundations become springs along the principal directions of their joint stiffness.
+  /// Supports along the normal hold a node along the average of the outward normals of its edges, or along each of them
+  /// at a corner; a component or normal that is implied by the others is omitted. Bonds to an obstacle hold all
+  /// components. Foundations become springs along the principal directions of their combined stiffness.
   /// Collective.
   /// @throws InputError on all ranks when supports contradict each other at a node, or a point support has no node.
   template <int dim>

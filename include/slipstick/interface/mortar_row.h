@@ -1,4 +1,4 @@
-// What the mortar integrals give for one slave node.
+// Result of the mortar integrals for one slave node.
 //
 // Notation: N_k shape functions of a slave edge, phi_i its test functions, y(x) the point of the master that the ray
 // from x along the normal field of the pairing meets, <.> the integral over that part of the slave that has such a
@@ -13,21 +13,21 @@ namespace slipstick::interface
 {
   using Weights = std::vector<std::pair<mechanics::NodeKey, double>>; // sorted by node, sum 1
 
-  /// One slave node and what faces it.
+  /// Row of one slave node.
   template <int dim>
   struct MortarRow
   {
     mechanics::NodeKey     slave{};
-    unsigned int           side = 0;          // a node at a corner of the slave boundary has one row for each side
-    dealii::Point<dim>     position;          // of the slave node [mm]
-    dealii::Tensor<1, dim> normal;            // outward, mean of both sides (CurvePairing)
-    Weights                slave_weights;     // d_ik
-    Weights                master_weights;    // m_ij
-    dealii::Point<dim>     master_position;   // sum_j m_ij y_j [mm]
-    double                 gap      = 0;      // along n_i [mm], negative when overlapping
-    double                 measure  = 0;      // D_i [mm], of bodies of revolution [mm^2]
-    double                 length   = 0;      // the same in the plane [mm]
-    double                 left_out = 0;      // sagitta that the edges there leave out, both sides [mm]
-    double full_measure = 0, full_length = 0; // if all edges of the slave boundary on this side were covered
+    unsigned int           side = 0;         // a node at a corner of the slave boundary has one row for each side
+    dealii::Point<dim>     position;         // of the slave node [mm]
+    dealii::Tensor<1, dim> normal;           // outward, mean of both sides (CurvePairing)
+    Weights                slave_weights;    // d_ik
+    Weights                master_weights;   // m_ij
+    dealii::Point<dim>     master_position;  // sum_j m_ij y_j [mm]
+    double                 gap          = 0; // along n_i [mm], negative when overlapping
+    double                 measure      = 0; // D_i [mm], for bodies of revolution [mm^2]
+    double                 length       = 0; // the same in the plane [mm]
+    double                 left_out     = 0; // sagitta neglected by the edges, both sides [mm]
+    double                 full_measure = 0, full_length = 0; // if the edges of this side were fully covered
   };
 } // namespace slipstick::interface

@@ -1,4 +1,5 @@
-// Rows of mortar integrals in terms of nodes: weights, gaps, and node to node where meshes match. Internal to mortar_rows().
+// Rows of mortar integrals in terms of nodes: weights and gaps; node to node for matching meshes. Internal to
+// mortar_rows().
 #pragma once
 
 #include <slipstick/base/exceptions.h>
@@ -12,10 +13,11 @@
 
 namespace slipstick::interface
 {
-  /// Weights over their sum, without what is rounding; the largest makes the sum 1 exactly.
+  /// The weights divided by their sum, without rounding noise; the largest one is adjusted so that their sum is exactly
+  /// 1.
   Weights normalised(const std::map<mechanics::NodeKey, double> &raw, const double sum);
 
-  /// Where the nodes of both sides are.
+  /// Positions of the nodes of both sides.
   template <int dim>
   struct NodePlaces
   {
@@ -23,7 +25,7 @@ namespace slipstick::interface
 
     std::map<mechanics::NodeKey, dealii::Point<dim>> slave, master; // [mm]
 
-    /// Gap and mean master position of a row from its weights.
+    /// Sets gap and mean master position of a row from its weights.
     void measure(MortarRow<dim> &row) const
     {
       dealii::Point<dim> x;
@@ -35,7 +37,7 @@ namespace slipstick::interface
       row.gap = row.normal * (row.master_position - x);
     }
 
-    /// The master node across a slave node, and how far off it is to the side [mm].
+    /// The master node opposite a slave node, and its lateral distance [mm].
     std::pair<mechanics::NodeKey, double> across(const MortarRow<dim> &row) const
     {
       std::pair<mechanics::NodeKey, double> best{{{0, 0}}, std::numeric_limits<double>::max()};
@@ -50,10 +52,10 @@ namespace slipstick::interface
     }
   };
 
-  // Edges, facets and nodes are left out if no more than this fraction of them is covered.
+  // Edges, facets and nodes are omitted if at most this fraction of them is covered.
   constexpr double smallest_cover = 1e-10;
 
-  /// What the integrals over all edges or facets give for a slave node.
+  /// The integrals over all edges or facets for one slave node.
   struct NodeIntegrals
   {
     double                               measure = 0;   // D_i
@@ -61,15 +63,15 @@ namespace slipstick::interface
     std::map<mechanics::NodeKey, double> slave, master; // D_ik, M_ij
   };
 
-  /// In the plane a node without a share of its edges (on the axis of revolution) has no row. A corner of triangles of degree 2 has
-  /// one where some of them are covered in part.
+  /// Whether the node has a row. In the plane nodes with no share of their edges (on the axis of revolution) have none.
+  /// Corners of triangles of degree 2 have one where some of the triangles are partly covered.
   template <int dim>
   bool has_row(const SurfaceNode<dim> &node, const NodeIntegrals &sum)
   {
     return (dim == 3 || node.measure > 0) && sum.measure > smallest_cover * node.scale;
   }
 
-  /// The row of a slave node, its gap that of the edges or facets.
+  /// The row of a slave node, with the gap of the edges or facets.
   template <int dim>
   MortarRow<dim> row_of(const SurfaceNode<dim> &node, const NodeIntegrals &sum, const NodePlaces<dim> &places)
   {
@@ -88,7 +90,7 @@ namespace slipstick::interface
     return row;
   }
 
-  /// Of @p node among @p weights, 0 where it is none of them.
+  /// The weight of @p node in @p weights, 0 if it is not contained.
   inline double weight_of(const mechanics::NodeKey &node, const Weights &weights)
   {
     for (const auto &[key, weight] : weights)
@@ -97,16 +99,17 @@ namespace slipstick::interface
     return 0;
   }
 
-  // Master nodes lie across slave nodes when they are off by no more than this part of the tributary length ...
-  constexpr double across_automatic = 1e-6; // ... to be taken for matching meshes
-  constexpr double across_asked_for = 0.1;  // ... when node to node is asked for
-  // Matching nodes are not enough: an edge may face two or three, a quadrilateral two triangles. The integrals must say the same, with
-  // no less than this weight of the node across.
+  // Master nodes are opposite slave nodes if their lateral distance is at most this part of the tributary length ...
+  constexpr double across_automatic = 1e-6; // ... for meshes to be recognised as matching
+  constexpr double across_asked_for = 0.1;  // ... if node to node is required
+  // Matching nodes are not sufficient: an edge may face two or three, a quadrilateral two triangles. The weight of the
+  // opposite node in the integrals must also be at least this.
   constexpr double least_weight_across = 0.99;
 
-  /// Rows from node to node where the discretisation asks for them, or leaves it to the meshes and these match; else @p rows.
-  /// @param rise how far the true surface is above a node along the normal of its row [mm].
-  /// @throws InputError when node to node is asked for and the meshes do not match.
+  /// Node-to-node rows where the discretisation requires them, or leaves the choice open and the meshes match;
+  /// otherwise @p rows.
+  /// @param rise of the true surface above a node along the normal of its row [mm].
+  /// @throws InputError when node to node is required and the meshes do not match.
   template <int dim, class Rise>
   std::vector<MortarRow<dim>> matched(std::vector<MortarRow<dim>>        rows,
                                       const NodePlaces<dim>             &places,

@@ -1,4 +1,4 @@
-// How deep the slave boundary of a pair lies in an obstacle between its nodes, or an obstacle in a body.
+// Penetration of the slave boundary into an obstacle between its nodes, and of an obstacle into a body.
 #pragma once
 
 #include <slipstick/interface/deepest_penetration.h>
@@ -10,8 +10,8 @@
 
 namespace slipstick::interface
 {
-  /// The deepest place of the slave boundary in the obstacle of the pair, if it is deeper than @p deepest.
-  /// @param slave boundary before loading, @param now after it, @param t load factor.
+  /// Finds the deepest place of the slave boundary in the obstacle of the pair, if it is deeper than @p deepest.
+  /// @param slave boundary before loading. @param now the same after loading. @param t load factor.
   template <int dim>
   void find_in_obstacle(const scene::Scene<dim>                         &scene,
                         const scene::ContactPair<dim>                   &pair,
@@ -20,7 +20,7 @@ namespace slipstick::interface
                         const double                                     t,
                         std::optional<Penetration>                      &deepest);
 
-  /// The same of obstacles that are in the body as a whole. @param body after loading.
+  /// The same for obstacles that lie entirely inside the body. @param body after loading.
   void find_points_of_obstacle(const scene::Scene<2>       &scene,
                                const mesh::Mesh<2>         &mesh,
                                const scene::ContactPair<2> &pair,
@@ -28,7 +28,7 @@ namespace slipstick::interface
                                const double                 t,
                                std::optional<Penetration>  &deepest);
 
-  /// The same in space. @param all facets of the body after loading, @param slave those of the pair.
+  /// The same in space. @param all facets of the body after loading. @param slave facets of the pair.
   void find_points_of_obstacle(const scene::Scene<3>                      &scene,
                                const scene::ContactPair<3>                &pair,
                                const std::vector<mechanics::SurfaceFacet> &all,

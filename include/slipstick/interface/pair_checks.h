@@ -1,4 +1,4 @@
-// Contact pairs that cannot be meant as declared: sides that face away from each other or are out of reach.
+// Checks of contact pairs: sides that face away from each other or are out of reach.
 #pragma once
 
 #include <slipstick/interface/mortar.h>
@@ -13,7 +13,7 @@ namespace slipstick::interface
     std::vector<mechanics::BoundaryPart<dim>> slave_outline, master_outline;
   };
 
-  /// Diagonal of the box around the nodes of some edges or facets [mm].
+  /// Diagonal of the bounding box of the nodes of some edges or facets [mm].
   template <class Part>
   double extent(const std::vector<Part> &parts)
   {
@@ -28,26 +28,26 @@ namespace slipstick::interface
     return low.distance(high);
   }
 
-  /// BODY/BOUNDARY
+  /// "BODY/BOUNDARY"
   template <int dim>
   std::string describe(const scene::Scene<dim> &scene, const scene::BoundaryName &where);
 
-  /// Does every row find its master on the far side of the slave's body: deeper than a tenth of a mean slave edge
-  /// though no point of one side is inside the other body (which would be an overlap)? False when there are no rows.
+  /// Whether every row has its master on the far side of the slave's body: deeper than a tenth of a mean slave edge
+  /// although no point of one side is inside the other body (which would be an overlap). False if there are no rows.
   template <int dim>
   bool lies_behind(const PairSides<dim> &sides, const std::vector<MortarRow<dim>> &rows);
 
-  /// Why there is no row within @p reach [mm].
-  /// @throws InputError always: sides that face away, that have no opposed normals, or that are too far apart.
+  /// Reports why there is no row within @p reach [mm].
+  /// @throws InputError always: the sides face away from each other, have no opposed normals, or are too far apart.
   template <int dim>
   [[noreturn]] void refuse_pair(const scene::Scene<dim>       &scene,
                                 const scene::ContactPair<dim> &pair,
                                 const PairSides<dim>          &sides,
                                 const double                   reach);
 
-  /// Checks the rows of a pair of bodies. With an automatic reach the gap of the nearest row, offset included, must not
-  /// be larger in all load steps than the larger of the two sides plus the largest prescribed displacement of the
-  /// scene; a pair with a Reach or a Gap of its own may start at any distance within these. The same on all ranks.
+  /// Checks the rows of a pair of bodies. With an automatic reach the gap of the nearest row, offset included, must be
+  /// at most the size of the larger side plus the largest prescribed displacement of the scene in at least one load
+  /// step; a pair with a Reach or a Gap of its own may start at any distance within these. The same on all ranks.
   /// @throws InputError for sides that face away from each other (lies_behind) or are out of reach.
   template <int dim>
   void check_sides(const scene::Scene<dim>                         &scene,
@@ -57,9 +57,9 @@ namespace slipstick::interface
                    const std::vector<mechanics::BoundaryPart<dim>> &all,
                    const std::vector<MortarRow<dim>>               &rows);
 
-  /// Checks the pairs with obstacles: some node must have an outward normal against the obstacle (facing_cosine) and a
-  /// gap within the Reach; with an automatic one the rule is that of check_sides with the size of the slave boundary
-  /// (and the diameter of a circle if that is larger). Bonds to obstacles are supports: they are not checked.
+  /// Checks the pairs with obstacles: some node must have an outward normal opposed to the obstacle (facing_cosine) and
+  /// a gap within the Reach; with an automatic reach the rule is that of check_sides with the size of the slave
+  /// boundary (and the diameter of a circle if that is larger). Bonds to obstacles act as supports and are not checked.
   /// Collective.
   /// @throws InputError on all ranks.
   template <int dim>

@@ -1,4 +1,4 @@
-// Penetrations after loading, from the geometry alone, at places that no contact row sees.
+// Penetrations after loading, computed from the geometry, at places without a contact row.
 #pragma once
 
 #include <slipstick/interface/deepest_penetration.h>
@@ -15,16 +15,16 @@ namespace slipstick::interface
 {
   struct Penetrations
   {
-    /// By contact pair: the deepest slave node that is not paired since it is farther away than the pair's Reach, along
+    /// By contact pair: the deepest slave node without a row because it is farther away than the pair's Reach, along
     /// the normal (linearised like the rows).
     std::vector<std::optional<Penetration>> beyond_reach;
 
-    /// By contact pair with an obstacle: the deepest place between the nodes of the slave boundary, nodes included.
-    /// Bonds and pairs with a Gap of their own are left out.
+    /// By contact pair with an obstacle: the deepest place on the slave boundary, nodes included. Bonds and pairs with
+    /// a Gap of their own are omitted.
     std::vector<std::optional<Penetration>> in_obstacle;
 
-    /// By the bodies (the first one is inside the second one): the deepest node or middle of an edge, less its depth
-    /// before loading. Bodies that a bond joins or a pair with an Offset or a Gap of its own are left out.
+    /// By pair of bodies (the first is inside the second): the deepest node or edge midpoint, minus its depth before
+    /// loading. Bodies joined by a bond or by a pair with an Offset or a Gap of its own are omitted.
     std::map<std::pair<unsigned int, unsigned int>, Penetration> of_bodies;
   };
 

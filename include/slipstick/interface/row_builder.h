@@ -1,4 +1,4 @@
-// The rows of the nodes that one rank owns, before they are numbered over the ranks.
+// Local assembly of the rows of the nodes owned by one rank, before global numbering.
 #pragma once
 
 #include <slipstick/interface/echelon.h>
@@ -9,10 +9,10 @@
 
 namespace slipstick::interface
 {
-  /// An entry of B, or one of an interface unknown, for the rank of its subdomain.
+  /// An entry of B, or of the interface unknowns, to be sent to the rank of its subdomain.
   struct RowEntry
   {
-    std::uint64_t index; // row or interface unknown: owned number, then global
+    std::uint64_t index; // row or interface unknown: first its owned, later its global number
     unsigned int  subdomain;
     unsigned int  dof;
     double        value;
@@ -25,33 +25,33 @@ namespace slipstick::interface
     }
   };
 
-  /// Makes the rows of interface nodes: contact, bonds, supports, foundations, gluing.
+  /// Builds the rows of interface nodes: contact, bonds, supports, foundations, gluing.
   ///
-  /// Rows of contact that the supports of their nodes and the bonds (of all connected nodes) already imply are left
-  /// out; the tangential row goes before the normal one. So are redundant rows of bonds, as where three bonded bodies
-  /// meet in a point: those of the pair that comes last in the scene are dropped. A node that may touch several
-  /// obstacles has a normal row for each (for parallel normals the nearer obstacle only) and one tangential row, that
-  /// of the nearest obstacle. The same holds for a node at a corner of the slave boundary with the same master node on
-  /// both its sides.
+  /// Contact rows that are already implied by the supports of their nodes and the bonds (of all connected nodes) are
+  /// omitted; of two dependent rows the tangential one is omitted first. So are redundant rows of bonds, e.g. where
+  /// three bonded bodies meet in a point: those of the pair that comes last in the scene. A node that may touch several
+  /// obstacles has one normal row for each (for parallel normals only for the nearest) and one tangential row, for the
+  /// nearest obstacle. The same holds for a node at a corner of the slave boundary with the same master node on both
+  /// its sides.
   template <int dim>
   class RowBuilder
   {
   public:
-    /// All nodes are owned by this rank; @p contacts must live as long as this.
+    /// @param nodes are all owned by this rank. @param contacts must outlive this.
     RowBuilder(const scene::Scene<dim>               &scene,
                const std::vector<InterfaceNode<dim>> &nodes,
                const BodyContacts<dim>               &contacts,
                const double                           t,
                tfeti::Constraints                    &constraints);
 
-    /// Of every pair, as far as this rank owns its slave nodes.
+    /// Extent of every pair, from the slave nodes owned by this rank.
     std::vector<PairExtent> extents() const
     {
       return touches.extents();
     }
 
-    /// Nodes of pair k with a gap above limits[k] get no rows (where ContactLaw::acts_where_closed_alone()); they go to
-    /// `pruned`.
+    /// Nodes of pair k with a gap above limits[k] get no rows (if ContactLaw::acts_where_closed_alone()); they are
+    /// added to `pruned`.
     void limit_gaps(std::vector<double> limits);
 
     /// Fills kind, c, compliance, label, contact points, reactions, interface_held and counts of the constraints.
@@ -60,7 +60,7 @@ namespace slipstick::interface
     std::vector<RowEntry> entries;
     tfeti::Constraints    pruned;         // kind and c of the normal rows of pruned nodes ...
     std::vector<RowEntry> pruned_entries; // ... and their entries
-    tfeti::HeldContacts   held;           // the same of nodes whose gap is prescribed
+    tfeti::HeldContacts   held;           // the same for nodes whose gap is prescribed
     std::vector<RowEntry> held_entries;
     std::uint64_t         n_interface = 0;
 
@@ -75,11 +75,11 @@ namespace slipstick::interface
     /// Row of a bond along the normal (0) or the tangent (1).
     Vector bond(const Touch<dim> &touch, const unsigned int direction) const;
     bool   is_pruned(const Touch<dim> &touch) const;
-    /// Rows along the tangents that supports, bonds and @p left, what they leave of the normal row, do not hold.
+    /// Rows along the tangents that are not held by supports, bonds or @p left, the free part of the normal row.
     std::vector<Vector> free_tangents(Touch<dim> &touch, const Vector &left) const;
-    /// Do supports hold it apart, and does its law act where contact is closed alone?
+    /// Whether supports hold the point open although its law acts only on closed contact.
     bool is_held_open(const tfeti::HeldContacts::Point &point) const;
-    /// Adds @p coefficients to @p to as row @p row.
+    /// Appends the entries @p coefficients of row @p row to @p to.
     void fill(const unsigned int row, const Vector &coefficients, std::vector<RowEntry> &to) const;
     void add_pruned(const Touch<dim> &touch, const Vector &coefficients);
     void add_held(const unsigned int node, const Touch<dim> &touch, const Vector &coefficients);
@@ -90,10 +90,10 @@ namespace slipstick::interface
                       const Tensor                    &direction,
                       const std::vector<unsigned int> &holders);
 
-    /// Jump of the displacement along @p direction, slave less master.
+    /// Jump of the displacement along @p direction: slave minus master.
     Vector jump(const Touch<dim> &touch, const Tensor &direction) const;
 
-    /// The part of a row that supports leave free.
+    /// The part of a row that supports do not prescribe.
     Vector free_part(const Vector &row) const;
 
     unsigned int new_row(const tfeti::RowKind      kind,
@@ -107,7 +107,7 @@ namespace slipstick::interface
     const Touches<dim>                     touches;
     tfeti::Constraints                    &constraints;
     std::vector<double>                    limits;     // gaps, by pair [mm]
-    Echelon                                bonds;      // their free parts
-    std::set<std::array<unsigned int, 4>>  kept_bonds; // node, pair, side, direction of those that no others imply
+    Echelon                                bonds;      // free parts of the rows of bonds
+    std::set<std::array<unsigned int, 4>>  kept_bonds; // node, pair, side, direction of independent ones
   };
 } // namespace slipstick::interface

@@ -1,13 +1,14 @@
-// The same surface in two contact pairs.
+// Detection of surfaces that belong to two contact pairs.
 #pragma once
 
 #include <slipstick/mechanics/surface.h>
 
 namespace slipstick::interface
 {
-  /// Two pairs must not join the same edges, whatever their names: both would carry load there, and slip bounds would
-  /// add up. Of two bodies the shared edges must also face each other, whichever side is the slave. Collective.
-  /// @throws InputError on all ranks, with both pairs and an edge that they share.
+  /// Checks that no two pairs join the same edges, whatever their names: both would carry load there, and the slip
+  /// bounds would add up. For pairs of bodies the shared edges must also face each other, whichever side is the slave.
+  /// Collective.
+  /// @throws InputError on all ranks, naming both pairs and an edge that they share.
   template <int dim>
   void check_shared_sides(const scene::Scene<dim>      &scene,
                           const mesh::Mesh<dim>        &mesh,

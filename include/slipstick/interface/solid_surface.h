@@ -1,4 +1,4 @@
-// How deep points are inside a solid.
+// Depth of points inside a solid.
 #pragma once
 
 #include <slipstick/mechanics/surface_facet.h>
@@ -8,17 +8,17 @@
 
 namespace slipstick::interface
 {
-  /// The whole surface of a body, holes included; of triangles between its nodes.
+  /// The whole surface of a body, including holes, as triangles between its nodes.
   class SolidSurface
   {
   public:
     explicit SolidSurface(const std::vector<mechanics::SurfaceFacet> &facets);
 
-    /// Distance from the surface [mm], 0 outside. Always 0 where surfaces of a body touch each other (flanks of a slit): what
-    /// is inside cannot be told from the triangles there.
+    /// Distance from the surface [mm], 0 outside. Always 0 if surfaces of the body touch each other (flanks of a slit):
+    /// the triangles then do not determine which points are inside.
     double depth(const dealii::Point<3> &x) const;
 
   private:
-    std::optional<scene::TriangulatedSurface> surface; // none if it is not closed
+    std::optional<scene::TriangulatedSurface> surface; // empty if it is not closed
   };
 } // namespace slipstick::interface

@@ -1,4 +1,4 @@
-// The nodes of a curve or surface in contact, and the means of its normals there.
+// The nodes of a curve or surface in contact, and their averaged normals.
 #pragma once
 
 #include <slipstick/mechanics/surface_facet.h>
@@ -7,7 +7,7 @@
 
 namespace slipstick::interface
 {
-  /// A node; one on a corner or an edge of the surface appears once for each side.
+  /// A node; a node at a corner or an edge of the surface appears once for each side.
   template <int dim>
   struct SurfaceNode
   {
@@ -15,8 +15,8 @@ namespace slipstick::interface
     unsigned int           side = 0;
     dealii::Point<dim>     position;    // [mm]
     dealii::Tensor<1, dim> normal;      // outward, unit length
-    double                 size    = 0; // of the edges or facets there, the largest [mm]
-    double                 covered = 0; // integral of the shape function over them [mm], in space [mm^2]
+    double                 size    = 0; // largest size of the edges or facets there
+    double                 covered = 0; // integral of the shape function over these [mm], in space [mm^2]
     double                 measure = 0; // the same with the measure of the kinematics
     double                 scale   = 0; // the measure of the edges or facets there
   };
@@ -25,7 +25,7 @@ namespace slipstick::interface
   template <class Part>
   using PartNodes = std::array<unsigned int, std::tuple_size<decltype(Part::keys)>::value>;
 
-  /// The nodes of a surface, in the order of their keys, and those of every edge or facet.
+  /// The nodes of a surface in the order of their keys, and the nodes of every edge or facet.
   template <int dim>
   struct SurfaceNodes
   {
@@ -34,7 +34,7 @@ namespace slipstick::interface
 
     explicit SurfaceNodes(const std::vector<Part> &surface, const mesh::Kinematics<dim> &kinematics = {});
 
-    /// Normals of the nodes of part e, interpolated with the shape functions N there; not of unit length.
+    /// Normals at the nodes of part e, interpolated with the shape functions N there; not of unit length.
     template <class Shape>
     Tensor normal(const unsigned int e, const unsigned int n_nodes, const Shape &N) const
     {

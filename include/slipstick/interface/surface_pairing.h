@@ -1,4 +1,4 @@
-// Which points of two surfaces face each other.
+// Pairing of points on two surfaces that face each other.
 #pragma once
 
 #include <slipstick/base/box_tree.h>
@@ -10,7 +10,7 @@
 
 namespace slipstick::interface
 {
-  /// A plane in space with coordinates of its own.
+  /// A plane in space with its own coordinates.
   struct Plane
   {
     using Tensor = dealii::Tensor<1, 3>;
@@ -27,7 +27,7 @@ namespace slipstick::interface
     Tensor           normal, first, second; // unit length, right-handed
   };
 
-  /// A facet as it is seen along the normal of a plane.
+  /// A facet projected onto a plane.
   class ProjectedFacet
   {
   public:
@@ -35,61 +35,61 @@ namespace slipstick::interface
 
     ProjectedFacet(const Facet &facet, const Plane &plane);
 
-    /// The polygon of its corners, counter-clockwise as seen against the normal, of bent facets with the nodes on their edges; cut
-    /// in four by its nodes where that is not convex.
+    /// The polygon of its corners, counter-clockwise when viewed against the normal; for bent facets with the nodes on
+    /// their edges; divided into four by its nodes if it is not convex.
     std::vector<ConvexPolygon> outline() const;
 
-    /// The place on the facet that is seen at @p x: exact for parallelograms and triangles, else by Newton's method. Just outside of
-    /// bent facets it is beyond the edge.
+    /// The place on the facet that is projected to @p x: exact for parallelograms and triangles, otherwise by Newton's
+    /// method. For x slightly outside a bent facet it lies beyond the edge.
     Facet::Place place_at(const dealii::Point<2> &x) const;
 
-    /// How high above the plane that place is [mm].
+    /// Height of that place above the plane [mm].
     double height_at(const dealii::Point<2> &x) const;
 
   private:
-    /// Where the map of the facet has @p s, from x, and its derivatives along both local coordinates.
+    /// Projection of the place @p s relative to x, and its derivatives along both local coordinates.
     std::array<dealii::Tensor<1, 2>, 3> linearised(const Facet::Place &s, const dealii::Point<2> &x) const;
 
     unsigned int                                   n_nodes;
     std::array<dealii::Point<2>, Facet::max_nodes> nodes;       // corners first
     Facet::Shape                                   heights{};   // of the nodes [mm]
     dealii::Tensor<1, 2>                           u, v, twist; // x = corner + s u + t v + s t twist
-    bool                                           is_bent;     // else that holds
+    bool                                           is_bent;     // false: the formula for x applies
     const Facet                                   *facet;
   };
 
-  /// Slave and master facets, joined along normals that are at the nodes the means of both sides, as in CurvePairing; over
-  /// one slave facet their mean.
+  /// Pairs slave and master facets along normals that are averaged from both sides at the nodes, as in CurvePairing; on
+  /// one slave facet their mean is used.
   class SurfacePairing
   {
   public:
     using Facet  = mechanics::SurfaceFacet;
     using Tensor = dealii::Tensor<1, 3>;
 
-    /// Where a slave facet and a master facet face each other.
+    /// The part where a slave facet and a master facet face each other.
     struct Part
     {
       unsigned int   master; // facet
-      ProjectedFacet facet;  // the same as it is seen
+      ProjectedFacet facet;  // projected
       ConvexPolygon  polygon;
     };
 
-    /// What faces a slave facet within reach, seen along the mean normal of its nodes; parts overlap where master facets lie
-    /// one behind the other.
+    /// The master facets that face a slave facet within reach, projected along the mean normal of its nodes; parts
+    /// overlap if master facets lie one behind the other.
     struct View
     {
-      Plane             plane; // through the middle of the facet
+      Plane             plane; // through the centre of the facet
       ProjectedFacet    slave;
       std::vector<Part> parts;
 
-      /// From the slave to the master along the normal [mm].
+      /// Distance from the slave to the master along the normal [mm].
       double gap(const Part &part, const dealii::Point<2> &x) const
       {
         return part.facet.height_at(x) - slave.height_at(x);
       }
     };
 
-    /// The facets are not copied.
+    /// The facets are kept by reference.
     SurfacePairing(const std::vector<Facet> &slave, const std::vector<Facet> &master, const Reach &reach);
 
     const std::vector<SurfaceNode<3>> &nodes() const
@@ -111,7 +111,7 @@ namespace slipstick::interface
                                          const Tensor                        &n,
                                          const double                         size) const;
 
-    /// Unit normal of the master that the ray from a slave node meets, if any.
+    /// Unit normal of the master at the point hit by the ray from a slave node, if any.
     std::optional<Tensor> facing_normal(const SurfaceNode<3> &node, const SurfaceNodes<3> &of_master) const;
 
     const std::vector<Facet> &slave, &master;

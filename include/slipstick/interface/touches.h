@@ -1,4 +1,4 @@
-// What a node of a slave boundary may touch.
+// Candidates for contact of a node of a slave boundary.
 #pragma once
 
 #include <slipstick/interface/interface_nodes.h>
@@ -8,7 +8,7 @@
 
 namespace slipstick::interface
 {
-  /// One other side that a slave node may touch.
+  /// One opposite side that a slave node may touch.
   template <int dim>
   struct Touch
   {
@@ -27,37 +27,38 @@ namespace slipstick::interface
     std::uint64_t n_nodes = 0;
   };
 
-  /// Finds the other sides of the nodes that one rank owns. Of several obstacles in the same direction the nearest counts.
+  /// Finds the opposite sides of the nodes owned by one rank. Of several obstacles in the same direction the nearest
+  /// counts.
   template <int dim>
   class Touches
   {
   public:
-    /// All arguments must live as long as this. @param t time of the load step.
+    /// All arguments must outlive this. @param t time of the load step.
     Touches(const scene::Scene<dim>               &scene,
             const std::vector<InterfaceNode<dim>> &nodes,
             const BodyContacts<dim>               &contacts,
             double                                 t);
 
-    /// Of the node, those of bonds between bodies included, of bonds to obstacles not. One of those with the same nodes has a
-    /// tangent (the nearest), as at a corner of the slave boundary with the same master node on both sides.
+    /// Candidates of the node, including bonds between bodies but not bonds to obstacles. Of those with the same nodes,
+    /// only the nearest has a tangent (e.g. at a corner of the slave boundary with the same master node on both sides).
     std::vector<Touch<dim>> of(unsigned int node) const;
 
-    /// Where the node is bonded to obstacles.
+    /// Bonds of the node to obstacles.
     std::vector<Touch<dim>> bonds_to_obstacles(unsigned int node) const;
 
-    /// Bonds between bodies: node and touch, by pair in the order of the scene, so that what is made of them does not depend on the
-    /// numbers of the nodes. The points have no properties of the node.
+    /// Bonds between bodies: node and touch, by pair in the order of the scene, so that the result does not depend on
+    /// the numbering of the nodes. The properties of the node itself are not set.
     std::vector<std::vector<std::pair<unsigned int, Touch<dim>>>> bonds_between_bodies() const;
 
-    /// Of every pair, as far as this rank owns its slave nodes.
+    /// Extent of every pair, from the slave nodes owned by this rank.
     std::vector<PairExtent> extents() const;
 
   private:
     std::vector<Touch<dim>> nearest_of(unsigned int node) const;
-    /// Gap, normal and area; false beyond the Reach, and on the axis of revolution for nodes without area.
+    /// Sets gap, normal and area; false beyond the Reach, and for nodes without area on the axis of revolution.
     bool       place_on_obstacle(unsigned int node, unsigned int pair, const Tributary &area, Touch<dim> &touch) const;
     Touch<dim> touch_body(unsigned int node, unsigned int pair, const MortarRow<dim> &row) const;
-    /// Properties of the node itself, the same for each of its contacts.
+    /// Sets the properties of the node itself, the same for each of its contacts.
     void complete(unsigned int node, Touch<dim> &touch) const;
 
     const scene::Scene<dim>                   &scene;

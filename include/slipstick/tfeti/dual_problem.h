@@ -41,7 +41,7 @@ namespace slipstick::tfeti
   /// rows.interface_blocks           = {{{0, 0}, {1, 1}}};
   /// rows.interface_held             = {true, true};
   /// DualProblem dual(std::move(spring), rows, {}, {"spring"}, MPI_COMM_SELF);
-  /// both rows are closed: G x = e gives x_0 + x_1 = 100 N, the jumps give the rest
+  /// // both rows are closed: G x = e gives x_0 + x_1 = 100 N, the jumps give the rest
   /// DistributedVector x = dual.particular(); // x_0 = x_1 = 50 N
   /// x(0)                = 40;                // what stretches the spring by 0.4e-3 mm
   /// x(1)                = 60;
@@ -60,7 +60,7 @@ namespace slipstick::tfeti
 
     /// Factorises the subdomains and the coarse problem and estimates |P F P|. Collective.
     /// @throws NoEquilibrium naming body and motion when no row of B resists a rigid motion of a body; UnheldMotions
-    /// if, in addition, no load drives such a motion.
+    /// if no load drives any such motion.
     /// @throws NumericalError when a subdomain cannot be factorised.
     DualProblem(std::vector<SubdomainMatrices>  matrices,
                 Constraints                     constraints,
