@@ -22,7 +22,7 @@ namespace slipstick::mechanics
     Eigen::SparseMatrix<double> lower_pattern(const dealii::DoFHandler<dim> &dof_handler)
     {
       const unsigned int n = dof_handler.n_dofs();
-      // neighbours of every node through cells; components of a node couple with all of the neighbour
+      // neighbours of every node through cells; each component of a node couples with all components of a neighbour
       std::vector<std::vector<unsigned int>>       neighbours(n / dim);
       std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
       std::vector<unsigned int>                    nodes;
@@ -100,8 +100,8 @@ namespace slipstick::mechanics
           }
     }
 
-    /// Adds what bodies of revolution have besides to the section's stiffness, and weighs it: sum over points of lambda
-    /// div div + 2 mu eps : eps with hoop strain in div and eps, times circumference.
+    /// Adds the terms of bodies of revolution to the stiffness of the section and weights it: sum over points of lambda
+    /// div div + 2 mu eps : eps with the hoop strain in div and eps, times circumference.
     template <int dim>
     void cell_stiffness(const CellValues<dim>       &at,
                         const mesh::Kinematics<dim> &kinematics,
@@ -189,7 +189,7 @@ namespace slipstick::mechanics
       for (const auto &cell : dof_handler.active_cell_iterators())
         {
           const bool is_new = values.reinit(cell);
-          if (is_new || kinematics.is_revolution()) // translations have another radius
+          if (is_new || kinematics.is_revolution()) // a translated cell has a different radius
             {
               if (project)
                 projection.reinit(values, kinematics);

@@ -22,7 +22,7 @@ namespace slipstick::mechanics
         peak = {value, body, position};
     }
 
-    /// That of the first rank with the largest one. Collective.
+    /// Maximum over the ranks, with the place from the first rank that has it. Collective.
     template <int dim>
     void over_all_ranks(Peak<dim> &peak, const MPI_Comm comm)
     {
@@ -52,7 +52,7 @@ namespace slipstick::mechanics
       return std::max(std::abs(strains[0]), std::abs(strains[2]));
     }
 
-    /// Of the antisymmetric part [rad].
+    /// Rotation angle from the antisymmetric part [rad].
     template <int dim>
     double rotation_of(const dealii::Tensor<2, dim> &gradient)
     {
@@ -101,7 +101,7 @@ namespace slipstick::mechanics
         }
     }
 
-    /// The unknowns of a node are consecutive; nodes inside edges and cells do not count for the position.
+    /// The unknowns of a node are consecutive; nodes inside edges and cells do not affect the extent.
     template <int dim>
     void add_nodes(const dealii::DoFHandler<dim> &dof_handler,
                    const unsigned int             body,

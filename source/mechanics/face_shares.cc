@@ -3,7 +3,7 @@
 
 namespace slipstick::mechanics
 {
-  // The nodes of the edge or facet may be in another order than those of the face.
+  // The nodes of the edge or facet may be numbered differently from those of the face.
   template <int dim>
   std::vector<FaceShare<dim>> face_shares(const mesh::SubdomainMesh<dim>                               &subdomain,
                                           const Spaces<dim>                                            &spaces,

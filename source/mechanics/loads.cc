@@ -17,7 +17,7 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // By how much two quadratures, summed over the cells, and over the faces of solids, may differ, part of the force.
+    // Admissible difference of two quadratures, summed over cells (and faces of solids), relative to the force.
     constexpr double allowed_misfit = 0.01;
 
     /// One subdomain and its load at load factor t.
@@ -54,13 +54,13 @@ namespace slipstick::mechanics
         return std::move(load);
       }
 
-      /// Of tractions and body forces on this subdomain.
+      /// Resultants of tractions and body forces on this subdomain.
       const std::vector<LoadResultant> &resultants() const
       {
         return sums;
       }
 
-      /// Of tractions given by formulas in space, then of body forces.
+      /// Quadrature differences: tractions given by formulas in space, then body forces.
       std::vector<Misfit> misfits()
       {
         std::vector<Misfit> all = misfits_of_tractions, others = volume.misfits();
@@ -151,7 +151,7 @@ namespace slipstick::mechanics
 
       using FacetForces = std::array<double, 3 * SurfaceFacet::max_nodes>;
 
-      /// The same of a face, per area of its local coordinates.
+      /// The same for a face, per area of its local coordinates.
       FacetForces forces_at(const scene::Traction<3>  &traction,
                             const SurfaceFacet        &facet,
                             const SurfaceFacet::Place &s) const
@@ -237,7 +237,7 @@ namespace slipstick::mechanics
       double                                       t;
       VolumeLoad<dim>                              volume;
       Eigen::VectorXd                              load;
-      std::vector<dealii::types::global_dof_index> dofs; // of the present cell
+      std::vector<dealii::types::global_dof_index> dofs; // of the current cell
       std::vector<unsigned int>                    nodes;
     };
 
@@ -264,7 +264,7 @@ namespace slipstick::mechanics
       });
     }
 
-    /// Sums over the ranks; of the places where a formula is not resolved that of the first rank.
+    /// Sums over the ranks; the place where a formula is not resolved is taken from the first rank that has one.
     std::vector<LoadResultant> over_all_ranks(const std::vector<LoadResultant> &own, const MPI_Comm comm)
     {
       std::vector<double> numbers;
@@ -289,8 +289,8 @@ namespace slipstick::mechanics
       return all;
     }
 
-    /// Of tractions, then of body forces, over all ranks. (A function of its own, since a lambda that captures a type of
-    /// this namespace would be flagged in a public function.)
+    /// Resultants of tractions, then of body forces, over all ranks. (A separate function, since a lambda that captures
+    /// a type of this namespace would cause a compiler warning in a public function.)
     template <int dim>
     std::vector<LoadResultant> spread_resultants(const scene::Scene<dim> &scene,
                                                  const mesh::Mesh<dim>   &mesh,
@@ -334,7 +334,7 @@ namespace slipstick::mechanics
                                               const double             t)
   {
     std::vector<Eigen::VectorXd> loads;
-    collectively(mesh.comm, [&] { // a formula may give no number on one rank alone
+    collectively(mesh.comm, [&] { // a formula may fail on one rank only
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
         loads.push_back(SubdomainLoad<dim>(scene, mesh, spaces, p, t).take());
     });

@@ -8,8 +8,8 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // Normal equations, scaled to a unit diagonal, tell their coefficients when no pivot falls below this: a polynomial that is
-    // barely determined is far off at a vertex in the corner of its points.
+    // Normal equations, scaled to a unit diagonal, determine the coefficients if no pivot is below this: a nearly
+    // undetermined polynomial has large errors at a vertex in the corner of its points.
     constexpr double least_pivot = 1e-3;
 
     /// Monomials of degree 2 in the distance from a vertex: 1, x, y, xx, xy, yy.
@@ -49,7 +49,7 @@ namespace slipstick::mechanics
       return scale.asDiagonal() * factor.solve(scale.asDiagonal() * right.template topRows<n_functions>());
     }
 
-    /// Coefficients from the sums of one vertex: of degree 2, else of degree 1; nothing if they determine neither.
+    /// Coefficients from the sums of one vertex: of degree 2, otherwise of degree 1; nothing if neither is determined.
     template <int dim>
     std::optional<Polynomial<dim>> fitted(const Eigen::RowVectorXd &sums, const unsigned int n_components)
     {

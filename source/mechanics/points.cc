@@ -15,11 +15,11 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // How far a node may lie from its point, part of the diameter of the largest cell around it. The farthest point of
-    // an equilateral triangle from its vertices has 1 / sqrt(3).
+    // Maximum distance of a node from its point, relative to the diameter of the largest cell around it. The point of
+    // an equilateral triangle farthest from its vertices has 1 / sqrt(3).
     constexpr double reach_of_point = 0.6;
 
-    // Nodes whose distances differ by less than this part of a cell's diameter are equally far.
+    // Nodes whose distances differ by less than this part of a cell's diameter are equally near.
     constexpr double same_distance = 1e-9;
 
     template <int dim>

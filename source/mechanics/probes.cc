@@ -13,13 +13,12 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // How far a point may lie outside its cell, as a fraction of the diameter: edges cut off some of the curves that
-    // they represent.
+    // Maximum distance of a point from its cell, as a fraction of the diameter: edges cut off part of the true curves.
     constexpr double reach_of_probe = 0.1;
     // Cells are examined if their box, enlarged by this fraction of their diameter, contains the point.
     constexpr double margin_of_boxes = 0.2;
 
-    /// The point of the reference cell nearest to x, nearly.
+    /// Approximately the point of the reference cell nearest to x.
     template <int dim>
     dealii::Point<dim> into_cell(const dealii::ReferenceCell &cell, dealii::Point<dim> x)
     {
@@ -68,7 +67,7 @@ namespace slipstick::mechanics
     , points(scene.probes.size())
     , places(scene.probes.size())
   {
-    std::vector<double>                      distances; // then diameters
+    std::vector<double>                      distances; // followed by the diameters
     std::vector<double>                      diameters;
     std::vector<std::array<unsigned int, 2>> which;
     for (unsigned int k = 0; k < scene.probes.size(); ++k)
@@ -129,7 +128,7 @@ namespace slipstick::mechanics
                 {
                   unit = mapping.transform_real_to_unit_cell(cell, x);
                 }
-              catch (const typename dealii::Mapping<dim>::ExcTransformationFailed &) // far outside of a distorted cell
+              catch (const typename dealii::Mapping<dim>::ExcTransformationFailed &) // far outside a distorted cell
                 {
                   continue;
                 }

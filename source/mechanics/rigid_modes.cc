@@ -28,12 +28,12 @@ namespace slipstick::mechanics
         }
       return points;
     }
-    /// What a small rotation makes of @p r; in space about axis number @p m.
+    /// Displacement of @p r under a unit rotation; in space about axis number @p m.
     template <int dim>
     dealii::Tensor<1, dim> rotation(const unsigned int m, const dealii::Tensor<1, dim> &r)
     {
       dealii::Tensor<1, dim> moved;
-      const unsigned int     a = dim == 2 ? 0 : (m + 1) % dim, b = dim == 2 ? 1 : (m + 2) % dim; // from a to b
+      const unsigned int     a = dim == 2 ? 0 : (m + 1) % dim, b = dim == 2 ? 1 : (m + 2) % dim; // rotates a towards b
       moved[a] = -r[b];
       moved[b] = r[a];
       return moved;

@@ -17,16 +17,15 @@ namespace slipstick::mechanics
   namespace
   {
     constexpr double degree = M_PI / 180;
-    // An outline is re-entrant where its direction turns by this angle or more, the angle that makes a corner by
-    // default.
+    // An outline is re-entrant where its direction turns by this angle or more; it is also the default corner angle.
     constexpr double least_turn = 35 * degree;
-    // Between a held and a free side stress is infinite from an angle of 63 (nu = 0) to 51 degrees (nu = 0.5) on, plane
-    // strain (Williams 1952); where one displacement is held, beyond a right angle.
+    // Smallest angles with infinite stress at the end of a support. Both displacements held: from 63 (nu = 0) to 51
+    // degrees (nu = 0.5), plane strain (Williams 1952); one displacement held: above a right angle.
     constexpr double least_angle_of_clamp = 63 * degree, least_angle_of_roller = 95 * degree;
     // Values that differ by less than this part are equal: symmetric places.
     constexpr double same_value = 1e-6;
 
-    /// Displacements that supports hold along an edge: none, one (which), both.
+    /// Displacements held by supports along an edge: none, one (which), both.
     template <int dim>
     std::array<bool, 2> held_along(const scene::Scene<dim> &scene,
                                    const mesh::Mesh<dim>   &mesh,
@@ -42,7 +41,7 @@ namespace slipstick::mechanics
       return held;
     }
 
-    /// What a corner of an outline, or a change of supports along it, is; empty: nothing.
+    /// Kind of singularity at a corner of an outline, or at a change of supports; empty if there is none.
     template <int dim>
     std::string what_is_between(const SurfaceEdge<dim>    &in,
                                 const SurfaceEdge<dim>    &out,
@@ -50,7 +49,7 @@ namespace slipstick::mechanics
                                 const std::array<bool, 2> &held_out)
     {
       const auto   n = in.outline_normal(1), m = out.outline_normal(0);
-      const double turn  = std::atan2(cross(n, m), n * m); // positive to the left, where the body is
+      const double turn  = std::atan2(cross(n, m), n * m); // positive to the left, the side of the body
       const double angle = M_PI - turn;
       const auto   all   = [](const std::array<bool, 2> &held) { return held[0] && held[1]; };
       if (all(held_in) && all(held_out))
@@ -93,7 +92,7 @@ namespace slipstick::mechanics
         for (unsigned int d = 0; d < dim; ++d)
           other.position[d] = x[d];
         if (b == body && value >= 0 && other.position == position)
-          size = std::max(size, s); // the same node, seen from another cell
+          size = std::max(size, s); // the same node, reached from another cell
         else if (other.comes_before(*this))
           *this = other;
       }
@@ -159,7 +158,7 @@ namespace slipstick::mechanics
     for (unsigned int k = 0; k < points.size(); ++k)
       result.push_back({points[k].body, nodes[k].position, names[k]});
 
-    if constexpr (dim == 2) // edges of solids are not looked at
+    if constexpr (dim == 2) // edges of solids are not examined
       add_corners(scene, mesh, spaces, n_supports, result);
     return result;
   }

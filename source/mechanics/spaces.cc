@@ -13,8 +13,9 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    /// Mapping of simplices of degree 1 or 2 whose edges follow their own manifolds. deal.II 9.4's MappingFE uses only
-    /// the manifold of the cell, which leaves curved boundaries straight, and asserts that the edges have no other.
+    /// Mapping of simplices of degree 1 or 2 whose edges follow their own manifolds. MappingFE of deal.II 9.4 uses only
+    /// the manifold of the cell, which leaves curved boundaries straight, and asserts that the edges have no other
+    /// manifold.
     template <int dim>
     class SimplexMapping : public dealii::MappingFE<dim>
     {
@@ -40,7 +41,8 @@ namespace slipstick::mechanics
       }
     };
 
-    /// Mapping of hexahedra of degree 2 whose edges and faces follow their own manifolds. MappingQ asks the manifold of the cell.
+    /// Mapping of hexahedra of degree 2 whose edges and faces follow their own manifolds; MappingQ uses that of the
+    /// cell.
     class HexahedronMapping : public dealii::MappingQ<3>
     {
     public:
@@ -56,7 +58,7 @@ namespace slipstick::mechanics
         const dealii::Triangulation<3>::cell_iterator &cell) const override
       {
         std::vector<dealii::Point<3>> points;
-        dealii::Point<3>              middle; // on Coons' patch of the faces
+        dealii::Point<3>              middle; // on the Coons patch of the faces
         const auto                    add = [&](const dealii::Point<3> &x, const double share) {
           points.push_back(x);
           middle += share * dealii::Tensor<1, 3>(x);

@@ -12,16 +12,16 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // Nodes on an outline are taken only if those inside move by less than this part of what they do.
+    // Nodes on an outline are used only if the amount at interior nodes is less than this part of theirs.
     constexpr double least_part_inside = 0.1;
-    // Amounts that differ by less than this part are equal: the place decides, the same for every number of ranks.
+    // Amounts that differ by less than this part are equal: then the place decides, independent of the number of ranks.
     constexpr double same_amount = 1e-9;
 
-    /// One displacement of one node.
+    /// One displacement component of one node.
     template <int dim>
     struct StillNode
     {
-      double                  amount    = 0; // by which the motions that are left move it
+      double                  amount    = 0; // its displacement under the remaining motions
       unsigned int            body      = 0;
       unsigned int            component = 0;
       std::array<double, dim> position{};
@@ -46,7 +46,7 @@ namespace slipstick::mechanics
                                   const std::vector<tfeti::BodyFrame> &frames,
                                   const StillNode<dim>                &at)
     {
-      constexpr unsigned int k     = dim * (dim + 1) / 2; // amplitudes a body
+      constexpr unsigned int k     = dim * (dim + 1) / 2; // amplitudes per body
       const auto            &frame = frames[at.body];
       Eigen::VectorXd        values(motions.size());
       for (unsigned int m = 0; m < motions.size(); ++m)
@@ -63,7 +63,7 @@ namespace slipstick::mechanics
       return values;
     }
 
-    /// Nodes of this rank: those inside bodies, then those on outlines.
+    /// Nodes of this rank: interior ones, then those on outlines.
     template <int dim>
     std::array<std::vector<StillNode<dim>>, 2> nodes_of(const mesh::Mesh<dim> &mesh, const Spaces<dim> &spaces)
     {
@@ -112,7 +112,7 @@ namespace slipstick::mechanics
     std::vector<scene::PrescribedDisplacement<dim>> supports;
     while (left.cols() > 0)
       {
-        std::vector<StillNode<dim>> best(2); // inside, on an outline
+        std::vector<StillNode<dim>> best(2); // interior, on an outline
         for (unsigned int k = 0; k < 2; ++k)
           for (auto &candidate : nodes[k])
             {
@@ -137,7 +137,7 @@ namespace slipstick::mechanics
         support.components[chosen.component].emplace();
         supports.push_back(support);
 
-        // what this one leaves: combinations that do not move it
+        // remaining motions: combinations that do not move it
         const Eigen::VectorXd moved = left.transpose() * displacements(motions, frames, chosen);
         const Eigen::MatrixXd q     = Eigen::HouseholderQR<Eigen::MatrixXd>(moved).householderQ();
         left                        = (left * q.rightCols(left.cols() - 1)).eval();

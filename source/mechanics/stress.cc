@@ -45,7 +45,7 @@ namespace slipstick::mechanics
       unsigned int                   n_components; // xx, yy, xy, of bodies of revolution hoop; in space all six
     };
 
-    /// Stresses of the displacement at the points of a rule, one cell after the other.
+    /// Stresses of the displacement at the points of a rule, cell by cell.
     template <int dim>
     class CellStress
     {
@@ -128,7 +128,7 @@ namespace slipstick::mechanics
         return sum;
       }
 
-      /// As in the stiffness: projected from the points of its rule, then taken at our points.
+      /// As in the stiffness: projected from the points of its rule, then evaluated at the points of this rule.
       void project_dilatation(const typename CellValues<dim>::Cell &cell, const Eigen::MatrixXd &u)
       {
         if (all_values->reinit(cell) || on.kinematics.is_revolution())
@@ -140,13 +140,13 @@ namespace slipstick::mechanics
               of_projection[q] -= on.law.volume_expansion * on.temperature(all_values->point(q));
           }
         for (unsigned int q = 0; q < real_points.size(); ++q)
-          real_points[q] = (*values).quadrature_point(q); // of the cell that both were computed for
+          real_points[q] = (*values).quadrature_point(q); // of the cell for which both were computed
         dilatation = projection.projected_at(of_projection, real_points);
       }
 
       const Subdomain<dim>           &on;
       CellValues<dim>                 values;
-      std::optional<CellValues<dim>>  all_values; // at the points of the stiffness, if it is projected from there
+      std::optional<CellValues<dim>>  all_values; // at the points of the stiffness rule, for the projection
       DilatationProjection<dim>       projection;
       Eigen::MatrixXd                 stress;
       Eigen::VectorXd                 dilatation, temperature;
@@ -165,8 +165,8 @@ namespace slipstick::mechanics
       return local;
     }
 
-    /// From values at the points of Element::stress to values at the nodes of a cell, by the polynomial of one degree
-    /// less through those points; on tetrahedra, which have more points than it has coefficients, the nearest.
+    /// Values at the nodes of a cell from values at the points of Element::stress, by the polynomial of one degree less
+    /// through those points; on tetrahedra, which have more points than coefficients, by least squares.
     template <int dim>
     Eigen::MatrixXd extrapolation_to_nodes(const Element<dim> &element)
     {
@@ -193,8 +193,8 @@ namespace slipstick::mechanics
       return at_nodes * at_points.inverse();
     }
 
-    /// Sums over cells around every node: area times stress, area (last column). @p patches, if any, gets the stresses
-    /// too.
+    /// Sums over the cells around every node: area times stress, area (last column). Also passes the stresses to @p
+    /// patches, if given.
     template <int dim>
     Eigen::MatrixXd weighted_stress(const Subdomain<dim> &on, const Eigen::VectorXd &u, PatchRecovery<dim> *patches)
     {
@@ -230,8 +230,8 @@ namespace slipstick::mechanics
       return sums;
     }
 
-    /// Adds the sums of all copies of shared nodes, dim columns in one exchange (as many unknowns an interface node has).
-    /// Subdomains without sums have none.
+    /// Adds the sums of all copies of shared nodes, dim columns per exchange (an interface node has as many unknowns).
+    /// Subdomains without sums have no columns.
     template <int dim>
     void add_copies(const tfeti::Constraints             &constraints,
                     const std::vector<Eigen::MatrixXd *> &sums,
@@ -256,14 +256,14 @@ namespace slipstick::mechanics
         }
     }
 
-    /// Averages are superconvergent except on triangles and tetrahedra of degree 2.
+    /// Whether averages are superconvergent: not on triangles and tetrahedra of degree 2.
     template <int dim>
     bool needs_patches(const Element<dim> &element)
     {
       return element.degree == 2 && element.cell.is_simplex();
     }
 
-    /// Squared energy norms of the computed stress and of its difference to the recovered one.
+    /// Squared energy norms of the computed stress and of its difference from the recovered one.
     template <int dim>
     std::pair<double, double> estimate(const Subdomain<dim> &on, const Eigen::VectorXd &u, SubdomainStress &stress)
     {
@@ -301,8 +301,8 @@ namespace slipstick::mechanics
       return squares;
     }
 
-    /// Mean stress of the cells around every node, or what patches recover, with zz; @p sums as weighted_stress() gives
-    /// them.
+    /// Mean stress of the cells around every node, or the stress recovered from patches, with zz. @param sums from
+    /// weighted_stress().
     template <int dim>
     Eigen::MatrixXd nodal_stress(const Subdomain<dim>     &on,
                                  const Eigen::MatrixXd    &sums,
@@ -314,7 +314,7 @@ namespace slipstick::mechanics
       if (patches)
         patches->recover(nodal);
       if (on.kinematics.is_revolution() || dim == 3)
-        return nodal; // the component across the plane is one of them
+        return nodal; // the out-of-plane component is already included
       std::vector<dealii::Point<dim>> positions;
       if (!on.temperature.is_zero())
         {
@@ -339,7 +339,7 @@ namespace slipstick::mechanics
     const unsigned int           n_components = mesh::Kinematics<dim>(scene.plane_state).n_stress_components();
     std::vector<Eigen::MatrixXd> sums;
     std::vector<std::unique_ptr<PatchRecovery<dim>>> patches(u.size());
-    collectively(mesh.comm, [&] { // a formula of the temperature may give no number on one rank alone
+    collectively(mesh.comm, [&] { // the temperature formula may fail on one rank only
       for (unsigned int p = 0; p < u.size(); ++p)
         {
           if (needs_patches(spaces.of(p)))

@@ -14,11 +14,11 @@ namespace slipstick::mechanics
     // Gauss, three points on [0, 1]: exact for straight edges of both degrees
     const std::array<double, 3> gauss_points  = {{0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)}};
     const std::array<double, 3> gauss_weights = {{5. / 18, 8. / 18, 5. / 18}};
-    // Less than this part of an edge counts as nothing: the end of a quadratic edge on the axis of revolution, which
-    // has none when the edge is straight and next to none when it is curved; other nodes have a ninth or more.
+    // Shares below this part of an edge count as zero: the end of a quadratic edge on the axis of revolution has none
+    // if the edge is straight and almost none if it is curved; other nodes have a ninth or more.
     constexpr double smallest_edge_share = 0.01;
 
-    /// Unit normal on the right of a direction.
+    /// Unit normal to the right of a direction.
     template <int dim>
     dealii::Tensor<1, dim> right_of(const dealii::Tensor<1, dim> &way)
     {

@@ -15,12 +15,12 @@ namespace slipstick::mechanics
 
   namespace
   {
-    using Corner = std::pair<NodeKey, dealii::Point<3>>; // and other nodes
+    using Corner = std::pair<NodeKey, dealii::Point<3>>; // also used for other nodes
 
-    // Less than this part of a facet counts as nothing: the corners of a triangle of degree 2, which have none where it is flat; other
-    // nodes have a thirty-sixth or more.
+    // Shares below this part of a facet count as zero: the corners of a triangle of degree 2 have none if it is plane;
+    // other nodes have a thirty-sixth or more.
     constexpr double smallest_facet_share = 0.01;
-    // Nodes of bent facets are farther than this part of an edge from where those of straight ones are.
+    // Nodes of bent facets deviate by more than this part of an edge from those of straight-sided ones.
     constexpr double bent = 1e-9;
 
     bool by_key(const Corner &a, const Corner &b)
@@ -57,7 +57,7 @@ namespace slipstick::mechanics
     spaces.for_each_face_node(subdomain, face, [&](const unsigned int, const NodeKey &key, const dealii::Point<3> &x) {
       (key[0] == key[1] ? corners : others).push_back({key, x});
     });
-    if (corners.size() == 4) // in rows: now around
+    if (corners.size() == 4) // from lexicographic to cyclic order
       std::swap(corners[2], corners[3]);
     dealii::Point<3> center;
     for (const auto &[key, x] : corners)
@@ -176,7 +176,7 @@ namespace slipstick::mechanics
         for (unsigned int i = 0; i < n_nodes; ++i)
           areas[i] += N[i] * dx;
       }
-    if (n_nodes == 6 && is_bent()) // corners have none, as those of plane ones
+    if (n_nodes == 6 && is_bent()) // corners get none, as in plane facets
       for (unsigned int i = 0; i < 3; ++i)
         {
           for (unsigned int k = 3; k < 6; ++k)

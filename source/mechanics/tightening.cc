@@ -7,15 +7,16 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // Of the stiffness of a bolt that of bolt and clamped parts in a row, at first.
+    // Initial guess of the stiffness of bolt and clamped parts in series, relative to that of the bolt.
     constexpr double first_part = 0.5;
-    // A bolt with less than this part of the tension wanted is loose: how it stretches tells nothing.
+    // A bolt with less than this part of the prescribed tension is loose: its response is not used to update
+    // stiffnesses.
     constexpr double loose_part = 1e-3;
-    // By how much farther a loose bolt is shortened every time.
+    // Factor by which the shortening of a loose bolt is increased in every attempt.
     constexpr double growth = 2;
-    // Stiffnesses that the differences give may be this part of that of the bolt, at least.
+    // Lower limit of stiffnesses estimated from differences, relative to that of the bolt.
     constexpr double least_part = 1e-3;
-    // Steps keep this part of the way from the nearer of two bounds.
+    // Minimum distance of an attempt from the nearer bound, relative to the interval.
     constexpr double from_bounds = 0.05;
   } // namespace
 
@@ -48,7 +49,7 @@ namespace slipstick::mechanics
     forget_bounds();
     if (any_is_given())
       move();
-    forget_bounds(); // that from the tensions of other loads
+    forget_bounds(); // discards bounds found for other loads
   }
 
   void Tightening::forget_bounds()
@@ -75,13 +76,14 @@ namespace slipstick::mechanics
     N                   = tensions;
     const bool is_right = miss() <= tolerance;
     if (is_right)
-      has_known = false; // loads of the next step change the tensions
+      has_known = false; // the loads of the next step change the tensions
     else
       learn();
     return is_right;
   }
 
-  // J becomes that which explains the last step; rows of bolts that were loose stay, except from the state without any force.
+  // Broyden update: J satisfies the last secant equation; rows of bolts that were loose are kept, unless the step
+  // starts from the force-free state.
   void Tightening::learn()
   {
     const Eigen::Index    n = s.size();
@@ -136,7 +138,7 @@ namespace slipstick::mechanics
         s[i] += is_loose(i, N) && s[i] > 0 ? std::pow(growth, n_loose - 1) * plain : by;
         if (m > 1)
           continue;
-        if (J(i, i) * (high - low) < std::abs(missing[a])) // stretched from one to the other it still misses its force
+        if (J(i, i) * (high - low) < std::abs(missing[a])) // within the interval the bolt cannot reach its force
           {
             forget_bounds();
             tensions_are_vague = true;

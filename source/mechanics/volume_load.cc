@@ -11,7 +11,7 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // Points a direction of the quadrature that body forces are compared with.
+    // Points per direction of the finer quadrature used to check body forces.
     constexpr unsigned int finer_order = 6;
 
     template <int dim>
@@ -91,7 +91,7 @@ namespace slipstick::mechanics
   {
     if (body_forces.empty())
       return;
-    std::vector<dealii::types::global_dof_index> dofs; // of the present cell
+    std::vector<dealii::types::global_dof_index> dofs; // of the current cell
     std::vector<unsigned int>                    nodes;
     CellValues<dim>                              values(*element.mapping,
                            *element.scalar,
@@ -117,7 +117,7 @@ namespace slipstick::mechanics
       }
   }
 
-  // Difference to a finer quadrature of those given by formulas.
+  // For body forces given by formulas: difference from a finer quadrature.
   template <int dim>
   std::vector<Misfit> VolumeLoad<dim>::misfits() const
   {
@@ -152,14 +152,15 @@ namespace slipstick::mechanics
     return result;
   }
 
-  // Integral of (lambda e_V T + 2 mu e T) div v; where the dilatation is projected, T is too beside lambda.
+  // Integral of (lambda e_V T + 2 mu e T) div v; if the dilatation is projected, T in the lambda term is projected,
+  // too.
   template <int dim>
   void VolumeLoad<dim>::add_thermal_strain(Eigen::VectorXd &load) const
   {
     const TemperatureOfBody<dim> temperature(scene, number, t);
     if (temperature.is_zero())
       return;
-    std::vector<dealii::types::global_dof_index> dofs; // of the present cell
+    std::vector<dealii::types::global_dof_index> dofs; // of the current cell
     std::vector<unsigned int>                    nodes;
     const ElasticLaw                             law(scene.materials[body.material], state_of(scene));
     const bool                project = scene.discretization.element == scene::ElementKind::nearly_incompressible;

@@ -10,11 +10,12 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Elements that do not belong to a mesh, by the beginnings of their types.
+    // Elements that are not part of a mesh, by the first letters of their types.
     const std::vector<std::string> other_elements =
       {"MASS", "ROTARYI", "HEATCAP", "SPRING", "DASHPOT", "CONN", "GAP", "DCOUP", "JOINTC", "ITS"};
 
-    // Of solids: nodes and corners of tetrahedra, hexahedra; pyramids and wedges, which are refused by name when a body has some.
+    // Solids: number of nodes and corners of tetrahedra, hexahedra; pyramids and wedges, which are refused by name if a
+    // body contains some.
     constexpr std::array<std::array<unsigned int, 2>, 8> solids = {
       {{{4, 4}}, {{10, 4}}, {{8, 8}}, {{20, 8}}, {{5, 5}}, {{13, 5}}, {{6, 6}}, {{15, 6}}}};
   } // namespace
@@ -33,7 +34,7 @@ namespace slipstick::mesh
                         "CAX6 and CAX8 are supported";
         return found;
       }
-    found.problem = "elements of type " + type + " are not supported"; // until they are recognised
+    found.problem = "elements of type " + type + " are not supported"; // default, replaced for supported types
     if (starts("C3D"))
       {
         found.dim     = 3;

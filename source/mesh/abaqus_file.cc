@@ -1,4 +1,4 @@
-// The parts of Abaqus' input files that describe a mesh: *NODE, *ELEMENT, *ELSET, *NSET, *SURFACE.
+// Abaqus input files: *NODE, *ELEMENT, *ELSET, *NSET, *SURFACE, the keywords that describe a mesh.
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/abaqus_element.h>
@@ -16,13 +16,13 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Keywords that only frame the mesh, and those that would change it and are not understood.
+    // Keywords that only structure the file, and those that would change the mesh and are not supported.
     const std::set<std::string> framing =
       {"HEADING", "PREPRINT", "PART", "END PART", "ASSEMBLY", "END ASSEMBLY", "INSTANCE", "END INSTANCE"};
     const std::set<std::string> changing =
       {"INCLUDE", "IMPORT", "SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "MANIFEST"};
 
-    constexpr unsigned int no_element = -1; // index of those: known, not kept
+    constexpr unsigned int no_element = -1; // index of elements that are recognised but not stored
 
     std::string upper(std::string text)
     {
@@ -42,7 +42,7 @@ namespace slipstick::mesh
       MeshFile read();
 
     private:
-      using Key = std::string; // of a set: its name in capitals, as Abaqus does not tell them apart
+      using Key = std::string; // of a set: its name in capitals, since Abaqus is not case-sensitive
 
       /// A keyword line: its parameters by name, in capitals.
       struct Keyword
@@ -74,8 +74,8 @@ namespace slipstick::mesh
       template <typename F>
       void for_data(const F &f);
 
-      /// Members of a set: numbers, and lines of GENERATE that are checked against what there is before they are
-      /// written out.
+      /// Members of a set: numbers, and ranges of GENERATE, which are checked against the existing numbers before they
+      /// are expanded.
       struct Set
       {
         using Range = std::array<unsigned long long, 4>; // first, last, step, line in the file
@@ -85,7 +85,7 @@ namespace slipstick::mesh
         unsigned int                 line = 0; // of its first keyword
       };
 
-      /// Members with ranges written out. @throws InputError for one that is not in @p index.
+      /// Members with expanded ranges. @throws InputError for one that is not in @p index.
       std::set<unsigned long long> written_out(const Key                                                  &key,
                                                const Set                                                  &set,
                                                const std::unordered_map<unsigned long long, unsigned int> &index,
@@ -105,7 +105,7 @@ namespace slipstick::mesh
       unsigned int group(const std::set<int> &physicals);
 
       std::istringstream lines;
-      std::string        line; // present one, trimmed
+      std::string        line; // current line, trimmed
       bool               at_end      = false;
       unsigned int       line_number = 0;
       MeshFile           mesh;
@@ -120,7 +120,7 @@ namespace slipstick::mesh
         unsigned int line;
       };
       std::map<Key, std::vector<Side>>      surfaces;
-      std::map<std::string, unsigned int>   ignored; // keywords and types of elements: how many
+      std::map<std::string, unsigned int>   ignored; // keywords and types of elements: their number
       std::map<std::set<int>, unsigned int> index_of_group;
     };
 
@@ -151,7 +151,7 @@ namespace slipstick::mesh
     std::vector<std::string> AbaqusReader::words() const
     {
       auto parts = split_list(line);
-      while (!parts.empty() && parts.back().empty()) // a comma at the end
+      while (!parts.empty() && parts.back().empty()) // comma at the end of the line
         parts.pop_back();
       return parts;
     }
@@ -259,7 +259,7 @@ namespace slipstick::mesh
             else if (k - element.n < of_solid.size())
               mesh.keep_middle_of_solid(element, of_solid[k - element.n], found->second);
           }
-        if (dim == 1 && n_nodes == 3) // the middle comes second, or last: it is the one between the others
+        if (dim == 1 && n_nodes == 3) // the middle node comes second or last: it is the one between the others
           {
             const auto off_middle = [&](const unsigned int k) {
               const auto &x = mesh.nodes;
@@ -375,8 +375,8 @@ namespace slipstick::mesh
       return found->second;
     }
 
-    /// Sets of elements name cells, and lines (beside solids: faces); sets of nodes name the edges or faces between them, and points;
-    /// surfaces name sides of elements.
+    /// Element sets define cells and lines (for solids: faces); node sets define the edges or faces between them, and
+    /// points; surfaces define sides of elements.
     void AbaqusReader::make_groups()
     {
       std::vector<std::set<int>>                  physicals(mesh.elements.size());
@@ -419,13 +419,13 @@ namespace slipstick::mesh
                 add_side(MeshFile::Element(mesh.elements[found->second]),
                          side,
                          key,
-                         n_cells); // a copy: elements are added
+                         n_cells); // a copy, since elements are added
               }
           }
     }
 
-    /// @param n_cells by side: a surface without labels is all sides of single cells. Lines of plane meshes, faces beside solids are
-    /// sides themselves.
+    /// @param n_cells by side: a surface without labels consists of all sides with one cell. Lines of plane meshes and
+    /// faces of solids are sides themselves.
     void AbaqusReader::add_side(const MeshFile::Element                      &cell,
                                 const std::string                            &label,
                                 const Key                                    &key,

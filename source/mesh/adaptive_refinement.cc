@@ -7,7 +7,7 @@ namespace slipstick::mesh
 {
   namespace
   {
-    /// One pass over all levels. @return whether @p refined was complete; if not, it is a little more so.
+    /// One pass over all levels. @return whether @p refined was complete; if not, missing parents have been added.
     template <int dim>
     bool refine_by_levels(AdaptedPiece<dim> &mesh, std::vector<bool> &is_regular, std::set<CellPath> &refined)
     {

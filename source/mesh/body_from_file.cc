@@ -11,12 +11,12 @@ namespace slipstick::mesh
 {
   namespace
   {
-    constexpr unsigned int named_pieces = 3; // in messages
+    constexpr unsigned int named_pieces = 3; // maximum number in messages
 
     const std::string remedy_of_overlap =
       "remove duplicate entities (in Gmsh: Coherence; Coherence Mesh), or choose one Part";
 
-    /// One body as it is put together from a file.
+    /// Builds one body from a file.
     template <int dim>
     class Extraction
     {
@@ -53,12 +53,12 @@ namespace slipstick::mesh
       void check_connected();
       void check_conformity();
 
-      /// On which side of a face is a cell?
+      /// Which of the two sides of the face the cell is on.
       bool is_behind(const Face &face, const unsigned int c) const
       {
         const auto &x    = mesh.piece.vertices;
         const auto &cell = mesh.piece.cells[c];
-        if constexpr (dim == 2) // does it run along its edge upwards?
+        if constexpr (dim == 2) // whether the cell runs along the edge in ascending direction
           {
             for (unsigned int k = 0; k < n_corners<dim>(cell); ++k)
               if (corner<dim>(cell, k) == face[0] && corner<dim>(cell, k + 1) == face[1])
@@ -110,7 +110,7 @@ namespace slipstick::mesh
           part.fail(std::string("has ") + (dim == 2 ? "an edge" : "a face") + " of three cells, one of them " +
                       part.cell_text(c),
                     remedy_of_overlap);
-      // neighbours lie on the two sides of their face, unless one is folded onto the other
+      // neighbours are on opposite sides of their face, unless one is folded onto the other
       for (std::size_t k = 1; k < faces.size(); ++k)
         if (const auto &[face, c] = faces[k];
             faces[k - 1].first == face && is_behind(face, c) == is_behind(face, faces[k - 1].second))
@@ -168,7 +168,7 @@ namespace slipstick::mesh
             for (unsigned int a = 0; a < nodes.size() && face.vertices[a] != MeshPiece<dim>::no_vertex; ++a)
               {
                 nodes[a] = node_of_vertex[face.vertices[a]];
-                for (unsigned int b = 0; b < a; ++b) // diagonals have none
+                for (unsigned int b = 0; b < a; ++b) // diagonals have no mid node
                   if (const auto found = file.middles.find(std::minmax({nodes[a], nodes[b]}));
                       found != file.middles.end())
                     {

@@ -10,11 +10,11 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Distance from its ends, relative to its length, at which a condition is tried on an edge (a face: from its
-    // corners towards its middle): nodes on a limit belong to both sides.
+    // Distance from its ends, relative to its length, at which a condition is tested on an edge (on a face: from its
+    // corners towards its centre): nodes on a limit belong to both sides.
     constexpr double end_of_edge = 1e-6;
 
-    /// Is a face with this id on the boundary of that name?
+    /// Whether a face with this id is on the boundary of that name.
     template <int dim>
     bool is_on(const BodyMesh<dim> &mesh, const std::string &name, const dealii::types::boundary_id id)
     {
@@ -38,7 +38,7 @@ namespace slipstick::mesh
       return largest + 1;
     }
 
-    /// One part: its faces get ids of their own, which stand for all names that they had and this one.
+    /// One boundary part: its faces get new ids, which represent all names that they had and this one.
     template <int dim>
     void add_part(const std::string         &user,
                   const std::string         &body,

@@ -18,12 +18,12 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // A node closer to an edge than this fraction of the shorter edge lies on it: some files have only six digits of
-    // large coordinates, and nothing is meshed finer than it is wide.
+    // A node closer to an edge than this fraction of the shorter edge is on it: some files have only six digits of
+    // large coordinates, and no mesh has narrower features.
     constexpr double on_edge = 1e-4;
-    // Sine of the angle below which edges from one place run along each other.
+    // Sine of the angle below which edges from one place are parallel.
     constexpr double along = 1e-3;
-    // Distance of two nodes in space that are one, over the size of the body.
+    // Distance of coincident nodes in space, relative to the size of the body.
     constexpr double same_place = 1e-9;
 
     class OutlineCheck
@@ -41,7 +41,7 @@ namespace slipstick::mesh
       using Box   = boost::geometry::model::box<Place>;
       using Value = std::pair<Box, unsigned int>;
 
-      struct Edge // the cell is on its left
+      struct Edge // the cell is on the left
       {
         unsigned int from, to, cell;
         bool         is_named;
@@ -123,7 +123,7 @@ namespace slipstick::mesh
       return result;
     }
 
-    /// Edges that vertex @p v lies on, apart from its own.
+    /// Checks vertex @p v against edges it lies on, except its own.
     std::optional<ConformityFault<2>> OutlineCheck::fault_at(const unsigned int v)
     {
       const auto &own   = edges_at.at(v);
@@ -161,7 +161,7 @@ namespace slipstick::mesh
             }
           if (!runs_along && !(edge.is_named && has_named))
             {
-              // the mouth of a slit: another edge from there runs along
+              // the mouth of a slit: another edge from there has the same direction
               bool is_mouth = false;
               if (kind == Kind::twin_nodes)
                 for (const unsigned int f : edges_at.at(at_from ? edge.from : edge.to))
@@ -201,7 +201,8 @@ namespace slipstick::mesh
       return {};
     }
 
-    /// By the winding number of the outline at the middle of the edge, along the axis that it is steepest to.
+    /// Uses the winding number of the outline at the middle of the edge, along the axis to which the edge is most
+    /// perpendicular.
     bool OutlineCheck::has_cell_on_the_right(const unsigned int e) const
     {
       const auto         d      = direction(edges[e]);
@@ -279,7 +280,8 @@ namespace slipstick::mesh
       return {};
     }
 
-    /// Nodes of the outline of a solid that lie on faces that are not theirs, as where one cell is beside several.
+    /// Nodes of the outline of a solid that lie on faces of other cells, e.g. where one cell borders on several smaller
+    /// ones.
     class HangingNodes
     {
     public:
@@ -304,7 +306,7 @@ namespace slipstick::mesh
                tree.near(BoxTree<3>::widened(BoxTree<3>::box_around({x(v)}), on_edge * shortest)))
             {
               const auto &face = piece.boundary_faces[f];
-              if ((face.id == 0 || unnamed.count(v) > 0) && // else the flank of a slit
+              if ((face.id == 0 || unnamed.count(v) > 0) && // otherwise the flank of a slit
                   lies_on(v, face, on_edge * std::min(shortest, shortest_side(face))))
                 return ConformityFault<3>{ConformityFault<3>::Kind::hanging_node,
                                           x(v),
@@ -345,7 +347,7 @@ namespace slipstick::mesh
         return boxes;
       }
 
-      /// Between any two corners: diagonals are longer than the shortest edge.
+      /// Between any two corners; diagonals are never the shortest.
       double shortest_side(const Face &face) const
       {
         const auto v        = vertices_of(face);
@@ -356,7 +358,8 @@ namespace slipstick::mesh
         return shortest;
       }
 
-      /// In one of the triangles between corners, which cover the face in whatever order these are, and at none of them.
+      /// In one of the triangles formed by the corners (which cover the face in any order of the corners), but not at a
+      /// corner.
       bool lies_on(const unsigned int vertex, const Face &face, const double margin) const
       {
         const auto v = vertices_of(face);
@@ -401,7 +404,7 @@ namespace slipstick::mesh
       }
 
       const MeshPiece<3>            &piece;
-      BoxTree<3>                     tree;    // of the faces
+      BoxTree<3>                     tree;    // of the bounding boxes of the faces
       std::map<unsigned int, double> least;   // shortest edge at a vertex
       std::set<unsigned int>         unnamed; // vertices of faces without a name
     };

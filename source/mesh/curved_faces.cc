@@ -11,14 +11,14 @@ namespace slipstick::mesh
     using Point  = dealii::Point<3>;
     using Tensor = dealii::Tensor<1, 3>;
 
-    // Mid nodes no farther from the chord than this part of its length belong to straight edges: files give seven digits of
-    // coordinates, which may be a hundred times as large. The same of faces that are plane.
+    // Mid nodes at most this part of the length away from the chord belong to straight edges: files give coordinates
+    // with seven digits, and coordinates may be a hundred times as large as the edge. The same for plane faces.
     constexpr double straight = 1e-5;
-    // A face of first order belongs to a curved surface when its neighbours at all of its corners turn by an angle that is more than
-    // this part of the largest; smaller angles [rad] are those of planes.
+    // A first-order face belongs to a curved surface if the angles to its neighbours at all of its corners are more
+    // than this part of the largest angle; smaller angles [rad] are those of plane surfaces.
     constexpr double share_of_turn = 1. / 3, smallest_turn = 1e-4;
 
-    /// The vertices of the boundary faces, around.
+    /// The vertices of the boundary faces, in cyclic order.
     std::map<Piece::Face, std::vector<unsigned int>> vertices_around(const Piece &piece)
     {
       std::map<Piece::Face, std::vector<unsigned int>> around;
@@ -37,7 +37,7 @@ namespace slipstick::mesh
       return around;
     }
 
-    /// Takes the middles of straight edges out.
+    /// Removes the midpoints of straight edges.
     void straighten(Piece &piece)
     {
       for (auto entry = piece.line_middles.begin(); entry != piece.line_middles.end();)
@@ -52,7 +52,7 @@ namespace slipstick::mesh
         }
     }
 
-    /// Are the nodes of a patch on the bilinear surface of its corners, or on their plane?
+    /// Whether the nodes of a patch are on the bilinear surface of its corners, or in their plane.
     bool is_flat(const FaceSurface &patch)
     {
       const unsigned int n = patch.n_corners();
@@ -69,9 +69,9 @@ namespace slipstick::mesh
       return true;
     }
 
-    /// What faces of first order leave out of the surface that they seem to stand for, by the angles between them: those of a
-    /// polygon around a cylinder turn on all sides of a face, a plane that ends at a chamfer on one. Angles from the corner angle of
-    /// the body on are edges of it.
+    /// Estimates the sagitta that first-order faces neglect, from the angles between them: the faces of a polygon
+    /// around a cylinder meet at an angle on all sides, a plane face that ends at a chamfer on one side only. Angles of
+    /// at least the corner angle of the body are edges of the body.
     class LeftOut
     {
     public:
@@ -104,7 +104,7 @@ namespace slipstick::mesh
         return lines;
       }
 
-      /// Twice its area; on either side.
+      /// Normal of length twice the area; orientation arbitrary.
       Tensor normal(const unsigned int f) const
       {
         const auto &v = around.at(piece.boundary_faces[f].vertices);
@@ -144,10 +144,10 @@ namespace slipstick::mesh
       Piece                                                 &piece;
       const std::map<Piece::Face, std::vector<unsigned int>> around;
       std::map<Piece::Line, double>                          turns;
-      std::map<unsigned int, double>                         at_vertex; // the largest
+      std::map<unsigned int, double>                         at_vertex; // maximum per vertex
     };
 
-    /// Through the corners, mid nodes of curved edges, the middles of straight ones, and that of the face.
+    /// Patch through the corners, mid nodes of curved edges, midpoints of straight edges, and the centre of the face.
     FaceSurface patch_of(const BodyMesh<3>               &mesh,
                          const Piece::BoundaryFace       &face,
                          const std::vector<unsigned int> &around)

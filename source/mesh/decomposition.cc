@@ -25,13 +25,14 @@ namespace slipstick::mesh
     // many subdomains?".
     constexpr double automatic_cells_per_subdomain = 10000;
 
-    // The same in space: a cube of 10 cells a side (time of factors and coarse problem, space.md of the first steps).
+    // The same in space: a cube with 10 cells per edge (time of factors and coarse problem, space.md of the first
+    // steps).
     constexpr double automatic_cells_per_subdomain_in_space = 1000;
 
-    // Bodies that may not share units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus): the larger size or modulus
-    // over the smaller one. Parts of one assembly differ less in size; steel and rubber differ by 1e5 in modulus. What
-    // is doubtful together: the smaller of two bodies is the stiffer one, as it is when metres and pascal meet mm and
-    // MPa.
+    // Limits for two bodies that probably have different units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus):
+    // ratio of the larger to the smaller size or modulus. Parts of one assembly differ less in size; steel and rubber
+    // differ by 1e5 in modulus. A warning requires both: the smaller of the two bodies is the stiffer one, as with
+    // metres and pascal beside mm and MPa.
     constexpr double doubtful_size_ratio    = 300;
     constexpr double doubtful_modulus_ratio = 3e5;
     constexpr double doubtful_together_size = 30, doubtful_together_modulus = 3e4;
@@ -51,14 +52,14 @@ namespace slipstick::mesh
       return first;
     }
 
-    /// Nodes that come with a cell, compared with a quadrilateral or hexahedron.
+    /// Number of nodes per cell relative to a quadrilateral or hexahedron.
     template <int dim>
     double cost_of(const MeshPiece<dim> &piece)
     {
       return piece.cells.size() * (is_simplex<dim>(piece.cells[0]) ? (dim == 2 ? .5 : 1. / 6) : 1.);
     }
 
-    /// Whether every rank can make its own blocks.
+    /// Whether every rank can generate its own blocks.
     template <int dim>
     bool has_blocks(const scene::Scene<dim> &scene)
     {
@@ -71,19 +72,19 @@ namespace slipstick::mesh
                                                    scene.decomposition.method == DecompositionMethod::none);
     }
 
-    /// A warning about the two bodies that are farthest over the limits, if any are.
-    /// @param size diagonals of the boxes around the bodies [mm].
+    /// A warning about the two bodies that exceed the limits most; empty if there are none.
+    /// @param size diagonals of the bounding boxes of the bodies [mm].
     template <int dim>
     void remark_on_units(const scene::Scene<dim>   &scene,
                          const std::vector<double> &size,
                          std::vector<std::string>  &remarks)
     {
-      const auto modulus = [&](const unsigned int body) { // meshes are also made before there are materials
+      const auto modulus = [&](const unsigned int body) { // materials may not be defined yet when meshes are made
         const unsigned int material = scene.bodies[body].material;
         return material < scene.materials.size() ? scene.materials[material].young_modulus
                                                  : scene::Material().young_modulus;
       };
-      double       worst = 1; // over its limit
+      double       worst = 1; // relative to its limit
       unsigned int small = 0, large = 0;
       for (unsigned int a = 0; a < size.size(); ++a)
         for (unsigned int b = 0; b < size.size(); ++b)
@@ -110,7 +111,7 @@ namespace slipstick::mesh
                         ": check that their meshes and materials use the same units (Scale, Young modulus)");
     }
 
-    /// Every rank makes its own blocks.
+    /// Every rank generates its own blocks.
     template <int dim>
     void make_blocks(const scene::Scene<dim> &scene, Mesh<dim> &mesh)
     {
@@ -158,7 +159,7 @@ namespace slipstick::mesh
       });
     }
 
-    /// The meshes of all bodies, global vertices counted through; on rank 0.
+    /// The meshes of all bodies with consecutive global vertices; on rank 0.
     template <int dim>
     std::vector<BodyMesh<dim>> make_bodies(const scene::Scene<dim> &scene, Refinement *refinement)
     {
@@ -204,14 +205,14 @@ namespace slipstick::mesh
       return low.distance(high);
     }
 
-    /// Subdomains for pieces of the given costs and cells: the next one always goes to the piece with the most cost
-    /// per subdomain, after one for each.
+    /// Distributes subdomains among pieces of the given costs and cells: one each, then the next one always to the
+    /// piece with the largest cost per subdomain.
     std::vector<unsigned int> shares_of_pieces(const std::vector<double>      &cost,
                                                const std::vector<std::size_t> &n_cells,
                                                const unsigned int              wanted)
     {
       std::vector<unsigned int>                            shares(cost.size(), 1);
-      std::priority_queue<std::pair<double, unsigned int>> next; // first of equals: the last piece
+      std::priority_queue<std::pair<double, unsigned int>> next; // the largest; for equal costs the last piece
       for (unsigned int k = 0; k < cost.size(); ++k)
         next.emplace(cost[k], k);
       for (unsigned int n = cost.size(); n < wanted && !next.empty();)
@@ -232,7 +233,7 @@ namespace slipstick::mesh
                                            std::vector<BodyMesh<dim>> &bodies,
                                            std::vector<std::string>   &remarks)
     {
-      // face-connected pieces with one type of cells: there cannot be fewer
+      // connected pieces with one type of cells: the minimum number of subdomains
       std::vector<MeshPiece<dim>> wholes;
       for (auto &body : bodies)
         {
@@ -264,7 +265,7 @@ namespace slipstick::mesh
       const auto shares = shares_of_pieces(cost, n_cells, wanted);
 
       std::vector<MeshPiece<dim>>                                   pieces;
-      std::map<unsigned int, std::pair<unsigned int, unsigned int>> made; // by body: wanted, made
+      std::map<unsigned int, std::pair<unsigned int, unsigned int>> made; // by body: requested, obtained
       for (unsigned int k = 0; k < wholes.size(); ++k)
         {
           auto parts = cut(wholes[k], metis_parts(wholes[k], shares[k], scene.decomposition.seed));
@@ -282,7 +283,7 @@ namespace slipstick::mesh
       return pieces;
     }
 
-    /// What all ranks must know of a body, besides their subdomains.
+    /// Data of a body needed on all ranks, besides the subdomains.
     template <int dim>
     struct Names
     {
@@ -297,7 +298,7 @@ namespace slipstick::mesh
       }
     };
 
-    /// Rank 0 makes and cuts the bodies and sends every rank its subdomains.
+    /// Rank 0 generates and cuts the bodies and sends every rank its subdomains.
     template <int dim>
     void make_on_one_rank(const scene::Scene<dim> &scene, Mesh<dim> &mesh, Refinement *refinement)
     {

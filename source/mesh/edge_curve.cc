@@ -8,13 +8,13 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Newton's method for the point of a cubic on a line: quadratic convergence from a start that is a sagitta off; the
-    // point sought lies no farther beyond an end than this fraction of the edge.
+    // Newton's method for the intersection of a cubic with a line: converges quadratically from a start that is one
+    // sagitta away; the intersection is at most this fraction of the edge beyond an end.
     constexpr unsigned int most_steps   = 20;
     constexpr double       small_step   = 1e-15;
     constexpr double       continuation = 0.5;
 
-    /// Shares of the rays to both ends in the ray to the point at s of an arc, and their derivatives.
+    /// Weights of the rays to both ends in the ray to the point at s of an arc, and their derivatives.
     template <int dim>
     std::array<double, 4> shares(const EdgeCurve<dim> &arc, const double s)
     {
@@ -105,7 +105,7 @@ namespace slipstick::mesh
       return 0;
     if (kind == Kind::arc)
       {
-        // t^2 + 2 t b + c = 0, the root of smaller size
+        // root of t^2 + 2 t b + c = 0 with the smaller magnitude
         const auto   ray    = x - points[2];
         const double radius = points[2].distance(points[0]);
         const double b = ray * direction, c = (ray.norm() - radius) * (ray.norm() + radius), square = b * b - c;

@@ -7,11 +7,11 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Limit on the sagitta over the height of the cell above that edge: beyond it the map of the cell is no
+    // Limit on the sagitta relative to the height of the cell above that edge: above it the mapping of the cell is no
     // longer nearly linear.
     constexpr double largest_sagitta = 0.3;
 
-    /// Whether the corners of a cell stay corners when its edges are parabolas through the middles.
+    /// Whether the corners of a cell remain convex if its edges are parabolas through the midpoints.
     template <int dim>
     bool keeps_its_corners(const MeshPiece<dim>                &piece,
                            const typename MeshPiece<dim>::Cell &cell,
@@ -25,7 +25,7 @@ namespace slipstick::mesh
       };
       for (unsigned int k = 0; k < n; ++k)
         {
-          const unsigned int last = k + n - 1; // face before the corner
+          const unsigned int last = k + n - 1; // face that ends at the corner
           const auto         to = x(k + 1) - x(k), from = x(last) - x(k);
           if (!(cross(4 * (middle(k) - x(k)) - to, 4 * (middle(last) - x(k)) - from) >=
                 smallest_jacobian * cross(to, from)))

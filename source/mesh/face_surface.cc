@@ -8,11 +8,12 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Newton's method for the point of a patch on a line: steps, the last one, and how far beyond the patch a place may be.
+    // Newton's method for the intersection of a patch with a line: maximum number of steps, last step, and admissible
+    // distance beyond the patch.
     constexpr unsigned int max_steps = 30;
     constexpr double       last_step = 1e-13, beyond = 1;
 
-    // Corners of the quarters of a triangle; the other nodes are between them.
+    // Corners of the quarters of a triangle; the other nodes are midpoints between them.
     constexpr std::array<std::array<std::array<double, 2>, 3>, 4> quarters_of_triangle = {
       {{{{{0, 0}}, {{.5, 0}}, {{0, .5}}}},
        {{{{.5, 0}}, {{1, 0}}, {{.5, .5}}}},
@@ -35,8 +36,7 @@ namespace slipstick::mesh
     surface.kind      = Kind::cylinder;
     surface.radius    = radius;
     surface.points[0] = on_axis;
-    surface.points[1] =
-      on_axis + radius / axis.norm() * axis; // as far as the radius: no digits are lost when it is moved
+    surface.points[1] = on_axis + radius / axis.norm() * axis; // at a distance of the radius, to keep digits when moved
     return surface;
   }
 
@@ -117,7 +117,7 @@ namespace slipstick::mesh
   {
     Hit    result;
     double nearest = std::numeric_limits<double>::max();
-    for (unsigned int i = 0; i < n_nodes; ++i) // from the node that is the least to the side
+    for (unsigned int i = 0; i < n_nodes; ++i) // start from the node with the smallest lateral distance
       {
         const Tensor to  = points[i] - x;
         const double off = (to - (to * direction) * direction).norm();
@@ -164,7 +164,7 @@ namespace slipstick::mesh
         arm -= (arm * axis()) * axis();
         along -= (along * axis()) * axis();
       }
-    // |arm + t along| = radius: the root next to 0, without cancellation
+    // |arm + t along| = radius: the root nearest to 0, without cancellation
     const double a = along * along, b = arm * along, c = (arm.norm() - radius) * (arm.norm() + radius);
     const double square = b * b - a * c;
     if (!(square > 0))

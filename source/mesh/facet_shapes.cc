@@ -14,7 +14,7 @@ namespace slipstick::mesh
       return {{4 * s - 3, 4 * s - 1, 4 - 8 * s}};
     }
 
-    // Of the nodes of a quadrilateral: which function along s, and which along t.
+    // For the nodes of a quadrilateral: index of the function in s and in t.
     constexpr std::array<std::array<unsigned int, 2>, 9> functions_of_node = {
       {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}, {{2, 0}}, {{1, 2}}, {{2, 1}}, {{0, 2}}, {{2, 2}}}};
   } // namespace

@@ -15,7 +15,7 @@ namespace slipstick::mesh
 {
   namespace
   {
-    /// Gmsh's kinds of elements: dimension, corners, nodes; 0 nodes: unknown.
+    /// Gmsh's element types: dimension, corners, nodes; 0 nodes: unknown.
     struct ElementType
     {
       unsigned int dim, n_corners, n_nodes;
@@ -89,7 +89,7 @@ namespace slipstick::mesh
       return {0, 0, 0};
     }
 
-    /// Reads numbers from the text of the file, as words or as bytes.
+    /// Reads numbers from the text of the file, in ASCII or binary.
     class Cursor
     {
     public:
@@ -131,7 +131,7 @@ namespace slipstick::mesh
         return binary ? bytes<double>() : word<double>();
       }
 
-      /// The number of a physical entity, given with the sign of its orientation.
+      /// The number of a physical entity without the sign, which gives its orientation.
       int physical(const int number) const
       {
         if (number == std::numeric_limits<int>::min()) // has no absolute value
@@ -139,7 +139,7 @@ namespace slipstick::mesh
         return std::abs(number);
       }
 
-      /// A count of things of at least @p least bytes each, which cannot be more than the rest of the file holds.
+      /// A number of items of at least @p least bytes each; fails if the rest of the file is too short for them.
       std::size_t checked(const std::size_t n, const std::size_t least) const
       {
         if (n > (text.size() - at) / least)
@@ -164,11 +164,11 @@ namespace slipstick::mesh
         if (at == std::string::npos)
           return "";
         section = line().substr(1);
-        section = section.substr(0, section.find('\0')); // which would cut messages
+        section = section.substr(0, section.find('\0')); // a null character would truncate messages
         return section;
       }
 
-      /// Moves past the end of the current section, which must come at once unless the section is skipped.
+      /// Moves past the end of the current section, which must follow immediately unless the section is skipped.
       void end_section(const bool skip)
       {
         const std::string end   = "$End" + section;
@@ -184,7 +184,7 @@ namespace slipstick::mesh
         if (start == std::string::npos || end == std::string::npos)
           fail_broken();
         at = end + 1;
-        if (text.find('\0', start) < end) // would cut messages
+        if (text.find('\0', start) < end) // a null character would truncate messages
           fail_broken();
         return text.substr(start + 1, end - start - 1);
       }
@@ -307,7 +307,7 @@ namespace slipstick::mesh
           {
             const int tag = in.integer();
             for (unsigned int d = 0; d < (dim == 0 ? 3 : 6); ++d)
-              in.real(); // its box
+              in.real(); // bounding box
             auto &physicals = physicals_of_entity[{dim, tag}];
             physicals.resize(in.checked(in.count(), 1));
             for (int &physical : physicals)
@@ -441,7 +441,7 @@ namespace slipstick::mesh
       in.line();
       for (std::size_t k = 0; k < n;)
         {
-          // in binary: type, number of elements that follow, number of tags; in ASCII each on its own
+          // in binary: type, number of elements that follow, number of tags; in ASCII each element separately
           int number = 0, type = 0, in_block = 1, n_tags = 0;
           if (!in.binary)
             number = in.integer();

@@ -24,7 +24,7 @@ namespace slipstick::mesh
       return marks;
     }
 
-    /// Vertices of the marked cells, and those that neighbours need so that there is a template for each of them.
+    /// Vertices of the marked cells, and those to be added so that there is a template for each neighbour.
     std::vector<bool> marked_vertices(const Piece &piece, const std::vector<bool> &marked)
     {
       std::vector<bool> is_marked(piece.vertices.size(), false);
@@ -99,7 +99,7 @@ namespace slipstick::mesh
       }
 
     private:
-      // Bilinear weights of vertices, by which the cells around know a place.
+      // Bilinear weights of vertices, by which the adjacent cells identify a place.
       using Weights = std::vector<std::pair<unsigned int, unsigned int>>;
 
       static unsigned int weight(const Place &place, const unsigned int corner)
@@ -154,7 +154,7 @@ namespace slipstick::mesh
           }
       }
 
-      /// Part of a boundary face. @param corners of the part of the cell, in rows.
+      /// Adds a part of a boundary face. @param corners of the part of the cell, in lexicographic order.
       void add_face(const Piece::BoundaryFace         &whole,
                     const Piece::Cell                 &cell,
                     const Hexahedron                  &part,
@@ -176,7 +176,7 @@ namespace slipstick::mesh
         finer.boundary_faces.push_back({face, whole.id, surface, whole.bends_cell});
       }
 
-      /// Local coordinates of a patch over a face of a cell, of a place on that.
+      /// Local coordinates, in a patch over a face of a cell, of a place on that face.
       FaceSurface::Place place_on(const FaceSurface &patch, const Piece::Cell &cell, const Place &place) const
       {
         FaceSurface::Place result;
@@ -194,7 +194,7 @@ namespace slipstick::mesh
         return result;
       }
 
-      /// On the curved boundary or, away from that, on Coons' patches.
+      /// Position on the curved boundary or, inside, on Coons patches.
       Point position(const Piece::Cell &cell, const Place &place) const
       {
         if (!piece.line_middles.empty() && middles.is_curved(cell))
@@ -217,7 +217,7 @@ namespace slipstick::mesh
           return piece.vertices[cell[place[0] / n_parts + 2 * (place[1] / n_parts) + 4 * (place[2] / n_parts)]];
         if (inside.size() == 1)
           return on_line(cell, place, inside[0]);
-        // of all sums of interpolations along some of the directions, each counted so that corners, edges and faces are met
+        // transfinite interpolation: alternating sum of interpolations along some of the directions
         Point result;
         for (unsigned int along = 1; along < (1u << inside.size()); ++along)
           {
@@ -242,7 +242,7 @@ namespace slipstick::mesh
         return inside.size() == 2 ? on_surface(cell, place, result) : result;
       }
 
-      /// On an edge, which is a parabola, on a ball or cylinder, or straight.
+      /// Position on an edge: on a parabola, on a ball or cylinder, or straight.
       Point on_line(const Piece::Cell &cell, const Place &place, const unsigned int along) const
       {
         unsigned int first = 0;
@@ -274,7 +274,7 @@ namespace slipstick::mesh
       const Piece                                     &piece;
       const std::map<Piece::Face, Piece::BoundaryFace> boundary;
       const SolidMiddles                               middles;
-      std::map<Piece::Line, const FaceSurface *>       surfaces; // balls and cylinders, of curved edges
+      std::map<Piece::Line, const FaceSurface *>       surfaces; // balls and cylinders, by curved edge
       const std::vector<bool>                          is_marked;
       Piece                                            finer;
       std::map<Weights, unsigned int>                  vertices;

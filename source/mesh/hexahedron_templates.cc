@@ -10,9 +10,9 @@ namespace slipstick::mesh
 
     constexpr unsigned int n_corners_of_cell = 8;
 
-    using Quad = std::array<Place, 4>; // corners around
+    using Quad = std::array<Place, 4>; // corners in cyclic order
 
-    // From three segments below (height 1) to one above (height 3): (along, height) in thirds of an edge.
+    // Transition from three segments below (height 1) to one above (height 3): (along, height) in thirds of an edge.
     constexpr std::array<std::array<std::array<unsigned int, 2>, 4>, 4> three_to_one = {
       {{{{{0, 1}}, {{1, 1}}, {{1, 2}}, {{0, 3}}}},
        {{{{1, 1}}, {{2, 1}}, {{2, 2}}, {{1, 2}}}},
@@ -64,7 +64,7 @@ namespace slipstick::mesh
       return cells;
     }
 
-    // Along x at y = z = 0. Cells around it meet on the plane y = z.
+    // Marked edge along x at y = z = 0. The cells at this edge meet on the plane y = z.
     Template at_edge()
     {
       Template cells;
@@ -86,15 +86,15 @@ namespace slipstick::mesh
       return cells;
     }
 
-    // At z = 0: nine cubes, above them three times the way from three segments along y to one, which leave three along x for the
-    // last cell.
+    // Marked face at z = 0: nine cubes, above them three times the transition from three segments along y to one, which
+    // leaves three segments along x for the last cell.
     Template at_face()
     {
       Template cells;
       for (unsigned int j = 0; j < 3; ++j)
         for (unsigned int i = 0; i < 3; ++i)
           cells.push_back(small_cube(i, j, 0));
-      // heights 1, 2, 3 of the way, in columns of constant x
+      // heights 1, 2, 3 of the transition, in columns of constant x
       constexpr std::array<std::array<unsigned int, 3>, 4> heights = {
         {{{2, 4, 6}}, {{2, 3, 4}}, {{2, 3, 4}}, {{2, 4, 6}}}};
       for (unsigned int i = 0; i < 3; ++i)
@@ -132,7 +132,7 @@ namespace slipstick::mesh
                                          {all_corners, everywhere()}})
         {
           std::array<unsigned int, 3> axes = {{0, 1, 2}};
-          do // turned and mirrored in all ways
+          do // all rotations and reflections
             for (unsigned int mirrored = 0; mirrored < n_corners_of_cell; ++mirrored)
               {
                 const auto moved = [&, &axes = axes](const Place &place) {
@@ -178,7 +178,7 @@ namespace slipstick::mesh
 
   Marks convex(const Marks marks)
   {
-    Marks all = n_corners_of_cell - 1, any = 0; // coordinates that are 1 at all, at any of them
+    Marks all = n_corners_of_cell - 1, any = 0; // coordinates that are 1 at all corners, at any corner
     for (unsigned int c = 0; c < n_corners_of_cell; ++c)
       if (marks >> c & 1)
         {

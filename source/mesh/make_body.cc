@@ -19,11 +19,11 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Subdomains have cells of one kind. Where triangles and quadrilaterals mix in parts smaller than this, the body is
-    // turned into quadrilaterals.
+    // Subdomains have cells of one kind. If triangles and quadrilaterals are mixed in parts smaller than this, the body
+    // is converted to quadrilaterals.
     constexpr unsigned int least_cells_of_one_kind = 200;
 
-    /// Number of pieces of one kind of cells, connected through faces, and the cells of the smallest.
+    /// Number of connected pieces with one kind of cells, and the number of cells of the smallest.
     template <int dim>
     std::pair<unsigned int, std::size_t> pieces_of_one_kind(const MeshPiece<dim> &piece)
     {
@@ -46,7 +46,7 @@ namespace slipstick::mesh
       return false;
     }
 
-    /// Uniform refinements and the choice of kinds of cells, for a mesh as it stands in a file.
+    /// Uniform refinements and the choice of cell kinds for a mesh from a file.
     template <int dim>
     void refine_uniformly(const scene::Body<dim> &body,
                           unsigned int            refinements,
@@ -82,7 +82,7 @@ namespace slipstick::mesh
       paths      = std::move(finer.paths);
     }
 
-    /// Templates for hexahedra spread too far where errors say what is to be refined.
+    /// For adaptive refinement: the templates for hexahedra would spread too far.
     void divide_into_tetrahedra(const scene::Scene<3> &scene, const unsigned int b, BodyMesh<3> &mesh)
     {
       const auto &cells = mesh.piece.cells;
@@ -117,7 +117,7 @@ namespace slipstick::mesh
         mesh.piece = refined_towards(mesh.piece, ids);
     }
 
-    /// Types of elements that contradict the plane state of the scene, which takes precedence.
+    /// Adds remarks on element types that contradict the plane state of the scene, which takes precedence.
     template <int dim>
     void remark_on_plane_state(const scene::Scene<dim> &scene, MeshFile &file)
     {
@@ -145,7 +145,7 @@ namespace slipstick::mesh
         warn(file.plane_strain_types, "strain");
     }
 
-    /// Moves nodes within rounding of the axis of revolution onto it; there must be none beyond it.
+    /// Moves nodes within rounding of the axis of revolution onto it; refuses nodes beyond it.
     template <int dim>
     void move_to_axis(const scene::Body<dim> &body, const Kinematics<dim> &kinematics, MeshPiece<dim> &piece)
     {
@@ -170,7 +170,7 @@ namespace slipstick::mesh
             "turned by 90 degrees or a quarter disc), or set another Plane state");
     }
 
-    /// Every boundary and point of body @p b that the scene uses must be there.
+    /// Checks that every boundary and point of body @p b that the scene uses exists.
     template <int dim>
     void check_names(const scene::Scene<dim> &scene, const unsigned int b, const BodyMesh<dim> &mesh)
     {
@@ -279,7 +279,7 @@ namespace slipstick::mesh
             if (files.count(body.file) == 0)
               files[body.file] = read_mesh_file(body.file);
             mesh          = body_from_file(body, files[body.file]);
-            auto &of_file = files[body.file].remarks; // once
+            auto &of_file = files[body.file].remarks; // report only once
             mesh.remarks.insert(mesh.remarks.begin(), of_file.begin(), of_file.end());
             of_file.clear();
             curve_faces(body, mesh);
@@ -310,7 +310,7 @@ namespace slipstick::mesh
                 remark_on_plane_state(scene, files[body.file]);
               }
             mesh          = body_from_file(body, files[body.file]);
-            auto &of_file = files[body.file].remarks; // once
+            auto &of_file = files[body.file].remarks; // report only once
             mesh.remarks.insert(mesh.remarks.begin(), of_file.begin(), of_file.end());
             of_file.clear();
             check_names(scene, b, mesh);

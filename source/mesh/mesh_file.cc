@@ -56,7 +56,7 @@ namespace slipstick::mesh
   std::vector<MeshFile::Side> sides_of(const MeshFile::Element &cell)
   {
     constexpr unsigned int no_corner = MeshFile::Side::no_corner;
-    // by corners; pyramids and wedges have none: they are refused
+    // by corners; pyramids and wedges are missing, since they are refused
     static const std::vector<std::array<unsigned int, 4>> of_tetrahedron = {{{0, 1, 2, no_corner}},
                                                                             {{0, 3, 1, no_corner}},
                                                                             {{1, 3, 2, no_corner}},
@@ -112,7 +112,7 @@ namespace slipstick::mesh
   void MeshFile::add_outline()
   {
     const unsigned int  dim = dimension();
-    std::map<Side, int> n_cells; // negative: there is a line or face
+    std::map<Side, int> n_cells; // negative: there is a line or face already
     for (const Element &element : elements)
       if (element.dim == dim)
         for (const Side &side : sides_of(element))
@@ -149,7 +149,7 @@ namespace slipstick::mesh
       throw InputError("mesh file " + file + " is binary, or damaged: its byte " + std::to_string(text.find('\0') + 1) +
                          " is 0",
                        "write it in ASCII, or as Gmsh's .msh");
-    // .inp is Abaqus' or UCD's: UCD starts with numbers, Abaqus with words
+    // .inp is Abaqus' or UCD's format: UCD starts with numbers, Abaqus with words
     const auto first = text.find_first_not_of(" \t\r\n");
     if (extension == ".inp" && first != std::string::npos && !std::isdigit(text[first]) && text[first] != '#')
       return parse_abaqus(file, text);

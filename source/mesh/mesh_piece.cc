@@ -10,7 +10,7 @@ namespace slipstick::mesh
   namespace
   {
     constexpr unsigned int most_bisected = 8; // parts
-    // METIS has integers for weights, and adds them up in 32 bits.
+    // METIS uses integer weights and sums them in 32 bits.
     constexpr double weight_of_mean_face = 100, largest_sum = 1e9;
 
     template <int dim>
@@ -27,12 +27,12 @@ namespace slipstick::mesh
             };
           if (face.back() == MeshPiece<dim>::no_vertex)
             return area(0, 1, 0, 2);
-          // half the product of the diagonals: vertices are sorted, and other pairs of lines give less
+          // half the product of the diagonals; vertices are sorted, and other pairings give less
           return std::max({area(0, 1, 2, 3), area(0, 2, 1, 3), area(0, 3, 1, 2)});
         }
     }
 
-    /// Of every face with its cell: its size over the geometric mean of those of the cell's faces.
+    /// For every face and cell: size of the face over the geometric mean of the sizes of the cell's faces.
     template <int dim>
     std::vector<double> relative_sizes(const MeshPiece<dim>                                                      &piece,
                                        const std::vector<std::pair<typename MeshPiece<dim>::Face, unsigned int>> &faces)
@@ -174,7 +174,7 @@ namespace slipstick::mesh
       ++k;
     for (unsigned int i = 0; i < n_vertices; ++i)
       {
-        // from the lattice of the whole body, so that copies of a vertex have the same coordinates to the last bit
+        // computed from the lattice of the whole body, so that copies of a vertex have bitwise the same coordinates
         const auto         own = place_of(i, n_points);
         dealii::Point<dim> x;
         GlobalVertex       number = 0;
@@ -200,7 +200,7 @@ namespace slipstick::mesh
           cell[v] = vertex(at, v);
         piece.cells.push_back(cell);
       }
-    // faces 2 d and 2 d + 1 at the ends of direction d; both of one pair in turn
+    // faces 2 d and 2 d + 1 are at the ends of direction d
     for (unsigned int d = 0; d < dim; ++d)
       for (unsigned int c = 0; c < n_own_cells; ++c)
         if (auto at = place_of(c, n); at[d] == 0)
@@ -283,7 +283,7 @@ namespace slipstick::mesh
         return part;
       }
 
-    // cells that share a face, as METIS wants them: compressed rows
+    // cells that share a face, in METIS' compressed row format
     const auto         faces = faces_with_cells(piece);
     std::vector<idx_t> first(n_cells + 1, 0);
     const auto         for_neighbours = [&faces](const auto &f) {
@@ -309,10 +309,10 @@ namespace slipstick::mesh
     options[METIS_OPTION_NUMBERING] = 0;
     options[METIS_OPTION_SEED]      = seed;
     if (n_parts > most_bisected)
-      options[METIS_OPTION_CONTIG] = 1; // no part in two pieces
+      options[METIS_OPTION_CONTIG] = 1; // connected parts
     idx_t              n = n_cells, n_weights = 1, parts = n_parts, n_cut = 0;
     std::vector<idx_t> result(n_cells);
-    // bisection gives rounder parts when there are few (METIS manual, section 5.1); k-way keeps each in one piece
+    // bisection gives rounder parts for few parts (METIS manual, section 5.1); k-way keeps each part connected
     const auto partition = n_parts <= most_bisected ? METIS_PartGraphRecursive : METIS_PartGraphKway;
     const int  status    = partition(&n,
                                  &n_weights,

@@ -6,7 +6,7 @@
 
 namespace slipstick::mesh
 {
-  /// The face that a line or a face of the file stands for; none if a node is not of the body.
+  /// The face of the body that corresponds to a line or a face of the file; none if a node is not in the body.
   template <int dim>
   std::optional<typename NamesOfFile<dim>::Face> NamesOfFile<dim>::face_of(const Element &element) const
   {
@@ -46,7 +46,7 @@ namespace slipstick::mesh
     return names;
   }
 
-  /// 0 is the outline without a name; then the names; then the sets of several.
+  /// Boundary ids: 0 is the outline without a name, followed by the names, then by sets of several names.
   template <int dim>
   void NamesOfFile<dim>::number_boundaries(BodyMesh<dim> &mesh, const Names &names) const
   {
@@ -75,7 +75,7 @@ namespace slipstick::mesh
   template <int dim>
   typename NamesOfFile<dim>::LeftOut NamesOfFile<dim>::left_out_lines(const Names &names) const
   {
-    std::vector<Face> faces_of_cells; // of the whole file, by nodes; made when needed
+    std::vector<Face> faces_of_cells; // of the whole file, by nodes; computed when needed
     const auto        is_face_of_cell = [&](const Element &line) {
       if (faces_of_cells.empty())
         {
@@ -115,7 +115,7 @@ namespace slipstick::mesh
     return left_out;
   }
 
-  /// Sets of nodes that do not reach all of their nodes through faces of the outline.
+  /// Reports node sets some of whose nodes are not on a face of the boundary.
   template <int dim>
   void NamesOfFile<dim>::note_incomplete_sets(BodyMesh<dim> &mesh, const Names &names) const
   {

@@ -15,7 +15,7 @@ namespace slipstick::mesh
   {
     constexpr double       flat_tolerance = 1e-8; // of z, over the size of the body
     constexpr double       least_sine     = 1e-6; // of the angles of a cell, in space of their volumes
-    constexpr unsigned int named_cells    = 3;    // in messages
+    constexpr unsigned int named_cells    = 3;    // maximum number in messages
   }                                               // namespace
 
   template <int dim>
@@ -44,7 +44,7 @@ namespace slipstick::mesh
     return "cell " + std::to_string(cell.number) + " at " + point_text(center, dim);
   }
 
-  /// Types of elements of the plane, which are faces beside solids.
+  /// Types of plane elements, which are faces in files with solids.
   template <int dim>
   std::string PartOfFile<dim>::plane_types() const
   {
@@ -142,11 +142,11 @@ namespace slipstick::mesh
          remedy);
   }
 
-  /// Cells with positive Jacobians at all corners.
+  /// Checks for positive Jacobians at all corners.
   template <int dim>
   void PartOfFile<dim>::check_shapes_of_solids()
   {
-    // at every corner the nodes along three edges, right-handed
+    // at every corner the nodes along its three edges, right-handed
     constexpr std::array<std::array<unsigned int, 3>, 4> of_tetrahedron = {
       {{{1, 2, 3}}, {{2, 0, 3}}, {{0, 1, 3}}, {{0, 2, 1}}}};
     constexpr std::array<std::array<unsigned int, 3>, 8> of_hexahedron = {
@@ -177,20 +177,20 @@ namespace slipstick::mesh
       }
     if (!inverted.empty() && inverted.size() < chosen.size())
       fail_inverted(inverted, "turned inside out", "give all cells the same orientation");
-    for (const unsigned int c : inverted) // all of them
+    for (const unsigned int c : inverted) // all cells are inverted
       if (auto &v = chosen[c].corners; chosen[c].n == 4)
         std::swap(v[0], v[1]);
       else
         std::swap_ranges(v.begin(), v.begin() + 4, v.begin() + 4);
   }
 
-  /// Cells counterclockwise, with angles of (0, 180) degrees.
+  /// Orients cells counterclockwise and checks that angles are in (0, 180) degrees.
   template <int dim>
   void PartOfFile<dim>::check_shapes()
   {
     if (dim == 3)
       return check_shapes_of_solids();
-    // orientation by the sum of the corners; a cell that intersects itself or is not convex has corners of both kinds
+    // orientation from the sum over the corners; self-intersecting or non-convex cells have corners of both signs
     std::vector<unsigned int> clockwise;
     for (unsigned int c = 0; c < chosen.size(); ++c)
       {
@@ -221,7 +221,7 @@ namespace slipstick::mesh
         clockwise,
         "with clockwise orientation",
         "give all cells the same orientation (in Gmsh: Recombine after Coherence, or ReverseMesh on the surface)");
-    for (const unsigned int c : clockwise) // all of them
+    for (const unsigned int c : clockwise) // all cells are clockwise
       std::reverse(chosen[c].corners.begin(), chosen[c].corners.begin() + chosen[c].n);
   }
 

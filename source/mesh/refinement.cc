@@ -30,8 +30,8 @@ namespace slipstick::mesh
         fine.cells.push_back(cell);
       }
 
-      /// Notes where the cells come from that were added since the last call.
-      /// @param n_regular children of a cell that is divided in its own shape.
+      /// Records the origin of the cells added since the last call.
+      /// @param n_regular number of children if the cell is divided regularly.
       void end_of(const unsigned int parent, const unsigned int n_regular)
       {
         const unsigned int n = fine.cells.size() - origins.size();
@@ -39,9 +39,9 @@ namespace slipstick::mesh
           origins.push_back({parent, child, n == 1 || n == n_regular, n == 1});
       }
 
-      std::vector<CellOrigin> origins; // of the cells so far
+      std::vector<CellOrigin> origins; // of the cells added so far
 
-      /// Point @p k of @p n equal parts of the edge from @p a to @p b; the same vertex on every call.
+      /// Point @p k of @p n equal parts of the edge from @p a to @p b; repeated calls return the same vertex.
       unsigned int on_edge(const unsigned int a, const unsigned int b, const unsigned int k, const unsigned int n)
       {
         if (k == 0)
@@ -56,8 +56,8 @@ namespace slipstick::mesh
         return found->second;
       }
 
-      /// New vertex inside a cell, at @p u, @p v in [0, 1] from corner @p first towards the next and the last: Coons'
-      /// patch of the edges.
+      /// New vertex inside a cell, at @p u, @p v in [0, 1] from corner @p first towards the next and the previous one,
+      /// on the Coons patch of the edges.
       unsigned int inside(const Cell &cell, const unsigned int first, const double u, const double v)
       {
         const auto c = [&](const unsigned int k) { return corner<dim>(cell, first + k); };
@@ -79,7 +79,7 @@ namespace slipstick::mesh
         return fine.vertices.size() - 1;
       }
 
-      /// Divides the boundary faces as their cells were.
+      /// Divides the boundary faces like their cells.
       MeshPiece<dim> finish()
       {
         std::map<Face, std::vector<std::pair<double, unsigned int>>> points_of; // along the face
@@ -147,8 +147,8 @@ namespace slipstick::mesh
     using Lattice  = std::array<unsigned int, 2>; // position on the 3 x 3 division of a cell
     using Template = std::vector<std::array<Lattice, 4>>;
 
-    // Corner 0 at (0, 0), corner 1 at (3, 0), corner 2 at (3, 3). An edge between marked corners has two points, one
-    // with a single marked end has the point next to that.
+    // Corner 0 at (0, 0), corner 1 at (3, 0), corner 2 at (3, 3). An edge between two marked corners has two points; an
+    // edge with one marked end has the point next to it.
     const Template one_corner    = {{{{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}}},
                                     {{{{1, 0}}, {{3, 0}}, {{3, 3}}, {{1, 1}}}},
                                     {{{{1, 1}}, {{3, 3}}, {{0, 3}}, {{0, 1}}}}};
@@ -170,8 +170,8 @@ namespace slipstick::mesh
 
     constexpr unsigned int cells_of_nine = 9;
 
-    // Where hexahedra at several boundaries would become more cells than this many times those at each of them, the marks have
-    // spread from where the boundaries meet.
+    // If refining at several boundaries together gives more cells than this factor times that for them one by one, the
+    // marks have spread from where the boundaries meet.
     constexpr double spread = 2;
 
     Template nine_cells()
@@ -183,7 +183,7 @@ namespace slipstick::mesh
       return cells;
     }
 
-    /// Puts a template on a cell, its corner 0 on corner @p first of the cell.
+    /// Applies a template to a cell, its corner 0 at corner @p first of the cell.
     template <int dim>
     void apply(const Template                      &cells,
                Refiner<dim>                        &refiner,
@@ -217,7 +217,7 @@ namespace slipstick::mesh
       for (unsigned int k = 0; k < 4; ++k)
         at[k] = marked[corner<dim>(cell, k)];
       const auto n     = std::count(at.begin(), at.end(), true);
-      const auto start = [&](const auto &fits) { // first corner from which the marks look as in the template
+      const auto start = [&](const auto &fits) { // first corner from which the marks match the template
         unsigned int k = 0;
         while (!fits(k))
           ++k;
@@ -268,7 +268,7 @@ namespace slipstick::mesh
     template <int dim>
     RefinedPiece<dim> triangles_at(const MeshPiece<dim> &piece, std::vector<bool> red)
     {
-      // a triangle with two bisected edges is itself divided into four, until nothing changes
+      // a triangle with two bisected edges is divided into four; repeat until nothing changes
       std::set<typename MeshPiece<dim>::Face> halved;
       for (bool changed = true; changed;)
         {

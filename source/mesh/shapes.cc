@@ -11,14 +11,14 @@ namespace slipstick::mesh
     constexpr unsigned int automatic_cells_around = 64; // of a whole ring
 
     constexpr double core_corner =
-      1.15; // quarter disc: its core's outer corner, over the other two: angles of 116 degrees there
+      1.15; // quarter disc: outer corner of its core, relative to the other two: angles of 116 degrees
 
-    /// Point of the unit circle at @p fraction of the whole circle; exact at the quarters.
+    /// Point of the unit circle at @p fraction of the whole circle; exact at multiples of a quarter.
     dealii::Tensor<1, 2> on_circle(const double fraction)
     {
       const double         turn    = fraction - std::floor(fraction);
       const int            quarter = static_cast<int>(std::lround(4 * turn));
-      const double         angle   = 2 * dealii::numbers::PI * (turn - quarter / 4.); // in an eighth to both sides
+      const double         angle   = 2 * dealii::numbers::PI * (turn - quarter / 4.); // within an eighth on either side
       const double         c = std::cos(angle), s = std::sin(angle);
       const double         x[4] = {c, -s, -c, s}, y[4] = {s, c, -s, -c};
       dealii::Tensor<1, 2> point;
@@ -33,7 +33,7 @@ namespace slipstick::mesh
       std::iota(piece.global_vertices.begin(), piece.global_vertices.end(), GlobalVertex(0));
     }
 
-    /// Gives the faces on boundary @p id their arcs, or notes what is missing when the outline is to be the polygon.
+    /// Sets the arcs of the faces on boundary @p id, or the neglected sagitta if the outline is to be polygonal.
     void bend(MeshPiece<2> &piece, const scene::Body<2> &body, const dealii::types::boundary_id id)
     {
       for (auto &face : piece.boundary_faces)
@@ -94,8 +94,8 @@ namespace slipstick::mesh
     {
       const bool   whole = body.shape == scene::Shape::disc;
       const double R     = body.radius;
-      // The loop around the core: left side downwards, bottom, right side upwards, and of a whole disc the top. Even
-      // numbers on the bottom (and the sides of a disc) put vertices on the axes.
+      // The loop around the core: left side downwards, bottom, right side upwards and, for a whole disc, the top. Even
+      // numbers of cells on the bottom (and the sides of a disc) give vertices on the axes.
       unsigned int n_side, n_bottom;
       if (whole)
         {
@@ -117,7 +117,7 @@ namespace slipstick::mesh
       n_loop <<= refinements;
       n_layers <<= refinements;
 
-      // points of the loop, by their place l on it
+      // points of the loop, by their index l
       const double turn  = whole ? 1. : .5;
       const double start = whole ? .5 - .5 * n_side / n_loop : .5; // fraction of the circle where the left side begins
       const auto   arc   = [&](const unsigned int l) { return on_circle(start + turn * l / n_loop); };
@@ -199,8 +199,8 @@ namespace slipstick::mesh
       return piece;
     }
 
-    /// Half of the lower half disc: a lattice of n x n cells at the centre and layers around its two outer sides, n the
-    /// half of the edges on the arc.
+    /// Half of the lower half disc: a lattice of n x n cells at the centre and layers around its two outer sides; n is
+    /// half the number of edges on the arc.
     MeshPiece<2> quarter_disc(const scene::Body<2> &body, const unsigned int refinements)
     {
       const double       R = body.radius;
@@ -332,7 +332,7 @@ namespace slipstick::mesh
         case scene::Shape::quarter_ring:
           mesh.piece = ring(body, refinements);
           break;
-        case scene::Shape::ball: // shapes of space, and none
+        case scene::Shape::ball: // not plane shapes
         case scene::Shape::half_ball:
         case scene::Shape::cylinder:
         case scene::Shape::tube:

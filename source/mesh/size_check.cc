@@ -17,22 +17,22 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Bytes an unknown: mesh, stiffness and output, and the factor, whose entries grow with the logarithm of the
+    // Bytes per unknown: mesh, stiffness and output, and the factor, whose entries grow with the logarithm of the
     // subdomain's size. Measured: 1.33 million unknowns in 256 subdomains take 1 GB (README.md).
     constexpr double bytes_per_unknown = 300, bytes_per_unknown_and_doubling = 32;
     constexpr double cells_per_subdomain          = 10000; // target of auto, see decomposition.cc ...
     constexpr double cells_per_subdomain_in_space = 1000;
-    // Measured in space: 1.1 million unknowns in 512 subdomains of 8^3 cells take 5 GB; in one subdomain of 16^3, 24^3 cells
-    // 14 and 24 kB an unknown, which grows as the root of their number.
+    // Measured in space: 1.1 million unknowns in 512 subdomains of 8^3 cells take 5 GB; one subdomain of 16^3 and 24^3
+    // cells takes 14 and 24 kB per unknown, which grows as the root of their number.
     constexpr double bytes_per_unknown_in_space = 5000, unknowns_of_these = 2200;
-    constexpr double most_cells          = 1e9;   // beyond this counters of 32 bits may overflow
-    constexpr double bytes_per_subdomain = 100e3; // its mesh and lists, however few its cells
-    constexpr double many_subdomains     = 1e4;   // beyond this the message names them
+    constexpr double most_cells          = 1e9;   // above this 32-bit counters may overflow
+    constexpr double bytes_per_subdomain = 100e3; // its mesh and lists, for any number of cells
+    constexpr double many_subdomains     = 1e4;   // above this the message mentions them
     constexpr double bytes_of_a_cell     = 40;    // in a mesh file
-    constexpr double around_an_edge      = 13;    // cells that come with an edge refined by 3, all levels together
-    constexpr double around_a_face       = 6;   // the same in space, where layers of 27 and 22 for one come with a face
-    constexpr double usable              = 0.9; // of the memory that is free
-    constexpr double finest = 1e-8;             // edges of cells over their distance from the origin: 8 digits are left
+    constexpr double around_an_edge      = 13;    // cells added per edge refined by 3, all levels together
+    constexpr double around_a_face       = 6;     // the same in space per face: layers of 27 and 22 for one
+    constexpr double usable              = 0.9;   // part of the free memory
+    constexpr double finest = 1e-8; // edge length of cells over their distance from the origin: 8 digits remain
 
     struct Count
     {
@@ -56,7 +56,7 @@ namespace slipstick::mesh
       return count;
     }
 
-    /// Bodies that share the file, each a part of it.
+    /// Number of bodies that use parts of the same file.
     template <int dim>
     unsigned int bodies_in_file(const scene::Scene<dim> &scene, const scene::Body<dim> &body)
     {
@@ -84,7 +84,7 @@ namespace slipstick::mesh
                 }
               break;
             }
-          case scene::Shape::disc: // a square of a quarter of the edges a side, and about as many around it
+          case scene::Shape::disc: // a square with a quarter of the edges per side, and about as many around it
           case scene::Shape::half_disc:
             {
               const double n = body.cells_along_arc;
@@ -104,14 +104,14 @@ namespace slipstick::mesh
               count = {around * across, 2 * (around + across)};
               break;
             }
-          case scene::Shape::ball: // a cube of a quarter of the edges a side, and twice as many around it
+          case scene::Shape::ball: // a cube with a quarter of the edges per side, and twice as many around it
           case scene::Shape::half_ball:
             {
               const double n = body.cells_along_arc;
               count          = {n * n * n / 16 * refined, 2 * n * n * refined};
               break;
             }
-          case scene::Shape::cylinder: // a disc along the axis
+          case scene::Shape::cylinder: // a disc extruded along the axis
           case scene::Shape::tube:
             if constexpr (dim == 3)
               {
@@ -174,7 +174,7 @@ namespace slipstick::mesh
     else if (scene.decomposition.method == scene::DecompositionMethod::none)
       n_subdomains = scene.bodies.size();
     else if (scene.decomposition.subdomains > 0)
-      n_subdomains = std::min<double>(scene.decomposition.subdomains, size.cells); // more are refused for themselves
+      n_subdomains = std::min<double>(scene.decomposition.subdomains, size.cells); // more are refused elsewhere
     const double of_one = std::max(2., size.unknowns / n_subdomains);
     size.memory_mb =
       (n_subdomains * bytes_per_subdomain +
@@ -193,7 +193,7 @@ namespace slipstick::mesh
     MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
     const unsigned int on_node = dealii::Utilities::MPI::n_mpi_processes(node);
     MPI_Comm_free(&node);
-    const double free = dealii::Utilities::MPI::sum(free_memory_mb(on_node) / on_node, comm); // every node by its ranks
+    const double free = dealii::Utilities::MPI::sum(free_memory_mb(on_node) / on_node, comm); // each node by its ranks
     collectively(comm, [&] {
       if (dealii::Utilities::MPI::this_mpi_process(comm) != 0)
         return;

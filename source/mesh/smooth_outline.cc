@@ -11,20 +11,20 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // Edges are in line when they meet at less than this [rad]: what a circle of such edges leaves out is a ten
+    // Edges are in line if they meet at less than this angle [rad]: a circle of such edges has a sagitta of a ten
     // millionth of their length.
     constexpr double in_line = 1e-6;
-    // A node is a corner when the edges meet there at more than so many times the angle at the nodes beside it.
+    // A node is a corner if the edges meet at more than this factor times the angle at the neighbouring nodes.
     constexpr double outstanding = 3;
-    // Coarse circles: neighbouring angles below the limit [rad] and lengths differ by no more than this part.
+    // Coarse circles: neighbouring angles are below the limit [rad], and lengths differ by at most this part.
     constexpr double coarse_limit = 65 * M_PI / 180, regular = 0.1;
-    // Parabolas through mid nodes that meet at this angle [rad] or a larger one make a corner: those of a circle of
-    // eight edges meet at 2 degrees.
+    // Parabolas through mid nodes that meet at this angle [rad] or more form a corner: those of a circle of eight edges
+    // meet at 2 degrees.
     constexpr double corner_of_parabolas = 10 * M_PI / 180;
-    // A cubic in place of a parabola: its mid node is off the middle of the chord by no more than this part, its speed
-    // at the ends differs by no more than this part from that of an arc.
+    // Conditions for a cubic instead of a parabola: its mid node is off the middle of the chord by at most this part,
+    // and the speed at the ends differs by at most this part from that of an arc.
     constexpr double off_middle = 0.05, other_speed = 0.25;
-    // Mid nodes are on the chord when they are no farther from it than this part of its length.
+    // Mid nodes are on the chord if their distance from it is at most this part of its length.
     constexpr double on_edge_chord = 1e-9;
 
     dealii::Tensor<1, 2> turned(const dealii::Tensor<1, 2> &v, const double angle)
@@ -54,14 +54,14 @@ namespace slipstick::mesh
       void run();
 
     private:
-      /// A boundary edge, the body on its left, and the node at its end.
+      /// A boundary edge with the body on its left, and the node at its end.
       struct Edge
       {
         unsigned int from = 0, to = 0; // vertices
         unsigned int cell = 0, face = 0;
         Tensor       chord;
         double       length = 0;
-        int          last = -1, next = -1; // edges; none where not exactly two edges meet
+        int          last = -1, next = -1; // adjacent edges; -1: not exactly two edges meet
         double       turn      = 0;        // angle to the next edge, positive to the left
         bool         is_corner = true;     // at its end
         bool         is_flat   = false;
@@ -128,12 +128,13 @@ namespace slipstick::mesh
         }
     }
 
-    /// Is the angle at the end of an edge much larger than at the nodes beside it (those that are no corners)?
+    /// Whether the angle at the end of an edge is much larger than at the neighbouring nodes (those that are not
+    /// corners).
     bool Reconstruction::is_outstanding(const Edge &edge) const
     {
       const auto  &next   = edges[edge.next];
       const double length = 0.5 * (edge.length + next.length);
-      double       beside = -1; // angle to be expected from the neighbours
+      double       beside = -1; // angle expected from the neighbours
       if (edge.last >= 0 && edges[edge.last].next >= 0 && std::abs(edges[edge.last].turn) < limit)
         beside = std::max(beside, std::abs(edges[edge.last].turn) * std::max(1., length / edge.length));
       if (next.next >= 0 && std::abs(next.turn) < limit)
@@ -147,7 +148,7 @@ namespace slipstick::mesh
         edge.is_corner = edge.next < 0 || std::abs(edge.turn) >= limit || is_outstanding(edge);
     }
 
-    /// Does the outline turn one way before the end of an edge and the other way behind it?
+    /// Whether the outline turns to opposite sides before and after the end of an edge.
     bool Reconstruction::is_inflection(const Edge &edge) const
     {
       const auto &next = edges[edge.next];
@@ -162,7 +163,7 @@ namespace slipstick::mesh
       for (auto &edge : edges)
         if (!edge.is_corner && std::abs(edge.turn) <= in_line && !is_inflection(edge))
           edge.is_flat = edges[edge.next].is_flat = true;
-      // without a node within a curve
+      // neither end is a node inside a curve
       std::vector<bool> is_within(edges.size());
       for (unsigned int e = 0; e < edges.size(); ++e)
         is_within[e] = !edges[e].is_corner && !edges[e].is_flat && !edges[edges[e].next].is_flat;
@@ -191,7 +192,7 @@ namespace slipstick::mesh
       continue_to_corners();
     }
 
-    /// Angles at corners are those at the other end of the edge, as of an arc.
+    /// Angles at corners are set to those at the other end of the edge, as for an arc.
     void Reconstruction::continue_to_corners()
     {
       for (auto &edge : edges)
@@ -208,7 +209,7 @@ namespace slipstick::mesh
     {
       if (edge.is_flat || std::max(std::abs(edge.start), std::abs(edge.end)) <= in_line)
         return {};
-      // of this speed at the ends the middle of an arc is met exactly
+      // with this speed at the ends the cubic passes exactly through the middle of an arc
       const double half  = std::cos((std::abs(edge.start) + std::abs(edge.end)) / 4);
       const Tensor along = edge.chord / (half * half);
       return Curve::hermite(mesh.piece.vertices[edge.from],
@@ -236,7 +237,7 @@ namespace slipstick::mesh
     }
 
     /// As find_corners(), find_flats() and find_tangents(), for edges with mid nodes: tangents are those of the circles
-    /// through nodes and the mid nodes beside them.
+    /// through a node and the adjacent mid nodes.
     void Reconstruction::follow_middles()
     {
       std::vector<Curve> parabolas;
@@ -273,7 +274,7 @@ namespace slipstick::mesh
       continue_to_corners();
     }
 
-    /// The cubic through the mid node with the tangents at the ends; the parabola where that would be another curve.
+    /// The cubic through the mid node with the tangents at the ends; the parabola if that would be a different curve.
     EdgeCurve<2> Reconstruction::through_middle(const Edge &edge) const
     {
       const auto through = parabola(edge);
@@ -282,7 +283,7 @@ namespace slipstick::mesh
       const auto   middle = through.point(0.5) - mesh.piece.vertices[edge.from];
       const double half   = std::cos((std::abs(edge.start) + std::abs(edge.end)) / 4);
       const double height = cross(edge.chord, middle) / edge.length, sines = std::sin(edge.start) + std::sin(edge.end);
-      const double speed = sines != 0 ? -8 * height / sines / edge.length : 0; // over the length
+      const double speed = sines != 0 ? -8 * height / sines / edge.length : 0; // relative to the length
       if (std::abs(middle * edge.chord / (edge.length * edge.length) - 0.5) > off_middle ||
           std::abs(speed * half * half - 1) > other_speed)
         return through;
@@ -292,7 +293,7 @@ namespace slipstick::mesh
                             mesh.piece.vertices[edge.to]);
     }
 
-    /// Edges of equal lengths that meet at equal angles, of which two or more are needed for a corner of 90 degrees?
+    /// Whether edges of equal lengths meet at equal angles, at least two of which make a corner of 90 degrees.
     bool Reconstruction::is_coarse_circle(const Edge &edge) const
     {
       if (edge.last < 0 || edge.next < 0)

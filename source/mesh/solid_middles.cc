@@ -12,10 +12,11 @@ namespace slipstick::mesh
     using Point  = dealii::Point<3>;
     using Tensor = dealii::Tensor<1, 3>;
 
-    // Middles no farther from the chord than this part of it belong to straight edges, as those along the axis of a cylinder.
+    // Midpoints at most this part of the length away from the chord belong to straight edges, e.g. along the axis of a
+    // cylinder.
     constexpr double on_chord = 1e-12;
 
-    /// Derivatives of the map of degree 2 through three nodes a direction, at such a node.
+    /// Jacobian of the mapping of degree 2 with three nodes per direction, at one of the nodes.
     double jacobian(const std::array<Point, 27> &x, const std::array<unsigned int, 3> &at)
     {
       // of the shape functions at 0, 1/2 and 1
@@ -31,7 +32,7 @@ namespace slipstick::mesh
       return cross_product_3d(along[0], along[1]) * along[2];
     }
 
-    /// Are the Jacobians at all nodes positive and large enough?
+    /// Whether the Jacobians at all nodes are positive and large enough.
     bool are_good(const std::array<Point, 27> &bent, const std::array<Point, 27> &straight)
     {
       for (unsigned int i = 0; i < 27; ++i)
@@ -104,7 +105,7 @@ namespace slipstick::mesh
 
   double SolidMiddles::jacobian(const Piece::Cell &cell, const std::array<double, 4> &L) const
   {
-    std::array<Tensor, 4> by; // derivatives by the barycentric coordinates
+    std::array<Tensor, 4> by; // derivatives with respect to the barycentric coordinates
     for (unsigned int i = 0; i < 4; ++i)
       {
         by[i] += (4 * L[i] - 1) * Tensor(piece.vertices[cell[i]]);
@@ -123,7 +124,7 @@ namespace slipstick::mesh
         for (unsigned int d = 0; d < 3; ++d)
           straight[d] = piece.vertices[cell[d + 1]] - piece.vertices[cell[0]];
         const double volume = cross_product_3d(straight[0], straight[1]) * straight[2];
-        for (unsigned int i = 0; i < 4; ++i) // at the corners and the middles of the edges
+        for (unsigned int i = 0; i < 4; ++i) // at the corners and the midpoints of the edges
           for (unsigned int j = i; j < 4; ++j)
             {
               std::array<double, 4> L{};
@@ -138,7 +139,7 @@ namespace slipstick::mesh
     for (unsigned int i = 0; i < 27; ++i)
       {
         const std::array<unsigned int, 3> at = {{i % 3, i / 3 % 3, i / 9}};
-        std::vector<unsigned int>         near; // corners, in rows
+        std::vector<unsigned int>         near; // corners, in lexicographic order
         Tensor                            sum;
         for (unsigned int v = 0; v < 8; ++v)
           {

@@ -19,8 +19,8 @@ namespace slipstick::mesh
       return {{std::min(a, b), std::max(a, b)}};
     }
 
-    /// Edges to be halved such that every tetrahedron has none, one, the three of a face, or all six of them: those of marked
-    /// cells, and what follows.
+    /// Edges to be halved such that every tetrahedron has zero, one, the three of a face, or all six of them: those of
+    /// marked cells, and those that follow from this rule.
     std::set<Line> halved_lines(const Piece &piece, std::vector<bool> red)
     {
       std::set<Line> halved;
@@ -33,7 +33,7 @@ namespace slipstick::mesh
               const auto lines = lines_of_cell(piece.cells[c]);
               const auto n =
                 std::count_if(lines.begin(), lines.end(), [&](const Line &l) { return halved.count(l) > 0; });
-              // those that lie on one face leave out the fourth corner
+              // edges on one face do not contain the fourth corner
               std::optional<Piece::Face> face;
               for (unsigned int f = 0; f < 4; ++f)
                 {
@@ -54,7 +54,8 @@ namespace slipstick::mesh
       return halved;
     }
 
-    /// The cells of a piece divided by eight, or where @p halved says so; of tetrahedra then some by two or four (red and green).
+    /// Divides the cells of a piece by eight, all or those given by @p halved; tetrahedra then also by two or four (red
+    /// and green).
     class SolidRefiner
     {
     public:
@@ -92,7 +93,7 @@ namespace slipstick::mesh
       }
 
     private:
-      /// Where the middle of an edge, of a face, vertices in rows, or of the cell is.
+      /// Midpoint of an edge, of a face (vertices in lexicographic order), or of the cell.
       dealii::Point<3> place_of(const Piece::Cell &cell, const std::vector<unsigned int> &of) const
       {
         if (of.size() == 8)
@@ -100,7 +101,7 @@ namespace slipstick::mesh
         return of.size() == 4 ? curved.on_face({{of[0], of[1], of[2], of[3]}}) : curved.on_line(of[0], of[1]);
       }
 
-      /// The vertex in the middle of others.
+      /// The vertex at the midpoint of others.
       unsigned int middle(const Piece::Cell &cell, std::vector<unsigned int> of)
       {
         if (of.size() == 1)
@@ -120,7 +121,7 @@ namespace slipstick::mesh
         return found->second;
       }
 
-      /// Number @p i of a lattice of three vertices a direction: its corners, and what is between them.
+      /// Vertex @p i of a lattice with three vertices per direction: its corners and the midpoints.
       unsigned int lattice_vertex(const Piece::Cell &cell, const std::array<unsigned int, 3> &i)
       {
         std::vector<unsigned int> of;
@@ -152,7 +153,7 @@ namespace slipstick::mesh
           }
       }
 
-      /// A quarter of a boundary face.
+      /// Adds a quarter of a boundary face.
       void add_face(const Piece::BoundaryFace &whole, const Piece::Face &face)
       {
         finer.boundary_faces.push_back({face, whole.id, part_of(whole, face, finer), whole.bends_cell});
@@ -172,7 +173,7 @@ namespace slipstick::mesh
         finer.cells.push_back(cell);
       }
 
-      // Four at the corners, and an octahedron divided along its shortest diagonal.
+      // Four tetrahedra at the corners, and an octahedron divided along its shortest diagonal.
       void divide_tetrahedron(const Piece::Cell &cell)
       {
         const auto m = [&](const unsigned int i, const unsigned int j) { return middle(cell, {cell[i], cell[j]}); };
@@ -211,7 +212,7 @@ namespace slipstick::mesh
         return halved->count(line_of(a, b)) > 0;
       }
 
-      /// Triangles that a face with its halved edges is divided into: none, one, or three of them.
+      /// Triangles into which a face with halved edges is divided: none, one, or three of them.
       std::vector<std::array<unsigned int, 3>> parts_of_face(const Piece::Cell &cell, const Piece::Face &face)
       {
         const auto &[a, b, c, none] = face;
@@ -229,7 +230,7 @@ namespace slipstick::mesh
         return {{{a, b, c}}};
       }
 
-      // None, one edge, the edges of one face, or all.
+      // Halved edges: none, one, those of one face, or all.
       void divide_halved(const Piece::Cell &cell)
       {
         unsigned int n = 0;
@@ -237,7 +238,7 @@ namespace slipstick::mesh
           n += is_halved(a, b);
         if (n == 6)
           return divide_tetrahedron(cell);
-        // the face with most of them
+        // the face with most halved edges
         std::size_t  most = 0;
         unsigned int base = 0;
         for (unsigned int f = 0; f < 4; ++f)
@@ -269,7 +270,7 @@ namespace slipstick::mesh
       const std::map<Piece::Face, Piece::BoundaryFace>  boundary;
       const SolidMiddles                                curved;
       Piece                                             finer;
-      std::map<std::vector<unsigned int>, unsigned int> middles; // by what they are between
+      std::map<std::vector<unsigned int>, unsigned int> middles; // by the vertices between which they lie
     };
   } // namespace
 

@@ -11,7 +11,8 @@ namespace slipstick::mesh
 {
   namespace
   {
-    /// What a face with the given corners, around, stands for: the surface, or the sagitta that it leaves out.
+    /// Surface of a face with the given corners in cyclic order, or only the neglected sagitta if the outline is
+    /// polygonal.
     FaceSurface surface_or_polygon(const scene::Body<3>                &body,
                                    const FaceSurface                   &surface,
                                    const std::vector<dealii::Point<3>> &corners)
@@ -23,7 +24,7 @@ namespace slipstick::mesh
       return none;
     }
 
-    /// The cylinder over an arc, or what its edge leaves out.
+    /// The cylinder over an arc, or only the sagitta neglected by its edge.
     FaceSurface cylinder_over(const EdgeCurve<2> &arc)
     {
       FaceSurface none;
@@ -36,8 +37,8 @@ namespace slipstick::mesh
                                    center.distance(arc.points[0]));
     }
 
-    /// Hexahedra between @p n_layers + 1 copies of a mesh of the plane, from @p start along z; its boundary ids stay, the two
-    /// ends get the next ones.
+    /// Hexahedra between @p n_layers + 1 copies of a plane mesh, from @p start along z; its boundary ids are kept, the
+    /// two ends get the next ones.
     MeshPiece<3> extruded(const MeshPiece<2>              &section,
                           const double                     start,
                           const double                     length,
@@ -100,7 +101,7 @@ namespace slipstick::mesh
                       is_tube ? 2 : 1);
     }
 
-    /// A lattice whose outer vertices carry layers: a ball, or the half below its centre. Surface 0, flat 1.
+    /// A lattice with layers on its outer vertices: a ball, or the half below its centre. Surface 0, flat 1.
     class BallMesh
     {
     public:
@@ -136,13 +137,13 @@ namespace slipstick::mesh
         return d == 1 ? n_up : n;
       }
 
-      /// Is a side of the lattice inside the ball, where it is cut in half?
+      /// Whether a side of the lattice is on the cut plane of a half ball.
       bool is_flat(const unsigned int d, const unsigned int end) const
       {
         return d == 1 && end == 1 && n_up < n;
       }
 
-      /// Of the unit sphere and of the core; edges of about equal length.
+      /// Points of the unit sphere and of the core; edges have about equal length.
       std::pair<dealii::Tensor<1, 3>, dealii::Tensor<1, 3>> points(const Place &at) const
       {
         dealii::Tensor<1, 3> flat, bent;
@@ -217,7 +218,7 @@ namespace slipstick::mesh
               std::array<Place, 4> corners;
               for (unsigned int v = 0; v < 4; ++v)
                 {
-                  // such that a, b and outwards are right-handed
+                  // such that a, b and the outward direction are right-handed
                   const unsigned int along_a = end == 1 ? v & 1 : v >> 1, along_b = end == 1 ? v >> 1 : v & 1;
                   corners[v][a] = i + along_a;
                   corners[v][b] = j + along_b;
@@ -252,7 +253,7 @@ namespace slipstick::mesh
             }
       }
 
-      /// The face of a layer between two neighbouring corners, where both are on the flat side of a half ball.
+      /// Adds the face of a layer between two neighbouring corners if both are on the flat side of a half ball.
       void add_rim(const Place &p, const Place &q, const unsigned int layer)
       {
         if (n_up < n && p[1] == n_up && q[1] == n_up)
@@ -261,14 +262,14 @@ namespace slipstick::mesh
       }
 
       const scene::Body<3>     &body;
-      const unsigned int        n, n_up, n_layers; // of the lattice across and up; around it
-      std::vector<unsigned int> outer;             // first vertex of the layers, by that of the lattice
+      const unsigned int        n, n_up, n_layers; // of the lattice, horizontal and vertical; around it
+      std::vector<unsigned int> outer;             // by vertex of the lattice: first vertex of the layers
     };
   } // namespace
 
   RoundBarCells round_bar_cells(const scene::Body<3> &body)
   {
-    constexpr double most     = 1e9; // more are refused by check_size()
+    constexpr double most     = 1e9; // larger numbers are refused by check_size()
     const double     edge     = 2 * dealii::numbers::PI * body.radius / body.cells_along_arc;
     const auto       cells_on = [&](const double length) {
       return static_cast<unsigned int>(std::clamp(std::round(length / edge), 1., most));
@@ -295,7 +296,7 @@ namespace slipstick::mesh
         case scene::Shape::tube:
           mesh.piece = round_bar(scene, body);
           break;
-        case scene::Shape::disc: // shapes of the plane, and none
+        case scene::Shape::disc: // not solid shapes
         case scene::Shape::half_disc:
         case scene::Shape::quarter_disc:
         case scene::Shape::ring:

@@ -10,10 +10,10 @@ namespace slipstick::mesh
     using Solid   = MeshPiece<3>;
     using Corners = std::array<unsigned int, 3>;
 
-    // Vertices are ordered along it: vertices of lattices are never beside each other.
+    // Vertices are ordered along this direction: no two vertices of a lattice have the same position along it.
     const dealii::Tensor<1, 3> oblique({1, 0.6180339887, 0.3247179572});
 
-    /// For every vertex its position in the order.
+    /// Position of every vertex in the order.
     std::vector<unsigned int> positions_along(const dealii::Tensor<1, 3>          &direction,
                                               const std::vector<dealii::Point<3>> &x)
     {
@@ -27,7 +27,8 @@ namespace slipstick::mesh
       return positions;
     }
 
-    /// The triangles of a quadrilateral face (vertices in rows), cut along the diagonal from its first vertex.
+    /// The triangles of a quadrilateral face (vertices in lexicographic order), cut along the diagonal from its first
+    /// vertex.
     std::array<Corners, 2> halves(const Solid::Face &rows, const std::vector<unsigned int> &position)
     {
       constexpr std::array<unsigned int, 4> around = {{0, 1, 3, 2}};
@@ -47,7 +48,7 @@ namespace slipstick::mesh
       return rows;
     }
 
-    /// What half of a quadrilateral face stands for.
+    /// The surface of half of a quadrilateral face.
     FaceSurface surface_of(const FaceSurface &whole, const Corners &half, const Solid &piece)
     {
       if (whole.kind != FaceSurface::Kind::patch)
@@ -70,7 +71,7 @@ namespace slipstick::mesh
       return FaceSurface::patch(nodes);
     }
 
-    /// @param is_turned is the base clockwise seen from the apex?
+    /// @param is_turned whether the base is clockwise as seen from the apex.
     void add_tetrahedron(const unsigned int apex, const Corners &base, const bool is_turned, Solid &to)
     {
       Solid::Cell cell;
@@ -81,7 +82,7 @@ namespace slipstick::mesh
       cell[3]             = apex;
       const auto  &x      = to.vertices;
       const double volume = cross_product_3d(x[cell[1]] - x[cell[0]], x[cell[2]] - x[cell[0]]) * (x[apex] - x[cell[0]]);
-      if (!(volume > 0)) // six times its own
+      if (!(volume > 0)) // six times its volume
         throw InputError(
           format("the hexahedron at (%.6g, %.6g, %.6g) is too distorted to be divided into tetrahedra, which "
                  "refinement by errors needs",
@@ -117,7 +118,7 @@ namespace slipstick::mesh
             const auto rows = rows_of_face(cell, f);
             if (std::find(rows.begin(), rows.end(), first) != rows.end())
               continue;
-            // rows are counterclockwise seen from where the coordinate across the face grows
+            // the lexicographic order is counterclockwise as seen from the side where the transverse coordinate grows
             const bool is_high = f % 2 == 1;
             for (const auto &half : halves(rows, position))
               add_tetrahedron(first, half, is_high, result);

@@ -25,7 +25,7 @@ namespace slipstick::mesh
     mesh->global_vertices = piece.global_vertices;
     mesh->triangulation.create_triangulation(piece.vertices, cells, dealii::SubCellData());
 
-    // every face starts as a cut, the boundaries are marked from their vertices
+    // all faces are cuts initially; boundaries are marked by their vertices
     const auto   boundary = boundary_by_vertices(piece);
     Middles<dim> middles;
     if constexpr (dim == 2)

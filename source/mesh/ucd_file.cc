@@ -30,7 +30,7 @@ namespace slipstick::mesh
         in.fail("is not a .ucd file: it does not start with the number of its nodes");
       }
     const auto n_cells = in.count(1);
-    in.line(); // numbers of data
+    in.line(); // sizes of the data
     std::unordered_map<long long, unsigned int> index_of_node;
     in.section = "of nodes";
     for (std::size_t k = 0; k < n_nodes; ++k)

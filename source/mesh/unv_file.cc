@@ -12,8 +12,9 @@ namespace slipstick::mesh
 {
   namespace
   {
-    /// Elements by their "FE descriptor": dimension, corners, nodes; those of second order have a node inside of every
-    /// edge, behind its first end; of solids the bottom comes first so, then the edges that rise from it, then the top.
+    /// Elements by their "FE descriptor": dimension, corners, nodes. Second-order elements have a node in the middle of
+    /// every edge, after its first end; solids list first the bottom in this way, then the mid nodes of the vertical
+    /// edges, then the top.
     struct FeType
     {
       unsigned int dim, n_corners, n_nodes;
@@ -75,7 +76,8 @@ namespace slipstick::mesh
       return {type >= 101 && type <= 118 ? 3u : 0u, 0, 0};
     }
 
-    /// Gmsh writes quadrilaterals of 9 and hexahedra of 27 nodes with the numbers of those of first order, nodes in its own order.
+    /// Gmsh writes 9-node quadrilaterals and 27-node hexahedra with the first-order descriptors and with nodes in its
+    /// own order.
     bool is_of_gmsh(const FeType &type, const unsigned int n_nodes)
     {
       return type.n_nodes == type.n_corners && type.n_corners > 0 &&
@@ -83,7 +85,7 @@ namespace slipstick::mesh
               (type.dim == 3 && type.n_corners == 8 && n_nodes == 27));
     }
 
-    /// Which corners node @p k of an element lies between; one: it is that corner; none: unknown.
+    /// The corners between which node @p k of an element lies; one: it is that corner; none: unknown.
     std::vector<unsigned int> corners_around(const FeType &type, const unsigned int k)
     {
       if (type.n_nodes == 0)
@@ -132,7 +134,7 @@ namespace slipstick::mesh
       void make_groups();
       int  physical_of(const std::string &name);
 
-      static constexpr unsigned int no_element = -1; // springs and masses: known, not kept
+      static constexpr unsigned int no_element = -1; // springs and masses: recognised but not stored
 
       std::set<long long>                                                ignored_types;
       WordReader                                                         in;
@@ -164,7 +166,7 @@ namespace slipstick::mesh
           const auto n_nodes = in.integer();
           if (n_nodes < 1 || n_nodes > 100)
             in.fail_corrupt();
-          if (type >= 11 && type <= 32) // rods, beams and pipes: orientation and cross-sections
+          if (type >= 11 && type <= 32) // rods, beams and pipes have a line for orientation and cross-sections
             for (unsigned int k = 0; k < 3; ++k)
               in.integer();
           const FeType known   = fe_type(type);
@@ -208,7 +210,7 @@ namespace slipstick::mesh
         }
     }
 
-    /// Corners, and middles of edges.
+    /// Stores corners, and midpoints of edges.
     void UnvReader::take_nodes(const FeType &type, MeshFile::Element &element, const std::vector<unsigned int> &nodes)
     {
       for (unsigned int k = 0; k < nodes.size(); ++k)
@@ -234,7 +236,7 @@ namespace slipstick::mesh
 
     int UnvReader::physical_of(const std::string &name)
     {
-      constexpr int first_of_names = 1000000000; // numbers are their own names
+      constexpr int first_of_names = 1000000000; // smaller numbers are their own names
       const auto    number         = parse_number(name);
       if (number && *number == static_cast<int>(*number) && std::abs(*number) < first_of_names)
         return *number;

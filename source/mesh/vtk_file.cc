@@ -12,7 +12,7 @@ namespace slipstick::mesh
 {
   namespace
   {
-    /// VTK's kinds of cells: dimension, corners, all nodes; 0 nodes: none of them.
+    /// VTK's cell types: dimension, corners, all nodes; 0 nodes: not supported.
     struct CellType
     {
       unsigned int dim, n_corners, n_nodes;
@@ -88,9 +88,9 @@ namespace slipstick::mesh
       WordReader                          in;
       MeshFile                            mesh;
       std::vector<std::vector<long long>> corners; // by cell
-      std::vector<long long>              ids;     // by cell, of the array that gives groups
+      std::vector<long long>              ids;     // by cell, from the array that defines groups
       std::string                         source_of_ids;
-      bool                                of_cells = false; // the data that are being read
+      bool                                of_cells = false; // the data being read belong to cells
       std::size_t                         n_data   = 0;
     };
 
@@ -192,7 +192,7 @@ namespace slipstick::mesh
         }
     }
 
-    /// Groups come from the first data of cells that are whole numbers, one a cell; the others are named as unused.
+    /// Groups are defined by the first cell data with one integer per cell; other data are reported as unused.
     void VtkReader::read_array(const std::string &name, const std::size_t n_values)
     {
       std::vector<double> values;

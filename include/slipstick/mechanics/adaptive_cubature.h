@@ -1,4 +1,4 @@
-// Integrals of formulas over a face, whose pieces are divided into four until two successive integrals agree.
+// Integrals of formulas over a face; pieces of the face are divided into four until two successive integrals agree.
 #pragma once
 
 #include <deal.II/base/quadrature_lib.h>
@@ -11,16 +11,16 @@
 
 namespace slipstick::mechanics
 {
-  // Times that the whole face is first divided: features narrower than about a fiftieth of it may be missed.
+  // Initial uniform divisions of the whole face: features narrower than about a fiftieth of it may be missed.
   constexpr unsigned int n_first_divisions = 2;
-  // A piece and its four parts agree if they differ by no more than this fraction of the integral of the magnitudes.
+  // A piece and its four parts agree if they differ by at most this fraction of the integral of the magnitudes.
   constexpr double same_cubature = 1e-9;
-  // Divisions of a piece after the first ones: a jump is located to 1/256 of the face.
+  // Maximum number of further divisions of a piece: a jump is located to 1/256 of the face.
   constexpr unsigned int max_divisions = 6;
-  // Limit on the pieces of one face; only formulas that oscillate without end need more.
+  // Limit on the number of pieces per face; only formulas that oscillate indefinitely need more.
   constexpr unsigned int max_pieces_of_face = 10000;
 
-  /// n functions of the local coordinates of a face at once: the unit triangle or the unit square.
+  /// n functions of the local coordinates of a face (the unit triangle or the unit square), evaluated together.
   template <std::size_t n>
   class AdaptiveCubature
   {
@@ -44,7 +44,7 @@ namespace slipstick::mechanics
 
     Values integral{};
     double scale      = 0; // integral of the sum of magnitudes
-    double difference = 0; // that is left, of all pieces together
+    double difference = 0; // remaining difference, summed over all pieces
 
   private:
     /// A parallelogram or triangle.

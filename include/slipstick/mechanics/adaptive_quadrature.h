@@ -1,4 +1,4 @@
-// Integrals of formulas over an edge, bisected until two successive integrals agree.
+// Integrals of formulas over an edge; pieces of the edge are bisected until two successive integrals agree.
 #pragma once
 
 #include <algorithm>
@@ -7,16 +7,16 @@
 
 namespace slipstick::mechanics
 {
-  // Number of pieces that an edge is first cut into: features narrower than about a fiftieth of it may be missed.
+  // Initial number of pieces of an edge: features narrower than about a fiftieth of it may be missed.
   constexpr unsigned int n_first_pieces = 16;
-  // A piece and its two halves agree if they differ by no more than this fraction of the integral of the magnitudes.
+  // A piece and its two halves agree if they differ by at most this fraction of the integral of the magnitudes.
   constexpr double same_integral = 1e-12;
-  // A piece is halved at most this many times: a jump is then located to rounding.
+  // Maximum number of bisections of a piece: a jump is then located to rounding.
   constexpr unsigned int max_halvings = 44;
-  // Limit on the pieces of one edge; only formulas that have no integral or oscillate without end need more.
+  // Limit on the number of pieces per edge; only formulas that are not integrable or oscillate indefinitely need more.
   constexpr unsigned int max_pieces = 20000;
 
-  /// n functions of s in [0, 1] at once.
+  /// n functions of s in [0, 1], evaluated together.
   template <std::size_t n>
   class AdaptiveQuadrature
   {

@@ -7,9 +7,9 @@
 
 namespace slipstick::mechanics
 {
-  /// K_p, f_p (at load factor @p t), R_p of the subdomains of this rank. Loads are forces of the body's thickness, or
-  /// of the whole circumference. With
-  /// the nearly incompressible element K = sum of 2 mu eps : eps + lambda (P div)(P div), P: see DilatationProjection.
+  /// K_p, f_p (at load factor @p t), R_p of the subdomains of this rank. Loads are forces on the whole thickness of the
+  /// body, or on the whole circumference. With the nearly incompressible element K = sum of 2 mu eps : eps + lambda (P
+  /// div)(P div), P: see DilatationProjection.
   /// Collective (rigid motions refer to the centre of the whole body).
   /// @throws InputError on all ranks for triangles of degree 1 with the nearly incompressible element, and as
   /// assemble_loads() does.

@@ -1,4 +1,4 @@
-// Bolts that are tightened: initial strains that shorten a body across a section.
+// Bolt pretension: initial strains that shorten a body across a section.
 #pragma once
 
 #include <slipstick/scene/scene.h>
@@ -12,10 +12,10 @@
 
 namespace slipstick::mechanics
 {
-  /// A bolt cut by a section and drawn together by s is free of stress in u = -s h, where h is its direction at the nodes
-  /// above the section and 0 at those below: the elastic part of u is u + s h, the load -s K h, and the tension across the
-  /// section h'K (u + s h). The cut runs through the cells between the two groups of nodes, so that no mesh has to have edges
-  /// along it, and the discrete equilibrium is that of two parts which were drawn together, exactly.
+  /// A bolt that is cut by a section and shortened by s is free of stress for u = -s h, where h is its direction at the
+  /// nodes above the section and 0 at those below: the elastic part of u is u + s h, the load -s K h, and the tension
+  /// across the section h'K (u + s h). The cut runs through the cells between the two groups of nodes, so that the mesh
+  /// need not have edges along it; the discrete equilibrium is exactly that of two parts pulled together.
   template <int dim>
   class Bolts
   {
@@ -29,23 +29,24 @@ namespace slipstick::mechanics
       return bolts.empty();
     }
 
-    /// Of every bolt from end to end, strained evenly [N/mm], and its length [mm].
+    /// Axial stiffness of every bolt under uniform strain [N/mm], and its length [mm].
     std::vector<double> stiffnesses() const;
     std::vector<double> lengths() const;
 
     /// Adds -s K h of all bolts. @param shortening s [mm]. @param loads of this rank's subdomains [N].
     void add_loads(const std::vector<double> &shortening, std::vector<Eigen::VectorXd> &loads) const;
 
-    /// u + s h: what of the displacement strains the bodies.
+    /// u + s h, the part of the displacement that strains the bodies.
     std::vector<Eigen::VectorXd> elastic_part(std::vector<Eigen::VectorXd> u,
                                               const std::vector<double>   &shortening) const;
 
-    /// h'(K (u + s h) - f) of every bolt [N]. @param thermal f of thermal strain alone, by subdomain; empty: 0. Collective.
+    /// h'(K (u + s h) - f) of every bolt [N]. @param thermal load f of the thermal strain only, by subdomain; empty: 0.
+    /// Collective.
     std::vector<double> tensions(const std::vector<Eigen::VectorXd> &u,
                                  const std::vector<double>          &shortening,
                                  const std::vector<Eigen::VectorXd> &thermal) const;
 
-    /// By how much twice the strain energy of every body differs from u'K u [N mm], of this rank's subdomains.
+    /// Twice the strain energy of every body minus u'K u [N mm], from this rank's subdomains.
     std::vector<double> energies_beside(const std::vector<Eigen::VectorXd> &u,
                                         const std::vector<double>          &shortening,
                                         const unsigned int                  n_bodies) const;

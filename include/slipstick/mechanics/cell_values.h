@@ -1,4 +1,4 @@
-// FEValues that are computed once for cells that are translations of each other.
+// FEValues computed once for cells that are translations of each other.
 #pragma once
 
 #include <deal.II/fe/fe_values.h>
@@ -7,9 +7,9 @@
 
 namespace slipstick::mechanics
 {
-  /// Gradients, JxW and what else is asked for of the scalar element on one cell after the other. Straight-sided cells
-  /// whose vertices agree up to a translation share them (deal.II's own detection uses an absolute length, which fails
-  /// with small units).
+  /// Gradients, JxW and other requested values of the scalar element, cell by cell. Straight-sided cells whose vertices
+  /// agree up to a translation share them (deal.II's own detection uses an absolute length, which fails for small
+  /// units).
   template <int dim>
   class CellValues
   {
@@ -39,7 +39,7 @@ namespace slipstick::mechanics
       return true;
     }
 
-    /// The values; their own points are those of the cell they were computed for.
+    /// The values; the quadrature points in them are those of the cell for which they were computed.
     const dealii::FEValues<dim> &operator*() const
     {
       return values;
@@ -62,7 +62,7 @@ namespace slipstick::mechanics
 
     static bool is_translation(const Cell &a, const Cell &b)
     {
-      constexpr double   tolerance  = 1e-11; // part of the cell's size by which vertices may differ
+      constexpr double   tolerance  = 1e-11; // difference of vertices relative to the cell's size
       const unsigned int n_vertices = a->n_vertices();
       const double       square     = tolerance * tolerance * a->vertex(0).distance_square(a->vertex(n_vertices - 1));
       for (unsigned int v = 1; v < n_vertices; ++v)

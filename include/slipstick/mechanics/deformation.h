@@ -1,4 +1,4 @@
-// Whether a displacement is small: strains, rotations, motions of whole bodies.
+// Check whether a displacement is small: strains, rotations, motions of whole bodies.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
@@ -7,7 +7,7 @@
 
 namespace slipstick::mechanics
 {
-  /// A largest value and where it is.
+  /// A maximum and its place.
   template <int dim>
   struct Peak
   {
@@ -16,16 +16,17 @@ namespace slipstick::mechanics
     dealii::Point<dim> position; // reference configuration: centre of the cell, node
   };
 
-  /// Largest values over all cells, nodes and ranks.
+  /// Maxima over all cells, nodes and ranks.
   template <int dim>
   struct Deformation
   {
     Peak<dim> strain;   // largest principal strain, magnitude [-]
-    Peak<dim> rotation; // of the cell's middle [rad]
-    Peak<dim> motion;   // displacement of a node over the diagonal of the box around its body [-]
+    Peak<dim> rotation; // in the middle of a cell [rad]
+    Peak<dim> motion;   // nodal displacement over the diagonal of the body's bounding box [-]
   };
 
-  /// Of the displacements @p u of this rank's subdomains [mm], at the middle of every cell. Collective.
+  /// Maxima for the displacements @p u of this rank's subdomains [mm], evaluated at the middle of every cell.
+  /// Collective.
   template <int dim>
   Deformation<dim> largest_deformation(const scene::Scene<dim>            &scene,
                                        const mesh::Mesh<dim>              &mesh,

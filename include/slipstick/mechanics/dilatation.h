@@ -1,4 +1,4 @@
-// The dilatation that the elements use: that of the displacement, or a projection of it.
+// The dilatation used by the elements: that of the displacement, or a projection of it.
 #pragma once
 
 #include <slipstick/mechanics/cell_values.h>
@@ -21,16 +21,18 @@ namespace slipstick::mechanics
       : n_functions(element.degree == 2 && !element.cell.is_simplex() ? dim + 1 : 1)
     {}
 
-    /// @p values with quadrature points and JxW; the squares are weighted with the circumference too, if there is one.
+    /// @p values with quadrature points and JxW; in bodies of revolution the squares are also weighted with the
+    /// circumference.
     void reinit(const CellValues<dim> &values, const mesh::Kinematics<dim> &kinematics);
 
-    /// The projection of what has the values @p at_points (quadrature points x anything), at the quadrature points.
+    /// Projection, at the quadrature points, of quantities with the values @p at_points (quadrature points x
+    /// quantities).
     Eigen::MatrixXd projected(const Eigen::MatrixXd &at_points) const
     {
       return basis * (to_coefficients * at_points);
     }
 
-    /// The projection at any points x of the cell of the last reinit().
+    /// The projection at arbitrary points x of the cell of the last reinit().
     Eigen::VectorXd projected_at(const Eigen::VectorXd &at_points, const std::vector<dealii::Point<dim>> &x) const;
 
   private:

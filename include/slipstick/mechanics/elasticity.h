@@ -1,4 +1,4 @@
-// Hooke's law in the plane, of bodies of revolution and in space, with thermal strain.
+// Hooke's law in the plane, for bodies of revolution and in space, with thermal strain.
 #pragma once
 
 #include <slipstick/scene/scene.h>
@@ -9,8 +9,8 @@
 
 namespace slipstick::mechanics
 {
-  /// Lame coefficients that make sigma = lambda tr(eps) I + 2 mu eps hold in the plane, and with hoop strain in bodies
-  /// of revolution [MPa]. In plane stress lambda is the condensed one, 2 lambda mu / (lambda + 2 mu).
+  /// Lame coefficients for sigma = lambda tr(eps) I + 2 mu eps in the plane, with the hoop strain in bodies of
+  /// revolution [MPa]. In plane stress lambda is the condensed one, 2 lambda mu / (lambda + 2 mu).
   struct LameCoefficients
   {
     double lambda, mu;
@@ -21,16 +21,16 @@ namespace slipstick::mechanics
   template <int dim>
   using Stress = Eigen::Array<double, 2 * dim, 1>;
 
-  /// What Hooke's law goes by: solids have the coefficients of plane strain, in all directions.
+  /// Coefficients of Hooke's law; for solids those of plane strain, in all directions.
   template <int dim>
   scene::PlaneState state_of(const scene::Scene<dim> &scene)
   {
     return dim == 3 ? scene::PlaneState::plane_strain : scene.plane_state;
   }
 
-  /// sigma = lambda (div - e_V T) I + 2 mu (eps - e T I) of the displacement gradient and the change of temperature T;
-  /// e = alpha, e_V = 3 alpha in plane strain (the strain along z is held too) and in bodies of revolution (whose hoop
-  /// strain is part of div), 2 alpha in plane stress. The two parts are kept apart because the nearly incompressible
+  /// sigma = lambda (div - e_V T) I + 2 mu (eps - e T I) for the displacement gradient and the change of temperature T;
+  /// e = alpha, e_V = 3 alpha in plane strain (the strain along z is prevented) and in bodies of revolution (whose hoop
+  /// strain is part of div), 2 alpha in plane stress. The two parts are kept separate because the nearly incompressible
   /// element projects the first.
   struct ElasticLaw
   {
@@ -39,11 +39,11 @@ namespace slipstick::mechanics
     LameCoefficients lame;
     double           expansion;           // e [1/K]
     double           volume_expansion;    // e_V [1/K]
-    double           out_of_plane;        // sigma_zz over xx + yy: nu in plane strain, 0 in plane stress
-    double           out_of_plane_change; // and -E alpha T in plane strain [MPa/K]
+    double           out_of_plane;        // sigma_zz over (xx + yy): nu in plane strain, 0 in plane stress
+    double           out_of_plane_change; // additional sigma_zz per T: -E alpha in plane strain [MPa/K]
 
-    /// xx, yy, xy and (of bodies of revolution) hoop stress, in space zz, xz, yz [MPa] of a displacement gradient, a hoop
-    /// strain, a dilatation (trace and hoop strain, or a projection of it, less e_V T) and T [K].
+    /// Stresses xx, yy, xy and (for bodies of revolution) hoop, in space zz, xz, yz [MPa] from a displacement gradient,
+    /// a hoop strain, a dilatation (trace plus hoop strain, or its projection, minus e_V T) and T [K].
     template <int dim>
     Stress<dim> stress(const dealii::Tensor<2, dim> &gradient,
                        const double                  hoop,
@@ -72,7 +72,7 @@ namespace slipstick::mechanics
       return out_of_plane * (xx + yy) + out_of_plane_change * temperature;
     }
 
-    /// sigma : C^-1 : sigma of xx, yy, xy, with C of the plane, or with the hoop stress, or of all six [MPa].
+    /// sigma : C^-1 : sigma for xx, yy, xy in the plane, with the hoop stress, or for all six components [MPa].
     double energy(const Stress<2> &sigma) const;
     double energy(const Stress<3> &sigma) const;
 

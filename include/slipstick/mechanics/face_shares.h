@@ -1,4 +1,4 @@
-// What the nodes of a boundary face stand for: areas and normals.
+// Tributary areas and normals of the nodes of a boundary face.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
@@ -6,14 +6,14 @@
 
 namespace slipstick::mechanics
 {
-  /// A node's share of a boundary face.
+  /// Share of a node in a boundary face.
   template <int dim>
   struct FaceShare
   {
-    double measure = 0; // integral of its shape function: per thickness or of the circumference; in space the area
-                        // [mm], [mm^2]
-    double                 length = 0; // the same without circumference; in space the area, too
-    dealii::Tensor<1, dim> normal;     // outward there, unit length
+    double measure = 0;                // integral of its shape function, per thickness or over the circumference;
+                                       // in space the area [mm], [mm^2]
+    double                 length = 0; // the same without circumference; in space the area
+    dealii::Tensor<1, dim> normal;     // outward at the node, unit length
   };
 
   /// Shares of the nodes of face @p face of @p cell, in the order of Spaces::for_each_face_node().

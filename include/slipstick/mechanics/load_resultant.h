@@ -1,4 +1,4 @@
-// What a load adds up to, and how well its formula is integrated.
+// Resultants of loads, and the accuracy of their integration.
 #pragma once
 
 #include <slipstick/base/resultant.h>
@@ -14,9 +14,9 @@ namespace slipstick::mechanics
   struct LoadResultant
   {
     Resultant                            sum;
-    std::optional<std::array<double, 3>> unresolved; // where its formula is too rough for the mesh or has no integral;
-                                                     // of body forces, and of tractions on solids, when
-                                                     // two quadratures differ by one percent
+    std::optional<std::array<double, 3>> unresolved; // where the formula is too rough for the mesh or not
+                                                     // integrable: body forces, and tractions on solids, if two
+                                                     // quadratures differ by one percent
   };
 
   /// Missing components are 0.
@@ -29,11 +29,11 @@ namespace slipstick::mechanics
     return all;
   }
 
-  /// By how much two quadratures of a load differ.
+  /// Difference between two quadratures of a load.
   struct Misfit
   {
     double                size = 0, difference = 0; // sums of magnitudes over cells or faces [N]
-    double                largest = -1;             // difference in one of them
+    double                largest = -1;             // difference in one cell or face
     std::array<double, 3> at{{0, 0, 0}};            // its place
 
     void add(const double size_, const double difference_, const std::array<double, 3> &place)

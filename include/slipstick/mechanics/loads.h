@@ -10,8 +10,8 @@
 
 namespace slipstick::mechanics
 {
-  /// Of the tractions, then the body forces, then the point loads of the scene, at load factor @p t. The same on all
-  /// ranks. Collective.
+  /// Resultants of the tractions, the body forces and the point loads of the scene, in this order, at load factor @p t.
+  /// The same on all ranks. Collective.
   template <int dim>
   std::vector<LoadResultant> load_resultants(const scene::Scene<dim> &scene,
                                              const mesh::Mesh<dim>   &mesh,
@@ -20,10 +20,10 @@ namespace slipstick::mechanics
 
   /// f_p [N] at load factor @p t, by subdomain of this rank. Forces per area and per volume act on the body's
   /// thickness, or on the whole circumference; pressure acts against the outward normal of the undeformed boundary; a
-  /// point load acts on one copy of the node nearest to it, whole (no thickness, no circumference). Formulas of
-  /// tractions are integrated by AdaptiveQuadrature and AdaptiveCubature, jumps included. Thermal strain enters as the force of the stress
-  /// that would suppress it. Collective.
-  /// @throws InputError on all ranks for a formula that gives no number and for a point load outside its body.
+  /// point load acts, undivided, on one copy of the node nearest to it (no thickness, no circumference). Formulas of
+  /// tractions are integrated by AdaptiveQuadrature and AdaptiveCubature, including jumps. Thermal strain enters as the
+  /// force of the stress that would suppress it. Collective.
+  /// @throws InputError on all ranks for a formula whose value is not a number and for a point load outside its body.
   template <int dim>
   std::vector<Eigen::VectorXd> assemble_loads(const scene::Scene<dim> &scene,
                                               const mesh::Mesh<dim>   &mesh,

@@ -8,9 +8,10 @@
 namespace slipstick::mechanics
 {
   /// Superconvergent patch recovery (Zienkiewicz, Zhu 1992) on one subdomain: around every vertex the stresses of the
-  /// cells there, at given points, are fitted by a polynomial of degree 2, where they are too few for that of degree 1. The sums
-  /// of the normal equations add up over the copies of a vertex, so that patches reach across subdomains. For degree 2: a node
-  /// in the middle of an edge gets the mean of the polynomials of its ends.
+  /// adjacent cells, at given points, are fitted by a polynomial of degree 2, or of degree 1 if there are too few
+  /// points. The sums of the normal equations are added over the copies of a vertex, so that patches extend across
+  /// subdomains. For elements of degree 2, a node in the middle of an edge gets the mean of the polynomials of its
+  /// ends.
   template <int dim>
   class PatchRecovery
   {
@@ -32,11 +33,11 @@ namespace slipstick::mechanics
              const std::vector<dealii::Point<dim>>                        &points,
              const Eigen::MatrixXd                                        &values);
 
-    /// Sums of the normal equations, by node of the displacement space; rows of nodes that are no vertices are zero.
+    /// Sums of the normal equations, by node of the displacement space; rows of nodes that are not vertices are zero.
     Eigen::MatrixXd sums;
 
-    /// Puts the recovered stresses into the rows of @p nodal (nodes x at least n_components), where the points around a
-    /// vertex determine a polynomial; else they stay.
+    /// Writes the recovered stresses into the rows of @p nodal (nodes x at least n_components) where the points around
+    /// a vertex determine a polynomial; the other rows are unchanged.
     void recover(Eigen::MatrixXd &nodal) const;
 
   private:

@@ -1,4 +1,4 @@
-// Nodes at points of bodies: where point loads act and point supports hold.
+// Nodes at points of bodies, for point loads and point supports.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
@@ -14,11 +14,11 @@ namespace slipstick::mechanics
     dealii::Point<dim> position;
   };
 
-  /// The node nearest to each of @p points, the same on all ranks and one copy of it alone (of the lowest subdomain);
-  /// of nodes at the same distance the one with the smallest x, then y. @p owners: what to call each point in a
-  /// message, such as "Point load pull". Named points must be in mesh.points. Collective.
-  /// @throws InputError when no node of the body lies within half a cell (0.6 diameters: a point inside the mesh is
-  /// never refused).
+  /// The node nearest to each of @p points, the same on all ranks: one copy of it (that of the lowest subdomain); of
+  /// nodes at the same distance the one with the smallest x, then y. @p owners: name of each point in messages, e.g.
+  /// "Point load pull". Named points must be in mesh.points. Collective.
+  /// @throws InputError when no node of the body lies within 0.6 diameters of a cell (a point inside the mesh is never
+  /// refused).
   template <int dim>
   std::vector<PointNode<dim>> nodes_at(const scene::Scene<dim>                  &scene,
                                        const mesh::Mesh<dim>                    &mesh,

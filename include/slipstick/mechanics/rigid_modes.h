@@ -1,4 +1,4 @@
-// Rigid motions from coordinates: the kernels of the torn subdomains.
+// Rigid body modes from coordinates: the kernels of the torn subdomains.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
@@ -9,7 +9,7 @@
 
 namespace slipstick::mechanics
 {
-  /// Point about which a body's rotation is measured and the length that makes it dimensionless.
+  /// Point about which the rotation of a body is measured, and the length that makes it dimensionless.
   template <int dim>
   struct Frame
   {
@@ -22,8 +22,8 @@ namespace slipstick::mechanics
   std::vector<Frame<dim>> body_frames(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh);
 
   /// Fills kernel: columns (1,0), (0,1), (-(y - y_c), x - x_c) / L at every node, with centre and length of the
-  /// subdomain, of bodies of revolution (0,1) alone; body_modes, which turns them into the same motions about the
-  /// body's frame; frame; and positions.
+  /// subdomain; for bodies of revolution (0,1) only. Also fills body_modes, which transforms these into the motions
+  /// about the body's frame; frame; and positions.
   template <int dim>
   void rigid_modes(const Element<dim>            &element,
                    const dealii::DoFHandler<dim> &dof_handler,

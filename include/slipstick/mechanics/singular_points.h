@@ -1,4 +1,4 @@
-// Where stresses grow without limit under refinement, and where the largest ones are.
+// Points at which stresses grow without limit under refinement, and places of the largest stresses.
 #pragma once
 
 #include <slipstick/mechanics/deformation.h>
@@ -17,17 +17,17 @@ namespace slipstick::mechanics
     std::string        what; // "the point support tip", "a re-entrant corner", "an end of the support wall"
   };
 
-  /// Point supports and point loads; corners of outlines that go in by 35 degrees or more; ends of boundaries along
-  /// which supports hold both displacements. Outlines are those of the curves that edges stand for. Known to every
-  /// rank. Collective.
-  /// @param n_supports of scene.supports count, from the first.
+  /// Singular points: point supports and point loads; re-entrant corners of outlines with a turn of 35 degrees or more;
+  /// ends of boundaries along which supports hold both displacements. Outlines are those of the true curves of the
+  /// edges. The same on every rank. Collective.
+  /// @param n_supports only the first n_supports of scene.supports are considered.
   template <int dim>
   std::vector<SingularPoint<dim>> singular_points(const scene::Scene<dim> &scene,
                                                   const mesh::Mesh<dim>   &mesh,
                                                   const Spaces<dim>       &spaces,
                                                   const unsigned int       n_supports);
 
-  /// Where recovered stresses are largest, and where the error is that was estimated.
+  /// Places of the largest recovered stress and of the largest estimated error.
   template <int dim>
   struct StressPlaces
   {
@@ -36,7 +36,7 @@ namespace slipstick::mechanics
     Peak<dim> error;     // the centre of a cell [sqrt(N mm)]
   };
 
-  /// Of equal ones the place with the smallest x, then y, whatever the number of ranks. Collective.
+  /// If values are equal, the place with the smallest x, then y, independent of the number of ranks. Collective.
   template <int dim>
   StressPlaces<dim> stress_places(const mesh::Mesh<dim> &mesh, const Spaces<dim> &spaces, const StressResult &stress);
 } // namespace slipstick::mechanics

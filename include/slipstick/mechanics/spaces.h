@@ -1,4 +1,4 @@
-// Finite element spaces on the subdomains and the nodes that they share.
+// Finite element spaces on the subdomains, and the nodes shared by subdomains.
 #pragma once
 
 #include <slipstick/mesh/kinematics.h>
@@ -13,29 +13,31 @@
 
 namespace slipstick::mechanics
 {
-  /// Identity of a node across subdomains and ranks: its vertex twice, or the two vertices of its edge; of a node in the middle of a
-  /// quadrilateral in space the two vertices of that diagonal which has the smallest one (a diagonal is no edge of a conforming mesh).
+  /// Identifies a node across subdomains and ranks: its vertex twice, or the two vertices of its edge; for a node in
+  /// the middle of a quadrilateral in space the two vertices of the diagonal that contains the smallest one (a diagonal
+  /// is not an edge of a conforming mesh).
   using NodeKey = std::array<mesh::GlobalVertex, 2>;
 
-  /// Lagrange element of one cell type, with its mapping and quadratures. Nodes lie on vertices (degree 1) and also in
-  /// the middle of edges (degree 2; quadrilaterals and hexahedra have one more inside, hexahedra one in every face). Mappings are isoparametric: with degree 2 the
-  /// edges follow the manifolds of the triangulation, of quadrilaterals and triangles alike.
+  /// Lagrange element of one cell type, with its mapping and quadratures. Nodes are at vertices (degree 1) and also at
+  /// the midpoints of edges (degree 2; quadrilaterals and hexahedra have one more inside, hexahedra one in every face).
+  /// Mappings are isoparametric: for degree 2 the edges follow the manifolds of the triangulation, for quadrilaterals
+  /// and triangles alike.
   template <int dim>
   struct Element
   {
-    /// @p cell: quadrilateral or triangle, hexahedron or tetrahedron; @p degree: 1 or 2; @p is_curved: does the mesh have manifolds to
-    /// follow?
+    /// @param cell quadrilateral or triangle, hexahedron or tetrahedron. @param degree 1 or 2. @param is_curved whether
+    /// the mesh has manifolds to follow.
     Element(const dealii::ReferenceCell cell, const unsigned int degree, const bool is_curved = true);
 
     dealii::ReferenceCell                             cell;
     unsigned int                                      degree;
-    bool                                              is_curved; // else the mapping is of degree 1
+    bool                                              is_curved; // otherwise the mapping is of degree 1
     std::unique_ptr<const dealii::FiniteElement<dim>> scalar;
     std::unique_ptr<const dealii::FESystem<dim>>      vector; // dim times scalar
     std::unique_ptr<const dealii::Mapping<dim>>       mapping;
     dealii::Quadrature<dim>                           stiffness; // exact for the stiffness of affine cells
     dealii::Quadrature<dim>                           loads;     // finer: loads may be formulas
-    dealii::Quadrature<dim>                           stress;    // where stresses are most accurate
+    dealii::Quadrature<dim>                           stress;    // at the points where stresses are most accurate
 
     unsigned int n_nodes() const
     {
@@ -45,11 +47,11 @@ namespace slipstick::mechanics
     /// Gauss rule of n points per direction (triangles: of the same order).
     dealii::Quadrature<dim> cell_quadrature(const unsigned int n) const;
 
-    /// Integrates the stiffness and related terms. The hoop strain of a body of revolution is not constant on triangles
+    /// Rule for the stiffness and related terms. The hoop strain of a body of revolution is not constant on triangles
     /// of degree 1.
     dealii::Quadrature<dim> stiffness_rule(const mesh::Kinematics<dim> &kinematics) const;
 
-    /// Rule for the edges: Gauss, n points.
+    /// Gauss rule with n points for the edges.
     dealii::Quadrature<dim - 1> face_quadrature(const unsigned int n) const;
 
     /// Nodes of a cell of the displacement space, in the order of the scalar element; @p dofs is scratch.
@@ -75,8 +77,8 @@ namespace slipstick::mechanics
       return *element_of[p];
     }
 
-    /// Calls f(node, key, position) for the nodes of a face, in deal.II's order of the face (which may run against the
-    /// order of the cell that it is seen from): vertices, middles of edges, the middle of a quadrilateral.
+    /// Calls f(node, key, position) for the nodes of a face, in deal.II's order for the face (which may be opposite to
+    /// the order in the cell from which it is accessed): vertices, midpoints of edges, the centre of a quadrilateral.
     template <class F>
     void for_each_face_node(const mesh::SubdomainMesh<dim>                               &mesh,
                             const typename dealii::DoFHandler<dim>::active_face_iterator &face,
@@ -94,7 +96,7 @@ namespace slipstick::mechanics
       if constexpr (dim == 2)
         f(face->dof_index(0) / dim,
           key_between(ends[0], ends[1]),
-          face->center(true)); // on the manifold of the edge, as in the mapping
+          face->center(true)); // on the manifold of the edge, as for the mapping
       else
         {
           for (unsigned int l = 0; l < face->n_lines(); ++l)
@@ -104,7 +106,7 @@ namespace slipstick::mechanics
                 key_between(mesh.global_vertices[line->vertex_index(0)], mesh.global_vertices[line->vertex_index(1)]),
                 line->center(true));
             }
-          if (face->n_vertices() == most_vertices) // vertices in rows: the diagonals are 0, 3 and 1, 2
+          if (face->n_vertices() == most_vertices) // vertices in lexicographic order: the diagonals are 0, 3 and 1, 2
             f(face->dof_index(0) / dim,
               std::min(key_between(ends[0], ends[3]), key_between(ends[1], ends[2])),
               face->center(true));

@@ -1,4 +1,4 @@
-// Points that are fixed in order to suppress motions that nothing holds.
+// Point supports that suppress rigid motions which nothing else holds.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
@@ -6,9 +6,10 @@
 
 namespace slipstick::mechanics
 {
-  /// Point supports that hold rigid motions, one displacement of one node for each: the one that moves most, in turn,
-  /// away from the outlines where bodies have nodes there. No load may act along the motions; the supports then bear
-  /// nothing, and the choice of points changes the answer only by a rigid motion. The same on all ranks. Collective.
+  /// Point supports that hold rigid motions: for each motion one displacement component of one node, chosen in turn
+  /// where the remaining motions are largest, away from outlines if the body has interior nodes. No load may act along
+  /// the motions; the reactions of the supports are then zero, and their choice changes the solution only by a rigid
+  /// motion. The same on all ranks. Collective.
   /// @param motions orthonormal: amplitudes of translation x, y and rotation of every body about its frame.
   template <int dim>
   std::vector<scene::PrescribedDisplacement<dim>> still_points(const mesh::Mesh<dim>               &mesh,

@@ -1,4 +1,4 @@
-// Stress recovery and the estimate of the discretisation error.
+// Stress recovery and estimation of the discretisation error.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
@@ -11,27 +11,27 @@ namespace slipstick::mechanics
   /// Recovered stress on one subdomain.
   struct SubdomainStress
   {
-    Eigen::MatrixXd nodal; // nodes x 4: xx, yy, xy, zz (of bodies of revolution the hoop stress); in space x 6: xz, yz
-                           // besides [MPa]
+    Eigen::MatrixXd nodal; // nodes x 4: xx, yy, xy, zz (for bodies of revolution the hoop stress); in space x 6:
+                           // also xz, yz [MPa]
     Eigen::VectorXd error; // by active cell: energy norm of recovered minus computed stress [sqrt(N mm)]
   };
 
   struct StressResult
   {
     std::vector<SubdomainStress> subdomains;              // of this rank
-    bool                         has_hoop_stress = false; // zz is it
-    double min_hoop_stress = 0, max_hoop_stress = 0;      // over all nodes and ranks, where there is one [MPa]
+    bool                         has_hoop_stress = false; // zz is the hoop stress
+    double min_hoop_stress = 0, max_hoop_stress = 0;      // over all nodes and ranks, if there is a hoop stress [MPa]
     double max_von_mises  = 0;                            // over all nodes and ranks [MPa]
     double energy_squared = 0; // integral of sigma : C^-1 : sigma, twice the elastic energy [N mm]
     double error_squared  = 0; // sum of the squares of the cells' errors [N mm]
   };
 
-  /// Stress of the displacements @p u (by subdomain of this rank) at load factor @p t at the nodes: cell stresses,
-  /// represented one degree lower than the displacement (superconvergent points), averaged over the cells around a node
-  /// with their area, across subdomains of a body too. Thermal strain is taken off; where the element projects the
-  /// dilatation, its stress has the projected one. On triangles of degree 2, where means are not superconvergent, least
-  /// squares around every vertex take their place (PatchRecovery). The error indicator is that of Zienkiewicz, Zhu
-  /// 1987. Collective.
+  /// Nodal stress for the displacements @p u (by subdomain of this rank) at load factor @p t: cell stresses,
+  /// represented by polynomials of one degree less than the displacement (superconvergent points), averaged over the
+  /// cells around a node with their areas as weights, also across the subdomains of a body. Thermal strain is
+  /// subtracted; where the element projects the dilatation, its stress uses the projected one. On triangles of degree
+  /// 2, where averages are not superconvergent, a least squares fit around every vertex is used instead
+  /// (PatchRecovery). The error indicator is that of Zienkiewicz, Zhu 1987. Collective.
   template <int dim>
   StressResult recover_stress(const scene::Scene<dim>            &scene,
                               const mesh::Mesh<dim>              &mesh,

@@ -1,4 +1,4 @@
-// Boundary edges of bodies as curves of their own: nodes, shape functions, normals.
+// Boundary edges of bodies as independent curves: nodes, shape functions, normals.
 #pragma once
 
 #include <slipstick/base/cross.h>
@@ -10,7 +10,7 @@
 namespace slipstick::mechanics
 {
   /// An edge on the outline of a body, straight with two nodes or curved with three; local coordinate s in [0, 1]. The
-  /// body lies to the left when going from node 0 (s = 0) to node 1 (s = 1); node 2 is in the middle.
+  /// body is on the left when going from node 0 (s = 0) to node 1 (s = 1); node 2 is in the middle.
   template <int dim>
   struct SurfaceEdge
   {
@@ -19,8 +19,8 @@ namespace slipstick::mechanics
     unsigned int                           subdomain = 0;
     unsigned int                           n_nodes   = 2;
     std::array<NodeKey, 3>                 keys{};
-    std::array<std::array<double, dim>, 3> at{}; // [mm]
-    mesh::EdgeCurve<dim> curve; // that the edge stands for, from node 0 to node 1; none: the edge itself
+    std::array<std::array<double, dim>, 3> at{};  // [mm]
+    mesh::EdgeCurve<dim>                   curve; // true curve, from node 0 to node 1; none: the edge itself
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
@@ -38,7 +38,7 @@ namespace slipstick::mechanics
       return dealii::Point<dim>(at[i][0], at[i][1]);
     }
 
-    /// Shape functions of the nodes at s (that of a third node is 0 when there is none), and their derivatives.
+    /// Shape functions of the nodes at s (0 for a missing third node), and their derivatives.
     std::array<double, 3> shape(const double s) const;
     std::array<double, 3> shape_derivative(const double s) const;
 
@@ -50,22 +50,22 @@ namespace slipstick::mechanics
     dealii::Tensor<1, dim> tangent(const double s) const; // d point / d s
     dealii::Tensor<1, dim> normal(const double s) const;  // outward, unit length
 
-    /// That at node i.
+    /// Normal at node i.
     dealii::Tensor<1, dim> normal_at(const unsigned int i) const
     {
       return normal(node_coordinate(i));
     }
 
-    /// Outward unit normal of the curve.
+    /// Outward unit normal of the true curve.
     dealii::Tensor<1, dim> outline_normal(const double s) const;
 
-    /// How far the curve is above the edge at s along @p direction, a unit vector across both [mm].
+    /// Height of the true curve above the edge at s along @p direction, a unit vector transverse to both [mm].
     double rise(const double s, const dealii::Tensor<1, dim> &direction) const
     {
       return curve ? curve.distance_along(point(s), direction, s) : 0.;
     }
 
-    /// Where node i is: 0, 1, 1/2.
+    /// Local coordinate of node i: 0, 1, 1/2.
     static double node_coordinate(const unsigned int i)
     {
       return i == 2 ? 0.5 : i;
@@ -83,8 +83,8 @@ namespace slipstick::mechanics
       return tributary_measures(mesh::Kinematics<dim>());
     }
 
-    /// The same with the measure of the kinematics [mm], [mm^2]. The end node of a quadratic edge that is on the axis
-    /// of revolution has none.
+    /// The same with the measure of the kinematics [mm], [mm^2]; 0 for the end node of a quadratic edge that is on the
+    /// axis of revolution.
     std::array<double, 3> tributary_measures(const mesh::Kinematics<dim> &kinematics) const;
 
     /// Order of the edges of all bodies that does not depend on the decomposition.
@@ -102,23 +102,23 @@ namespace slipstick::mechanics
                                 const unsigned int                                            face);
 
 
-  /// The edges of the outlines of bodies (by index: wanted or not), known to every rank, sorted. Collective.
+  /// The edges of the outlines of bodies (by index: whether wanted), sorted, the same on every rank. Collective.
   template <int dim>
   std::vector<SurfaceEdge<dim>> outlines(const mesh::Mesh<dim>   &mesh,
                                          const Spaces<dim>       &spaces,
                                          const std::vector<bool> &wanted);
 
-  /// Those on one boundary, in their order.
+  /// The edges on one boundary, in their order.
   template <int dim>
   std::vector<SurfaceEdge<dim>> edges_on(const mesh::Mesh<dim>               &mesh,
                                          const std::vector<SurfaceEdge<dim>> &outlines,
                                          const scene::BoundaryName           &where);
 
-  // Edges that meet in a node at a larger angle than this form a corner there: no common normal.
-  constexpr double corner_cosine = 0.7; // 45 degrees and a little
+  // Edges that meet at a node at a larger angle form a corner: no common normal.
+  constexpr double corner_cosine = 0.7; // slightly more than 45 degrees
 
-  /// Unit normals of edges that meet in a node, smoothed: those that form no corner with the first of their group are
-  /// averaged. @return group of every normal; @p means: unit normal of every group.
+  /// Smoothed unit normals of edges that meet at a node: those that form no corner with the first of their group are
+  /// averaged. @return group of every normal. @param means returns the unit normal of every group.
   template <int dim>
   std::vector<unsigned int> smooth_normals(const std::vector<dealii::Tensor<1, dim>> &normals,
                                            std::vector<dealii::Tensor<1, dim>>       &means);

@@ -1,4 +1,4 @@
-// Boundary faces of solids as surfaces of their own: nodes, shape functions, normals.
+// Boundary faces of solids as independent surfaces: nodes, shape functions, normals.
 #pragma once
 
 #include <slipstick/mechanics/surface.h>
@@ -9,9 +9,10 @@
 
 namespace slipstick::mechanics
 {
-  /// A face on the surface of a solid: a triangle with local coordinates in the unit triangle (3 or 6 nodes), or a quadrilateral with
-  /// those in the unit square (4 or 9 nodes). Corners run counter-clockwise as seen from outside, the one with the smallest
-  /// key first; then come the middles of the edges that begin at the corners, then that of a quadrilateral.
+  /// A face on the surface of a solid: a triangle with local coordinates in the unit triangle (3 or 6 nodes), or a
+  /// quadrilateral with local coordinates in the unit square (4 or 9 nodes). Corners are counter-clockwise as seen from
+  /// outside, starting with the smallest key; they are followed by the midpoints of the edges that start at the
+  /// corners, then by the centre of a quadrilateral.
   struct SurfaceFacet
   {
     static constexpr unsigned int max_nodes = mesh::FacetShapes::max_nodes;
@@ -26,7 +27,7 @@ namespace slipstick::mechanics
     unsigned int                                 n_nodes   = 4;
     std::array<NodeKey, max_nodes>               keys{};
     std::array<std::array<double, 3>, max_nodes> at{};    // [mm]
-    mesh::FaceSurface                            surface; // that the facet stands for; none: the facet itself
+    mesh::FaceSurface                            surface; // true surface; none: the facet itself
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
@@ -39,13 +40,13 @@ namespace slipstick::mechanics
       return n_nodes == 3 || n_nodes == 6 ? 3 : 4;
     }
 
-    /// Of degree 2?
+    /// Whether the facet is of degree 2.
     bool is_quadratic() const
     {
       return n_nodes > n_corners();
     }
 
-    /// Of degree 2 with nodes off the bilinear surface of its corners?
+    /// Whether the facet is of degree 2 with nodes off the bilinear surface of its corners.
     bool is_bent() const;
 
     dealii::Point<3> node(const unsigned int i) const
@@ -53,18 +54,18 @@ namespace slipstick::mechanics
       return dealii::Point<3>(at[i][0], at[i][1], at[i][2]);
     }
 
-    /// Shape functions of the nodes; 0 for nodes that are none.
+    /// Shape functions of the nodes; 0 for missing nodes.
     Shape shape(const Place &s) const;
 
-    /// Those of degree 1 of the corners.
+    /// Shape functions of degree 1 of the corners.
     Shape shape_of_corners(const Place &s) const;
 
     dealii::Point<3> point(const Place &s) const;
 
-    /// Across the surface, outward, as long as the area for one of local coordinates [mm^2].
+    /// Outward normal whose length is the area per area of the local coordinates [mm^2].
     Tensor area_vector(const Place &s) const;
 
-    /// Outward, unit length.
+    /// Outward unit normal.
     Tensor normal(const Place &s) const
     {
       const Tensor a = area_vector(s);
@@ -76,14 +77,14 @@ namespace slipstick::mechanics
       return normal(node_coordinate(i));
     }
 
-    /// Outward unit normal of the surface over node i.
+    /// Outward unit normal of the true surface at node i.
     Tensor outline_normal(const unsigned int i) const
     {
       const Tensor own = normal_at(i);
       return surface ? surface.normal(node(i), own) : own;
     }
 
-    /// How far the surface is above the facet at s along @p direction, a unit vector across both [mm].
+    /// Height of the true surface above the facet at s along @p direction, a unit vector transverse to both [mm].
     double rise(const Place &s, const Tensor &direction) const
     {
       return surface ? surface.distance_along(point(s), direction) : 0.;
@@ -107,8 +108,8 @@ namespace slipstick::mechanics
     /// Mean length of the edges [mm].
     double chord() const;
 
-    /// Integral of the shape function of every node over the facet [mm^2]: what lengths and measures are in space. That of the
-    /// corners of a triangle of degree 2 is 0: equal pressure puts no force on them.
+    /// Integral of the shape function of every node over the facet [mm^2]: lengths and measures in space. It is 0 at
+    /// the corners of a triangle of degree 2: equal pressure exerts no force on them.
     Shape tributary_areas() const;
     Shape tributary_lengths() const
     {
@@ -126,11 +127,11 @@ namespace slipstick::mechanics
     }
   };
 
-  /// What the boundary of a body is made of.
+  /// Type of the parts of a body's boundary.
   template <int dim>
   using BoundaryPart = std::conditional_t<dim == 2, SurfaceEdge<2>, SurfaceFacet>;
 
-  /// The part of the surface that face @p face of @p cell is.
+  /// The part of the surface that corresponds to face @p face of @p cell.
   inline SurfaceEdge<2> surface_part(const mesh::SubdomainMesh<2>                      &subdomain,
                                      const Spaces<2>                                   &spaces,
                                      const dealii::DoFHandler<2>::active_cell_iterator &cell,
@@ -152,16 +153,16 @@ namespace slipstick::mechanics
   {
     return facet.normal(facet.middle_place());
   }
-  /// Some points between the nodes.
+  /// Sampling points between the nodes.
   std::vector<dealii::Point<2>> inner_points(const SurfaceEdge<2> &edge);
   std::vector<dealii::Point<3>> inner_points(const SurfaceFacet &facet);
 
-  /// The facets of the surfaces of bodies (by index: wanted or not), known to every rank, sorted. Collective.
+  /// The facets of the surfaces of bodies (by index: whether wanted), sorted, the same on every rank. Collective.
   std::vector<SurfaceFacet> outlines(const mesh::Mesh<3>     &mesh,
                                      const Spaces<3>         &spaces,
                                      const std::vector<bool> &wanted);
 
-  /// Those parts that are on one boundary, in their order.
+  /// The parts on one boundary, in their order.
   template <int dim, class Part>
   std::vector<Part> parts_on(const mesh::Mesh<dim>     &mesh,
                              const std::vector<Part>   &parts,

@@ -1,4 +1,4 @@
-// By how much bolts are shortened, so that they bear the forces that are asked for.
+// Shortening of bolts such that they carry prescribed forces.
 #pragma once
 
 #include <Eigen/Dense>
@@ -9,10 +9,10 @@
 
 namespace slipstick::mechanics
 {
-  /// The tensions of n bolts as functions of how much they are shortened are solved for by Broyden's method (good, 1965),
-  /// from the stiffness of the bolts alone; exact after the second solve where nothing but the bolts loads the bodies and no
-  /// gap has to be closed first. A bolt that bears nothing yet is shortened twice as far every time; a single bolt keeps
-  /// within the bounds that were found for it.
+  /// Solves for the shortenings of n bolts that give prescribed tensions, by Broyden's ("good") method of 1965,
+  /// starting from the stiffness of the bolts alone; exact after the second solve if only the bolts load the bodies and
+  /// no gap has to close first. The shortening of a bolt without tension is doubled in every attempt; a single bolt
+  /// stays within the bounds found for it.
   class Tightening
   {
   public:
@@ -21,13 +21,13 @@ namespace slipstick::mechanics
     /// @param stiffnesses of the bolts [N/mm]. @param lengths [mm]
     Tightening(const std::vector<double> &stiffnesses, const std::vector<double> &lengths);
 
-    /// A load step begins. @param wanted tensions [N], > 0; none where the length is held.
+    /// Starts a load step. @param wanted prescribed tensions [N], > 0; none where the length is kept.
     void begin(std::vector<std::optional<double>> wanted);
 
-    /// The tensions [N] with the shortening tried last. @return whether those that are given are right.
+    /// Stores the tensions [N] for the last shortening. @return whether the prescribed tensions are reached.
     bool take(const std::vector<double> &tensions, const double tolerance);
 
-    /// Next attempt. @return the number of a bolt that is shortened by more than its length, if any.
+    /// Chooses the next shortening. @return the number of a bolt that is shortened by more than its length, if any.
     std::optional<unsigned int> move();
 
     bool is_given(const unsigned int bolt) const
@@ -45,16 +45,17 @@ namespace slipstick::mechanics
       return N;
     }
 
-    /// By how much the tensions of take() miss those that are wanted, over the largest of these.
+    /// Largest deviation of the tensions of take() from the prescribed ones, over the largest of these.
     double miss() const;
 
-    /// Did the tensions contradict each other when move() was called last? Then the solver left too large errors in them.
+    /// Whether the tensions were inconsistent in the last call of move(), because the solver left too large errors in
+    /// them.
     bool are_vague() const
     {
       return tensions_are_vague;
     }
 
-    /// What later steps go by, as numbers.
+    /// The data that later steps depend on, as numbers (for a restart).
     std::vector<std::vector<double>> state() const;
     void                             restore(const std::vector<std::vector<double>> &state);
 
@@ -69,9 +70,9 @@ namespace slipstick::mechanics
     std::vector<double>                s_known, N_known; // of the attempt before it
     Eigen::MatrixXd                    J;                // dN/ds [N/mm]
     std::vector<std::optional<double>> wanted;
-    bool                               has_known          = true; // are s_known, N_known of the same loads?
+    bool                               has_known          = true; // s_known, N_known belong to the same loads
     bool                               tensions_are_vague = false;
     unsigned int                       n_loose            = 0; // attempts without tension
-    double low = -HUGE_VAL, high = HUGE_VAL;                   // of a single bolt: too short a way, too long a way [mm]
+    double low = -HUGE_VAL, high = HUGE_VAL;                   // of a single bolt: shortening too small, too large [mm]
   };
 } // namespace slipstick::mechanics

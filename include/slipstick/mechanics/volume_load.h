@@ -23,10 +23,11 @@ namespace slipstick::mechanics
                const unsigned int       p,
                const double             t_);
 
-    /// @param load of the subdomain [N]. @param sums of the tractions, which stay, then of the body forces.
+    /// @param load of the subdomain [N]. @param sums resultants of the tractions, unchanged, followed by those of the
+    /// body forces.
     void add_to(Eigen::VectorXd &load, std::vector<LoadResultant> &sums) const;
 
-    /// Of body forces: difference to a finer quadrature of those given by formulas.
+    /// For body forces given by formulas: difference from a finer quadrature.
     std::vector<Misfit> misfits() const;
 
   private:

@@ -1,4 +1,4 @@
-// The smooth curve that a boundary edge of a mesh stands for.
+// The smooth curve represented by a boundary edge of a mesh.
 #pragma once
 
 #include <deal.II/base/point.h>
@@ -9,8 +9,7 @@
 
 namespace slipstick::mesh
 {
-  /// Curve over an edge, parameter s in [0, 1]: an arc of a circle or a cubic. An edge intended to be straight has
-  /// none.
+  /// Curve over an edge, parameter s in [0, 1]: a circular arc or a cubic. Edges intended to be straight have no curve.
   template <int dim>
   struct EdgeCurve
   {
@@ -26,10 +25,10 @@ namespace slipstick::mesh
 
     Kind kind = Kind::none;
 
-    /// Of an arc: start, end, centre; of a cubic: its Bezier points [mm].
+    /// Arc: start, end, centre; cubic: its Bezier points [mm].
     std::array<Point, 4> points;
 
-    /// Sagitta of a curve that the edge may be intended to represent but does not follow [mm].
+    /// Sagitta of a curve that the edge probably represents but does not follow [mm].
     double left_out = 0;
 
     static EdgeCurve arc(const Point &start, const Point &end, const Point &center);
@@ -37,7 +36,7 @@ namespace slipstick::mesh
     /// The parabola through three points, the second at s = 1/2.
     static EdgeCurve parabola(const Point &start, const Point &middle, const Point &end);
 
-    /// @param from, to derivatives by s at the ends.
+    /// @param from, to derivatives with respect to s at the ends.
     static EdgeCurve hermite(const Point &start, const Tensor &from, const Tensor &to, const Point &end);
 
     explicit operator bool() const
@@ -48,12 +47,13 @@ namespace slipstick::mesh
     Point  point(const double s) const;
     Tensor tangent(const double s) const; // d point / d s
 
-    /// The part between two parameters, and the same curve run the other way.
+    /// The part between two parameters; the same curve in the opposite direction.
     EdgeCurve part(const double from, const double to) const;
     EdgeCurve reversed() const;
 
-    /// Distance t with x + t @p direction on the curve (continued a little beyond its ends): @p x is near the curve,
-    /// about opposite its point at @p s, @p direction a unit vector across it. 0 where there is no such point.
+    /// Distance t with x + t @p direction on the curve (extended slightly beyond its ends). @p x must be near the
+    /// curve, about opposite its point at @p s; @p direction is a unit vector transverse to it. 0 if there is no such
+    /// point.
     double distance_along(const Point &x, const Tensor &direction, const double s) const;
 
     template <class F>

@@ -1,4 +1,4 @@
-// Curved edges of cells of degree 2: a manifold that knows the middles of edges.
+// Curved edges of cells of degree 2: a manifold defined by the midpoints of edges.
 #pragma once
 
 #include <slipstick/mesh/mesh_piece.h>
@@ -7,14 +7,14 @@
 
 namespace slipstick::mesh
 {
-  /// The Jacobian of a cell with curved edges, over that with straight ones, is no less than this.
+  /// Lower limit of the Jacobian of a cell with curved edges, relative to that with straight edges.
   constexpr double smallest_jacobian = 0.2;
 
-  /// By vertices in ascending order.
+  /// Vertices in ascending order.
   template <int dim>
   using Middles = std::map<typename MeshPiece<dim>::Face, dealii::Point<dim>>;
 
-  /// Manifold of edges whose middles are given, flat for all others. Mappings of degree 2 ask for nothing else.
+  /// Manifold with given midpoints on some edges, flat for all others. Mappings of degree 2 need nothing else.
   template <int dim>
   class EdgeMiddles : public dealii::FlatManifold<dim>
   {
@@ -32,15 +32,16 @@ namespace slipstick::mesh
     const Middles<dim> middles;
   };
 
-  /// Middles of the curves of boundary faces (@p boundary, boundary_by_vertices() of the piece). Left out are faces
-  /// that do not bend their cell, and all faces of a cell that a mapping of degree 2 would turn over or flatten
+  /// Midpoints of the curves of boundary faces (@p boundary, boundary_by_vertices() of the piece), except faces that do
+  /// not bend their cell, and all faces of a cell that a mapping of degree 2 would invert or flatten
   /// somewhere, as where two edges on one circle meet at nearly 180 degrees.
   template <int dim>
   Middles<dim> middles_of_edges(
     const MeshPiece<dim>                                                                 &piece,
     const std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> &boundary);
 
-  /// Whether the sagitta of a curve over face @p f of @p cell is small against the height of the cell over that face.
+  /// Whether the sagitta of a curve over face @p f of @p cell is small compared with the height of the cell over that
+  /// face.
   template <int dim>
   bool has_room_for(const EdgeCurve<dim>                &curve,
                     const MeshPiece<dim>                &piece,

@@ -1,4 +1,4 @@
-// The smooth surface that a boundary face of a solid stands for.
+// The smooth surface represented by a boundary face of a solid.
 #pragma once
 
 #include <slipstick/mesh/edge_curve.h>
@@ -9,8 +9,8 @@
 
 namespace slipstick::mesh
 {
-  /// Surface over a face: part of a ball or a cylinder, or a patch of degree 2 through the nodes of a mesh of second order. A face
-  /// intended to be plane has none.
+  /// Surface over a face: part of a ball or a cylinder, or a patch of degree 2 through the nodes of a second-order
+  /// mesh. Faces intended to be plane have no surface.
   struct FaceSurface
   {
     using Point  = dealii::Point<3>;
@@ -29,10 +29,10 @@ namespace slipstick::mesh
     unsigned int n_nodes = 0; // of a patch: 6 or 9
     double       radius  = 0; // of a ball or cylinder [mm]
 
-    /// Of a ball: its centre; of a cylinder: two points of its axis; of a patch: its nodes (FacetShapes) [mm].
+    /// Ball: its centre; cylinder: two points of its axis; patch: its nodes (FacetShapes) [mm].
     std::array<Point, FacetShapes::max_nodes> points;
 
-    /// Sagitta of a surface that the face may be intended to represent but does not follow [mm].
+    /// Sagitta of a surface that the face probably represents but does not follow [mm].
     double left_out = 0;
 
     static FaceSurface ball(const Point &center, const double radius);
@@ -51,21 +51,22 @@ namespace slipstick::mesh
       return n_nodes == 6 ? 3 : 4;
     }
 
-    /// Of a patch.
+    /// For a patch.
     Point  point(const Place &s) const;
     Tensor area_vector(const Place &s) const;
 
     /// The point of a ball or cylinder that is nearest to @p x.
     Point nearest(const Point &x) const;
 
-    /// A quarter of a patch, which continues in the same parameters: at corner @p part, of a triangle that in the middle for 3.
+    /// A quarter of a patch with its own local coordinates: at corner @p part; 3: the central quarter of a triangle.
     FaceSurface quarter(const unsigned int part) const;
 
-    /// Distance t with x + t @p direction on the surface (continued a little beyond its edges): @p x is near the surface, @p
-    /// direction a unit vector across it. 0 where there is no such point.
+    /// Distance t with x + t @p direction on the surface (extended slightly beyond its edges). @p x must be near the
+    /// surface, @p direction is a unit vector transverse to it. 0 if there is no such point.
     double distance_along(const Point &x, const Tensor &direction) const;
 
-    /// Unit normal at the point of the surface that is seen from @p x along @p outward, on the side that this points to.
+    /// Unit normal at the intersection of the surface with the line from @p x along @p outward, on the side of @p
+    /// outward.
     Tensor normal(const Point &x, const Tensor &outward) const;
 
     template <class F>
@@ -83,7 +84,7 @@ namespace slipstick::mesh
     }
 
   private:
-    /// Where the line from x along a direction meets a patch, and how far on.
+    /// Intersection of the line from x along a direction with a patch, and its distance.
     struct Hit
     {
       Place  place;
@@ -92,17 +93,17 @@ namespace slipstick::mesh
     };
     Hit hit(const Point &x, const Tensor &direction) const;
 
-    /// Of a patch, along both local coordinates.
+    /// Of a patch, with respect to both local coordinates.
     std::array<Tensor, 2> tangents(const Place &s) const;
 
-    /// Of a cylinder, of unit length.
+    /// Unit vector of the axis of a cylinder.
     Tensor axis() const;
 
-    /// The centre of a ball; the point of the axis of a cylinder at the height of @p x.
+    /// The centre of a ball; the point on the axis of a cylinder nearest to @p x.
     Point foot(const Point &x) const;
   };
 
-  /// What the boundary faces of a body stand for.
+  /// The curve or surface represented by a boundary face of a body.
   template <int dim>
   using BoundaryCurve = std::conditional_t<dim == 2, EdgeCurve<2>, FaceSurface>;
 } // namespace slipstick::mesh

@@ -1,4 +1,4 @@
-// Shape functions of degree 2 on triangles with six nodes and quadrilaterals with nine.
+// Shape functions of degree 2 on six-node triangles and nine-node quadrilaterals.
 #pragma once
 
 #include <deal.II/base/point.h>
@@ -7,8 +7,8 @@
 
 namespace slipstick::mesh
 {
-  /// Local coordinates are those of the unit triangle or the unit square. Corners run around and come first; then the middles of
-  /// the edges that begin at them, then that of a quadrilateral.
+  /// Local coordinates are those of the unit triangle or the unit square. Nodes: the corners in cyclic order, the
+  /// midpoints of the edges that start at them, the centre of a quadrilateral.
   struct FacetShapes
   {
     static constexpr unsigned int max_nodes = 9;
@@ -17,13 +17,13 @@ namespace slipstick::mesh
     using Shape       = std::array<double, max_nodes>;
     using Derivatives = std::array<std::array<double, 2>, max_nodes>; // along both local coordinates
 
-    /// Those of degree 1 of the corners.
+    /// Shape functions of degree 1 of the corners.
     static Shape linear(const unsigned int n_corners, const Place &s);
 
     static Shape       quadratic(const unsigned int n_corners, const Place &s);
     static Derivatives quadratic_derivatives(const unsigned int n_corners, const Place &s);
 
-    /// Where node i is.
+    /// Local coordinates of node i.
     static Place node(const unsigned int n_corners, const unsigned int i);
 
     static Place middle(const unsigned int n_corners)

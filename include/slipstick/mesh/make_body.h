@@ -1,4 +1,4 @@
-// From the description of a body to its mesh.
+// Mesh of a body from its description.
 #pragma once
 
 #include <slipstick/mesh/adaptive_refinement.h>
@@ -6,11 +6,11 @@
 
 namespace slipstick::mesh
 {
-  /// The complete mesh of body number @p b: read or made, refined, placed. @p files keeps what was read, by path. A
+  /// The complete mesh of body number @p b: read or generated, refined, placed. @p files caches the files by path. A
   /// body of triangles and quadrilaterals is converted to quadrilaterals if it is refined towards a boundary or if its
   /// parts of one kind are many and small.
-  /// @param refined cells that are refined further, as adapted() says, with the @p paths of the cells; such a body has
-  /// one kind of cells, too, in space tetrahedra.
+  /// @param refined cells to be refined further, see adapted(), with the @p paths of the cells; such a body also has
+  /// one kind of cells, in space tetrahedra.
   /// @throws InputError as body_from_file() does, and if a boundary or point that the scene uses is missing or
   /// incomplete.
   template <int dim>
@@ -20,9 +20,9 @@ namespace slipstick::mesh
                           std::set<CellPath>              *refined = nullptr,
                           std::vector<CellPath>           *paths   = nullptr);
 
-  /// Places a piece of body number @p b as the scene says. In bodies of revolution, nodes within rounding of the axis
-  /// are moved onto it.
-  /// @throws InputError when such a body reaches beyond the axis.
+  /// Places a piece of body number @p b as described in the scene. In bodies of revolution, nodes within rounding of
+  /// the axis are moved onto it.
+  /// @throws InputError when a body of revolution extends beyond the axis.
   template <int dim>
   void place_in_scene(const scene::Scene<dim> &scene, const unsigned int b, MeshPiece<dim> &piece);
 } // namespace slipstick::mesh

@@ -1,4 +1,4 @@
-// The torn mesh: one deal.II triangulation a subdomain, each rank holding its own subdomains only.
+// The torn mesh: one deal.II triangulation per subdomain; each rank stores its own subdomains only.
 #pragma once
 
 #include <slipstick/mesh/face_surface.h>
@@ -31,12 +31,13 @@ namespace slipstick::mesh
     dealii::Triangulation<dim> triangulation;
     std::vector<GlobalVertex>  global_vertices; // of every vertex of the triangulation
 
-    /// Curves of boundary edges that have one, by their two vertices in ascending order; they run from the first. In space the
-    /// surfaces of boundary faces, by their vertices in ascending order, behind those of a triangle invalid_unsigned_int.
+    /// Curves of the boundary edges that have one, by their two vertices in ascending order; they run from the first.
+    /// In space: surfaces of boundary faces, by their vertices in ascending order, invalid_unsigned_int after those of
+    /// a triangle.
     std::map<std::array<unsigned int, 2 * (dim - 1)>, BoundaryCurve<dim>> curves;
   };
 
-  /// A point that a mesh file names.
+  /// A named point of a mesh file.
   template <int dim>
   struct NamedPoint
   {
@@ -70,8 +71,8 @@ namespace slipstick::mesh
 
     unsigned int rank_of_subdomain(const unsigned int subdomain) const;
 
-    /// Whether a face of body @p where.body with boundary id @p id lies on the named boundary (`*`: on any, cuts
-    /// excepted). A face may lie on several. make_mesh() has checked that the boundaries of the scene exist.
+    /// Whether a face of body @p where.body with boundary id @p id is on the named boundary (`*`: on any, except cuts).
+    /// A face may be on several. make_mesh() has checked that the boundaries of the scene exist.
     bool on_boundary(const scene::BoundaryName &where, const dealii::types::boundary_id id) const;
   };
 } // namespace slipstick::mesh

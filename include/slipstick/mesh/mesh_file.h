@@ -12,7 +12,7 @@
 
 namespace slipstick::mesh
 {
-  /// Contents of a mesh file as written there: in its own units, including unused nodes.
+  /// Contents of a mesh file, unchanged: in the units of the file, including unused nodes.
   struct MeshFile
   {
     struct Element
@@ -24,10 +24,10 @@ namespace slipstick::mesh
                                           // bottom around, then the top
       unsigned int       group   = 0;     // index into groups
       unsigned long long number  = 0;     // in the file, for messages
-      bool               implied = false; // an edge between nodes of a set, which may lie inside of a body
+      bool               implied = false; // an edge between nodes of a set, may be inside a body
     };
 
-    /// An edge of a plane cell, a face of a solid: its corners around, the rest is no_corner.
+    /// An edge of a plane cell, a face of a solid: its corners in cyclic order, followed by no_corner.
     struct Side
     {
       static constexpr unsigned int no_corner = -1;
@@ -39,7 +39,7 @@ namespace slipstick::mesh
         return std::find(corners.begin(), corners.end(), no_corner) - corners.begin();
       }
 
-      /// The same for the two cells at it.
+      /// With sorted corners: the same for both adjacent cells.
       Side sorted() const
       {
         Side result = *this;
@@ -47,7 +47,7 @@ namespace slipstick::mesh
         return result;
       }
 
-      /// It as a line or face of the file.
+      /// The side as a line or face element of the file.
       Element element() const;
 
       bool operator<(const Side &other) const
@@ -61,17 +61,17 @@ namespace slipstick::mesh
     std::vector<Element>                             elements;
     std::vector<std::vector<int>>                    groups;            // sets of physical numbers that elements carry
     std::map<std::pair<int, int>, std::string>       names;             // by dimension and physical number
-    bool                                             is_curved = false; // had nodes besides the corners
+    bool                                             is_curved = false; // has nodes besides the corners
     std::map<std::string, std::vector<unsigned int>> node_sets; // by name: nodes whose edges or faces are a boundary
-    std::vector<std::string>                         remarks;   // what of the file is not used, for the log
-    std::string about_names; // of the format, which explains why a name may be missing; for remedies, or empty
+    std::vector<std::string>                         remarks;   // unused content of the file, for the log
+    std::string           about_names; // of the format: why a name may be missing; for remedies, or empty
     std::set<std::string> plane_stress_types, plane_strain_types, axisymmetric_types; // element types, by use
 
-    /// Mid nodes of the edges of cells of second order, by the two corners in ascending order.
+    /// Mid nodes of the edges of second-order cells, by the two corners in ascending order.
     std::map<std::pair<unsigned int, unsigned int>, unsigned int> middles;
 
-    /// Keeps node number @p k (from 0, corners first) of a cell of second order, whose corners are there, if it is the
-    /// middle of an edge.
+    /// Stores node number @p k (from 0, corners first) of a second-order cell, whose corners are set, if it is the
+    /// midpoint of an edge.
     void keep_middle(const Element &cell, const unsigned int k, const unsigned int node)
     {
       if (k < cell.n || k >= 2 * cell.n)
@@ -80,11 +80,11 @@ namespace slipstick::mesh
       middles[{std::min(a, b), std::max(a, b)}] = node;
     }
 
-    /// The same of quadrilateral faces of solids, by their corners in ascending order.
+    /// The same for quadrilateral faces of solids, by their corners in ascending order.
     std::map<std::array<unsigned int, 4>, unsigned int> middles_of_faces;
 
-    /// Keeps a node of a solid of second order that is in the middle of an edge or a face.
-    /// @param between which corners of the cell it lies.
+    /// Stores a node of a second-order solid that is in the middle of an edge or a face.
+    /// @param between the corners of the cell between which it lies.
     void keep_middle_of_solid(const Element &cell, const std::vector<unsigned int> &between, const unsigned int node)
     {
       if (between.size() == 2)
@@ -98,19 +98,20 @@ namespace slipstick::mesh
       middles_of_faces[face] = node;
     }
 
-    /// Physical name of a number, or the number itself where it has none.
+    /// Physical name of a number, or the number itself if it has no name.
     std::string name_of(const unsigned int dim, const int physical) const;
 
-    /// Whether the element carries @p part, a physical name or number; an empty one means all.
+    /// Whether the element belongs to @p part, a physical name or number; an empty one means all.
     bool is_in(const Element &element, const std::string &part) const;
 
-    /// 3 when there are solids, else 2.
+    /// 3 if there are solids, otherwise 2.
     unsigned int dimension() const;
 
-    /// Lines or faces of @p group for all sides of cells with all corners in node_sets[name], a point for a single node.
+    /// Adds lines or faces of @p group for all sides of cells with all corners in node_sets[name], or a point for a
+    /// single node.
     void add_sides_of_node_set(const std::string &name, const unsigned int group);
 
-    /// Lines or faces of number 0 for the sides of single cells that have none yet: the outline is boundary number 0.
+    /// Adds lines or faces of number 0 for sides of only one cell that have none yet: the outline is boundary number 0.
     void add_outline();
   };
 
@@ -118,8 +119,8 @@ namespace slipstick::mesh
   std::vector<MeshFile::Side> sides_of(const MeshFile::Element &cell);
 
   /// Reads .msh (Gmsh 2.0 to 2.2 and 4.1, ASCII and binary), .inp (Abaqus), .ucd (and UCD's .inp), .vtk, whose
-  /// boundaries and parts have numbers in place of names, and .unv.
-  /// @throws InputError that names the file, what is wrong with it and a remedy.
+  /// boundaries and parts have numbers instead of names, and .unv.
+  /// @throws InputError that names the file, the fault and a remedy.
   MeshFile read_mesh_file(const std::string &file);
 
   /// The same from @p text, the whole content of @p file.
@@ -128,12 +129,13 @@ namespace slipstick::mesh
   /// Gmsh's format from @p text, the whole content of @p file.
   MeshFile parse_gmsh(const std::string &file, const std::string &text);
 
-  /// Abaqus' format. Sets of elements are parts (and lines, beside solids faces, boundaries), surfaces are boundaries; a set of nodes
-  /// is the boundary of all edges, or faces of solids, between its nodes, one node alone is a point.
+  /// Abaqus' format. Element sets are parts (and boundaries if they contain lines, or faces of solids), surfaces are
+  /// boundaries; a node set is the boundary of all edges, or faces of solids, between its nodes; a single node is a
+  /// point.
   MeshFile parse_abaqus(const std::string &file, const std::string &text);
 
-  /// VTK's legacy format in ASCII, unstructured grids of versions 2 to 5. Groups are the integers of the first data of
-  /// cells named in it (MaterialID, CellEntityIds, ...).
+  /// VTK's legacy format in ASCII, unstructured grids of versions 2 to 5. Groups are the integers of the first cell
+  /// data with one of the usual names (MaterialID, CellEntityIds, ...).
   MeshFile parse_vtk(const std::string &file, const std::string &text);
 
   /// I-deas' universal format: data sets 2411 (nodes), 2412 (elements), 2467 and 2477 (groups).

@@ -1,4 +1,4 @@
-// A piece of mesh as plain lists, which can be cut, sent between ranks and made into a triangulation.
+// A piece of mesh as plain lists, which can be cut, sent between ranks and converted to a triangulation.
 #pragma once
 
 #include <slipstick/mesh/mesh.h>
@@ -22,14 +22,15 @@ namespace slipstick::mesh
     static constexpr unsigned int vertices_per_cell = dealii::GeometryInfo<dim>::vertices_per_cell;
     static constexpr unsigned int vertices_per_face = dealii::GeometryInfo<dim>::vertices_per_face;
 
-    /// Stands behind the last vertex of a simplex.
+    /// Fills the unused entries of a simplex.
     static constexpr unsigned int no_vertex = std::numeric_limits<unsigned int>::max();
 
-    /// Local vertices in deal.II's order: lexicographic for quadrilaterals and hexahedra, counterclockwise for triangles, of a
-    /// tetrahedron a triangle and a fourth on the side that it is seen counterclockwise from.
+    /// Local vertices in deal.II's order: lexicographic for quadrilaterals and hexahedra, counterclockwise for
+    /// triangles; for a tetrahedron a triangle and a fourth vertex on the side from which the triangle is
+    /// counterclockwise.
     using Cell = std::array<unsigned int, vertices_per_cell>;
 
-    /// Local vertices of a face; behind those of a triangle in space stands no_vertex.
+    /// Local vertices of a face; a triangle in space has no_vertex as the last one.
     using Face = std::array<unsigned int, vertices_per_face>;
 
     /// Two vertices in ascending order.
@@ -40,7 +41,7 @@ namespace slipstick::mesh
       Face                       vertices;
       dealii::types::boundary_id id;
       BoundaryCurve<dim>         curve      = {};   // of an edge: runs from the first vertex to the second
-      bool                       bends_cell = true; // new nodes lie on the curve; else on the chord
+      bool                       bends_cell = true; // new nodes are on the curve; otherwise on the chord
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)
@@ -54,10 +55,10 @@ namespace slipstick::mesh
     std::vector<dealii::Point<dim>> vertices;
     std::vector<GlobalVertex>       global_vertices;
     std::vector<Cell>               cells;
-    std::vector<BoundaryFace>       boundary_faces;  // of the body; all others are cut
-    bool                            ordered = false; // lines of neighbouring cells already run the same way
+    std::vector<BoundaryFace>       boundary_faces;  // of the body; all other faces are cuts
+    bool                            ordered = false; // lines of neighbouring cells already have the same direction
 
-    /// Of solids: the points in the middle of curved edges, which all lie on the boundary of the body. Other edges are straight.
+    /// Solids: the midpoints of curved edges, which are all on the boundary of the body. Other edges are straight.
     std::map<Line, dealii::Point<dim>> line_middles;
 
     /// For sending between ranks (Boost serialization, through deal.II's MPI utilities).
@@ -74,7 +75,7 @@ namespace slipstick::mesh
     return cell.back() == MeshPiece<dim>::no_vertex;
   }
 
-  /// Number of vertices, which in the plane is that of faces, too.
+  /// Number of vertices (in the plane also of faces) of a cell.
   template <int dim>
   unsigned int n_corners(const typename MeshPiece<dim>::Cell &cell)
   {
@@ -87,7 +88,7 @@ namespace slipstick::mesh
     return is_simplex<dim>(cell) ? dim + 1 : dealii::GeometryInfo<dim>::faces_per_cell;
   }
 
-  /// Corner @p k of a cell, counted counterclockwise (and around again: 0 after the last).
+  /// Corner @p k of a cell in counterclockwise order (cyclic: 0 after the last).
   template <int dim>
   unsigned int corner(const typename MeshPiece<dim>::Cell &cell, const unsigned int k)
   {
@@ -113,8 +114,8 @@ namespace slipstick::mesh
     return {{a, b, d, c}};
   }
 
-  /// Face from corner @p f to the next, in space of a tetrahedron that across from corner @p f, of a hexahedron deal.II's face
-  /// @p f; vertices in ascending order: the same from both sides.
+  /// Face number @p f: from corner @p f to the next; of a tetrahedron the face opposite corner @p f; of a hexahedron
+  /// deal.II's face @p f. Vertices in ascending order, i.e. the same from both sides.
   template <int dim>
   typename MeshPiece<dim>::Face face_of_cell(const typename MeshPiece<dim>::Cell &cell, const unsigned int f)
   {
@@ -138,12 +139,12 @@ namespace slipstick::mesh
     for (unsigned int a = 0; a < n; ++a)
       for (unsigned int b = a + 1; b < n; ++b)
         if (const unsigned int step = a ^ b;
-            n == 4 || (step & (step - 1)) == 0) // corners of a cube that differ in one direction
+            n == 4 || (step & (step - 1)) == 0) // corners of a cube that differ in one coordinate
           lines.push_back({{std::min(cell[a], cell[b]), std::max(cell[a], cell[b])}});
     return lines;
   }
 
-  /// All faces with the cells behind them (one at the boundary, two inside), sorted by face.
+  /// All faces with their adjacent cells (one at the boundary, two inside), sorted by face.
   template <int dim>
   std::vector<std::pair<typename MeshPiece<dim>::Face, unsigned int>> faces_with_cells(const MeshPiece<dim> &piece);
 
@@ -151,29 +152,31 @@ namespace slipstick::mesh
   template <int dim>
   std::map<typename MeshPiece<dim>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<dim> &piece);
 
-  /// The boundary faces by their vertices in ascending order; so are their own, and their curves run that way.
+  /// The boundary faces by their vertices in ascending order; their own vertices and their curves have this order, too.
   template <int dim>
   std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> boundary_by_vertices(
     const MeshPiece<dim> &piece);
 
-  /// Block @p block (of n_blocks per direction) of a rectangle or cuboid meshed by a lattice of equal cells, not yet placed.
+  /// Block @p block (of n_blocks per direction) of a rectangle or cuboid meshed by a lattice of equal cells, not yet
+  /// placed.
   template <int dim>
   MeshPiece<dim> rectangle_piece(const scene::Body<dim>              &body,
                                  const std::array<unsigned int, dim> &n_cells,
                                  const std::array<unsigned int, dim> &n_blocks,
                                  const std::array<unsigned int, dim> &block);
 
-  /// Mirrors, turns and moves @p piece. Cells stay counterclockwise; equal vertices stay equal to the last bit.
+  /// Mirrors, rotates and moves @p piece. Cells stay counterclockwise; identical vertices stay bitwise identical.
   template <int dim>
   void place(MeshPiece<dim> &piece, const scene::Placement<dim> &placement);
 
-  /// Cuts @p whole along @p part (a part number for every cell). Parts without cells are left out; parts that are not
-  /// connected through faces become several pieces. Pieces come in order of part and first cell.
+  /// Cuts @p whole into the parts given by @p part (a part number for every cell). Parts without cells are omitted;
+  /// parts that are not connected through faces become several pieces. Pieces are ordered by part and first cell.
   template <int dim>
   std::vector<MeshPiece<dim>> cut(const MeshPiece<dim> &whole, const std::vector<unsigned int> &part);
 
-  /// METIS partition of the cells of @p piece, which must be connected through faces, with short interfaces: faces count by their
-  /// size over that of the other faces of their cells, so that flat cells do not make flat parts. @return a part number for every cell.
+  /// METIS partition of the cells of @p piece, which must be connected through faces, with short interfaces: faces are
+  /// weighted by their size relative to the other faces of their cells, so that flat cells do not give flat parts.
+  /// @return a part number for every cell.
   template <int dim>
   std::vector<unsigned int> metis_parts(const MeshPiece<dim> &piece,
                                         const unsigned int    n_parts,

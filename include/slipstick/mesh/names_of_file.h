@@ -1,4 +1,4 @@
-// The names that a mesh file gives to parts of the outline of a body, and to points.
+// Names from a mesh file for parts of the outline of a body, and for points.
 #pragma once
 
 #include <slipstick/mesh/body_mesh.h>
@@ -10,14 +10,14 @@
 
 namespace slipstick::mesh
 {
-  /// Puts names from a file into a body: Gmsh's physical groups, Abaqus' sets and the like.
+  /// Transfers names from a file to a body: Gmsh's physical groups, Abaqus' sets, etc.
   template <int dim>
   class NamesOfFile
   {
   public:
     using Face = typename MeshPiece<dim>::Face;
 
-    /// All must live as long as this. @param n_cells_at faces of the body with the number of their cells.
+    /// All arguments must outlive this. @param n_cells_at faces of the body with the number of their cells.
     NamesOfFile(const MeshFile                             &file,
                 const std::map<unsigned int, unsigned int> &vertex_of_node,
                 const std::map<Face, unsigned int>         &n_cells_at)
@@ -26,18 +26,18 @@ namespace slipstick::mesh
       , n_cells_at(n_cells_at)
     {}
 
-    /// Lines (faces in space) of the file at the outline give it their names; the rest of the outline has none. What is
-    /// not on the outline is listed in a remark about @p body, and the boundary is marked as incomplete, as it would
-    /// lose its share of a load.
+    /// Assigns the names of the lines (faces in space) of the file on the outline; the rest of the outline has no name.
+    /// Lines that are not on the outline are listed in a remark about @p body, and the boundary is marked as
+    /// incomplete, since loads on it would be incomplete.
     void name_boundaries(BodyMesh<dim> &mesh, const std::string &body) const;
 
-    /// Names of single nodes.
+    /// Assigns the names of single nodes.
     void name_points(BodyMesh<dim> &mesh) const;
 
   private:
     using Element = MeshFile::Element;
     using Names   = std::map<Face, std::set<std::string>>; // of every face of the outline
-    /// Lines that are no part of the outline: how many, and the first one, by name.
+    /// Lines that are not on the outline: their number, and the first one, by name.
     using LeftOut = std::map<std::string, std::pair<unsigned int, std::string>>;
 
     std::optional<Face> face_of(const Element &element) const;

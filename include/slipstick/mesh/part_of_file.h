@@ -1,4 +1,4 @@
-// The cells of a mesh file that make one body.
+// The cells of a mesh file that belong to one body.
 #pragma once
 
 #include <slipstick/mesh/mesh_file.h>
@@ -11,7 +11,7 @@
 
 namespace slipstick::mesh
 {
-  /// The words of messages.
+  /// Dimension-dependent words for messages.
   template <int dim>
   struct Words
   {
@@ -19,7 +19,7 @@ namespace slipstick::mesh
                                 *physical = dim == 2 ? "Physical Surface" : "Physical Volume";
   };
 
-  /// The cell of an element, with the corners that @p number gives for its nodes.
+  /// The cell of an element; @p number maps its nodes to vertices.
   template <int dim, class Number>
   typename MeshPiece<dim>::Cell cell_of(const MeshFile::Element &element, const Number &number)
   {
@@ -27,23 +27,23 @@ namespace slipstick::mesh
     v.fill(MeshPiece<dim>::no_vertex);
     for (unsigned int k = 0; k < element.n; ++k)
       v[k] = number(element.corners[k]);
-    if (!is_simplex<dim>(v)) // around: now in rows
+    if (!is_simplex<dim>(v)) // from cyclic to lexicographic order
       for (unsigned int k = 2; k < element.n; k += 4)
         std::swap(v[k], v[k + 1]);
     return v;
   }
 
-  /// The cells of Body::part, or all of the file: each once, right-handed (counterclockwise in the plane), with positive
-  /// Jacobians at all corners.
+  /// The cells of Body::part, or all of the file, without duplicates, right-handed (counterclockwise in the plane),
+  /// with positive Jacobians at all corners.
   template <int dim>
   class PartOfFile
   {
   public:
     using Element = MeshFile::Element;
 
-    /// Both arguments must live as long as this.
-    /// @throws InputError for a missing part; a file without cells of this dimension; plane cells that lie in no plane z =
-    /// constant; cells that are inverted (unless all are), degenerate or self-intersecting.
+    /// Both arguments must outlive this.
+    /// @throws InputError for a missing part; a file without cells of this dimension; plane cells that are not in a
+    /// plane z = constant; cells that are inverted (unless all are), degenerate or self-intersecting.
     PartOfFile(const scene::Body<dim> &body, const MeshFile &file);
 
     const std::vector<Element> &cells() const
@@ -51,10 +51,10 @@ namespace slipstick::mesh
       return chosen;
     }
 
-    /// "cell 7 at (1, 2)", with the number in the file.
+    /// "cell 7 at (1, 2)", with the number used in the file.
     std::string cell_text(unsigned int c) const;
 
-    /// Throws the InputError that names body and file.
+    /// Throws an InputError that names body and file.
     [[noreturn]] void fail(const std::string &problem, const std::string &remedy) const;
 
   private:

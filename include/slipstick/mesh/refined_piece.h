@@ -1,17 +1,17 @@
-// A piece of mesh that was refined, and which of its cells come from which of the coarser one.
+// A refined piece of mesh, and the coarse cells from which its cells originate.
 #pragma once
 
 #include <slipstick/mesh/mesh_piece.h>
 
 namespace slipstick::mesh
 {
-  /// Where a cell of a finer mesh comes from.
+  /// Origin of a cell of a refined mesh.
   struct CellOrigin
   {
     unsigned int parent     = 0;    // cell of the coarser mesh
-    unsigned int child      = 0;    // of its children, counted as they are added
-    bool         is_regular = true; // of the parent's shape, or the parent itself: not made by a template between sizes
-    bool         is_parent  = true; // it was left as it is
+    unsigned int child      = 0;    // number among its children, in the order of their creation
+    bool         is_regular = true; // similar to the parent, or the parent itself: not from a transition template
+    bool         is_parent  = true; // it was not divided
   };
 
   template <int dim>

@@ -1,4 +1,4 @@
-// Estimated size of a scene, before anything of that size is made.
+// Estimated size of a scene, computed before anything large is created.
 #pragma once
 
 #include <slipstick/mesh/mesh.h>
@@ -10,21 +10,21 @@ namespace slipstick::mesh
   {
     double      cells = 0, unknowns = 0;
     double      memory_mb = 0; // of all ranks together
-    std::string largest;       // the body with the most cells, and what makes them
+    std::string largest;       // the body with the most cells, and the reason
   };
 
-  /// From the numbers in the scene and, where bodies of mesh files are refined, the cells in the files.
+  /// From the numbers in the scene and, if bodies of mesh files are refined, the number of cells in the files.
   /// @throws InputError as read_mesh_file() does.
   template <int dim>
   SizeEstimate estimate_size(const scene::Scene<dim> &scene);
 
-  /// @throws InputError on all ranks alike if the estimated memory exceeds what is available, unless @p forced, and in
-  /// any case if there are more cells than can be counted. Collective.
+  /// @throws InputError on all ranks if the estimated memory exceeds the available memory, unless @p forced, and in any
+  /// case if the number of cells is too large to be counted. Collective.
   template <int dim>
   void check_size(const scene::Scene<dim> &scene, const bool forced, const MPI_Comm comm);
 
-  /// Refuses bodies so far from the origin that rounding would spoil their cells. Collective.
-  /// @throws InputError on all ranks alike.
+  /// Refuses bodies so far from the origin that rounding would distort their cells. Collective.
+  /// @throws InputError on all ranks.
   template <int dim>
   void check_positions(const scene::Scene<dim> &scene, const Mesh<dim> &mesh);
 } // namespace slipstick::mesh

@@ -1,4 +1,4 @@
-// Nodes of degree 2 of solids whose boundary is curved: a manifold that knows them.
+// Nodes of degree 2 of solids with a curved boundary, and a manifold defined by them.
 #pragma once
 
 #include <slipstick/mesh/edge_middles.h>
@@ -8,71 +8,72 @@
 
 namespace slipstick::mesh
 {
-  /// The middle of the straight line between two points.
+  /// Midpoint of two points.
   inline dealii::Point<3> between(const dealii::Point<3> &a, const dealii::Point<3> &b)
   {
     return a + 0.5 * (b - a);
   }
 
-  /// Where the middles of edges, faces and cells of a piece are: on the curved boundary, elsewhere on Coons' patch of what bounds
-  /// them.
+  /// Midpoints of edges, faces and cells of a piece: on the curved boundary, elsewhere on the Coons patch of their
+  /// boundary.
   class SolidMiddles
   {
   public:
     using Piece = MeshPiece<3>;
     using Point = dealii::Point<3>;
 
-    /// @param boundary boundary_by_vertices() of the piece. Neither is copied.
+    /// @param boundary boundary_by_vertices() of the piece. Both are kept by reference.
     SolidMiddles(const Piece &piece, const std::map<Piece::Face, Piece::BoundaryFace> &boundary);
 
     bool  is_curved(const unsigned int a, const unsigned int b) const;
     bool  is_curved(const Piece::Cell &cell) const;
     Point on_line(const unsigned int a, const unsigned int b) const;
 
-    /// Of a quadrilateral whose vertices stand in rows.
+    /// Centre of a quadrilateral whose vertices are in lexicographic order.
     Point on_face(const Piece::Face &rows) const;
     Point in_hexahedron(const Piece::Cell &cell) const;
 
-    /// Does the map of degree 2 of a cell keep its orientation, with volumes no less than a part of those that it has with straight
-    /// edges?
+    /// Whether the mapping of degree 2 of a cell keeps its orientation, with volumes no less than a given part of those
+    /// with straight edges.
     bool keeps_its_shape(const Piece::Cell &cell) const;
 
   private:
-    /// Of the map of degree 2 of a tetrahedron, at barycentric coordinates.
+    /// Jacobian of the mapping of degree 2 of a tetrahedron, at barycentric coordinates.
     double jacobian(const Piece::Cell &cell, const std::array<double, 4> &L) const;
 
     const Piece                                      &piece;
     const std::map<Piece::Face, Piece::BoundaryFace> &boundary;
   };
 
-  /// Gives the edges of the faces on balls and cylinders (BoundaryFace::curve) their middles.
+  /// Sets the midpoints of the edges of faces on balls and cylinders (BoundaryFace::curve).
   void bend_lines(MeshPiece<3> &piece);
 
-  /// On the parabola through both ends and the middle of an edge, @p s from 0 to 1.
+  /// Point on the parabola through both ends and the midpoint of an edge, @p s from 0 to 1.
   dealii::Point<3> on_parabola(const dealii::Point<3> &from,
                                const dealii::Point<3> &middle,
                                const dealii::Point<3> &to,
                                const double            s);
 
-  /// The part of a patch with these corners, around.
+  /// The part of a patch with these corners, in cyclic order.
   FaceSurface part_of(const FaceSurface &patch, const std::vector<FaceSurface::Place> &corners);
 
-  /// What part @p face (vertices of @p finer, which halve edges) of a face stands for.
+  /// The surface of the part @p face (vertices of @p finer, which halve edges) of a face.
   FaceSurface part_of(const MeshPiece<3>::BoundaryFace &whole,
                       const MeshPiece<3>::Face         &face,
                       const MeshPiece<3>               &finer);
 
-  /// Vertices that divide edges, and where on these: from 0 at the end with the lower number to 1, in this order.
+  /// Vertices that divide edges, and their position: from 0 at the end with the lower number to 1, sorted.
   using VerticesOnLines = std::map<MeshPiece<3>::Line, std::vector<std::pair<double, unsigned int>>>;
 
-  /// Gives the edges of a refined piece on its curved faces and edges their middles. @param dividing the curved edges of @p coarse.
+  /// Sets the midpoints of the edges of a refined piece that are on its curved faces and edges. @param dividing the
+  /// curved edges of @p coarse.
   void refine_middles(const MeshPiece<3> &coarse, const VerticesOnLines &dividing, MeshPiece<3> &finer);
 
-  /// Takes the middles from edges of cells that a map of degree 2 would turn over or flatten, and marks the faces there
-  /// (BoundaryFace::bends_cell). @return number of these cells.
+  /// Removes the midpoints from edges of cells that a mapping of degree 2 would invert or flatten, and marks the faces
+  /// there (BoundaryFace::bends_cell). @return number of these cells.
   unsigned int keep_good_middles(MeshPiece<3> &piece);
 
-  /// Manifold of edges and faces whose middles are given, flat for all others. Mappings of degree 2 ask for nothing else.
+  /// Manifold with given midpoints of edges and faces, flat for all others. Mappings of degree 2 need nothing else.
   class SolidManifold : public dealii::FlatManifold<3>
   {
   public:
@@ -93,7 +94,7 @@ namespace slipstick::mesh
     const Faces faces;
   };
 
-  /// Gives the triangulation of a piece the manifold of its curved edges.
+  /// Attaches the manifold of the curved edges of a piece to its triangulation.
   void follow_middles(const MeshPiece<3>                                             &piece,
                       const std::map<MeshPiece<3>::Face, MeshPiece<3>::BoundaryFace> &boundary,
                       dealii::Triangulation<3>                                       &triangulation);

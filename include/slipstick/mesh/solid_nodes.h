@@ -1,4 +1,4 @@
-// Where the nodes of solids of second order are, in the orders of mesh files.
+// Positions of the nodes of second-order solids, in the orders of mesh files.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@ namespace slipstick::mesh
   {
     gmsh,
     abaqus,
-    vtk // as Abaqus', and nodes in the middle of faces
+    vtk // as Abaqus', followed by nodes in the middle of faces
   };
 
-  /// Between which corners the nodes behind the corners lie: two of an edge, four of a face, eight of the cell.
-  /// @param n_nodes 10, 20, 27 (not Abaqus'); none for other cells.
+  /// The corners between which the nodes after the corners lie: two of an edge, four of a face, eight of the cell.
+  /// @param n_nodes 10, 20, 27 (not Abaqus'); empty result for other cells.
   const std::vector<std::vector<unsigned int>> &middles_of_solid(const NodeOrder order, const unsigned int n_nodes);
 } // namespace slipstick::mesh
