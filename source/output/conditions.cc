@@ -11,7 +11,7 @@ namespace slipstick::output
 {
   namespace
   {
-    /// A boundary that something in the scene names.
+    /// A boundary used by a condition of the scene.
     struct NamedBoundary
     {
       std::string         kind, name, side;
@@ -38,7 +38,7 @@ namespace slipstick::output
       return all;
     }
 
-    /// A point that something in the scene names.
+    /// A point used by a condition of the scene.
     template <int dim>
     struct NamedPoint
     {
@@ -78,7 +78,7 @@ namespace slipstick::output
                     const std::vector<LoadPlace<dim>>               &places)
     {
       constexpr unsigned int n_ends = dim == 2 ? 2 : 4;
-      // Scenes without such loads have the columns that they always had.
+      // Scenes without such loads keep the columns of earlier versions.
       const std::string no_value = places.empty() ? "" : ",";
       const auto        row =
         [&](const std::string &kind, const std::string &name, const std::string &side, const unsigned int body) {

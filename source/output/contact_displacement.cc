@@ -11,7 +11,7 @@ namespace slipstick::output
   {
     using Displacements = std::map<mechanics::NodeKey, std::array<double, 3>>;
 
-    /// Of the wanted nodes that subdomains of this rank have.
+    /// Displacements of the requested nodes in subdomains of this rank.
     template <int dim>
     Displacements own_displacement(const mesh::Mesh<dim>              &mesh,
                                    const mechanics::Spaces<dim>       &spaces,

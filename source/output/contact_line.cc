@@ -70,7 +70,8 @@ namespace slipstick::output
       return "Int64";
     }
 
-    // A DataArray in base64: the number of bytes as UInt64, then the values. Exact, and not finite numbers are legal.
+    // A DataArray in base64: the number of bytes as UInt64, then the values. Exact; values that are not finite are
+    // allowed.
     template <typename Number>
     void write_array(std::ostream              &out,
                      const std::string         &name,
@@ -106,7 +107,7 @@ namespace slipstick::output
       return values;
     }
 
-    /// @param displacement of the nodes, x, y, z in turn; empty: none.
+    /// @param displacement x, y, z of each node; empty: unknown.
     void write_point_data(std::ostream                   &out,
                           const std::vector<ContactNode> &nodes,
                           const unsigned int              dim,
@@ -136,7 +137,7 @@ namespace slipstick::output
       out << "</PointData>\n";
     }
 
-    // Cells of a PolyData: numbers of the first nodes of pairs, one behind the last node of each.
+    // Cells of a PolyData: node numbers of all cells, and the offset of the end of each cell.
     struct Cells
     {
       std::vector<std::int64_t> connectivity;
@@ -153,7 +154,7 @@ namespace slipstick::output
       out << "</" << kind << ">\n";
     }
 
-    /// Along the arc of every pair; a vertex for a pair of one node.
+    /// Adds a line along the arc of every pair, or a vertex for a pair with one node.
     void add_lines(const std::vector<ContactNode> &nodes, Cells &lines, Cells &vertices)
     {
       for (auto first = nodes.begin(); first != nodes.end();)
@@ -168,7 +169,7 @@ namespace slipstick::output
         }
     }
 
-    /// A vertex for every node without a face.
+    /// Adds the faces, and a vertex for every node without a face.
     void add_faces(const ContactStep &step, Cells &polygons, Cells &vertices)
     {
       std::vector<bool> is_on_face(step.nodes.size());
@@ -189,7 +190,7 @@ namespace slipstick::output
           }
     }
 
-    /// In the order of along_the_arc().
+    /// Values in the order of along_the_arc().
     std::vector<double> along_the_arc(const std::vector<ContactNode>           &nodes,
                                       const std::vector<std::array<double, 3>> &vectors)
     {

@@ -34,8 +34,8 @@ namespace slipstick::output
       "conditions\\.csv|convergence\\.csv|history\\.csv|probes\\.csv|summary\\.json|parameters\\.prm|"
       "restart\\.bin|restart_\\d+_\\d+\\.bin";
 
-    /// Beside @p name, with the number of the process, by which others know whether it is still written, and a random
-    /// part.
+    /// Temporary name next to @p name; it contains the process number, which shows whether the file is still being
+    /// written, and a random part.
     std::string temporary_name(const std::string &name)
     {
       std::random_device random;
@@ -44,7 +44,7 @@ namespace slipstick::output
       return text.str();
     }
 
-    /// A new file; nothing is written through a link that somebody left in its place.
+    /// A new file; nothing is written through an existing link.
     class NewFile
     {
     public:
@@ -62,7 +62,7 @@ namespace slipstick::output
           unlink(path.c_str());
       }
 
-      /// @return why the file is not complete, empty when it is.
+      /// @return why the file is not complete; empty if it is.
       std::string fill(const std::function<void(std::ostream &)> &content)
       {
         if (is_open)
@@ -76,7 +76,7 @@ namespace slipstick::output
               }
             catch (const std::exception &)
               {
-                if (out) // not for lack of space
+                if (out) // the failure has another cause than lack of space
                   throw;
               }
             const bool failed = !out.flush();
@@ -103,7 +103,8 @@ namespace slipstick::output
       bool                           is_renamed = false;
     };
 
-    // Permission bits are not enough (root ignores them, and read-only or full disks do not show in them): try a file.
+    // Permission bits are not sufficient (root ignores them; read-only or full disks do not show in them): write a
+    // file.
     void try_a_file(const std::filesystem::path &directory)
     {
       NewFile           probe(temporary_name((directory / ".slipstick-probe").string()));
@@ -112,7 +113,7 @@ namespace slipstick::output
         reject(directory.string(), "no file can be written there: " + reason);
     }
 
-    /// Removes partial files that killed runs left.
+    /// Removes partial files of killed runs.
     void remove_stale(const std::filesystem::path &directory)
     {
       static const std::regex stale("(" + result_names + "|\\.slipstick-probe)(\\.(\\d{1,9})-[0-9a-f]+)?\\.tmp");
@@ -132,7 +133,7 @@ namespace slipstick::output
           std::filesystem::remove(path, error);
     }
 
-    /// Creates @p path; returns what was missing, outermost first.
+    /// Creates @p path. @return the directories that were missing, outermost first.
     std::vector<std::string> prepare(const std::string &path)
     {
       if (path.empty())
@@ -166,7 +167,7 @@ namespace slipstick::output
   {
     std::error_code ignored;
     for (auto path = created.rbegin(); path != created.rend(); ++path)
-      std::filesystem::remove(*path, ignored); // fails on one that is not empty
+      std::filesystem::remove(*path, ignored); // fails if it is not empty
   }
 
   void OutputDirectory::remove_results() const

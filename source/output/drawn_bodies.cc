@@ -17,18 +17,18 @@ namespace slipstick::output
     using Plane  = dealii::Point<2>;
     using Vector = dealii::Tensor<1, 3>;
 
-    // Meshes with more cells would be drawn black.
+    // Larger meshes would be drawn as a black area.
     constexpr unsigned int max_drawn_cells = 20000;
-    // A height function, and a circle in space, are drawn by this many pieces.
+    // Number of segments of a height function, and of a circle in space.
     constexpr unsigned int pieces_of_function = 200, pieces_of_circle = 60;
-    // Brightness of faces: that of one that light does not meet, and what the light adds (255 is white).
+    // Brightness of faces: of an unlit one, and the increment by light (255 is white).
     constexpr double dark = 175, light = 65;
 
     constexpr char obstacle_look[] = "class=\"obstacle\" fill=\"none\" stroke=\"#57606a\" stroke-width=\"3\"";
 
     struct Axes
     {
-      Vector right, up, towards; // the eye; unit vectors
+      Vector right, up, towards; // unit vectors; the last one points towards the viewer
     };
 
     const Axes &axes_in_space()
@@ -37,7 +37,7 @@ namespace slipstick::output
         Axes   made;
         Vector vertical;
         vertical[1]  = 1;
-        made.towards = dealii::Point<3>(0.55, 0.45, 1); // that of scripts/results/solids.py
+        made.towards = dealii::Point<3>(0.55, 0.45, 1); // as in scripts/results/solids.py
         made.towards /= made.towards.norm();
         made.right = dealii::cross_product_3d(vertical, made.towards);
         made.right /= made.right.norm();
@@ -47,13 +47,13 @@ namespace slipstick::output
       return axes;
     }
 
-    /// Corners of the cells of all ranks on rank 0; nothing where there are too many.
+    /// Corners of the cells of all ranks on rank 0; empty if there are too many cells.
     std::vector<std::vector<Plane>> cells_of(const mesh::Mesh<2> &mesh)
     {
       std::vector<std::vector<Plane>> cells;
       if (mesh.n_cells > max_drawn_cells)
         return cells;
-      std::vector<double> own; // number of corners, then these
+      std::vector<double> own; // number of corners, followed by the corners
       for (const auto &subdomain : mesh.subdomains)
         for (const auto &cell : subdomain->triangulation.active_cell_iterators())
           {
@@ -80,7 +80,7 @@ namespace slipstick::output
       return format("#%02x%02x%02x", level, level, level);
     }
 
-    /// A line around a centre, spanned by two vectors.
+    /// Circle (or ellipse) around a centre, spanned by two vectors.
     std::vector<Plane> circle(const dealii::Point<3> &centre, const Vector &first, const Vector &second)
     {
       std::vector<Plane> points;
@@ -231,7 +231,7 @@ namespace slipstick::output
     const bool is_plane = obstacle.shape == ObstacleShape::half_plane;
     if (!is_plane && obstacle.shape != ObstacleShape::cylinder && obstacle.shape != ObstacleShape::bore)
       return false;
-    // A disc of the plane, as large as the scene, or both ends of as much of the cylinder.
+    // A disc in the plane, as large as the scene; or both ends of a piece of the cylinder.
     const double size   = view.low.distance(view.high) / 2;
     const double radius = is_plane ? size : obstacle.radius;
     const auto   sides  = across(obstacle.normal);

@@ -32,7 +32,7 @@ namespace slipstick::output
     template <>
     constexpr const char *vtk_type<std::uint8_t> = "UInt8";
 
-    /// A field: numbers of all nodes or cells in turn.
+    /// A field: values of all nodes or cells in order.
     struct Field
     {
       std::string        name;
@@ -40,7 +40,7 @@ namespace slipstick::output
       std::vector<float> values;
     };
 
-    /// What a .vtu holds. Nodes are shared by their cells.
+    /// Contents of a .vtu. Nodes are shared by cells.
     struct Grid
     {
       std::vector<float>        points; // x, y, z
@@ -51,11 +51,11 @@ namespace slipstick::output
 
     constexpr std::uint8_t vtk_triangle = 5, vtk_quadrilateral = 9, vtk_tetrahedron = 10, vtk_hexahedron = 12;
 
-    /// Of a hexahedron of degree 2: eight between its nodes.
+    /// A hexahedron of degree 2 is drawn as eight between its nodes.
     template <int dim>
     std::vector<std::vector<unsigned int>> parts_of_hexahedron(const dealii::FiniteElement<dim> &scalar)
     {
-      std::array<unsigned int, 27> at{}; // by place on a lattice of three nodes a direction
+      std::array<unsigned int, 27> at{}; // by position on a lattice of three nodes per direction
       for (unsigned int i = 0; i < scalar.n_dofs_per_cell(); ++i)
         {
           unsigned int place = 0;
@@ -73,7 +73,8 @@ namespace slipstick::output
       return parts;
     }
 
-    /// Of a tetrahedron of degree 2: four at its corners, four around an axis of the octahedron between them.
+    /// A tetrahedron of degree 2 is drawn as four at its corners and four around an axis of the octahedron between
+    /// them.
     template <int dim>
     std::vector<std::vector<unsigned int>> parts_of_tetrahedron(const dealii::FiniteElement<dim> &scalar)
     {
@@ -96,8 +97,8 @@ namespace slipstick::output
               {c, e, d, a}};
     }
 
-    /// Nodes of the linear cells that a cell is drawn as, counterclockwise; degree 2: four, in space eight, with the nodes
-    /// on its edges.
+    /// Nodes of the linear cells that represent a cell, counterclockwise; for degree 2 four cells, in space eight, with
+    /// the nodes on its edges.
     template <int dim>
     std::vector<std::vector<unsigned int>> parts_of_cell(const mechanics::Element<dim> &element)
     {
@@ -117,7 +118,7 @@ namespace slipstick::output
                        : std::vector<std::vector<unsigned int>>{{0, 6, 8, 4}, {6, 1, 5, 8}, {4, 8, 7, 2}, {8, 5, 3, 7}};
     }
 
-    /// Positions and cells of a subdomain, and the fields that are constant in a cell.
+    /// Positions and cells of a subdomain, and the cellwise constant fields.
     template <int dim>
     Grid grid_of(const mesh::Mesh<dim>            &mesh,
                  const mechanics::Spaces<dim>     &spaces,
@@ -165,8 +166,9 @@ namespace slipstick::output
       return grid;
     }
 
-    /// Computes the fields for users from displacement and stress components.
-    /// @param stress nodes x 4: xx, yy, xy, zz [MPa]; of bodies of revolution zz is the hoop stress. In space x 6: xz, yz besides.
+    /// Computes the output fields from displacement and stress components.
+    /// @param stress nodes x 4: xx, yy, xy, zz [MPa]; for bodies of revolution zz is the hoop stress. In space nodes x
+    /// 6: also xz, yz.
     template <int dim>
     std::vector<Field> nodal_fields(const Eigen::VectorXd &u, const Eigen::MatrixXd &stress, const bool has_hoop_stress)
     {
@@ -195,7 +197,7 @@ namespace slipstick::output
               dealii::SymmetricTensor<2, dim> tensor;
               tensor[0][0] = xx, tensor[1][1] = yy, tensor[2][2] = zz;
               tensor[0][1] = xy, tensor[0][2] = xz, tensor[1][2] = yz;
-              const auto principal = dealii::eigenvalues(tensor); // the largest first
+              const auto principal = dealii::eigenvalues(tensor); // in descending order
               add(0, {u[3 * node], u[3 * node + 1], u[3 * node + 2]});
               add(1, {xx, xy, xz, xy, yy, yz, xz, yz, zz});
               add(2, {zz});
@@ -217,12 +219,12 @@ namespace slipstick::output
       return fields;
     }
 
-    /// By zlib at its best speed. Its window, which it allocates and clears for every array, is no larger than the
-    /// array: the same output in a third of the time for arrays of some kB.
+    /// Compresses with zlib at its highest speed. The window, which zlib allocates and clears for every array, is no
+    /// larger than the array: this gives the same output in a third of the time for arrays of a few kB.
     std::vector<unsigned char> compressed(const void *data, const std::size_t n_bytes)
     {
       constexpr int         smallest_window = 9, largest_window = 15; // powers of 2 [bytes], the limits of zlib
-      constexpr std::size_t lookahead    = 262;                       // of zlib, behind what a window holds
+      constexpr std::size_t lookahead    = 262;                       // of zlib, after the contents of a window
       constexpr int         memory_level = 8;                         // default of zlib
       int                   window       = smallest_window;
       while (window < largest_window && (std::size_t(1) << window) < n_bytes + lookahead)
@@ -243,7 +245,7 @@ namespace slipstick::output
       return block;
     }
 
-    /// Base 64 of RFC 4648 (deal.II's, by iterators of Boost, took 2 % of a run of 10 000 subdomains).
+    /// Base 64 of RFC 4648 (deal.II's, based on Boost iterators, took 2 % of a run with 10 000 subdomains).
     void write_base64(std::ostream &out, const unsigned char *bytes, const std::size_t n_bytes)
     {
       constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -260,7 +262,7 @@ namespace slipstick::output
       out.write(text.data(), text.size());
     }
 
-    /// Compressed in one block, as text: number of blocks, their size, size of the last, compressed size; the block.
+    /// Writes one compressed block as text: number of blocks, their size, size of the last, compressed size; the block.
     template <class Number>
     void write_array(std::ostream              &out,
                      const std::string         &name,
@@ -311,7 +313,7 @@ namespace slipstick::output
       out << "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
     }
 
-    /// The file that holds all subdomains together, whose fields are those of any.
+    /// Writes the file that combines all subdomains; all have the same fields.
     void write_pvtu(std::ostream &out, const Grid &grid, const std::vector<std::string> &pieces)
     {
       const auto declare = [&out](const std::string &section, const std::vector<Field> &fields) {
@@ -341,7 +343,7 @@ namespace slipstick::output
       return format("solution_%03u.pvtu", step);
     }
 
-    /// One .vtu; the subdomain that comes first also writes the .pvtu, whose fields are the same.
+    /// Writes one .vtu; for the first subdomain also the .pvtu, which has the same fields.
     template <int dim>
     void write_subdomain(const OutputDirectory            &directory,
                          const mesh::Mesh<dim>            &mesh,

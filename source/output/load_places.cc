@@ -13,7 +13,7 @@ namespace slipstick::output
 {
   namespace
   {
-    // Places are rounded to this part of the size of their body, so that they are the same for all decompositions.
+    // Places are rounded to this part of the size of their body, so that they do not depend on the decomposition.
     constexpr double grain = 0x1p-30;
 
     template <int dim, class F>
@@ -25,7 +25,7 @@ namespace slipstick::output
             f(cell);
     }
 
-    /// Smallest and largest of numbers, over all ranks.
+    /// Smallest and largest of some numbers, over all ranks.
     struct Range
     {
       double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
@@ -46,7 +46,7 @@ namespace slipstick::output
       }
     };
 
-    /// How far a body reaches along a direction, measured from a point.
+    /// Extent of a body along a direction, measured from a point.
     template <int dim>
     Range reach(const mesh::Mesh<dim>        &mesh,
                 const unsigned int            body,
@@ -75,15 +75,15 @@ namespace slipstick::output
       return box;
     }
 
-    /// To a multiple of a power of 2, which most coordinates are.
+    /// Rounds to a multiple of a power of 2, which most coordinates are.
     double rounded(const double x, const double size)
     {
       const double unit = std::exp2(std::floor(std::log2(size * grain)));
       return std::round(x / unit) * unit;
     }
 
-    /// The centre of gravity of a body where that is in the body (in the box about one of its cells), else the centre of
-    /// the cell next to it, of several that which comes first.
+    /// The centre of gravity of a body if it is inside the body (in the bounding box of a cell), otherwise the centre
+    /// of the nearest cell (the first of several).
     template <int dim>
     dealii::Point<dim> middle_of(const mesh::Mesh<dim> &mesh, const unsigned int body)
     {
@@ -129,8 +129,8 @@ namespace slipstick::output
       return centre;
     }
 
-    /// The largest of the load steps, as @p size says; steps in which a formula has no value are left to the solver's
-    /// message.
+    /// The load step with the largest @p size; steps in which a formula cannot be evaluated are skipped, since the
+    /// solver reports them.
     template <class F, class Size>
     auto largest(const std::vector<double> &load_factors, const F &value_at, const Size &size)
     {
@@ -163,7 +163,7 @@ namespace slipstick::output
       return v;
     }
 
-    /// From end to end of a body: what a line through a point says.
+    /// Ends of the line through a point across a body.
     template <int dim>
     std::vector<dealii::Point<dim>> line_through(const mesh::Mesh<dim>        &mesh,
                                                  const unsigned int            body,
@@ -174,7 +174,7 @@ namespace slipstick::output
       return {point + range.low * along, point + range.high * along};
     }
 
-    /// About which a body rotates; in the plane a point.
+    /// Axis of rotation of a body; in the plane a point.
     template <int dim>
     std::vector<dealii::Point<dim>> axis_of(const scene::Scene<dim>     &scene,
                                             const mesh::Mesh<dim>       &mesh,
@@ -195,8 +195,8 @@ namespace slipstick::output
       return line_through(mesh, body, load.axis, along / along.norm());
     }
 
-    /// Where the section of a bolt cuts the edges of its cells: in the plane the ends of the cut, in space the corners
-    /// of a rectangle about it.
+    /// Intersection of the section of a bolt with the edges of the cells: in the plane the ends of the cut, in space
+    /// the corners of its bounding rectangle.
     template <int dim>
     std::vector<dealii::Point<dim>> section_of(const mesh::Mesh<dim> &mesh, const scene::Pretension<dim> &bolt)
     {

@@ -12,7 +12,7 @@ namespace slipstick::output
 {
   namespace
   {
-    // Arrows a load, about.
+    // Approximate number of arrows per load.
     constexpr unsigned int arrows_of_load = 12;
 
     template <int dim, class LoadAt>
@@ -25,7 +25,7 @@ namespace slipstick::output
       return result;
     }
 
-    /// Of the bodies, and of places in loads_in_bodies() that are not farther from them than they are large.
+    /// Bounding box of the bodies, and of places in loads_in_bodies() whose distance from them is at most their size.
     template <int dim>
     View view_of(const std::vector<mechanics::BoundaryPart<dim>> &outlines, const std::vector<LoadPlace<dim>> &places)
     {
@@ -50,7 +50,7 @@ namespace slipstick::output
       return View(low, high);
     }
 
-    /// What acts on boundaries, at points and in bodies, over the bodies.
+    /// Draws conditions on boundaries, at points and in bodies, on top of the bodies.
     template <int dim>
     class Conditions
     {
@@ -111,7 +111,7 @@ namespace slipstick::output
         picture.arrows("traction", arrows);
       }
 
-      /// @param nodes of them.
+      /// @param nodes of the point loads.
       void point_loads(const mechanics::PointNode<dim> *nodes)
       {
         std::vector<LoadArrow> arrows;
@@ -139,11 +139,11 @@ namespace slipstick::output
               ends.push_back(project(end));
             picture.in_legend(place.kind, place.name);
             if (place.kind == "temperature")
-              continue; // below
+              continue; // drawn below
             if (place.side.empty())
               {
                 if (place.value == 0)
-                  continue; // a formula that is 0 there
+                  continue; // the formula is 0 there
                 picture.dot(place.kind, place.name, ends.front(), dot_radius);
                 forces.push_back(arrow(place.ends.front(), place.force));
                 forces.back().begins_there = true;
@@ -153,7 +153,7 @@ namespace slipstick::output
             else
               picture.lines(place.kind, place.name, view.path(ends) + (ends.size() > 2 ? "z" : ""));
             if (place.kind == "pretension" && place.side == "axis")
-              for (const double side : {-1., 1.}) // the arrows meet at the section
+              for (const double side : {-1., 1.}) // the arrows point at the section
                 {
                   const auto along = place.ends.back() - place.ends.front();
                   tensions.push_back(arrow(section_of(places, place.name), side * place.value / along.norm() * along));
@@ -177,7 +177,7 @@ namespace slipstick::output
       }
 
     private:
-      // Radius of a probed point, and where the arrow of a body force begins [pixels].
+      // Radius of the dot at a probed point, and start of the arrow of a body force [pixels].
       static constexpr double dot_radius = 3.5;
 
       LoadArrow arrow(const Point &place, const dealii::Tensor<1, dim> &load) const
@@ -185,7 +185,7 @@ namespace slipstick::output
         return {project(place), project.along(load), load.norm(), false};
       }
 
-      /// Its middle.
+      /// Centre of the section of a bolt.
       static Point section_of(const std::vector<LoadPlace<dim>> &places, const std::string &bolt)
       {
         Point middle;
@@ -258,7 +258,7 @@ namespace slipstick::output
       Conditions<dim> draw(scene, mesh, outlines, view, picture);
       for (const auto &pair : scene.contacts)
         {
-          if (pair.master) // below: the two often coincide
+          if (pair.master) // drawn below the slave, since the two often coincide
             draw.boundary("contact, master", pair.name, *pair.master);
           draw.boundary("contact, slave", pair.name, pair.slave);
         }

@@ -10,7 +10,7 @@ namespace slipstick::output
 {
   namespace
   {
-    using Json = nlohmann::ordered_json; // keys in the order of doc/interface.md; not finite numbers become null
+    using Json = nlohmann::ordered_json; // keeps the order of keys of doc/interface.md; non-finite numbers become null
 
     Json json(const ProblemSummary &problem)
     {
@@ -62,14 +62,14 @@ namespace slipstick::output
               {"nodal_equilibrium", residuals.nodal_equilibrium}};
     }
 
-    /// As many components as the dimension has.
+    /// As many components as the dimension.
     template <std::size_t n>
     Json components(const std::array<double, n> &vector, const unsigned int count)
     {
       return std::vector<double>(vector.begin(), vector.begin() + count);
     }
 
-    /// In the plane a number: about z.
+    /// In the plane a single number, about z.
     Json moment(const std::array<double, 3> &m, const unsigned int dim)
     {
       return dim == 2 ? Json(m[2]) : Json(m);
@@ -100,7 +100,7 @@ namespace slipstick::output
       return entry;
     }
 
-    /// Adds the list of bolts, where there are any.
+    /// Adds the list of bolts, if there are any.
     Json with(Json entry, const std::vector<PretensionResult> &bolts)
     {
       for (const auto &bolt : bolts)

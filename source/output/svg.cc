@@ -10,14 +10,14 @@ namespace slipstick::output
 {
   namespace
   {
-    // Of the drawing [pixels]: longer side, border, width of the legend and distance of its lines.
+    // Dimensions of the drawing [pixels]: longer side, border, width of the legend and line spacing.
     constexpr double drawing_size = 900, border = 40, legend_width = 320, line_distance = 20;
-    // Length of the longest arrow of a load, and radius of one that turns [pixels].
+    // Length of the longest arrow of a load, and radius of an arrow around an axis [pixels].
     constexpr double arrow_length = 45, turning_radius = 24;
 
-    // Of a label above and to the right of its place [pixels].
+    // Offset of a label, above and to the right of its point [pixels].
     constexpr double label_distance = 10;
-    // So that what is behind shows through.
+    // Objects behind remain visible.
     constexpr double fill_opacity = 0.3;
 
     constexpr std::array<DrawingStyle, 10> styles = {{{"support", "#1a7f37", 4, ""},

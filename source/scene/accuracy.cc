@@ -13,8 +13,9 @@ namespace slipstick::scene
 
     const std::string name = "Accuracy", degree = "Discretization/Degree";
 
-    // The accuracy of each on cases with known answers is measured in doc/accuracy.md. `engineering` is the default of every
-    // setting. The precision of the preconditioner is not among them, since no answer depends on it.
+    // The accuracy of each preset, measured on problems with known solutions, is given in doc/accuracy.md.
+    // `engineering` equals the defaults. The precision of the preconditioner is not included, since it does not affect
+    // the solution.
     const std::vector<std::pair<std::string, Knobs>> presets = {{"draft",
                                                                  {{"Solver/Tolerance", "auto"},
                                                                   {"Solver/Operator precision", "single"},
@@ -34,7 +35,7 @@ namespace slipstick::scene
                                                                   {"Friction/Tolerance", "1e-8"},
                                                                   {degree, "2"}}}};
 
-    // Of a percentage: the algebraic error must not show in differences between meshes.
+    // For a percentage: the algebraic error must be negligible in differences between meshes.
     const Knobs of_percentage = {{"Solver/Tolerance", "1e-06"},
                                  {"Solver/Operator precision", "double"},
                                  {"Solver/Prune contact", "true"},
@@ -61,14 +62,14 @@ namespace slipstick::scene
   void apply_accuracy(const Parameters &parameters, const unsigned int dim, dealii::ParameterHandler &prm)
   {
     const auto preset = parameters.value(name), mesh = parameters.value(adaptive_mesh.first);
-    if (preset) // a word that is not a preset is refused by apply()
+    if (preset) // a word that is not a preset is rejected by apply()
       for (const auto &[path, value] : knobs_of_accuracy(*preset))
         set_value(prm, path, value);
     if (mesh && *mesh == adaptive_mesh.second)
       for (const auto &[path, value] : of_percentage)
         if (path != degree)
           set_value(prm, path, value);
-    // bodies are refined as tetrahedra there, which are stiff with degree 1
+    // solids are refined as tetrahedra, which are too stiff with degree 1
     const bool refines = (preset && accuracy_of(*preset) > 0) || (mesh && *mesh == adaptive_mesh.second);
     if (dim == 3 && refines)
       set_value(prm, degree, "2");

@@ -9,10 +9,10 @@ namespace slipstick::scene
 {
   namespace
   {
-    const unsigned int max_cells       = 1000000; // per direction: products stay far from overflow
+    const unsigned int max_cells       = 1000000; // per direction: products are far from overflow
     const unsigned int max_refinements = 10;
 
-    /// The shapes of the plane or of space.
+    /// The shapes available in this dimension.
     template <int dim>
     const Choices<Shape> &shapes()
     {
@@ -32,7 +32,7 @@ namespace slipstick::scene
       return dim == 3 ? of_space : of_plane;
     }
 
-    /// The parameters that belong to some shapes only.
+    /// The parameters that apply to some shapes only.
     struct Fit
     {
       std::string        parameter;
@@ -124,7 +124,7 @@ namespace slipstick::scene
     : name(own_name)
   {
     for (unsigned int d = 0; d < dim; ++d)
-      body.size[d] = 1; // shown in the listing; a scene must set it
+      body.size[d] = 1; // displayed in the listing; a scene must set it
     rotation_axis[dim - 1] = 1;
   }
 
@@ -304,7 +304,7 @@ namespace slipstick::scene
     const std::string section = "Body " + name;
     for (const auto &[parameter, of_shapes] : fits<dim>())
       {
-        // the default is harmless, and a .prm that the program printed sets everything
+        // the default is harmless: a .prm printed by the program sets everything
         const auto value = parameters.value(section + "/" + parameter);
         if (contains(of_shapes, body.shape) || !value || trim(*value) == defaults.at(parameter))
           continue;

@@ -42,7 +42,7 @@ namespace slipstick::scene
     template <int dim>
     void check_boundaries_used_once(const Scene<dim> &scene, const Parameters &parameters)
     {
-      // of two bodies the pair says the same whichever side is the slave
+      // for two bodies the pair is the same whichever side is the slave
       std::map<std::pair<Boundary, Boundary>, std::string> contacts;
       for (const auto &contact : scene.contacts)
         {
@@ -121,7 +121,8 @@ namespace slipstick::scene
                                "set it to auto, or Solver/Algorithm to semismooth newton");
     }
 
-    // Poisson's ratio above which standard elements in plane strain or of revolution are much too stiff (bulk over shear modulus 100).
+    // Poisson's ratio above which standard elements in plane strain or axisymmetry are much too stiff (ratio of bulk to
+    // shear modulus: 100).
     constexpr double locking_poisson_ratio = 0.495;
 
     template <int dim>
@@ -134,7 +135,7 @@ namespace slipstick::scene
                                "set it to standard, or Plane state = plane strain");
     }
 
-    /// What has no meaning where the section is revolved.
+    /// Rejects parameters that have no meaning for bodies of revolution.
     template <int dim>
     void check_revolution(const Scene<dim> &scene, const Parameters &parameters)
     {

@@ -11,14 +11,14 @@ namespace slipstick::scene
   namespace
   {
 
-    /// A formula whose value, where it is a number, is not negative.
+    /// A formula; if it is a number, it must not be negative.
     template <int dim>
     std::optional<LawNumber<dim>> read_number(const LawParameter &parameter,
                                               const std::string  &text,
                                               const std::string  &path,
                                               const Parameters   &parameters)
     {
-      if (text == parameter.default_text) // such as none
+      if (text == parameter.default_text) // e.g. "none"
         return {};
       const Field<dim> field(text, parameters.locate(path));
       if (field.is_constant() && field.value(dealii::Point<dim>(), 1) < 0)
@@ -33,7 +33,7 @@ namespace slipstick::scene
   void ContactLawSection<dim>::declare(dealii::ParameterHandler &prm)
   {
     std::vector<std::string>  names, meanings;
-    std::vector<LawParameter> parameters; // of all laws, with what they mean in each
+    std::vector<LawParameter> parameters; // of all laws, with their meaning in each law
     for (const auto &kind : law_kinds<dim>())
       {
         names.push_back(kind.name);

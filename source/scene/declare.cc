@@ -14,7 +14,7 @@ namespace slipstick::scene
 
   namespace
   {
-    /// A pattern given by a predicate and its description.
+    /// A pattern defined by a predicate and its description.
     class Allowed : public dealii::Patterns::PatternBase
     {
     public:
@@ -109,7 +109,7 @@ namespace slipstick::scene
   bool Interval::contains(const double value) const
   {
     const bool may_be_tiny =
-      !(lower_open && lower == 0) || value >= smallest_number; // such as coordinates that are zero but for rounding
+      !(lower_open && lower == 0) || value >= smallest_number; // coordinates may be zero up to rounding
     return is_usable(value) && may_be_tiny && (lower_open ? value > lower : value >= lower) &&
            (upper_open ? value < upper : value <= upper);
   }

@@ -26,7 +26,7 @@ namespace slipstick::scene
                           "t and pi such as -250*sin(pi*x/10)*t");
     }
 
-    /// muParser's "=" assigns: x=3 would overwrite the variable.
+    /// In muParser "=" is an assignment: x=3 would overwrite the variable.
     bool has_assignment(const std::string &formula)
     {
       for (std::size_t i = formula.find('='); i != std::string::npos; i = formula.find('=', i + 1))
@@ -39,7 +39,7 @@ namespace slipstick::scene
       return false;
     }
 
-    /// The message of muParser, and for an unknown name the known ones.
+    /// The message of muParser; for an unknown name also the known ones.
     std::string explain(const mu::Parser::exception_type &error,
                         const mu::Parser                 &parser,
                         const std::vector<std::string>   &variables)
@@ -138,7 +138,7 @@ namespace slipstick::scene
     if (!number)
       parsed = std::make_shared<Formula>(text, where);
     else if (*number != 0 &&
-             std::abs(*number) < smallest_number) // its square underflows, so that it would act on nothing
+             std::abs(*number) < smallest_number) // its square underflows, so that it would have no effect
       throw formula_error<dim>(where,
                                text,
                                "numbers here are 0, or at least " + number_text(smallest_number) + " in size");

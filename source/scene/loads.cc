@@ -22,7 +22,7 @@ namespace slipstick::scene
              " or the name of a point in the mesh file";
     }
 
-    /// One field a component, "NAME x", "NAME y".
+    /// One field per component: "NAME x", "NAME y".
     template <int dim>
     void add_components(dealii::ParameterHandler     &prm,
                         const std::string            &name,
@@ -72,7 +72,7 @@ namespace slipstick::scene
       return std::all_of(texts.begin(), texts.end(), is_zero);
     }
 
-    /// A load whose values are all zero is a mistake, such as a misspelt name or a lost value.
+    /// A load whose values are all zero is probably a mistake, e.g. a misspelt name or a lost value.
     void require_load(const bool         is_none,
                       const std::string &section,
                       const std::string &what,

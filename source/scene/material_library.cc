@@ -14,7 +14,8 @@ namespace slipstick::scene
       double      expansion; // [1/K]
     };
 
-    /// Typical values at room temperature, rounded: alloys and grades differ by some percent, plastics and concrete by more.
+    /// Typical values at room temperature, rounded: alloys and grades differ by a few percent, plastics and concrete by
+    /// more.
     const std::vector<Entry> &library()
     {
       static const std::vector<Entry> entries = {{"steel", 2.1e5, 0.3, 7.85e-9, 1.2e-5},
@@ -48,7 +49,7 @@ namespace slipstick::scene
       {
         const std::string section = "Material " + name;
         const auto        wanted  = parameters.value(section + "/Library");
-        for (const Entry &entry : library()) // a word that is no entry is refused by apply()
+        for (const Entry &entry : library()) // a word that is not in the library is rejected by apply()
           if (wanted ? entry.name == *wanted : entry.name == name && !parameters.has_section(section))
             {
               set_value(prm, section + "/Library", entry.name);

@@ -22,7 +22,7 @@ namespace slipstick::scene
       const auto side = [](const dealii::Point<2> &p, const dealii::Point<2> &q, const dealii::Point<2> &x) {
         return (q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0]);
       };
-      for (unsigned int k = 0; k < 2; ++k) // boxes apart, as of segments on one line
+      for (unsigned int k = 0; k < 2; ++k) // disjoint bounding boxes, e.g. of segments on one line
         if (std::max(a[k], b[k]) < std::min(c[k], d[k]) || std::max(c[k], d[k]) < std::min(a[k], b[k]))
           return false;
       const double c_side = side(a, b, c), d_side = side(a, b, d), a_side = side(c, d, a), b_side = side(c, d, b);
@@ -30,7 +30,7 @@ namespace slipstick::scene
              !(a_side < 0 && b_side < 0);
     }
 
-    /// The first two edges of a polyline that meet elsewhere than where one ends and the next begins.
+    /// The first two edges of a polyline that intersect other than at the common end of neighbours.
     std::optional<std::pair<std::size_t, std::size_t>> first_crossing(const std::vector<dealii::Point<2>> &points)
     {
       const std::size_t        n         = points.size() - 1;
@@ -44,7 +44,7 @@ namespace slipstick::scene
         for (std::size_t l = k + 1; l < n && left(by_left[l]) <= right(by_left[k]); ++l)
           {
             const std::size_t e = std::min(by_left[k], by_left[l]), f = std::max(by_left[k], by_left[l]);
-            if (f == e + 1 || (is_closed && e == 0 && f == n - 1)) // neighbours: one may run back on the other
+            if (f == e + 1 || (is_closed && e == 0 && f == n - 1)) // neighbours: one may overlap the other
               {
                 const auto into = f == e + 1 ? points[e + 1] - points[e] : points[f + 1] - points[f];
                 const auto from = f == e + 1 ? points[f + 1] - points[f] : points[e + 1] - points[e];
@@ -57,7 +57,7 @@ namespace slipstick::scene
       return {};
     }
 
-    /// The parameters that belong to some shapes only.
+    /// The parameters that apply to some shapes only.
     template <int dim>
     std::vector<std::string> geometry()
     {
@@ -274,7 +274,7 @@ namespace slipstick::scene
           break;
       }
     for (const std::string &other : geometry<dim>())
-      // the default is harmless, and a .prm that the program printed sets everything
+      // the default is harmless: a .prm printed by the program sets everything
       if (const auto value = parameters.value(section + "/" + other);
           value && trim(*value) != defaults.at(other) &&
           std::find(fitting.begin(), fitting.end(), other) == fitting.end())

@@ -13,8 +13,8 @@ namespace slipstick::scene
   {
     const unsigned int max_iterations = 1000000000;
 
-    // Tolerance = auto goes on to here where no estimate of the discretisation error ends it before, as in scenes whose
-    // solution lies in the space of the elements.
+    // Lower limit for Tolerance = auto if no estimate of the discretisation error stops the solver earlier, e.g. if the
+    // solution is in the finite element space.
     constexpr double least_automatic_tolerance = 1e-8;
 
     void declare_smalbe(dealii::ParameterHandler &prm, qp::SmalbeOptions &smalbe)
@@ -229,18 +229,18 @@ namespace slipstick::scene
 
   namespace
   {
-    // Load steps of one range: more are a slip of the pen.
+    // Maximum number of load steps in one range: more are probably a mistake.
     constexpr double most_steps = 100000;
 
-    /// The number that @p text spells; none if it is not one, or not finite.
+    /// The number in @p text; empty if it is not a finite number.
     std::vector<double> single_number(const std::string &text)
     {
       const auto number = parse_number(text);
       return number && std::isfinite(*number) ? std::vector<double>{*number} : std::vector<double>();
     }
 
-    /// "FIRST:STEP:LAST", of which LAST is met when a whole number of steps leads there within rounding; none if it is not
-    /// a range of increasing numbers.
+    /// "FIRST:STEP:LAST"; LAST is included if a whole number of steps leads to it within rounding. Empty if the text is
+    /// not a range of increasing numbers.
     std::vector<double> range(const std::string &text)
     {
       std::vector<double> ends;

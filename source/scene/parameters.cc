@@ -15,9 +15,9 @@ namespace slipstick::scene
 {
   namespace
   {
-    // Stands for every body, or the whole outline, instead of a name.
+    // Used instead of a name for every body, or the whole outline.
     const std::vector<std::string> reserved_names = {"all", "*"};
-    // Of lists in remedies; whoever has longer ones knows how to add to them.
+    // Maximum length of lists in remedies.
     constexpr std::size_t longest_list = 400;
 
     /// "a/b/c" -> "a/b", "c"
@@ -28,16 +28,16 @@ namespace slipstick::scene
                                         : std::make_pair(path.substr(0, slash), path.substr(slash + 1));
     }
 
-    /// What is declared, for look-up and suggestions.
+    /// The declared sections and parameters, for look-up and suggestions.
     class Declarations
     {
     public:
       Declarations(const dealii::ParameterHandler &prm, const std::vector<NamedKind> &named_kinds);
 
-      /// Throws unless all of @p setting's sections and its name exist.
+      /// Throws unless all sections of @p setting and its name exist.
       void check_name(const Setting &setting) const;
 
-      /// The error for a value that the pattern of @p setting does not allow.
+      /// The error for a value that is not allowed by the pattern of @p setting.
       InputError value_error(const Setting &setting) const;
 
     private:
@@ -46,7 +46,7 @@ namespace slipstick::scene
       std::vector<std::string> children_of(const std::string &section, const bool sections) const;
 
       std::vector<NamedKind>                   kinds;
-      std::vector<std::string>                 sections; // in order, every level
+      std::vector<std::string>                 sections; // in order, all levels
       std::map<std::string, DeclaredParameter> parameters;
       std::vector<std::string>                 order; // paths of the parameters
     };
@@ -202,7 +202,7 @@ namespace slipstick::scene
   {
     for (const auto &path : {std::filesystem::path(file).parent_path() / name, std::filesystem::path(name)})
       {
-        std::error_code error; // a path that cannot be examined is not a file
+        std::error_code error; // a path that cannot be examined is not a regular file
         if (std::filesystem::is_regular_file(path, error))
           return std::filesystem::absolute(path).lexically_normal().string();
       }
@@ -278,7 +278,7 @@ namespace slipstick::scene
           }
       }
 
-    // Names without a subsection come last: a misspelt subsection has been reported as such by now.
+    // Names without a subsection come last: a misspelt subsection has already been reported as such.
     for (const NamedKind &kind : kinds)
       for (const std::string &name : names(kind))
         {

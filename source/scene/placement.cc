@@ -6,7 +6,7 @@ namespace slipstick::scene
 {
   namespace
   {
-    /// About an axis of any length, z if it has none (Rodrigues).
+    /// Rotation about an axis of any length, z if it is zero (Rodrigues).
     dealii::Tensor<1, 3> turned(const dealii::Tensor<1, 3> &x,
                                 const dealii::Tensor<1, 3> &axis,
                                 const double                cosine,
@@ -23,7 +23,7 @@ namespace slipstick::scene
   template <int dim>
   std::function<void(dealii::Point<dim> &)> Placement<dim>::motion() const
   {
-    // whole quarters are exact
+    // multiples of 90 degrees are exact
     const double quarters = rotation / 90;
     const bool   whole    = quarters == std::round(quarters);
     const int    quarter  = whole ? static_cast<int>(std::remainder(quarters, 4)) & 3 : 0;

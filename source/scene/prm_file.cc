@@ -13,12 +13,12 @@ namespace slipstick::scene
 {
   namespace
   {
-    constexpr unsigned int most_levels = 10;  // of subsections within each other, and of files that include others
-    constexpr unsigned int most_files  = 100; // included in all: files that include others several times multiply
+    constexpr unsigned int most_levels = 10;  // of nested subsections, and of nested includes
+    constexpr unsigned int most_files  = 100; // included in total: files that include others several times multiply
 
     const std::string encoding_remedy = "save the file as UTF-8 (iconv -f latin1 -t utf-8), or remove the character";
 
-    /// Names and values stand in files that must be UTF-8.
+    /// Names and values are written to files that must be UTF-8.
     void check_encoding(const std::string &text, const std::string &where)
     {
       const auto bad = first_invalid_utf8(text);
@@ -40,7 +40,7 @@ namespace slipstick::scene
       namespace fs = std::filesystem;
       std::error_code ignore;
       std::ifstream   stream;
-      if (fs::is_regular_file(file, ignore)) // opening a pipe waits for its other end
+      if (fs::is_regular_file(file, ignore)) // opening a pipe would block
         stream.open(file);
       if (stream.is_open())
         return stream;
@@ -57,7 +57,7 @@ namespace slipstick::scene
                          suggest_name(fs::path(file).filename().string(), names));
     }
 
-    /// Reads one file and what it includes.
+    /// Reads one file and the files it includes.
     class Reader
     {
     public:
@@ -91,7 +91,7 @@ namespace slipstick::scene
       unsigned int                                     depth;
       unsigned int                                    &n_files; // read so far
       std::vector<Setting>                            &settings;
-      unsigned int                                     line_number = 0; // where the present statement begins
+      unsigned int                                     line_number = 0; // start of the current statement
       std::vector<std::pair<std::string, std::string>> sections;        // open ones: name, where
       std::map<std::string, std::string>               places;          // path of a parameter -> where it was set
     };

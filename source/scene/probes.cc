@@ -11,7 +11,7 @@ namespace slipstick::scene
       return std::string("x, y, ") + (dim == 3 ? "z, " : "") + "or the name of a point in the mesh file";
     }
 
-    // More points than a picture of a line shows.
+    // More points than can be distinguished in a plot of a line.
     constexpr unsigned int most_points = 100000;
   } // namespace
 

@@ -17,7 +17,7 @@ namespace slipstick::scene
 {
   namespace
   {
-    // The top level lists and the subsections whose names they declare.
+    // The top-level lists, and the subsections whose names they declare.
     const std::string dimension_name = "Dimension";
 
     const NamedKind material_kind    = {"Material", "Materials", library_names()};
@@ -67,7 +67,7 @@ namespace slipstick::scene
       void declare_top_level(const Names &names);
 
       std::string                          variables;
-      Scene<dim>                           options; // those concerns that refer to no names
+      Scene<dim>                           options; // sections that refer to no names
       std::vector<MaterialSection>         materials;
       std::vector<BodySection<dim>>        bodies;
       std::vector<ObstacleSection<dim>>    obstacles;
@@ -99,7 +99,7 @@ namespace slipstick::scene
       , probes(names.at(probe_kind.list).begin(), names.at(probe_kind.list).end())
     {
       options.decomposition.method = DecompositionMethod::automatic;
-      if (dim == 3) // its coefficients are those of solids
+      if (dim == 3) // solids use its coefficients
         options.plane_state = PlaneState::plane_strain;
       declare_top_level(names);
       const auto declare_all = [this](auto &sections) {
@@ -190,10 +190,10 @@ namespace slipstick::scene
           [](const std::string &) { return true; },
           [](const std::string &) {});
       for (const NamedKind &kind : named_kinds)
-        prm.set(kind.list, join_names(names.at(kind.list))); // the lists of an example have no file to be read from
+        prm.set(kind.list, join_names(names.at(kind.list))); // example: the lists are not read from a file
     }
 
-    /// What the method `auto` of the decomposition means.
+    /// Resolves the method `auto` of the decomposition.
     template <int dim>
     DecompositionMethod automatic_method(const Scene<dim> &scene)
     {
@@ -236,7 +236,7 @@ namespace slipstick::scene
       if (scene.decomposition.method == DecompositionMethod::automatic)
         scene.decomposition.method = automatic_method(scene);
       for (const Body<dim> &body : scene.bodies)
-        if (body.shape == Shape::mesh) // the path as found, so that what is printed runs from any directory
+        if (body.shape == Shape::mesh) // the path found, so that the printed .prm can be run from any directory
           set_value(prm, "Body " + body.name + "/File", body.file);
       for (const Obstacle<dim> &obstacle : scene.obstacles)
         if (obstacle.shape == ObstacleShape::stl)
@@ -245,7 +245,7 @@ namespace slipstick::scene
       return scene;
     }
 
-    /// With Mesh = adaptive: the accuracy and the goals of the preset.
+    /// For Mesh = adaptive: sets the accuracy and the goals of the preset.
     template <int dim>
     void resolve_mesh(AdaptivityOptions &adaptivity, const Scene<dim> &scene)
     {
@@ -260,7 +260,7 @@ namespace slipstick::scene
         }
     }
 
-    /// Whether the goals name quantities of the scene.
+    /// Checks that the goals are quantities of the scene.
     template <int dim>
     void check_goals(const AdaptivityOptions &adaptivity, const Scene<dim> &scene, const Parameters &parameters)
     {
@@ -371,7 +371,7 @@ namespace slipstick::scene
       {"Probe tip/Point", "10, 10" + z}};
     for (const auto &[path, value] : must_be_set)
       set_value(example.prm, path, value);
-    if (dim == 3) // 200^3 cells by default would be too many
+    if (dim == 3) // the default of 200^3 cells would be too many
       for (const auto &[path, value] : {std::pair("Decomposition/Blocks", "2"), {"Decomposition/Cells per block", "4"}})
         set_value(example.prm, path, value);
     write_parameters(out, example.prm, format);

@@ -14,7 +14,7 @@ namespace slipstick::scene
 {
   namespace
   {
-    // More triangles than a surface needs whose facets are as fine as contact elements; half a gigabyte with its tree.
+    // Far more triangles than needed for facets as fine as contact elements; half a gigabyte with the search tree.
     constexpr std::size_t max_triangles = 2000000;
     // Binary files: a header and a count, then per triangle a normal, three corners and two bytes.
     constexpr std::size_t header = 80, head = header + 4, record = 50, normal_bytes = 12;
@@ -39,10 +39,10 @@ namespace slipstick::scene
     {
       if (!is_usable(value))
         throw damaged(file, "has a coordinate that is not a finite number");
-      return value + 0.; // -0 is 0
+      return value + 0.; // converts -0 to 0
     }
 
-    /// Little-endian, as the format wants.
+    /// Little-endian, as specified by the format.
     std::uint32_t bits_at(const std::string &bytes, const std::size_t at)
     {
       std::uint32_t value = 0;
@@ -130,7 +130,7 @@ namespace slipstick::scene
     if (!in)
       throw InputError("STL file " + file + " cannot be read, or is empty", "check its path and permissions");
     const std::string text = content.str();
-    // the size tells: some programs begin binary files with "solid", too
+    // detected by the size, since some programs begin binary files with "solid", too
     if (text.size() >= head && (text.size() - head) % record == 0 &&
         (text.size() - head) / record == bits_at(text, header))
       return read_binary(file, text);

@@ -15,8 +15,8 @@ namespace slipstick::scene
     using Tensor   = dealii::Tensor<1, 3>;
     using Triangle = TriangulatedSurface::Triangle;
 
-    // Points nearer than this part of the extent are on the surface, at an edge or at a vertex: the direction to their foot is
-    // rounding, and so is the triangle that is nearest.
+    // Points nearer than this part of the extent are on the surface, at an edge or at a vertex: the direction to the
+    // foot and the choice of the nearest triangle are then dominated by rounding.
     constexpr double on_surface = 1e-10;
 
     Tensor unit_or_zero(const Tensor &v)
@@ -25,7 +25,7 @@ namespace slipstick::scene
       return length > 0 ? v / length : Tensor();
     }
 
-    /// Vertices of their own for different corners. @return the triangles of three different ones.
+    /// Merges equal corners into vertices. @return the triangles with three different vertices.
     std::vector<Triangle> merge(const std::vector<Point> &corners, std::vector<Point> &vertices)
     {
       std::vector<unsigned int> order(corners.size()), number(corners.size());
@@ -69,7 +69,7 @@ namespace slipstick::scene
   {
     double squared = std::numeric_limits<double>::max(); // distance
     Point  at;
-    Tensor normal; // there: of the triangle, of the two at an edge, of all at a vertex
+    Tensor normal; // at the foot: of the triangle, the two at an edge, or all at a vertex
 
     unsigned int triangle = 0;
   };
@@ -165,7 +165,7 @@ namespace slipstick::scene
   {
     const Tensor &n = normals_of_triangles[t];
     Foot          foot;
-    bool          is_above = n.norm() > 0; // the inside of the triangle
+    bool          is_above = n.norm() > 0; // x is above the inside of the triangle
     for (unsigned int k = 0; k < 3; ++k)
       {
         const Point  a     = corner(t, k);

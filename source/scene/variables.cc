@@ -18,7 +18,7 @@ namespace slipstick::scene
     const std::string prefix    = list_name + "/";
     const std::string how_to    = "write: set Variables = d = 0.05; mu = 0.2, and use them as {mu} or {10 - d/2}";
 
-    // They mean something else in formulas.
+    // These names have another meaning in formulas.
     const std::vector<std::string> reserved = {"x", "y", "z", "t", "pi"};
 
     struct Variable
@@ -65,7 +65,7 @@ namespace slipstick::scene
       return value;
     }
 
-    /// The names and expressions of "d = 0.05; mu = 0.2".
+    /// Parses "d = 0.05; mu = 0.2" into names and expressions.
     std::vector<Variable> parse(const Setting &setting)
     {
       std::vector<Variable> variables;
@@ -92,7 +92,7 @@ namespace slipstick::scene
       return variables;
     }
 
-    /// Takes the overrides of single variables, the last of each name.
+    /// Removes the overrides of single variables and applies the last one of each name.
     void override_single(std::vector<Setting> &settings, std::vector<Variable> &variables)
     {
       for (const Setting &setting : settings)
@@ -116,7 +116,8 @@ namespace slipstick::scene
                      settings.end());
     }
 
-    /// Whether an operator stands next to the braces at @p open and @p close: signs must not meet, nor -2 and ^2.
+    /// Whether an operator is adjacent to the braces at @p open and @p close: a negative value needs parentheses then
+    /// (two signs, or -2 and ^2).
     bool is_operand(const std::string &text, const std::size_t open, const std::size_t close)
     {
       const auto before = open > 0 ? text.find_last_not_of(" \t", open - 1) : std::string::npos;

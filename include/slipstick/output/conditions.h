@@ -1,4 +1,4 @@
-// conditions.csv: where supports, loads and contact pairs act, for programs that draw the scene.
+// conditions.csv: places of supports, loads and contact pairs, for programs that draw the scene.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
@@ -6,9 +6,9 @@
 
 namespace slipstick::output
 {
-  /// Writes conditions.csv from rank 0: one row for every edge (in space face), before loading, of a boundary that a support,
-  /// foundation, traction or contact pair names, and for every point that a support or point load names (all ends are
-  /// then the node); then the rows of LoadPlace. Collective.
+  /// Writes conditions.csv from rank 0: one row for every edge (in space face), before loading, of a boundary used by a
+  /// support, foundation, traction or contact pair, and for every point used by a support or point load (all end points
+  /// are then the node); followed by the rows of LoadPlace. Collective.
   template <int dim>
   void write_conditions(const OutputDirectory        &directory,
                         const scene::Scene<dim>      &scene,

@@ -1,4 +1,4 @@
-// How far the nodes of contact.csv moved, so that contact lines can be drawn where they are.
+// Displacements of the nodes of contact.csv, for drawing contact lines in the deformed configuration.
 #pragma once
 
 #include <slipstick/mechanics/stress.h>
@@ -8,7 +8,8 @@
 
 namespace slipstick::output
 {
-  /// On rank 0 that of every node [mm]. @param nodes those of rank 0 count. @param u of the subdomains of this rank. Collective.
+  /// Displacement of every node [mm], on rank 0. @param nodes only those on rank 0 are used. @param u of the subdomains
+  /// of this rank. Collective.
   template <int dim>
   std::vector<std::array<double, 3>> contact_displacement(const mesh::Mesh<dim>                 &mesh,
                                                           const mechanics::Spaces<dim>          &spaces,

@@ -23,6 +23,6 @@ namespace slipstick::output
     std::uint64_t free                    = 0;
   };
 
-  /// Writes convergence.csv from rank 0, whose @p rows count; the members in order are the columns. Collective.
+  /// Writes convergence.csv from rank 0, whose @p rows are used; columns are the members in their order. Collective.
   void write_convergence(const OutputDirectory &directory, const std::vector<ConvergenceRow> &rows);
 } // namespace slipstick::output

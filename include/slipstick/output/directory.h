@@ -1,4 +1,4 @@
-// The output directory, and files that appear in it only when they are complete.
+// The output directory; files appear in it only when they are complete.
 #pragma once
 
 #include <mpi.h>
@@ -10,32 +10,32 @@
 
 namespace slipstick::output
 {
-  /// A directory that exists and takes files.
+  /// An existing, writable directory.
   class OutputDirectory
   {
   public:
-    /// Creates @p path and its parents if missing, removes partial files that killed runs left there, and tries to
-    /// write a file. Collective over @p comm: rank 0 does the work.
-    /// @throws InputError on all ranks alike: empty path, a file in its place, no permission, a full or read-only disk.
+    /// Creates @p path and its parents if missing, removes partial files of killed runs, and tries to write a file.
+    /// Collective over @p comm: rank 0 does the work.
+    /// @throws InputError on all ranks: empty path, a file in its place, no permission, a full or read-only disk.
     OutputDirectory(const std::string &path, const MPI_Comm comm);
 
-    /// Removes the files that an earlier run left here under the names of doc/interface.md. Collective.
+    /// Removes the output files of an earlier run (names: doc/interface.md). Collective.
     void remove_results() const;
 
     /// Path of the file @p name in the directory; empty @p name: of the directory itself.
     std::string path(const std::string &name = "") const;
 
-    /// Writes the file @p name on this rank alone: @p content writes a temporary file, which is then renamed. An
-    /// existing file of that name is replaced; if anything fails it stays, and nothing else is left behind. The
-    /// temporary file is new and has a random name, so that nothing is written through a link in its place.
-    /// @throws InputError on this rank alone if the file cannot be written; exceptions of @p content pass through.
+    /// Writes the file @p name on this rank: @p content writes a temporary file, which is then renamed. An existing
+    /// file of that name is replaced; on failure it is kept, and nothing else is left behind. The temporary file is new
+    /// and has a random name, so that nothing is written through a link in its place.
+    /// @throws InputError on this rank if the file cannot be written; exceptions of @p content pass through.
     void write(const std::string &name, const std::function<void(std::ostream &)> &content) const;
 
-    /// As write(), on rank 0 alone, and all ranks throw alike. @p content runs on rank 0 and must not communicate.
+    /// As write(), on rank 0; errors are thrown on all ranks. @p content runs on rank 0 and must not communicate.
     /// Collective.
     void write_from_root(const std::string &name, const std::function<void(std::ostream &)> &content) const;
 
-    /// Removes the directories that the constructor created, if they are empty, so that a refused scene leaves nothing
+    /// Removes the directories created by the constructor if they are empty, so that a rejected scene leaves nothing
     /// behind. Rank 0 does the work; no communication.
     void remove_if_new() const;
 

@@ -1,4 +1,4 @@
-// Bodies and obstacles in a drawing of the scene.
+// Bodies and obstacles in a picture of the scene.
 #pragma once
 
 #include <slipstick/mechanics/spaces.h>
@@ -7,15 +7,15 @@
 
 namespace slipstick::output
 {
-  /// From the scene to the plane of the picture [mm]: in the plane what it is, in space as seen from the front (z), the right (x)
-  /// and above (y), without perspective, as scripts/render does.
+  /// Projection from the scene to the picture plane [mm]: the identity in the plane; in space a parallel projection
+  /// from the front (z), the right (x) and above (y), as in scripts/render.
   template <int dim>
   struct Projection
   {
     dealii::Point<2>     operator()(const dealii::Point<dim> &p) const;
     dealii::Tensor<1, 2> along(const dealii::Tensor<1, dim> &v) const;
 
-    /// How near to the eye a place is, in space [mm].
+    /// Depth coordinate towards the viewer, in space [mm].
     double nearness(const dealii::Point<dim> &p) const;
   };
 
@@ -30,12 +30,12 @@ namespace slipstick::output
   template <>
   double Projection<3>::nearness(const dealii::Point<3> &p) const;
 
-  /// Corners of a boundary part as seen; of an edge with a middle that, too, in the order of a line.
+  /// Projected corners of a boundary part; for an edge with a mid node also that node, in the order along the edge.
   std::vector<dealii::Point<2>> seen(const mechanics::SurfaceEdge<2> &edge);
   std::vector<dealii::Point<2>> seen(const mechanics::SurfaceFacet &facet);
 
-  /// Cells and outlines (outlines alone where there are many cells); in space the faces towards the eye, those behind
-  /// first.
+  /// Cells and outlines (only outlines for large meshes); in space the faces towards the viewer, sorted from back to
+  /// front.
   class DrawnBodies
   {
   public:
@@ -43,7 +43,7 @@ namespace slipstick::output
     DrawnBodies(const mesh::Mesh<2> &mesh, const std::vector<mechanics::SurfaceEdge<2>> &outlines);
     DrawnBodies(const mesh::Mesh<3> &mesh, const std::vector<mechanics::SurfaceFacet> &outlines);
 
-    /// On rank 0.
+    /// Called on rank 0.
     void write(std::ostream &out, const View &view) const;
 
   private:
@@ -56,7 +56,7 @@ namespace slipstick::output
     std::vector<std::vector<dealii::Point<2>>> cells, edges; // in the plane
   };
 
-  /// @return was it drawn? Surfaces from files and height functions in space are not.
+  /// @return whether it was drawn; surfaces from files and height functions in space are not.
   bool draw_obstacle(std::ostream &out, const View &view, const scene::Obstacle<2> &obstacle, const double t);
   bool draw_obstacle(std::ostream &out, const View &view, const scene::Obstacle<3> &obstacle, const double t);
 } // namespace slipstick::output

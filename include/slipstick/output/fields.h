@@ -1,4 +1,4 @@
-// Fields for ParaView: one .vtu a subdomain, the .pvtu that joins them, the .pvd over the load steps.
+// Fields for ParaView: one .vtu per subdomain, the .pvtu that combines them, the .pvd over the load steps.
 #pragma once
 
 #include <slipstick/mechanics/stress.h>
@@ -7,9 +7,9 @@
 namespace slipstick::output
 {
   /// Writes subdomain_NNN_PPPP.vtu (NNN: step, PPPP: subdomain) on the ranks of the subdomains and solution_NNN.pvtu on
-  /// rank 0: displacement [mm], stress tensor, its out-of-plane component, principal (in the plane) and von
-  /// Mises stress [MPa] at the nodes; body, subdomain, rank
-  /// and error estimate [sqrt(N mm)] by cell. Compressed binary. Collective.
+  /// rank 0. Nodal fields: displacement [mm], stress tensor, its out-of-plane component, principal (in the plane) and
+  /// von Mises stress [MPa]. Cell fields: body, subdomain, rank and error estimate [sqrt(N mm)]. Compressed binary.
+  /// Collective.
   template <int dim>
   void write_fields(const OutputDirectory              &directory,
                     const mesh::Mesh<dim>              &mesh,

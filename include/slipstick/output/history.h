@@ -1,12 +1,12 @@
-// history.csv: what acts on the bodies, one row a load step.
+// history.csv: forces on the bodies, one row per load step.
 #pragma once
 
 #include <slipstick/output/summary.h>
 
 namespace slipstick::output
 {
-  /// Writes history.csv from rank 0, whose @p steps count: step, t, then Fx, Fy, moment of every load, support,
-  /// foundation and contact pair (on its slave body); columns "KIND NAME Fx"; in space
-  /// Fz and three moments besides. Collective.
+  /// Writes history.csv from rank 0, whose @p steps are used: step, t, then Fx, Fy, moment of every load, support,
+  /// foundation and contact pair (on its slave body); columns "KIND NAME Fx"; in space also Fz and three moments.
+  /// Collective.
   void write_history(const OutputDirectory &directory, const std::vector<StepSummary> &steps, const unsigned int dim);
 } // namespace slipstick::output

@@ -6,10 +6,10 @@
 
 namespace slipstick::output
 {
-  /// Writes an SVG file of name @p file from rank 0: meshes (outlines alone where there are many cells), supports,
-  /// loads, temperatures, bolts, contact pairs and obstacles with a legend of their names; arrows of loads in the load step in
-  /// which they are largest. Solids are seen from the front, right and above; what is named on their far side shows through,
-  /// and obstacles of a height function or a file are left out. Collective.
+  /// Writes an SVG file of name @p file from rank 0: meshes (only outlines for large meshes), supports, loads,
+  /// temperatures, bolts, contact pairs and obstacles with a legend of their names; arrows of loads for the load step
+  /// in which they are largest. Solids are viewed from the front, right and above; conditions on their far side are
+  /// visible through them, and obstacles from a height function or a file are omitted. Collective.
   template <int dim>
   void write_scene_picture(const OutputDirectory        &directory,
                            const std::string            &file,

@@ -1,4 +1,4 @@
-// summary.json: what a run did and found, in numbers. Keys and units: doc/interface.md.
+// summary.json: counts and results of a run, in numbers. Keys and units: doc/interface.md.
 #pragma once
 
 #include <slipstick/contact/result.h>
@@ -17,7 +17,7 @@ namespace slipstick::output
     converged,
     not_converged,
     no_equilibrium,
-    unfinished // load steps are still to come; the state left by an interrupted run
+    unfinished // further load steps follow; the state left by an interrupted run
   };
 
   /// "converged", "not converged", "no equilibrium", "unfinished"
@@ -37,11 +37,11 @@ namespace slipstick::output
     std::string   plane_state;
     unsigned int  bodies           = 0;
     unsigned int  subdomains       = 0;
-    std::uint64_t primal_dofs      = 0; // of the torn subdomains together
+    std::uint64_t primal_dofs      = 0; // sum over the torn subdomains
     std::uint64_t kernel_dimension = 0;
     std::uint64_t cells            = 0;
     DualSummary   dual;
-    std::uint64_t contact_candidates = 0; // slave nodes that may touch
+    std::uint64_t contact_candidates = 0; // slave nodes that may come into contact
   };
 
   struct SolverSummary
@@ -51,7 +51,7 @@ namespace slipstick::output
     std::string   dual_operator;                   // "explicit", "implicit"
     double        tolerance                   = 0; // relative, see Solver/Tolerance
     std::uint64_t hessian_multiplications     = 0; // after set-up
-    std::uint64_t dual_setup_multiplications  = 0; // norm estimate and the like
+    std::uint64_t dual_setup_multiplications  = 0; // e.g. for the norm estimate
     std::uint64_t preconditioner_applications = 0;
     unsigned int  outer_iterations            = 0;
     std::uint64_t cg_steps                    = 0;
@@ -63,7 +63,7 @@ namespace slipstick::output
     double        dual_norm                   = 0; // estimate of |PFP|
   };
 
-  /// All relative: as in the stopping test, and from the recovered displacement.
+  /// Relative residuals of the stopping test, and checks of the recovered displacement.
   struct ResidualSummary
   {
     double projected_gradient = 0;
@@ -74,11 +74,11 @@ namespace slipstick::output
     double friction_bound     = 0;
     double force_balance      = 0;
     double moment_balance     = 0;
-    double tension            = 0; // pull in contact
+    double tension            = 0; // tensile contact forces
     double nodal_equilibrium  = 0;
   };
 
-  /// A place of a body.
+  /// A place in a body.
   struct Place
   {
     std::string           body;
@@ -89,14 +89,14 @@ namespace slipstick::output
   {
     double estimate_energy_relative = 0; // discretisation
     double algebraic_relative       = 0;
-    Place  largest_at;       // the centre of the cell with the largest part of the discretisation error
-    double largest_part = 0; // of its square [-]
+    Place  largest_at;       // centre of the cell with the largest part of the discretisation error
+    double largest_part = 0; // part of the squared error [-]
   };
 
   /// Result at one point of a probe.
   struct ProbeValues
   {
-    double                distance = 0;            // from the beginning of the probe [mm]
+    double                distance = 0;            // from the start of the probe [mm]
     std::array<double, 3> position{{0, 0, 0}};     // reference configuration [mm]
     std::array<double, 3> displacement{{0, 0, 0}}; // [mm]
     std::array<double, 6> stress{};                // xx, yy, xy, zz, in space xz, yz [MPa]
@@ -106,11 +106,11 @@ namespace slipstick::output
   struct ProbeResult
   {
     std::string              name;
-    bool                     is_point = true; // else a line
+    bool                     is_point = true; // otherwise a line
     std::vector<ProbeValues> points;
   };
 
-  /// What one load, support or foundation exerts on the bodies.
+  /// Force and moment of one load, support or foundation on the bodies.
   struct NamedResultant
   {
     std::string name;
@@ -118,19 +118,19 @@ namespace slipstick::output
     Resultant   sum;
   };
 
-  /// In the order of the .prm.
+  /// Lists in the order of the .prm.
   struct ForceSummary
   {
     std::vector<NamedResultant> loads, supports, foundations;
   };
 
-  /// A bolt that is tightened, or whose length is held.
+  /// A pretensioned bolt, or one whose length is kept.
   struct PretensionResult
   {
     std::string name;
     double      force        = 0;     // tension [N]
-    double      shortening   = 0;     // of the bolt against its length without force [mm]
-    bool        is_tightened = false; // was the force given?
+    double      shortening   = 0;     // of the bolt relative to its force-free length [mm]
+    bool        is_tightened = false; // the force is prescribed in this step
   };
 
   struct ResultSummary
@@ -138,7 +138,7 @@ namespace slipstick::output
     double                   max_displacement = 0; // [mm]
     double                   max_von_mises    = 0; // [MPa]
     Place                    max_von_mises_at;
-    std::string              singular; // why stress is infinite there: "a re-entrant corner", ..; empty: it is not
+    std::string              singular; // why stress is infinite there: "a re-entrant corner", ..; empty: finite
     std::vector<ProbeResult> probes;
     double                   strain_energy = 0;       // [N mm]
     std::optional<std::array<double, 2>> hoop_stress; // smallest and largest, of bodies of revolution [MPa]
@@ -147,7 +147,7 @@ namespace slipstick::output
     std::vector<PretensionResult>        pretensions;
   };
 
-  /// Wall clock of rank 0, including its waiting for other ranks [s]. The stages add up to the total.
+  /// Wall time of rank 0, including waiting for other ranks [s]. The stages add up to the total.
   struct TimeSummary
   {
     double total         = 0; // since the process was started
@@ -184,26 +184,26 @@ namespace slipstick::output
     std::vector<PretensionResult>    pretensions;
   };
 
-  /// A figure of the results with the estimate of its discretisation error.
+  /// A result quantity with the estimate of its discretisation error.
   struct ErrorBar
   {
     std::string           quantity; // as in Goal: "max_displacement", "PAIR.max_pressure", ..
     std::string           unit;
     double                value = 0;
-    std::optional<double> error;  // of the same unit; none: see `reason`
-    std::string           reason; // why there is none
+    std::optional<double> error;  // in the same unit; if missing: see `reason`
+    std::string           reason; // why there is no estimate
   };
 
-  /// One mesh of a run that refines.
+  /// One mesh of an adaptive run.
   struct MeshRow
   {
     std::uint64_t cells = 0, unknowns = 0;
-    double        error        = 0; // relative: of the energy norm, or the worst of the goals
+    double        error        = 0; // relative: of the energy norm, or the largest of the goals
     double        energy_error = 0; // relative, in the energy norm
     double        seconds      = 0; // since the program was started
   };
 
-  /// Counts are sums over the load steps, residuals the worst of them, results those of the last.
+  /// Counts are summed over the load steps, residuals are the worst of all steps, results are those of the last step.
   struct Summary
   {
     std::string     case_name;
@@ -219,15 +219,15 @@ namespace slipstick::output
     MemorySummary   memory_mb;
 
     std::vector<StepSummary> steps;
-    std::vector<std::string> warnings; // warnings about the input or the answer
+    std::vector<std::string> warnings; // about the input or the solution
 
-    std::vector<ErrorBar> error_bars; // of the last load step, if they were asked for
+    std::vector<ErrorBar> error_bars; // of the last load step, if requested
     std::vector<MeshRow>  meshes;     // if meshes are refined
   };
 
-  /// The text of summary.json. A number that is not finite becomes null, bytes that are not UTF-8 become U+FFFD.
+  /// The text of summary.json. Numbers that are not finite become null, invalid UTF-8 becomes U+FFFD.
   std::string to_json(const Summary &summary);
 
-  /// Writes summary.json from rank 0, whose @p summary counts. Collective.
+  /// Writes summary.json from rank 0, whose @p summary is used. Collective.
   void write_summary(const OutputDirectory &directory, const Summary &summary);
 } // namespace slipstick::output

@@ -1,4 +1,4 @@
-// What drawings of a scene are made of (SVG): lines, arrows, labels, a legend.
+// Elements of a picture of the scene (SVG): lines, arrows, labels, a legend.
 #pragma once
 
 #include <deal.II/base/point.h>
@@ -10,7 +10,7 @@
 
 namespace slipstick::output
 {
-  /// How one kind of thing is drawn.
+  /// Line style of one kind of object.
   struct DrawingStyle
   {
     const char *kind, *colour; // colour: #rrggbb
@@ -22,10 +22,10 @@ namespace slipstick::output
   /// "contact, slave" or "contact, master".
   const DrawingStyle &drawing_style(const std::string &kind);
 
-  /// From a plane [mm] to the picture [pixels], y downwards.
+  /// Mapping from a plane [mm] to the picture [pixels], y downwards.
   struct View
   {
-    dealii::Point<2> low, high; // of what is drawn [mm]
+    dealii::Point<2> low, high; // bounding box of the drawing [mm]
     double           scale;     // [pixels/mm]
 
     View(const dealii::Point<2> &low, const dealii::Point<2> &high);
@@ -38,23 +38,24 @@ namespace slipstick::output
     double      height() const;
   };
 
-  /// A load at a place of the picture.
+  /// A load at a point of the picture.
   struct LoadArrow
   {
     dealii::Point<2>     place;
-    dealii::Tensor<1, 2> load;                 // as seen
-    double               size         = 0;     // its length before it was seen from one side
-    bool                 begins_there = false; // else it ends there
+    dealii::Tensor<1, 2> load;                 // projected
+    double               size         = 0;     // magnitude before projection
+    bool                 begins_there = false; // the arrow starts at the point; otherwise it ends there
   };
 
-  /// A picture under way, from its first line to finish(). Names stand as tooltips, and in the legend if in_legend() was called.
+  /// A picture, from its first line to finish(). Names are written as tooltips, and in the legend if in_legend() was
+  /// called.
   class ScenePicture
   {
   public:
-    /// @param n_names in the legend, at most.
+    /// @param n_names maximum number of names in the legend.
     ScenePicture(std::ostream &out, const View &view, const std::size_t n_names);
 
-    /// What is written between the two ends at the edge of the drawing, before the legend.
+    /// Objects written between these two calls are clipped to the drawing area, without the legend.
     void begin_clipped() const;
     void end_clipped() const;
 
@@ -69,15 +70,15 @@ namespace slipstick::output
                const dealii::Point<2> &point,
                const std::string      &text);
 
-    /// An arrow around an axis that is seen as a point.
+    /// An arrow around an axis perpendicular to the picture.
     void turning(const std::string &kind, const std::string &name, const dealii::Point<2> &axis);
 
-    /// All of one kind of load, in proportion to each other.
+    /// All arrows of one kind of load, drawn to the same scale.
     void arrows(const std::string &kind, const std::vector<LoadArrow> &all);
 
     void in_legend(const std::string &kind, const std::string &name);
 
-    /// The legend and the end of the file.
+    /// Writes the legend and the end of the file.
     void finish() const;
 
   private:

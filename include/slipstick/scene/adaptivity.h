@@ -1,4 +1,4 @@
-// What a run is asked for beyond the answer on the mesh as the scene has it: error bars, an accuracy to reach.
+// Requests beyond the solution on the given mesh: error bars, an accuracy to be reached.
 #pragma once
 
 #include <slipstick/scene/scene.h>
@@ -14,45 +14,45 @@ namespace dealii
 
 namespace slipstick::scene
 {
-  /// The parameter, and its value, with which presets refine meshes.
+  /// The parameter and the value that make presets refine meshes.
   inline const std::pair<std::string, std::string> adaptive_mesh = {"Mesh", "adaptive"};
 
   struct AdaptivityOptions
   {
-    bool                     error_bars  = false;     // one more linear problem a figure, for its error bar
-    bool                     adapts_mesh = false;     // Mesh = adaptive: the accuracy is that which a preset means
-    double                   accuracy    = 0;         // relative error to reach; 0: the mesh stays as it is
-    std::vector<std::string> goals;                   // quantities that are to have it; empty: the energy norm
-    bool                     skips_unknown = false;   // goals that cannot be estimated are left out, and said
-    unsigned int             max_meshes    = 12;      // solved in all
+    bool                     error_bars  = false;     // one more linear problem per quantity
+    bool                     adapts_mesh = false;     // Mesh = adaptive: to the accuracy of the preset
+    double                   accuracy    = 0;         // relative error to reach; 0: no refinement
+    std::vector<std::string> goals;                   // quantities to which it applies; empty: energy norm
+    bool                     skips_unknown = false;   // goals that cannot be estimated are reported and omitted
+    unsigned int             max_meshes    = 12;      // maximum number of meshes solved
     unsigned int             max_unknowns  = 2000000; // of the finest mesh
 
-    /// Are meshes refined until the accuracy is reached?
+    /// Whether meshes are refined until the accuracy is reached.
     bool refines() const
     {
       return accuracy > 0;
     }
   };
 
-  /// What can be a goal: max_displacement, strain_energy, PAIR.max_pressure, SUPPORT.force_x, ... Pairs that are found by
-  /// search have no names yet.
+  /// Admissible goals: max_displacement, strain_energy, PAIR.max_pressure, SUPPORT.force_x, ... Pairs found by the
+  /// contact search have no names yet.
   template <int dim>
   std::vector<std::string> quantity_names(const Scene<dim> &scene);
 
-  /// What a preset promises, where it can be estimated: max_displacement, strain_energy, and of every pair its normal force
-  /// and largest pressure.
+  /// Goals of a preset, as far as they can be estimated: max_displacement, strain_energy, and for every pair its normal
+  /// force and largest pressure.
   template <int dim>
   std::vector<std::string> goals_of_presets(const Scene<dim> &scene);
 
-  /// The relative error that "1 %" spells; 0 if @p text is no percentage above 0 and below 100.
+  /// The relative error given as "1 %"; 0 if @p text is not a percentage above 0 and below 100.
   double accuracy_of(const std::string &text);
 
-  /// The relative error that a preset stands for.
+  /// The relative error of a preset.
   double accuracy_of(const Accuracy preset);
 
-  /// `Error bars`, `Mesh` and `Goal`, at the top level.
+  /// Declares `Error bars`, `Mesh` and `Goal` at the top level.
   void declare_goals(dealii::ParameterHandler &prm, AdaptivityOptions &options);
 
-  /// Subsection `Adaptivity`.
+  /// Declares the subsection `Adaptivity`.
   void declare(dealii::ParameterHandler &prm, AdaptivityOptions &options);
 } // namespace slipstick::scene

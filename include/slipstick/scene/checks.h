@@ -6,12 +6,13 @@
 
 namespace slipstick::scene
 {
-  /// Bodies, their hold, conditions that exclude each other, mesh against decomposition, algorithm against contact.
-  /// @throws InputError for the first that fails.
+  /// Checks bodies, their supports, mutually exclusive conditions, mesh against decomposition, algorithm against
+  /// contact.
+  /// @throws InputError for the first check that fails.
   template <int dim>
   void check_scene(const Scene<dim> &scene, const Parameters &parameters);
 
-  /// What may make the answer wrong although the scene can be solved, with the remedy; a line each.
+  /// Warnings, with remedies, about input that can be solved but may give a wrong solution; one line each.
   template <int dim>
   std::vector<std::string> warnings(const Scene<dim> &scene);
 } // namespace slipstick::scene

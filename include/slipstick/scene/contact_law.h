@@ -1,4 +1,4 @@
-// What acts between two sides that touch: a law with its numbers. Nothing else tells one law from another.
+// Contact law between two sides: a set of numbers that fully defines it; there is no other distinction between laws.
 #pragma once
 
 #include <slipstick/qp/node_set.h>
@@ -10,7 +10,7 @@
 
 namespace slipstick::scene
 {
-  /// A number of a law as the .prm names it, which may vary over the boundary and with the load factor.
+  /// A number of a law, named as in the .prm; it may depend on the position on the boundary and on the load factor.
   template <int dim>
   struct LawNumber
   {
@@ -25,25 +25,25 @@ namespace slipstick::scene
   struct ContactLaw
   {
     std::string name           = "frictionless";
-    bool        is_bonded      = false; // neither normal nor tangential forces have bounds: both rows are equalities
-    bool        has_friction   = false; // tangential forces between bounds, which ...
-    bool        acts_when_open = false; // ... are the fixed ones whether a node is closed or not
+    bool        is_bonded      = false; // normal and tangential forces are unbounded: both rows are equalities
+    bool        has_friction   = false; // tangential forces are bounded; the bounds ...
+    bool        acts_when_open = false; // ... are the fixed ones, for closed and open nodes alike
 
     std::optional<LawNumber<dim>> fixed, coefficient, cap; // of qp::NodeSet: [MPa] (none: 0), [-] (0), [MPa] (no cap)
 
-    /// Have nodes a row along the tangent?
+    /// Whether nodes have a tangential row.
     bool has_tangential_row() const
     {
       return is_bonded || has_friction;
     }
 
-    /// Does it say nothing of nodes that stay open, so that they may go without rows?
+    /// Whether the law exerts no forces on open nodes, so that these may have no rows.
     bool acts_where_closed_alone() const
     {
       return !is_bonded && !acts_when_open;
     }
 
-    /// Forces [N] that it admits at a node of this tributary area [mm^2], but for bonds and as if the node were closed.
+    /// Admissible forces [N] at a closed node with this tributary area [mm^2]; not for bonds.
     /// @throws InputError (on the calling rank) for a negative number, naming @p pair.
     qp::NodeSet admissible_forces(const dealii::Point<dim> &x,
                                   const double              t,
@@ -51,15 +51,15 @@ namespace slipstick::scene
                                   const std::string        &pair) const;
   };
 
-  /// A parameter of a law in the .prm, a FIELD >= 0. The same name in two laws is one parameter.
+  /// A parameter of a law in the .prm, a FIELD >= 0. Parameters with the same name in two laws are the same parameter.
   struct LawParameter
   {
     std::string name, unit, meaning;
-    std::string default_text; // "none": no number; empty: it must be set ...
-    std::string remedy;       // ... and what to do where it is not
+    std::string default_text; // "none": no number; empty: must be set ...
+    std::string remedy;       // ... with this remedy if it is not
   };
 
-  /// A law as the .prm names it, and how to make it of its parameters.
+  /// A law as named in the .prm, and its construction from the parameters.
   template <int dim>
   struct LawKind
   {
@@ -67,15 +67,15 @@ namespace slipstick::scene
     std::vector<LawParameter> parameters;
     ContactLaw<dim> (*make)(const std::vector<std::optional<LawNumber<dim>>> &numbers);
 
-    /// @p numbers in the order of the parameters, nothing for "none".
+    /// @param numbers in the order of the parameters; no value for "none".
     ContactLaw<dim> law(const std::vector<std::optional<LawNumber<dim>>> &numbers) const;
   };
 
-  /// All of them. A new one is a file such as cohesion.cc and its entry here.
+  /// All laws. A new law needs a file such as cohesion.cc and an entry here.
   template <int dim>
   const std::vector<LawKind<dim>> &law_kinds();
 
-  /// The law of a name, with numbers as the .prm would say them in the order of its parameters.
+  /// The law with this name, with numbers as texts of the .prm in the order of its parameters.
   template <int dim>
   ContactLaw<dim> make_law(const std::string &name, const std::vector<std::string> &numbers = {});
 

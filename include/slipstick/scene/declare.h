@@ -1,4 +1,4 @@
-// Declaring parameters: the default is the member's value, the text carries unit, range and meaning.
+// Declaration of parameters: the default is the member's value; the text contains unit, range and meaning.
 #pragma once
 
 #include <deal.II/base/parameter_handler.h>
@@ -14,22 +14,22 @@
 
 namespace slipstick::scene
 {
-  /// As parameters of components are called.
+  /// Component names used in parameters.
   inline const std::array<std::string, 3> axes = {{"x", "y", "z"}};
 
-  /// The largest size of numbers in a scene, and the smallest of those that must be positive: products of four of them are far
-  /// from overflow, and no units need more.
+  /// The largest magnitude of numbers in a scene, and the smallest of those that must be positive: products of four of
+  /// them are far from overflow, and no system of units needs more.
   constexpr double smallest_number = 1e-30, largest_number = 1e30;
 
-  /// Moduli [MPa] and thicknesses [mm] lie between these: in no units are those of materials beyond (diamond has 1.2e12 Pa,
-  /// 1.2e18 N/km^2), and what rounding of coordinates (1e-16 of an edge) leaves in a gap would press with more than the
-  /// loads above.
+  /// Limits of moduli [MPa] and thicknesses [mm]: in no system of units do materials exceed them (diamond has 1.2e12
+  /// Pa, 1.2e18 N/km^2), and beyond them the rounding of coordinates (1e-16 of an edge) in a gap would cause pressures
+  /// above the loads.
   constexpr double least_of_material = 1e-20, most_of_material = 1e20;
 
-  /// Whether a number is finite and no larger.
+  /// Whether a number is finite and within the largest magnitude.
   bool is_usable(const double value);
 
-  /// Numbers between two limits; an open limit is excluded itself. Infinite numbers are never inside.
+  /// Numbers between two limits; an open limit is excluded. Infinite numbers are never inside.
   struct Interval
   {
     double lower      = -std::numeric_limits<double>::infinity();
@@ -43,10 +43,10 @@ namespace slipstick::scene
     static Interval between(const double lower, const double upper); // both included
 
     bool        contains(const double value) const;
-    std::string text() const; // to follow "a number": " > 0", " in (0, 1)", or nothing
+    std::string text() const; // text to follow "a number": " > 0", " in (0, 1)", or empty
   };
 
-  /// What a FIELD may be, for messages: "a number or a formula of x, y, t".
+  /// What a FIELD may contain, for messages: "a number or a formula of x, y, t".
   template <int dim>
   std::string field_format()
   {
@@ -57,11 +57,11 @@ namespace slipstick::scene
   template <typename Enum>
   using Choices = std::vector<std::pair<std::string, Enum>>;
 
-  /// The description of a pattern that allows a few words starts so; the words follow, separated by commas.
+  /// Start of the description of a pattern that allows a few words; the words follow, separated by commas.
   extern const std::string choice_prefix;
 
-  /// Declares a parameter that allows the texts for which @p allows holds; @p store receives the text, at once
-  /// the default and later every value set. @p unit is empty or a text such as "MPa".
+  /// Declares a parameter that accepts the texts for which @p allows holds. @p store receives the text: the default
+  /// immediately, later every value set. @p unit is empty or a text such as "MPa".
   void add_entry(dealii::ParameterHandler                       &prm,
                  const std::string                              &name,
                  const std::string                              &default_text,
@@ -78,7 +78,7 @@ namespace slipstick::scene
                   const Interval           &interval,
                   const std::string        &meaning);
 
-  /// A whole number from @p least to @p most.
+  /// Declares an integer from @p least to @p most.
   void add_count(dealii::ParameterHandler &prm,
                  const std::string        &name,
                  unsigned int             &value,
@@ -86,14 +86,14 @@ namespace slipstick::scene
                  const unsigned int        most,
                  const std::string        &meaning);
 
-  /// A whole number from 1 to @p most, or `auto`, which is 0 in the program.
+  /// Declares an integer from 1 to @p most, or `auto`, which is stored as 0.
   void add_count_or_auto(dealii::ParameterHandler &prm,
                          const std::string        &name,
                          unsigned int             &value,
                          const unsigned int        most,
                          const std::string        &meaning);
 
-  /// @p dim numbers separated by commas.
+  /// Declares @p dim numbers separated by commas.
   template <int dim>
   void add_point(dealii::ParameterHandler &prm,
                  const std::string        &name,
@@ -102,7 +102,7 @@ namespace slipstick::scene
                  const Interval           &interval,
                  const std::string        &meaning);
 
-  /// @p dim whole numbers from 1 to @p most, or `auto`, which is nothing in the program.
+  /// Declares @p dim integers from 1 to @p most, or `auto`, which is stored as no value.
   template <int dim>
   void add_counts_or_auto(dealii::ParameterHandler                     &prm,
                           const std::string                            &name,
@@ -112,7 +112,7 @@ namespace slipstick::scene
 
   void add_flag(dealii::ParameterHandler &prm, const std::string &name, bool &value, const std::string &meaning);
 
-  /// Free text, checked where it is read; @p allowed describes it.
+  /// Declares free text, checked where it is read; @p allowed describes it.
   void add_text(dealii::ParameterHandler &prm,
                 const std::string        &name,
                 std::string              &value,
@@ -120,7 +120,7 @@ namespace slipstick::scene
                 const std::string        &allowed,
                 const std::string        &meaning);
 
-  /// One of a few words; see add_choice().
+  /// Declares one of a few words; see add_choice().
   void add_word(dealii::ParameterHandler                       &prm,
                 const std::string                              &name,
                 const std::string                              &default_word,

@@ -10,7 +10,7 @@ namespace slipstick::scene
 {
   /// A scalar function of position and load factor t, given as a number or as a muParser formula such as
   /// "-250*sin(pi*x/10)*t". Copies share the parsed formula. Evaluation is not thread safe. muParser is used
-  /// directly: dealii::FunctionParser prints to standard error on a wrong formula and takes "1,5" for 5.
+  /// directly: dealii::FunctionParser prints to standard error on a wrong formula and reads "1,5" as 5.
   template <int dim>
   class Field
   {
@@ -22,10 +22,10 @@ namespace slipstick::scene
     /// other than x, y, t, pi and muParser's functions, or is a number that is not finite.
     Field(const std::string &formula, const std::string &where);
 
-    /// @throws InputError when a formula gives no finite number there (on the calling rank only).
+    /// @throws InputError (on the calling rank only) if the value is not a finite number.
     double value(const dealii::Point<dim> &x, const double t) const;
 
-    /// True when the formula is a plain number; then value() costs nothing.
+    /// Whether the formula is a plain number; value() is then free of cost.
     bool is_constant() const;
 
     const std::string &formula() const;

@@ -1,4 +1,4 @@
-// What a dealii::ParameterHandler declares, as data and as text in several formats.
+// The parameters declared in a dealii::ParameterHandler, as data and as text in several formats.
 #pragma once
 
 #include <slipstick/scene/list_format.h>
@@ -11,7 +11,7 @@
 
 namespace slipstick::scene
 {
-  /// A parameter as declared. Allowed values and meaning are for people.
+  /// A declared parameter. Allowed values and meaning are texts for users.
   struct DeclaredParameter
   {
     std::string path; // "Contact circle/Law"
@@ -22,12 +22,12 @@ namespace slipstick::scene
     std::string meaning;
   };
 
-  /// All that @p prm declares, in the order of declaration.
+  /// All parameters declared in @p prm, in the order of declaration.
   std::vector<DeclaredParameter> declared_parameters(const dealii::ParameterHandler &prm);
 
-  /// Writes all that @p prm declares with value, unit, range and meaning. Throws nothing of its own.
+  /// Writes all parameters declared in @p prm with value, unit, range and meaning. Throws no exceptions of its own.
   void write_parameters(std::ostream &out, const dealii::ParameterHandler &prm, const ListFormat format);
 
-  /// The values of @p prm alone, such that reading them again gives the same values.
+  /// Only the values in @p prm, in a form that gives the same values when read again.
   std::string print_values(const dealii::ParameterHandler &prm);
 } // namespace slipstick::scene

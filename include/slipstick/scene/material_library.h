@@ -1,15 +1,16 @@
-// Materials known by name.
+// Library of materials.
 #pragma once
 
 #include <slipstick/scene/parameters.h>
 
 namespace slipstick::scene
 {
-  /// Their names, as the .prm spells them.
+  /// Names of the materials as in the .prm.
   std::vector<std::string> library_names();
 
-  /// Sets the values of every material of @p names that has a Library, or no subsection and the name of one. To be called
-  /// before Parameters::apply(), so that values which the file or an override sets take precedence.
+  /// Sets the values of every material in @p names that has a Library parameter, or has the name of a library material
+  /// and no subsection. Must be called before Parameters::apply(), so that values set by the file or an override take
+  /// precedence.
   void apply_library(const Parameters               &parameters,
                      const std::vector<std::string> &names,
                      dealii::ParameterHandler       &prm);

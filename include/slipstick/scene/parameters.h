@@ -1,4 +1,4 @@
-// The generic part around dealii::ParameterHandler: lists of names, values, diagnosis.
+// Generic layer around dealii::ParameterHandler: lists of names, values, error messages.
 #pragma once
 
 #include <slipstick/base/exceptions.h>
@@ -12,7 +12,7 @@
 
 namespace slipstick::scene
 {
-  /// Subsections "KIND NAME" whose names the top level parameter LIST declares: {"Body", "Bodies"}.
+  /// Subsections "KIND NAME" whose names are declared by the top-level parameter LIST: {"Body", "Bodies"}.
   struct NamedKind
   {
     std::string              kind;
@@ -20,11 +20,11 @@ namespace slipstick::scene
     std::vector<std::string> known = {}; // names that need no subsection
   };
 
-  /// Sets the declared parameter @p path, "Solver/Tolerance", whose value must be allowed.
+  /// Sets the declared parameter @p path, e.g. "Solver/Tolerance"; the value must be allowed.
   void set_value(dealii::ParameterHandler &prm, const std::string &path, const std::string &value);
 
-  /// What one .prm file with overrides sets. First names() of every list, then apply() to a handler that
-  /// declares everything.
+  /// The settings of one .prm file with overrides. First call names() for every list, then apply() with a handler that
+  /// declares all parameters.
   class Parameters
   {
   public:
@@ -33,16 +33,16 @@ namespace slipstick::scene
                const std::vector<std::string> &overrides,
                const std::vector<NamedKind>   &named_kinds);
 
-    /// The names that the list of @p kind declares, in its order.
-    /// @throws InputError for a name that is empty, declared twice, holds '/' or '=', or has no subsection.
+    /// The names declared in the list of @p kind, in its order.
+    /// @throws InputError for a name that is empty, declared twice, contains '/' or '=', or has no subsection.
     std::vector<std::string> names(const NamedKind &kind) const;
 
-    /// Sets in @p prm all that file and overrides set.
+    /// Sets in @p prm everything set by file and overrides.
     /// @throws InputError for an unknown section or parameter and for a value that is not allowed.
     void apply(dealii::ParameterHandler &prm) const;
 
-    /// @throws InputError for the first parameter that is set and that @p there declares, but @p here does not.
-    /// @param where_it_is of what @p there declares: "the plane (Dimension = 2)".
+    /// @throws InputError for the first parameter that is set and declared in @p there, but not in @p here.
+    /// @param where_it_is describes what @p there belongs to: "the plane (Dimension = 2)".
     void refuse_foreign(const dealii::ParameterHandler &here,
                         const dealii::ParameterHandler &there,
                         const std::string              &where_it_is) const;
@@ -52,14 +52,14 @@ namespace slipstick::scene
     /// Whether the file opens the subsection @p path, or anything in it is set.
     bool has_section(const std::string &path) const;
 
-    /// The text that the file or an override sets the parameter to; nothing when it is not set.
+    /// The text to which the file or an override sets the parameter; nothing if it is not set.
     std::optional<std::string> value(const std::string &path) const;
 
-    /// The existing file that a scene means by @p name: relative to the directory of the .prm, else to the working
-    /// directory; an absolute path. Nothing when there is no such regular file.
+    /// Absolute path of the existing file @p name: relative to the directory of the .prm, otherwise to the working
+    /// directory. Nothing if there is no such regular file.
     std::optional<std::string> find_file(const std::string &name) const;
 
-    /// @throws InputError when nothing sets the parameter. @p remedy says what to set.
+    /// @throws InputError if the parameter is not set. @p remedy says what to set.
     void require(const std::string &path, const std::string &remedy) const;
 
     /// Place and path for a message about the parameter or section: "prm/box.prm:12: Contact circle/Law".
@@ -69,7 +69,7 @@ namespace slipstick::scene
     InputError error(const std::string &path, const std::string &reason, const std::string &remedy) const;
 
   private:
-    const Setting *find(const std::string &path) const; // the last one
+    const Setting *find(const std::string &path) const; // the last setting of the path
 
     std::string            file;
     std::vector<NamedKind> kinds;

@@ -1,4 +1,4 @@
-// Reads the text of .prm files and --set overrides into a plain list, with the place of every line.
+// Reads .prm files and --set overrides into a plain list of settings with their places.
 #pragma once
 
 #include <string>

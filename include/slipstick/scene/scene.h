@@ -1,4 +1,4 @@
-// The scene: what the .prm describes, checked and ready to use. Units: N, mm, MPa (any consistent set works).
+// The scene: the contents of the .prm, checked and ready to use. Units: N, mm, MPa (any consistent set works).
 #pragma once
 
 #include <slipstick/qp/options.h>
@@ -18,7 +18,7 @@ namespace slipstick::scene
 {
   class TriangulatedSurface;
 
-  /// What a section in the plane stands for.
+  /// What a plane section represents.
   enum class PlaneState
   {
     plane_stress,
@@ -38,7 +38,7 @@ namespace slipstick::scene
 
   enum class Shape
   {
-    rectangle,    // left, right, bottom, top; in space a cuboid, back and front (z) besides
+    rectangle,    // left, right, bottom, top; in space a cuboid, also back and front (z)
     disc,         // arc
     half_disc,    // arc, flat; the half below its centre, flat side up
     quarter_disc, // arc, flat, side; the quarter below and to the right of its centre
@@ -51,17 +51,17 @@ namespace slipstick::scene
     mesh          // from a file; boundaries by the physical names there
   };
 
-  /// Where a body goes: first mirrored at an axis of its own coordinates, then turned about their origin, then moved.
+  /// Position of a body: first mirrored at an axis of its own coordinates, then rotated about their origin, then moved.
   template <int dim>
   struct Placement
   {
     bool                 mirror_x = false; // x -> -x
     bool                 mirror_y = false; // y -> -y
     double               rotation = 0;     // [degrees], counterclockwise; in space about ...
-    dealii::Tensor<1, 3> axis;             // ... this one (none: z), seen against it
+    dealii::Tensor<1, 3> axis;             // ... this axis (none: z), as seen against it
     dealii::Point<dim>   translation;      // [mm]
 
-    /// Moves a point there.
+    /// The mapping of a point to its new position.
     std::function<void(dealii::Point<dim> &)> motion() const;
   };
 
@@ -80,22 +80,22 @@ namespace slipstick::scene
     std::optional<std::array<unsigned int, dim>> cells;             // rectangle: empty: blocks x cells per block of
                                                                     // `Decomposition`; rings: around, across
     unsigned int             cells_along_arc  = 32;                 // discs: edges on the arc; solids: around
-    unsigned int             cells_along_axis = 0;                  // cylinder, tube; 0: about cubes
+    unsigned int             cells_along_axis = 0;                  // cylinder, tube; 0: cells are approximately cubes
     std::string              file;                                  // mesh: path as found
     std::string              part;                                  // mesh: physical name of the body; empty: all cells
     double                   scale              = 1;                // mesh: factor on coordinates, > 0 (1000: m to mm)
-    bool                     has_smooth_outline = true; // edges stand for arcs, curves through mid nodes, splines
+    bool                     has_smooth_outline = true; // edges represent arcs, curves through mid nodes, splines
     double                   corner_angle       = 35;   // mesh: edges at larger angles make corners [degrees], > 0
     Placement<dim>           placement;
     unsigned int             refinements = 0;          // uniform, on top of Discretization/Refinements
     std::vector<std::string> refined_boundaries;       // cells at these boundaries are refined further ...
-    unsigned int             boundary_refinements = 0; // ... so many times
+    unsigned int             boundary_refinements = 0; // ... this many times
     unsigned int             material             = 0; // index into Scene::materials
-    double                   thickness            = 1; // [mm], > 0; 1 where the section is revolved
+    double                   thickness            = 1; // [mm], > 0; 1 for bodies of revolution
   };
 
-  /// A boundary of a body, written BODY/BOUNDARY in the .prm. Of a body from a mesh file the name is checked when the
-  /// mesh is read. `*` is the whole outline of the body.
+  /// A boundary of a body, BODY/BOUNDARY in the .prm. For a body from a mesh file the name is checked when the mesh is
+  /// read. `*` is the whole outline of the body.
   struct BoundaryName
   {
     unsigned int body = 0; // index into Scene::bodies
@@ -111,14 +111,14 @@ namespace slipstick::scene
     std::optional<dealii::Point<dim>> coordinates; // [mm]; a node must lie within half a cell of it
   };
 
-  /// Prescribed displacement of a boundary or a point, by component or along the outward normal; what is not set is
+  /// Prescribed displacement of a boundary or a point, by component or along the outward normal; components not set are
   /// free.
   template <int dim>
   struct PrescribedDisplacement
   {
     std::string                                name;
     BoundaryName                               where;
-    std::optional<PointName<dim>>              point;      // in place of the boundary
+    std::optional<PointName<dim>>              point;      // instead of the boundary
     std::array<std::optional<Field<dim>>, dim> components; // [mm]
     std::optional<Field<dim>>                  normal;     // outwards [mm]; boundaries only, then no components; 0 is a
                                                            // roller or a plane of symmetry
@@ -165,7 +165,7 @@ namespace slipstick::scene
     std::array<Field<dim>, dim> force; // [N]
   };
 
-  /// Change of temperature against the state without stress.
+  /// Change of temperature relative to the stress-free state.
   template <int dim>
   struct Temperature
   {
@@ -174,8 +174,8 @@ namespace slipstick::scene
     Field<dim>                change; // [K]
   };
 
-  /// A bolt that is tightened: across the section of its body through `point`, normal to `direction`, the two parts
-  /// are drawn together until the bolt bears the force; later the length by which it is shortened is held.
+  /// A pretensioned bolt: the two parts of its body on both sides of the section through `point`, normal to
+  /// `direction`, are pulled together until the bolt carries the force; afterwards its shortening is kept.
   template <int dim>
   struct Pretension
   {
@@ -183,23 +183,23 @@ namespace slipstick::scene
     unsigned int           body = 0;            // index into Scene::bodies
     dealii::Point<dim>     point;               // [mm]
     dealii::Tensor<1, dim> direction;           // unit length: the axis of the bolt
-    Field<dim>             force;               // [N], >= 0: tension; where it is 0 the length is held
-    double                 tightened_until = 1; // last load factor at which the force is given
+    Field<dim>             force;               // [N], >= 0: tension; if 0 the length is kept
+    double                 tightened_until = 1; // last load factor at which the force is prescribed
   };
 
   enum class ObstacleShape
   {
     circle,     // bodies are outside; in space a ball
     hole,       // circle with the bodies inside; in space a ball
-    half_plane, // through `center`; bodies are where `normal` points; in space a half space
-    cylinder,   // in space alone: about the line through `center` along `normal`; bodies are outside
+    half_plane, // through `center`; bodies are on the side of `normal`; in space a half space
+    cylinder,   // only in space: about the line through `center` along `normal`; bodies are outside
     bore,       // the same with the bodies inside
     polyline,   // bodies are to the left of the direction of travel
     function,   // bodies are above y = height(x), in space y = height(x, z)
-    stl         // in space alone: a closed surface from a file; bodies are where its normals point
+    stl         // only in space: a closed surface from a file; bodies are on the side of its normals
   };
 
-  /// A rigid obstacle that needs no mesh.
+  /// A rigid obstacle without a mesh.
   template <int dim>
   struct Obstacle
   {
@@ -212,7 +212,7 @@ namespace slipstick::scene
     Field<dim>                      height;     // function [mm], of x (and z) and t
     std::string                     file;       // stl: path as found
 
-    /// stl: placed; copies share it.
+    /// stl: in its position; shared by copies
     std::shared_ptr<const TriangulatedSurface> surface;
   };
 
@@ -228,7 +228,7 @@ namespace slipstick::scene
 
   enum class ContactDiscretization
   {
-    automatic, // node to node where the meshes match, else mortar
+    automatic, // node to node if the meshes match, otherwise mortar
     node_to_node,
     mortar
   };
@@ -242,9 +242,9 @@ namespace slipstick::scene
     std::optional<BoundaryName> master;       // empty: the obstacle
     unsigned int                obstacle = 0; // index into Scene::obstacles
     ContactLaw<dim>             law;
-    Field<dim>                  offset; // added to the gap of the geometry [mm]; negative: press fit
-    std::optional<Field<dim>>   gap;    // [mm] in place of the gap of the geometry
-    std::optional<double>       reach;  // [mm]: what is farther apart is no candidate; empty: from the meshes
+    Field<dim>                  offset; // added to the geometric gap [mm]; negative: press fit
+    std::optional<Field<dim>>   gap;    // [mm] replaces the geometric gap
+    std::optional<double>       reach;  // [mm]: no contact at larger distances; empty: from the meshes
     ContactDiscretization       discretization = ContactDiscretization::automatic;
   };
 
@@ -254,10 +254,10 @@ namespace slipstick::scene
   {
     bool             automatic = false;
     double           reach     = 0; // boundaries closer than this make a pair [mm], >= 0
-    ContactPair<dim> pair;          // law, bounds, offset and so on of the pairs that are found
+    ContactPair<dim> pair;          // law, bounds, offset and other properties of the pairs found
   };
 
-  /// Fixed point of the slip bounds of laws that act where a pair is closed.
+  /// Fixed-point iteration of the slip bounds of laws that act on closed contact only.
   struct FrictionOptions
   {
     double       tolerance      = 1e-6; // relative change of the slip bounds
@@ -277,14 +277,14 @@ namespace slipstick::scene
     DecompositionMethod method          = DecompositionMethod::blocks;
     unsigned int        blocks          = 4;  // N: N x N blocks of every rectangle, >= 1
     unsigned int        cells_per_block = 50; // per direction, >= 1
-    unsigned int        subdomains      = 0;  // METIS: over all bodies; 0 = auto
-    unsigned int        seed            = 0;  // METIS: of its random numbers
+    unsigned int        subdomains      = 0;  // METIS: for all bodies together; 0 = auto
+    unsigned int        seed            = 0;  // METIS: for its random numbers
   };
 
   enum class ElementKind
   {
     standard,
-    nearly_incompressible // dilatation projected on polynomials of one degree less: does not lock
+    nearly_incompressible // dilatation projected on polynomials of one degree less, to avoid locking
   };
 
   struct Discretization
@@ -294,7 +294,7 @@ namespace slipstick::scene
     unsigned int refinements = 0; // extra uniform refinements
   };
 
-  /// Presets over the single knobs of accuracy, see source/scene/accuracy.cc.
+  /// Presets of the individual accuracy parameters, see source/scene/accuracy.cc.
   enum class Accuracy
   {
     draft,
@@ -314,12 +314,12 @@ namespace slipstick::scene
   {
     Algorithm          algorithm                     = Algorithm::automatic;
     double             tolerance                     = 1e-4;  // relative, of |gP| and |G x| to |P d|; the paper's eps
-    bool               stops_at_discretization_error = false; // Tolerance = auto; `tolerance` is then the least one
+    bool               stops_at_discretization_error = false; // Tolerance = auto; `tolerance` is then the lower limit
     qp::SmalbeOptions  smalbe;
     qp::NewtonOptions  newton;
     qp::PcpgOptions    pcpg;
     tfeti::DualOptions dual;
-    bool               prune_contact = true; // contact nodes far apart get no multipliers unless they would penetrate
+    bool               prune_contact = true; // distant contact nodes get no multipliers unless they would penetrate
   };
 
   struct OutputOptions
@@ -331,7 +331,7 @@ namespace slipstick::scene
   struct Scene
   {
     std::string                              name;  // file name of the .prm without ending
-    std::string                              title; // one line for people
+    std::string                              title; // one line, for readers
     PlaneState                               plane_state = PlaneState::plane_stress;
     Accuracy                                 accuracy    = Accuracy::engineering;
     std::vector<Material>                    materials;
@@ -353,7 +353,7 @@ namespace slipstick::scene
     Discretization                           discretization;
     SolverOptions                            solver;
     OutputOptions                            output;
-    std::string                              parameters; // the complete .prm as understood
+    std::string                              parameters; // the complete .prm as interpreted
 
     bool has_contact() const
     {

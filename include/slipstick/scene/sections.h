@@ -1,5 +1,6 @@
-// One struct per kind of subsection of the .prm: declare, then read what refers to other names. Their members are
-// bound to the ParameterHandler by reference, so they must neither move nor die before the last value is set.
+// One struct per kind of subsection of the .prm: it declares the parameters, then reads those that refer to other
+// names. Its members are bound to the ParameterHandler by reference, so it must not be moved or destroyed before the
+// last value is set.
 #pragma once
 
 #include <slipstick/scene/parameters.h>
@@ -14,11 +15,11 @@
 
 namespace slipstick::scene
 {
-  /// Names of the sides of @p shape; none for a mesh, whose file names them.
+  /// Names of the boundaries of @p shape; none for a mesh, whose file defines them.
   std::vector<std::string> boundary_names(const Shape shape, const unsigned int dim);
 
-  /// The body and boundary that the parameter @p path, "BODY/BOUNDARY", names. `*` is the whole outline; of a body
-  /// from a mesh file every name is accepted here and checked when the mesh is made.
+  /// The body and boundary given by the parameter @p path, "BODY/BOUNDARY". `*` is the whole outline; for a body from a
+  /// mesh file every name is accepted here and checked when the mesh is made.
   /// @throws InputError for an unknown body or boundary.
   template <int dim>
   BoundaryName read_boundary(const std::string            &text,
@@ -26,23 +27,23 @@ namespace slipstick::scene
                              const Parameters             &parameters,
                              const std::vector<Body<dim>> &bodies);
 
-  /// The body that the parameter @p path names. @throws InputError for an unknown one.
+  /// The body given by the parameter @p path. @throws InputError if it is unknown.
   template <int dim>
   unsigned int read_body(const std::string            &text,
                          const std::string            &path,
                          const Parameters             &parameters,
                          const std::vector<Body<dim>> &bodies);
 
-  /// The bodies that the parameter @p path names: `all`, or names separated by commas.
-  /// @throws InputError for none, an unknown one or one named twice.
+  /// The bodies given by the parameter @p path: `all`, or names separated by commas.
+  /// @throws InputError if there is none, one is unknown or named twice.
   template <int dim>
   std::vector<unsigned int> read_bodies(const std::string            &text,
                                         const std::string            &path,
                                         const Parameters             &parameters,
                                         const std::vector<Body<dim>> &bodies);
 
-  /// The point of body number @p body, @p of, that the parameter @p path gives: coordinates, or for a body from a mesh
-  /// file a name (checked when the mesh is made). @throws InputError when it is neither.
+  /// The point @p of of body number @p body, given by the parameter @p path: coordinates, or for a body from a mesh
+  /// file a name (checked when the mesh is made). @throws InputError if it is neither.
   template <int dim>
   PointName<dim> read_point(const std::string &text,
                             const std::string &path,
@@ -50,8 +51,8 @@ namespace slipstick::scene
                             const unsigned int body,
                             const Body<dim>   &of);
 
-  /// Every read() returns the checked value and throws InputError for what is wrong in its own section; names are
-  /// looked up in the part of the scene that is already read.
+  /// Every read() returns the checked value and throws InputError for faults in its own section; names are looked up in
+  /// the part of the scene that has been read already.
   struct MaterialSection
   {
     explicit MaterialSection(const std::string &name);
@@ -86,7 +87,7 @@ namespace slipstick::scene
 
     void declare(dealii::ParameterHandler &prm);
 
-    /// Also finds the mesh file, relative to the directory of the .prm or the working directory.
+    /// Also locates the mesh file, relative to the directory of the .prm or the working directory.
     Body<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
 
   private:
@@ -95,7 +96,7 @@ namespace slipstick::scene
     void declare_refinement(dealii::ParameterHandler &prm);
     void check_parameters_fit(const Parameters &parameters) const;
 
-    std::map<std::string, std::string> defaults; // text of every parameter that nobody set
+    std::map<std::string, std::string> defaults; // text of every parameter that is not set
   };
 
   template <int dim>
@@ -123,7 +124,7 @@ namespace slipstick::scene
     void declare_placement(dealii::ParameterHandler &prm);
     void read_surface(const Parameters &parameters, Obstacle<dim> &result) const;
 
-    std::map<std::string, std::string> defaults; // text of every parameter that nobody set
+    std::map<std::string, std::string> defaults; // text of every parameter that is not set
   };
 
   template <int dim>
@@ -246,7 +247,7 @@ namespace slipstick::scene
     Pretension<dim> read(const Parameters &parameters, const Scene<dim> &scene) const;
   };
 
-  /// What acts between two sides that touch: of a contact pair and of those that the search finds.
+  /// Contact law and offset, for a contact pair and for the pairs found by the search.
   template <int dim>
   struct ContactLawSection
   {
@@ -255,10 +256,10 @@ namespace slipstick::scene
     bool                               only_closed = false;
     std::string                        offset      = "0";
 
-    /// In the subsection that is open.
+    /// Declares the parameters in the subsection that is open.
     void declare(dealii::ParameterHandler &prm);
 
-    /// Law and offset into @p pair. @p section: the path of the subsection.
+    /// Sets law and offset of @p pair. @p section: path of the subsection.
     void read(const Parameters &parameters, const std::string &section, ContactPair<dim> &pair) const;
   };
 
@@ -293,7 +294,7 @@ namespace slipstick::scene
     ContactSearch<dim> read(const Parameters &parameters) const;
   };
 
-  // Concerns without names of their own; each declares its own subsection.
+  // Topics without named subsections; each declares its own subsection.
   void declare(dealii::ParameterHandler &prm, Decomposition &decomposition);
   void declare(dealii::ParameterHandler &prm, Discretization &discretization);
   void declare(dealii::ParameterHandler &prm, SolverOptions &solver);

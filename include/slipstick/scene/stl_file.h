@@ -8,7 +8,8 @@
 
 namespace slipstick::scene
 {
-  /// The corners of all triangles of a file, ASCII or binary, three of each; the normals in the file are not used, the order
-  /// of the corners is. @throws InputError for a file that cannot be read, is damaged, or has too many triangles.
+  /// The corners of all triangles of a file, ASCII or binary, three per triangle. The normals in the file are ignored;
+  /// the order of the corners defines the orientation. @throws InputError for a file that cannot be read, is damaged,
+  /// or has too many triangles.
   std::vector<dealii::Point<3>> read_stl(const std::string &file);
 } // namespace slipstick::scene

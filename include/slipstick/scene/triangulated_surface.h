@@ -1,4 +1,4 @@
-// A rigid surface made of triangles, as CAD programs export it.
+// A rigid surface made of triangles, as exported by CAD programs.
 #pragma once
 
 #include <slipstick/base/box_tree.h>
@@ -9,7 +9,7 @@
 
 namespace slipstick::scene
 {
-  /// A closed surface; its triangles run counter-clockwise as seen from the side where bodies are.
+  /// A closed surface; its triangles are counter-clockwise as seen from the side of the bodies.
   class TriangulatedSurface
   {
   public:
@@ -17,20 +17,20 @@ namespace slipstick::scene
 
     struct Nearest
     {
-      dealii::Tensor<1, 3> normal;       // from the surface to where bodies are, along the distance; unit length
+      dealii::Tensor<1, 3> normal;       // from the surface to the side of the bodies, along the distance; unit length
       double               distance = 0; // [mm], negative on the other side
     };
 
-    /// @param corners of triangles, three of each; equal ones are one vertex, and triangles with two equal corners are
-    /// left out. @param name for messages.
-    /// @throws InputError for a surface that is empty, not closed, or whose triangles do not run the same way.
+    /// @param corners of triangles, three per triangle; equal corners are merged, and triangles with two equal corners
+    /// are ignored. @param name for messages.
+    /// @throws InputError for a surface that is empty, not closed, or whose triangles are not oriented consistently.
     TriangulatedSurface(const std::string &name, const std::vector<dealii::Point<3>> &corners);
 
-    /// From the nearest point of the surface. On which side @p x lies there is decided by the mean of the normals around
-    /// an edge or, weighted by their angles, a vertex (Baerentzen, Aanaes 2005).
+    /// Distance and normal from the nearest point of the surface. The side on which @p x lies is determined by the mean
+    /// of the normals at an edge or, weighted by their angles, at a vertex (Baerentzen, Aanaes 2005).
     Nearest nearest(const dealii::Point<3> &x) const;
 
-    /// Diagonal of the box around it [mm].
+    /// Diagonal of the bounding box [mm].
     double extent() const
     {
       return size;
@@ -53,7 +53,7 @@ namespace slipstick::scene
     void check_closed(const std::string &name);
     void find_normals();
     Foot foot_on(const unsigned int triangle, const dealii::Point<3> &x) const;
-    /// At a vertex or an edge no farther than @p distance from the foot that of all triangles there.
+    /// Normal at the foot; if it is within @p distance of a vertex or an edge, the mean over all triangles there.
     dealii::Tensor<1, 3> normal_around(const Foot &foot, const double distance) const;
     dealii::Point<3>     corner(const unsigned int triangle, const unsigned int k) const;
 
