@@ -15,17 +15,17 @@ namespace slipstick::app
 {
   namespace
   {
-    // Cells with this part of the error are refined, unless fewer reach the accuracy (Doerfler 1996).
+    // Cells with this part of the error are refined, unless fewer are sufficient (Doerfler 1996).
     constexpr double most_of_error = 0.6;
-    // What is left of the additive error of a cell after it is refined; on smooth solutions of degree 1 it is 1/9 for nine
+    // Reduction of the additive error of a cell by refinement; for smooth solutions of degree 1 it is 1/9 for nine
     // quadrilaterals, 1/4 for four triangles and eight tetrahedra, at singular points more.
     constexpr double left_of_error = 0.25;
-    // Cells whose errors agree up to this part are refined together: rounding must not choose between them.
+    // Cells whose errors agree up to this part are refined together, so that rounding does not decide.
     constexpr double alike = 1e-6;
-    // Aims at this part of the allowed error, so that the last mesh does not just miss it.
+    // The target is this part of the allowed error, so that the last mesh does not narrowly miss it.
     constexpr double aim = 0.9;
 
-    // A vertex is at a point when it is nearer than this part of its cell.
+    // A vertex coincides with a point if its distance is less than this part of its cell.
     constexpr double at_vertex = 1e-6;
 
     using Entry = std::pair<double, mesh::CellKey>;
@@ -39,7 +39,7 @@ namespace slipstick::app
   {
     std::vector<LeftOut<dim>> list;
     for (const auto &point : mechanics::singular_points(scene, mesh, spaces, n_supports))
-      if (point.what.rfind("the point", 0) == 0) // others have finite energy
+      if (point.what.rfind("the point", 0) == 0) // the others have finite energy
         {
           double own = 0;
           for (const auto &subdomain : mesh.subdomains)
@@ -94,7 +94,7 @@ namespace slipstick::app
     for (const auto &part : errors.of_cells)
       own += part.sum();
     errors.total = dealii::Utilities::MPI::sum(own, comm);
-    // magnitudes fall as the sum does, whose sign they have lost
+    // magnitudes are assumed to decrease like the signed sum
     errors.allowed = estimated > 0 ? errors.total * accuracy / estimated : 0.;
     return errors;
   }
@@ -119,7 +119,7 @@ namespace slipstick::app
         for (const auto &part : gathered)
           all.insert(all.end(), part.begin(), part.end());
         std::sort(all.begin(), all.end(), [](const Entry &a, const Entry &b) {
-          return a.first != b.first ? a.first > b.first : a.second < b.second; // alike for every number of ranks
+          return a.first != b.first ? a.first > b.first : a.second < b.second; // independent of the number of ranks
         });
         double marked = 0, last = std::numeric_limits<double>::infinity();
         for (const auto &[error, key] : all)

@@ -18,21 +18,21 @@ namespace slipstick::app
 {
   namespace
   {
-    // Strains and rotations [rad] above which the linear theory is wrong by some percent.
+    // Strains and rotations [rad] above which the linear theory has errors of a few percent.
     constexpr double largest_strain = 0.1, largest_rotation = 0.1;
-    // Displacements that are more than this part of the diagonal of a body.
+    // Displacement over the diagonal of a body.
     constexpr double largest_motion = 0.5;
-    // Young modulus above that of any material (diamond: 1.2e6 MPa) ...
+    // Young's modulus above that of any material (diamond: 1.2e6 MPa) ...
     constexpr double largest_modulus = 1e7;
-    // ... which may be meant as rigid; but not of all bodies if all displacements are below this part of the bodies'
-    // diagonals.
+    // ... which may be intended as rigid; but not for all bodies if all displacements are below this part of the
+    // bodies' diagonals.
     constexpr double least_motion = 1e-8;
-    // Contact pressure over the smaller Young modulus of the two sides.
+    // Contact pressure over the smaller Young's modulus of the two sides.
     constexpr double largest_pressure = 1;
     // Overlap and slip over the length of an edge.
     constexpr double largest_step = 1;
 
-    /// A largest value and where it is.
+    /// A maximum and its place.
     struct Largest
     {
       double                value = 0;
@@ -47,7 +47,7 @@ namespace slipstick::app
       }
     };
 
-    /// Of one contact pair, with the length of the longest edge.
+    /// Maxima for one contact pair, with the length of the longest edge.
     struct OfPair
     {
       Largest overlap, slip, pressure;
@@ -116,7 +116,7 @@ namespace slipstick::app
       return pair.master ? std::min(of(pair.slave.body), of(pair.master->body)) : of(pair.slave.body);
     }
 
-    /// Pairs between which forces can be exchanged without effect, and the first place; empty if there are none.
+    /// Pairs between which forces can be exchanged without effect, and the first such place; empty if there are none.
     /// Collective.
     template <int dim>
     std::string split_warning(const scene::Scene<dim>  &scene,

@@ -30,7 +30,7 @@ namespace slipstick::app
       throw InputError("--list-parameters " + word + ": unknown format", suggest_name(word, words));
     }
 
-    /// Arguments that CLI11 did not know: options, or case files after the first.
+    /// Arguments not recognised by CLI11: options, or case files after the first.
     InputError unknown_argument(const std::string &argument, const CLI::App &app)
     {
       if (argument.empty() || argument[0] != '-')

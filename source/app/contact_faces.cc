@@ -11,7 +11,7 @@ namespace slipstick::app
     using Facet   = mechanics::SurfaceFacet;
     using Polygon = std::vector<std::int64_t>;
 
-    /// Nodes of the polygons of degree 1 that a facet is drawn as.
+    /// Nodes of the polygons of degree 1 that represent a facet.
     std::vector<std::vector<unsigned int>> parts_of(const Facet &facet)
     {
       switch (facet.n_nodes)
@@ -27,16 +27,16 @@ namespace slipstick::app
         }
     }
 
-    /// The middles of edges around corners that are no contact nodes: from each to the next, counter-clockwise.
+    /// Midpoints of the edges around corners that are not contact nodes: from each one to the next, counter-clockwise.
     using Rings = std::map<mechanics::NodeKey, std::map<std::int64_t, std::int64_t>>;
 
-    /// One polygon a ring, open at the end of a boundary.
+    /// Adds one polygon per ring; rings are open at the end of a boundary.
     void add_rings(const Rings &rings, std::vector<Polygon> &faces)
     {
       for (const auto &[corner, next] : rings)
         {
           std::int64_t first = next.begin()->first;
-          for (const auto &[from, to] : next) // that no other leads to, if there is one
+          for (const auto &[from, to] : next) // start at the one without predecessor, if there is one
             if (std::none_of(next.begin(), next.end(), [from = from](const auto &step) { return step.second == from; }))
               first = from;
           Polygon ring{first};

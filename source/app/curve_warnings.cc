@@ -15,9 +15,9 @@ namespace slipstick::app
 {
   namespace
   {
-    // Limit on the sagitta left out, relative to what it is compared with. Waves of height w whose length is that of an
-    // edge, h, are pressed flat by a pressure of pi E' w / (2 h) (Johnson 1985, section 13.2), so that the pressure is
-    // wrong by about this fraction.
+    // Limit on the neglected sagitta, relative to the reference length. Waves of height w and the wave length h of an
+    // edge are pressed flat by a pressure of pi E' w / (2 h) (Johnson 1985, section 13.2); this is therefore about the
+    // relative error of the pressure.
     constexpr double largest_share = 0.1;
 
     /// 1/E' = 1/E of one side + 1/E of the other.
@@ -87,7 +87,7 @@ namespace slipstick::app
                                                     const std::vector<contact::ContactNode> &nodes)
   {
     std::map<std::string, std::string> texts;
-    if (!mesh::leaves_out_curves(mesh)) // nearly always
+    if (!mesh::leaves_out_curves(mesh)) // the usual case
       return texts;
     std::map<std::pair<unsigned int, mechanics::NodeKey>, double> left_out;
     const auto contacts = interface::pair_bodies(scene, mesh, spaces);
@@ -101,7 +101,7 @@ namespace slipstick::app
         if (!pair.master || pair.law.is_bonded)
           continue;
         const auto [pressure, gap] = of_pair[k];
-        std::vector<double> worst(dim + 3, 0.); // share, place, sagitta, what it is compared with; z
+        std::vector<double> worst(dim + 3, 0.); // relative sagitta, place, sagitta, reference length; z
         for (unsigned int i = 0; i < points.size(); ++i)
           if (points[i].pair == k && (pressure == 0 || nodes[i].is_closed))
             {

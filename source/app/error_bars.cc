@@ -14,22 +14,22 @@ namespace slipstick::app
   {
     using contact::ContactNode;
 
-    // Contributions of cells cancel; where they do so nearly completely the sum is accidental, and this part of the sum of
-    // their magnitudes is left (measured: doc/error_bars.md).
+    // Contributions of cells cancel. If they cancel almost completely the sum is accidental; therefore the error bar is
+    // at least this part of the sum of their magnitudes (measured: doc/error_bars.md).
     constexpr double least_part = 0.1;
-    // A nodal pressure is a mean with the shape function of the node, and the largest one may lie between two: together at
-    // most this part of the second difference of the pressures.
+    // A nodal pressure is a mean weighted with the shape function of the node, and the maximum may lie between two
+    // nodes: the error of both together is at most this part of the second difference of the pressures.
     constexpr double of_second_difference = 1. / 8;
-    // The largest pressure stands out from those beside it by more than this part of it, or at the end of a boundary by more
-    // than that one: a peak that no mesh resolves.
+    // Unresolvable peaks: the largest pressure exceeds the adjacent ones by more than this part of it, or at the end of
+    // a boundary by more than the second value.
     constexpr double peak = 0.25, peak_at_end = 0.05;
-    // A figure is reproduced, to this part of the largest of its unit.
+    // A quantity is reproduced if it agrees to this part of the largest one with the same unit.
     constexpr double same = 1e-5;
-    // Figures and bars below this part of the largest of their unit are rounding, and not printed.
+    // Values and error bars below this part of the largest one with the same unit are rounding and not printed.
     constexpr double nothing = 1e-9;
 
-    // In space: pressures are compared with those of so many nodes nearest to the largest one; it is at the edge of its surface
-    // where that many of them leave an angle free.
+    // In space pressures are compared with those of this number of nearest nodes; a node is at the edge of the surface
+    // if this number of nearest nodes leaves an angle free.
     constexpr unsigned int n_beside = 4, n_around = 8;
     constexpr double       angle_at_edge = 150 * M_PI / 180;
 
@@ -48,8 +48,8 @@ namespace slipstick::app
       return node.is_closed && node.status == contact::ContactStatus::stick;
     }
 
-    /// What the mesh makes of a largest pressure: nothing, if it cannot be resolved.
-    /// @param drops from there to the nodes beside.
+    /// Resolution error of a largest pressure; nothing if it cannot be resolved.
+    /// @param drops differences to the adjacent nodes.
     std::optional<double> resolution(const double pressure, const std::vector<double> &drops, const bool is_at_end)
     {
       double sum = 0;
@@ -83,7 +83,7 @@ namespace slipstick::app
         });
       }
 
-      /// Length of the nodes for which @p is_in holds, and half of the elements between those in and those out.
+      /// Length of the nodes for which @p is_in holds, and half of the elements between nodes inside and outside.
       template <class IsIn>
       std::pair<double, double> size(const IsIn &is_in) const
       {
@@ -114,7 +114,7 @@ namespace slipstick::app
       std::vector<ContactNode> line;
     };
 
-    /// Contact nodes on a surface; beside each other are those that are near.
+    /// Contact nodes on a surface; nodes near each other count as adjacent.
     class ContactSurface
     {
     public:
@@ -125,7 +125,8 @@ namespace slipstick::app
         , tree(boxes())
       {}
 
-      /// Area of the nodes for which @p is_in holds, and half of that of those beside one for which it does not.
+      /// Area of the nodes for which @p is_in holds, and half of the area of those adjacent to a node for which it does
+      /// not.
       template <class IsIn>
       std::pair<double, double> size(const IsIn &is_in) const
       {
@@ -214,7 +215,7 @@ namespace slipstick::app
       return {name + Surface::measure, Surface::unit, value, error, ""};
     }
 
-    /// What is printed, by the names of goals.
+    /// The printed values by the names of goals.
     std::map<std::string, double> figures(const output::ResultSummary &results)
     {
       std::map<std::string, double> values = {{"max_displacement", results.max_displacement},
@@ -237,7 +238,7 @@ namespace slipstick::app
       return values;
     }
 
-    /// Magnitudes of values and bars, by unit.
+    /// Largest magnitudes of values and error bars, by unit.
     std::map<std::string, double> largest_of_units(const std::vector<output::ErrorBar> &bars)
     {
       std::map<std::string, double> largest;

@@ -18,12 +18,13 @@ namespace slipstick::app
 {
   namespace
   {
-    // Places on an edge, and along each direction of a face, at which formulas are compared with their nodes.
+    // Number of points on an edge, and along each direction of a face, at which formulas are compared with their nodal
+    // values.
     constexpr unsigned int n_on_edge = 65, n_across_face = 17;
-    // What may be lost between nodes: of the largest value on the boundary (slip bounds), of the range of values there
-    // (displacements), of an edge or the largest displacement, whichever is less (gaps).
+    // Admissible excess between nodes: relative to the largest value on the boundary (slip bounds), to the range of
+    // values (displacements), to the smaller of edge length and largest displacement (gaps).
     constexpr double lost_part = 0.1;
-    // Values that differ by less than this part of the largest one are constant.
+    // Values that differ by less than this part of the largest are constant.
     constexpr double rounding_of_values = 1e-9;
 
     enum class Scale
@@ -42,7 +43,7 @@ namespace slipstick::app
       Scale                    scale;
     };
 
-    /// The formulas of a scene that are evaluated at nodes of boundaries.
+    /// The formulas of a scene that are evaluated at boundary nodes.
     template <int dim>
     std::vector<Subject<dim>> subjects_of(const scene::Scene<dim> &scene)
     {
@@ -74,17 +75,17 @@ namespace slipstick::app
               add(name + (*number)->name, (*number)->unit, pair.slave, (*number)->value, Scale::magnitude);
           if (pair.gap)
             add(name + "Gap", "mm", pair.slave, *pair.gap, Scale::length);
-          if (pair.gap || pair.master) // else the obstacle is searched between the nodes
+          if (pair.gap || pair.master) // the obstacle itself is checked between the nodes
             add(name + "Offset", "mm", pair.slave, pair.offset, Scale::length);
         }
       return all;
     }
 
-    /// What is known of one formula on its boundary.
+    /// Extremes of one formula on its boundary.
     struct Finding
     {
       double                least = std::numeric_limits<double>::infinity(), most = -least; // at nodes and between them
-      double                excess = 0; // beyond the nodes of the part
+      double                excess = 0; // beyond the values at the nodes of the part
       double                value = 0, at_nodes = 0, edge = 0;
       std::array<double, 3> at{{0, 0, 0}};
 
@@ -121,7 +122,7 @@ namespace slipstick::app
       return places;
     }
 
-    /// Infinite where it has no value.
+    /// Infinite if the formula cannot be evaluated.
     template <int dim>
     double value_of(const scene::Field<dim> &formula, const dealii::Point<dim> &x, const double t)
     {

@@ -10,17 +10,17 @@ namespace slipstick::app
 {
   namespace
   {
-    // Nodes out of reach must not penetrate by more than this part of the largest displacement: far above what the
-    // solver leaves.
+    // Nodes out of reach must not penetrate by more than this part of the largest displacement, which is far above the
+    // solver's error.
     constexpr double allowed_beyond_reach = 1e-3;
-    // Obstacles between nodes, and bodies in contact with each other, may do so by this part of the largest
-    // displacement or of an edge, whichever is less: curved sides and slip leave about that on coarse meshes.
+    // Limit for obstacles between nodes and bodies in contact with each other, relative to the smaller of largest
+    // displacement and edge length: curved sides and slip cause about that on coarse meshes.
     constexpr double allowed_between_nodes = 0.1;
-    // The same for bodies that no contact joins, relative to the largest displacement.
+    // The same for bodies without a contact pair, relative to the largest displacement.
     constexpr double allowed_without_contact = 1e-3;
-    // For all of them, relative to an edge: rounding of coordinates.
+    // Lower limit for all of them, relative to an edge: rounding of coordinates.
     constexpr double coordinate_rounding = 1e-9;
-    // Reserve of the Reach that is proposed.
+    // Margin of the proposed Reach.
     constexpr double reserve = 1.1;
 
     template <int dim>

@@ -19,18 +19,18 @@ namespace slipstick::app
     // Components of directions below this are rounding.
     constexpr double along_axis = 1e-9;
 
-    // A pair slides as a whole when nodes that stick bear no more than this part of its friction.
+    // A pair slides as a whole if sticking nodes carry no more than this part of its friction.
     constexpr double sticking_part = 0.1;
 
     using Fields = std::vector<Eigen::VectorXd>;
 
-    /// What is solved for one figure: jumps or loads, on this rank.
+    /// Data of the adjoint problem of one quantity: jumps or loads, on this rank.
     struct Functional
     {
       std::string         quantity, unit;
       double              value = 0; // the same on all ranks
-      std::vector<double> jumps;     // of the owned rows, for a figure of multipliers
-      Fields              loads;     // for a figure of displacements
+      std::vector<double> jumps;     // of the owned rows, for a quantity of multipliers
+      Fields              loads;     // for a quantity of displacements
       std::string         reason;    // why there is no estimate; empty: there is one
       bool                is_of_multipliers = true;
     };
@@ -40,7 +40,7 @@ namespace slipstick::app
       return {"xyz"[d]};
     }
 
-    /// The figures of a scene, from multipliers and displacements.
+    /// The quantities of a scene, from multipliers and displacements.
     template <int dim>
     class Functionals
     {
@@ -119,7 +119,7 @@ namespace slipstick::app
         return goal;
       }
 
-      /// The sum of the nodal forces along the tangent, in space of their magnitudes.
+      /// Sum of the nodal forces along the tangent, in space of their magnitudes.
       Functional tangential_force(const std::string &name, const unsigned int pair) const
       {
         Functional goal{name, "N", 0, std::vector<double>(n_rows, 0.), {}, {}};
@@ -139,7 +139,7 @@ namespace slipstick::app
         return goal;
       }
 
-      /// In space the length of the tangential force on a node [N].
+      /// Magnitude of the tangential force on a node in space [N].
       double tangential(const tfeti::ContactPoint &point) const
       {
         const double along = point.tangential_row != tfeti::invalid_row ? x.local_element(point.tangential_row) : 0.;
@@ -148,8 +148,8 @@ namespace slipstick::app
         return std::hypot(along, point.second_row != tfeti::invalid_row ? x.local_element(point.second_row) : 0.);
       }
 
-      /// Do nodes that slip at a bound which follows the pressure bear nearly all of its friction? Where others bear a part,
-      /// equilibrium ties them to these more than pressure does.
+      /// Whether slipping nodes whose bound follows the pressure carry nearly all of the pair's friction. Otherwise
+      /// equilibrium with the forces of the other nodes determines the friction more than the pressure does.
       bool slides(const unsigned int pair) const
       {
         if (!solver.discrete_scene().contacts[pair].law.coefficient)
@@ -203,7 +203,7 @@ namespace slipstick::app
         return goal;
       }
 
-      /// Does the support hold anything along this axis?
+      /// Whether the support holds anything along this axis.
       bool holds(const Functional &reaction) const
       {
         double largest = 0;
@@ -212,7 +212,7 @@ namespace slipstick::app
         return dealii::Utilities::MPI::max(largest, comm) > along_axis;
       }
 
-      /// Along the largest displacement, at its node.
+      /// Displacement in the direction of the largest displacement, at its node.
       Functional displacement() const
       {
         Functional   goal{"max_displacement", "mm", 0, {}, {}, {}, false};
@@ -250,7 +250,7 @@ namespace slipstick::app
       const std::size_t               n_rows;
     };
 
-    /// Energy products of the errors of the answer with those of other displacements.
+    /// Energy products of the errors of the solution with those of other displacements.
     template <int dim>
     class ErrorProducts
     {
@@ -261,7 +261,7 @@ namespace slipstick::app
         , t(t_)
       {}
 
-      /// By subdomain and cell. With a(e, z) = (|e + z|^2 - |e - z|^2) / 4, z scaled to the size of the answer.
+      /// By subdomain and cell. Uses a(e, z) = (|e + z|^2 - |e - z|^2) / 4 with z scaled to the size of the solution.
       Fields with(const Fields &z) const
       {
         const double scale = largest(answer.recovery.u) / largest(z);
@@ -287,7 +287,7 @@ namespace slipstick::app
         return dealii::Utilities::MPI::max(size, solver.mesh().comm);
       }
 
-      /// The sums over the cells.
+      /// Sums over the cells.
       void add_up(GoalError &goal) const
       {
         double own = 0, magnitudes = 0;
@@ -317,8 +317,8 @@ namespace slipstick::app
       const double           t;
     };
 
-    /// What gaps told by nodes alone change in a figure: its derivative by the gap of a node times the defect there, on the cells
-    /// behind the node.
+    /// Effect of evaluating gaps at nodes only: derivative of the quantity with respect to the gap of a node times the
+    /// gap defect there, attributed to the cells at the node.
     template <int dim>
     class GapErrors
     {
@@ -328,7 +328,7 @@ namespace slipstick::app
         , defects(interface::gap_defects(solver.discrete_scene(), solver.mesh(), solver.spaces(), t))
       {}
 
-      /// @param y derivatives of the figure by the right-hand sides of the rows. Collective.
+      /// @param y derivatives of the quantity with respect to the right-hand sides of the rows. Collective.
       void add(const tfeti::DistributedVector &y, const double factor, GoalError &goal) const
       {
         const auto        &contacts = solver.discrete_scene().contacts;
@@ -371,7 +371,7 @@ namespace slipstick::app
       const interface::GapDefects<dim> defects;
     };
 
-    /// From the displacement @p z that belongs to the figure, if it was found.
+    /// Estimate from the adjoint displacement @p z, if it exists.
     template <int dim>
     void complete(const StepAnswer                              &answer,
                   const ErrorProducts<dim>                      &products,
@@ -386,14 +386,14 @@ namespace slipstick::app
         }
       if (products.largest(z->u) > 0)
         goal.cells = products.with(z->u);
-      else // what nothing but given forces determines
+      else // determined by the prescribed forces alone
         for (const auto &part : answer.stress->subdomains)
           goal.cells.push_back(Eigen::VectorXd::Zero(part.error.size()));
       gaps.add(z->multipliers, 1, goal);
       products.add_up(goal);
     }
 
-    /// With w, the displacement that the gaps force on bodies without loads: |e|^2 / 2 - a(e, w).
+    /// With w, the displacement due to the gaps of the bodies without loads: |e|^2 / 2 - a(e, w).
     template <int dim>
     GoalError energy_error(const StepSolver<dim>     &solver,
                            const StepAnswer          &answer,
@@ -450,7 +450,7 @@ namespace slipstick::app
     const auto wanted = [&](const std::string &name) {
       return quantities.empty() || std::find(quantities.begin(), quantities.end(), name) != quantities.end();
     };
-    const auto               gaps        = solver.dual().constraints().c; // before the adjoint problems change them
+    const auto               gaps        = solver.dual().constraints().c; // overwritten by the adjoint problems
     const auto               functionals = Functionals<dim>(solver, probes, answer).all();
     const ErrorProducts<dim> products(solver, answer, t);
     const GapErrors<dim>     gap_errors(solver, t);

@@ -12,7 +12,8 @@ namespace slipstick::app
 {
   namespace
   {
-    // Relative to the forces of a pair: less at held nodes, such as a single one at a corner, is not worth a warning.
+    // Relative to the forces of a pair: smaller forces at held nodes, e.g. at a single corner node, do not justify a
+    // warning.
     constexpr double part_that_counts = 0.05;
   } // namespace
 

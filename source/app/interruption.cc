@@ -12,20 +12,20 @@ namespace slipstick::app
 {
   namespace
   {
-    // bytes; longer texts are cut
+    // bytes; longer texts are truncated
     constexpr std::size_t longest_text = 1000;
 
-    // A handler may interrupt between two characters: the text that it reads is never the one being written.
+    // A handler may interrupt the writing of a text; it always reads the text that is not being written.
     std::array<std::array<char, longest_text>, 2> texts;
     std::array<std::atomic<std::size_t>, 2>       lengths;
     std::atomic<int>                              present{-1};
 
     void tell(const int signal)
     {
-      // only functions that a handler may call: POSIX.1-2017, 2.4.3
+      // only async-signal-safe functions: POSIX.1-2017, 2.4.3
       const int k = present.load();
       if (k >= 0 && write(STDERR_FILENO, texts[k].data(), lengths[k].load()) < 0)
-        {} // there is nobody to tell
+        {} // nothing can be done
       std::signal(signal, SIG_DFL);
       raise(signal);
     }
@@ -45,7 +45,7 @@ namespace slipstick::app
       {
         struct sigaction action = {};
         sigaction(signal, nullptr, &action);
-        if (action.sa_handler != SIG_IGN) // as of a job in the background of a shell, or under nohup
+        if (action.sa_handler != SIG_IGN) // e.g. background jobs of a shell, or under nohup
           std::signal(signal, tell);
       }
   }

@@ -29,11 +29,11 @@ namespace
 {
   using namespace slipstick;
 
-  // OpenBLAS allocates a buffer of 128 MB at its first factorisation, newer versions already when it is loaded, and tries forever if it
-  // cannot get one.
+  // OpenBLAS allocates a buffer of 128 MB at its first factorisation (newer versions already when loaded) and retries
+  // forever if the allocation fails.
   constexpr std::size_t least_free_space = 256u << 20; // bytes of address space: the buffer and its surroundings
 
-  /// Whether the address space is limited (ulimit -v); throws where too little of it is left.
+  /// Whether the address space is limited (ulimit -v); throws if too little of it is free.
   bool has_limited_address_space()
   {
     rlimit limit;
@@ -49,18 +49,19 @@ namespace
     return true;
   }
 
-  /// Where the address space is limited: allocates the buffer before anything else.
+  /// If the address space is limited: allocates the buffer before anything else.
   void check_address_space()
   {
     if (!has_limited_address_space())
       return;
-    const int n = 1; // small products of matrices do without it
+    const int n = 1; // small matrix products do not use the buffer
     double    a = 1;
     int       info;
     dpotrf_("L", &n, &a, &n, &info);
   }
 
-  /// Before the constructors of the libraries. Streams are not there yet, nor is MPI: every rank ends, the first one tells.
+  /// Runs before the constructors of the libraries. Neither streams nor MPI are available yet: every rank ends, the
+  /// first one prints.
   void check_address_space_before_libraries()
   {
     try
@@ -69,7 +70,7 @@ namespace
       }
     catch (const InputError &error)
       {
-        const auto is_other = [](const char *variable) { // of Open MPI, PMIx, MPICH, Slurm
+        const auto is_other = [](const char *variable) { // rank variables of Open MPI, PMIx, MPICH, Slurm
           const char *const rank = std::getenv(variable);
           return rank && std::strcmp(rank, "0") != 0;
         };
@@ -101,7 +102,7 @@ namespace
     return app::run(scene, adaptivity, command_line.output_directory, command_line.resume, log, comm);
   }
 
-  /// With the option --set Dimension=3 those of space.
+  /// With --set Dimension=3 the parameters in space.
   void list_parameters(const app::CommandLine &command_line)
   {
     const auto &set = command_line.overrides;
@@ -119,7 +120,7 @@ namespace
         std::cerr << "error: " << for_terminal(error.what()) << std::endl;
       return static_cast<int>(status);
     };
-    // these errors are raised on all ranks, see base/collective.h
+    // these errors are thrown on all ranks, see base/collective.h
     try
       {
         collectively(comm, check_address_space);
@@ -167,7 +168,7 @@ namespace
 
 int main(int argc, char **argv)
 {
-  std::signal(SIGXFSZ, SIG_IGN); // a limit on the size of files is reported as a full disk is
+  std::signal(SIGXFSZ, SIG_IGN); // a limit on the file size is reported like a full disk
   tfeti::Process process;
   try
     {
@@ -176,13 +177,13 @@ int main(int argc, char **argv)
   catch (const std::bad_alloc &)
     {
       std::cerr << "error: " << out_of_memory().what() << std::endl;
-      if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1) // perhaps on this rank alone
+      if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1) // the error may be on this rank only
         MPI_Abort(MPI_COMM_WORLD, static_cast<int>(ExitStatus::bad_input));
       return static_cast<int>(ExitStatus::bad_input);
     }
   catch (const std::exception &error)
     {
-      // perhaps on this rank alone: the others must not be left waiting
+      // the error may be on this rank only; the others must not be left waiting
       std::cerr << "internal error: " << for_terminal(error.what())
                 << "\n  remedy: this is a bug of slipstick, please report it with the .prm" << std::endl;
       MPI_Abort(MPI_COMM_WORLD, static_cast<int>(ExitStatus::internal_error));

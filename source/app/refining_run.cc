@@ -12,8 +12,8 @@ namespace slipstick::app
 {
   namespace
   {
-    // Finer meshes may resolve what a figure lacks an estimate for (a pressure of a single node).
-    constexpr unsigned int most_without_estimate = 3; // meshes, one after another
+    // A finer mesh may resolve a quantity without an estimate (a pressure at a single node).
+    constexpr unsigned int most_without_estimate = 3; // consecutive meshes
   }                                                   // namespace
 
   template <int dim>
@@ -112,7 +112,7 @@ namespace slipstick::app
     if (rows.size() == 1)
       {
         for (const auto &remark : steps.mesh().remarks)
-          if (remark.rfind("warning: ", 0) != 0) // those are told with the result
+          if (remark.rfind("warning: ", 0) != 0) // those are printed with the results
             log.line("             " + remark);
         log.line("              mesh      cells   unknowns  energy norm   error    time [s]");
       }
@@ -168,12 +168,12 @@ namespace slipstick::app
     auto cells =
       options.goals.empty() || !is_known ? errors_of(steps) : errors_of_goals(goals_of(steps), options.accuracy, comm);
     auto n_marked = mark(steps.mesh(), cells, refinement);
-    if (n_marked == 0 && !options.goals.empty()) // what is left is the resolution of a pressure
+    if (n_marked == 0 && !options.goals.empty()) // only the resolution of a pressure is missing
       {
         cells    = errors_of(steps);
         n_marked = mark(steps.mesh(), cells, refinement);
       }
-    // nine quadrilaterals or eight tetrahedra for one, and templates around them
+    // nine quadrilaterals or eight tetrahedra per cell, plus templates around them
     constexpr double cells_for_one = 12;
     const double     growth        = 1 + cells_for_one * n_marked / summary.problem.cells;
     if (n_marked == 0)

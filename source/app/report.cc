@@ -15,9 +15,9 @@ namespace slipstick::app
 {
   namespace
   {
-    // Residuals below this one are due to rounding in the operators of the solver.
+    // Residuals below this are rounding in the operators of the solver.
     constexpr double residual_rounding = 1e-11;
-    // Rounding errors differ by about this factor between ways of computing the same quantity.
+    // Rounding errors of different ways of computing the same quantity differ by about this factor.
     constexpr double margin_of_rounding = 2;
 
     std::string line(const char *stage, const std::string &text)
@@ -25,7 +25,7 @@ namespace slipstick::app
       return format("%-12s ", stage) + text;
     }
 
-    /// "(1, 2)"; what is rounding beside the largest component is 0.
+    /// "(1, 2)"; components that are rounding relative to the largest are 0.
     std::string rounded_place(std::array<double, 3> x, const unsigned int dim)
     {
       constexpr double rounding = 1e-12;
@@ -158,7 +158,7 @@ namespace slipstick::app
 
   namespace
   {
-    /// Whether a tolerance can be set to it.
+    /// Whether the value is an admissible tolerance.
     bool is_tolerance(const double value)
     {
       return value > 0 && value < 1;
@@ -307,7 +307,7 @@ namespace slipstick::app
         if (!pair.master)
           count(results.contact[k].on_slave);
       }
-    if (is_revolution) // radial forces balance around the circumference
+    if (is_revolution) // radial forces are balanced around the circumference
       log.line(format("             %-30s %14s %14.6g", "sum of all from outside", "", left.force[1]));
     else
       log.line(row<dim>("sum of all from outside", left, is_revolution));

@@ -22,7 +22,7 @@
 #include <regex>
 #include <sstream>
 
-// NOLINTBEGIN: Boost finds these by the namespace of their argument
+// NOLINTBEGIN: Boost finds these functions by the namespace of their argument
 namespace slipstick
 {
   template <class Archive>
@@ -134,7 +134,7 @@ namespace slipstick
       a &x.dimension &x.plane_state &x.bodies &x.subdomains &x.primal_dofs &x.kernel_dimension &x.cells &x.dual &x
         .contact_candidates;
     }
-    // times and memory are those of the process
+    // times and memory belong to the process
     template <class Archive>
     void serialize(Archive &a, Summary &x, const unsigned int)
     {
@@ -170,10 +170,10 @@ namespace slipstick::app
   namespace
   {
     const std::string head_name = "restart.bin";
-    // Format of the files: another layout gets another number.
+    // Number of the file format; it must change with the layout.
     constexpr unsigned int format_number = 5;
 
-    /// Content of restart.bin: to which run the files belong.
+    /// Contents of restart.bin: identifies the run to which the files belong.
     struct Head
     {
       unsigned int             format = format_number;
@@ -194,7 +194,7 @@ namespace slipstick::app
       }
     };
 
-    /// FNV-1a (Fowler, Noll, Vo) of a file.
+    /// FNV-1a hash (Fowler, Noll, Vo) of a file.
     std::size_t sum_of(const std::string &file)
     {
       std::ifstream in(file, std::ios::binary);
@@ -204,7 +204,7 @@ namespace slipstick::app
       return sum;
     }
 
-    /// Rank 0.
+    /// Data of rank 0.
     template <int dim>
     Head head_of(const scene::Scene<dim> &scene, const unsigned int steps, const unsigned int ranks)
     {
@@ -251,7 +251,7 @@ namespace slipstick::app
         {
           boost::archive::binary_iarchive(in) >> content;
         }
-      catch (const std::exception &) // whatever a damaged file leads to
+      catch (const std::exception &) // any error caused by a damaged file
         {
           refuse("'" + directory.path(name) + "' is damaged or from another version");
         }
@@ -293,11 +293,11 @@ namespace slipstick::app
                    before.load_factors[step]));
     }
 
-    /// Removes the files of a restart, except those of step @p but.
+    /// Removes the restart files, except those of step @p but.
     void remove_files(const output::OutputDirectory &directory, const std::optional<unsigned int> but)
     {
       static const std::regex            files("restart_(\\d+)_\\d+\\.bin");
-      std::error_code                    error; // what cannot be removed stays
+      std::error_code                    error; // files that cannot be removed are kept
       std::vector<std::filesystem::path> old;
       for (const auto &entry : std::filesystem::directory_iterator(directory.path(), error))
         {

@@ -21,7 +21,7 @@ namespace slipstick::app
 {
   namespace
   {
-    // Tables are written again after this multiple of the time that writing them took.
+    // Tables are written again after this multiple of the time needed to write them.
     constexpr double pause_over_writing = 10;
 
     output::TimeSummary times(const StageClock &clock, const double factorization)
@@ -98,7 +98,7 @@ namespace slipstick::app
       solver.build();
     if (!resumes)
       {
-        directory.remove_results(); // the scene is accepted: results of an earlier run are no longer valid
+        directory.remove_results(); // the scene is valid: results of an earlier run are removed
         output::write_conditions(directory, scene, solver.mesh(), solver.spaces());
       }
     first_step  = summary.steps.size();
@@ -238,7 +238,7 @@ namespace slipstick::app
     summary.status     = output::RunStatus::unfinished;
     describe_run(summary);
     write_restart(directory, scene, {solver.state(), summary, contact_steps, total_slip, warnings, warned_about}, comm);
-    write_tables(summary); // these last, next to each other: they agree unless a signal comes right here
+    write_tables(summary); // written last and together, so that they agree unless a signal arrives between them
     kept_steps = step + 1;
     output::write_summary(directory, summary);
     announce(step + 1);

@@ -53,12 +53,12 @@ namespace slipstick::app
         steps->print(log);
         return converged ? ExitStatus::converged : ExitStatus::not_converged;
       }
-    catch (const InputError &) // some of it shows in meshes and formulas only
+    catch (const InputError &) // some faults show only in meshes and formulas
       {
         directory.remove_if_new();
         throw;
       }
-    catch (const NoEquilibrium &) // on all ranks alike
+    catch (const NoEquilibrium &) // on all ranks
       {
         if (steps)
           steps->write_without_equilibrium();

@@ -1,4 +1,4 @@
-// The part of the step solver that tightens bolts.
+// Tightening of bolts, a part of the step solver.
 #include <slipstick/app/step_solver.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/mechanics/loads.h>
@@ -10,15 +10,16 @@ namespace slipstick::app
 {
   namespace
   {
-    // Solves of one step for the tensions of its bolts; some five are needed.
+    // Maximum number of solves of one step for the tensions of its bolts; about five are needed.
     constexpr unsigned int max_attempts = 40;
-    // Tensions are as accurate as the solver is asked to be, but never less than this.
+    // Relative error of tensions: the tolerance of the solver, but at most this.
     constexpr double largest_error = 1e-3;
 
-    // Near the end, where the tension misses the wanted one by less than this many times what it may, an attempt that does not bring
-    // it much nearer was ended by the solver too early: other loads are larger than the bolt's, and errors are measured by these.
+    // Near convergence, where the error of the tension is less than this multiple of the admissible one, an attempt
+    // that does not reduce the error by the second factor was stopped too early by the solver: other loads are larger
+    // than the bolt's, and the solver's errors are relative to these.
     constexpr double near_the_end = 100, much_nearer = 0.5;
-    // By how much the solver's tolerance falls then, down to the least one.
+    // Factor by which the tolerance of the solver is then reduced, and its lower limit.
     constexpr double sharper = 0.1, sharpest = 1e-13;
   } // namespace
 

@@ -20,12 +20,12 @@ namespace slipstick::app
 {
   namespace
   {
-    // At first contact nodes get multipliers if their gap exceeds the smallest gap of the pair by less than this
+    // Initially contact nodes get multipliers if their gap exceeds the smallest gap of the pair by less than this
     // fraction of the slave boundary's length ...
     constexpr double first_kept_part = 0.1;
-    // ... more of them, by this factor, when others would penetrate ...
+    // ... the fraction grows by this factor if other nodes would penetrate ...
     constexpr double growth_of_kept_part = 4;
-    // ... and all beyond this part.
+    // ... above this all nodes get multipliers.
     constexpr double largest_kept_part = 1;
 
     constexpr double all_kept = std::numeric_limits<double>::infinity();
@@ -88,7 +88,7 @@ namespace slipstick::app
           make_dual(t);
           return;
         }
-      catch (const NoEquilibrium &) // on all ranks alike
+      catch (const NoEquilibrium &) // on all ranks
         {
           if (pruned.rows->size() == 0)
             throw;
@@ -98,7 +98,7 @@ namespace slipstick::app
     make_dual(t);
   }
 
-  // A load history that returns to zero leaves rounding errors of its formulas.
+  // When a load history returns to zero, rounding errors of its formulas remain.
   template <int dim>
   void StepProblem<dim>::drop_rounding(std::vector<Eigen::VectorXd> &loads)
   {
@@ -123,7 +123,7 @@ namespace slipstick::app
     return loads;
   }
 
-  // Again for every step if something is not held: the loads of the step may drive it.
+  // Repeated for every step if a motion is not held: the loads of the step may drive it.
   template <int dim>
   void StepProblem<dim>::make_dual(const double t)
   {
@@ -132,9 +132,9 @@ namespace slipstick::app
       {
         make_dual_as_it_is(t);
       }
-    catch (const tfeti::UnheldMotions &unheld) // on all ranks alike
+    catch (const tfeti::UnheldMotions &unheld) // on all ranks
       {
-        if (pruned.rows->size() > 0) // perhaps held by contact nodes that were left out
+        if (pruned.rows->size() > 0) // perhaps held by pruned contact nodes
           throw;
         unheld_motions = in_words(unheld.motions, names_of(scene.bodies));
         std::vector<Eigen::VectorXd> motions;
@@ -163,7 +163,7 @@ namespace slipstick::app
         std::vector<Eigen::VectorXd> loads;
         for (const auto &subdomain : matrices)
           loads.push_back(subdomain.load);
-        drop_rounding(loads); // the first ones: the measure of later ones
+        drop_rounding(loads); // the first loads: the reference for later ones
         subdomains = std::make_shared<tfeti::Subdomains>(std::move(matrices));
       }
     auto rows = contact_rows(t);

@@ -19,11 +19,11 @@ namespace slipstick::app
 {
   namespace
   {
-    // A singular point raises the stress as far as so many diameters of the cells around the node with the largest one:
-    // stresses at nodes are means over cells, and may be largest beside it.
+    // Radius of influence of a singular point, in diameters of the cells around the node with the largest stress: nodal
+    // stresses are means over cells, and the largest may be beside the singular point.
     constexpr double cells_of_singularity = 1.5;
 
-    // Forces on what holds motions that nothing resists are told of above this part of the largest force.
+    // Forces on supports that hold otherwise unresisted motions are reported if above this part of the largest force.
     constexpr double negligible_held_force = 1e-6;
 
     constexpr double displacement_rounding = 1e-12; // of displacements, relative
@@ -37,7 +37,8 @@ namespace slipstick::app
       return all;
     }
 
-    /// No load acts along motions that nothing resists, but friction across a gap can: its two sides are at two places.
+    /// No load acts along motions that nothing resists, but friction across a gap can: its two sides are at different
+    /// places.
     template <int dim>
     void add_held_motions(const StepSolver<dim>        &solver,
                           const StepAnswer             &answer,
@@ -53,7 +54,7 @@ namespace slipstick::app
       Resultant held;
       for (unsigned int h = solver.n_given_supports(); h < solver.discrete_scene().supports.size(); ++h)
         held += reactions[h];
-      // the least force that can be told from none: rounding of the displacement, over the compliance |PFP|
+      // the smallest significant force: rounding of the displacement over the compliance |PFP|
       double largest =
         displacement_rounding * answer.contact->checks.max_displacement / solver.dual().norm() / negligible_held_force;
       for (const auto &load : sums.loads)

@@ -17,33 +17,33 @@ namespace slipstick::app
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
-    // A solution whose checks fail is continued at most this many times ...
+    // A solution whose checks fail is continued at most this number of times ...
     constexpr unsigned int max_tightenings = 4;
-    // ... with a tolerance reduced by the factor by which the worst check exceeds its limit, times this one, ...
+    // ... with a tolerance reduced by the ratio of the worst check to its limit, times this factor, ...
     constexpr double margin_of_tightening = 2;
-    // ... by no less ...
+    // ... at least by this factor ...
     constexpr double least_tightening = 2;
-    // ... but by no more than this at a time, ...
+    // ... but at most by this factor at a time, ...
     constexpr double largest_tightening = 1e4;
-    // ... even if the check does not decrease, where errors are as large as this fraction of the answer: they cannot
-    // rise much ...
+    // ... even if the check does not decrease, if errors are as large as this fraction of the solution: they cannot
+    // grow much ...
     constexpr double of_no_answer = 0.5;
-    // ... down to what double precision achieves nearly everywhere.
+    // ... down to what double precision nearly always achieves.
     constexpr double least_tolerance = 1e-13;
-    // Below this tolerance rounding of the multipliers may show; gaps are then closed in the displacement first ...
+    // Below this tolerance rounding of the multipliers may matter; gaps are then first closed in the displacement ...
     constexpr double tolerance_of_rounding = 1e-10;
-    // ... at most this many times, as long as the worst check falls by this factor.
+    // ... at most this number of times, as long as the worst check decreases by this factor.
     constexpr unsigned int max_closings     = 4;
     constexpr double       closing_progress = 0.5;
-    // Tolerance = auto: the algebraic error may be this fraction of the discretisation error. The two are nearly
-    // orthogonal, so that it adds at most 4.4 % to the total error, and less because it is estimated from above.
+    // Tolerance = auto: admissible ratio of algebraic to discretisation error. The two are nearly orthogonal, so that
+    // it adds at most 4.4 % to the total error, and less because it is estimated from above.
     constexpr double allowed_part = 0.3;
 
     template <int dim>
     scene::SolverOptions resolved_options(const scene::Scene<dim> &scene, const bool solves_adjoints)
     {
       auto options = contact::resolved_options(scene);
-      // these apply K+ more often than a single recovery does
+      // these apply K+ more often than a single recovery
       options.dual.keeps_factors = solves_adjoints || scene.load_factors.size() > 1 ||
                                    options.stops_at_discretization_error ||
                                    options.dual.operator_precision == tfeti::Precision::single_precision;
@@ -66,7 +66,7 @@ namespace slipstick::app
       return x;
     }
 
-    /// Observer of the solver: a line on the console and a row of convergence.csv.
+    /// Observer of the solver: prints a line and adds a row to convergence.csv.
     contact::ProgressObserver convergence_observer(const Log                           &log,
                                                    const scene::SolverOptions          &options,
                                                    const unsigned int                   step_number,
@@ -125,7 +125,7 @@ namespace slipstick::app
   {
     const double t = discrete_scene().load_factors.front();
     problem.build(t);
-    contact::SlipLaw(discrete_scene(), dual(), t); // refuses bounds
+    contact::SlipLaw(discrete_scene(), dual(), t); // throws for invalid bounds
   }
 
   template <int dim>
@@ -305,7 +305,7 @@ namespace slipstick::app
               return answer;
             reason = format("contact nodes without multipliers would penetrate by %.3g mm", penetration);
           }
-        catch (const NoEquilibrium &) // on all ranks alike
+        catch (const NoEquilibrium &) // on all ranks
           {
             if (!problem.is_pruned())
               throw;
@@ -318,9 +318,9 @@ namespace slipstick::app
       }
   }
 
-  // If the solution did not converge, work of the loads along a free motion proves nothing; all rows then count as
-  // holding. With bounds that follow the pressure it proves nothing either: forces that balance the loads were found before the
-  // solve, only the rows inside their bounds are not the right ones.
+  // If the solution has not converged, work of the loads along a free motion does not prove that there is no
+  // equilibrium; all rows then count as closed. The same holds for bounds that follow the pressure: forces that balance
+  // the loads were found before the solve; only the set of rows inside their bounds is wrong.
   template <int dim>
   tfeti::Recovery StepSolver<dim>::recovered(const bool bounds_follow)
   {
@@ -328,7 +328,7 @@ namespace slipstick::app
     const auto &x        = the_solution.multipliers;
     const auto &free     = the_solution.free;
     if (is_proof)
-      return tfeti::recover(dual(), x, free, true); // motions that nothing resists and no load drives are kept at zero
+      return tfeti::recover(dual(), x, free, true); // unresisted motions without loads are set to zero
     if (auto recovery = tfeti::recover_if_held(dual(), x, free))
       return *std::move(recovery);
     if (the_solution.status == qp::Status::converged)
@@ -357,7 +357,7 @@ namespace slipstick::app
           std::min(options.tolerance, std::max(the_solution.projected_gradient, the_solution.equality));
         if (worst.value <= limit || worst.is_balance)
           break;
-        // also if the answer is not a number
+        // also if the check is NaN
         const double excess = std::min(largest_tightening, std::max(least_tightening, worst.value / limit));
         options.tolerance   = std::max(reached / (margin_of_tightening * excess), least_tolerance);
         if (options.tolerance < tolerance_of_rounding && close_gaps(*answer, step, limit))
@@ -376,9 +376,9 @@ namespace slipstick::app
         if (problem.kept_part() != kept ||
             (the_solution.status == qp::Status::converged &&
              (worst.value > of_no_answer || next->contact->checks.worst().second < worst.value)))
-          answer = std::move(next); // the first: it got rows for more contact nodes
+          answer = std::move(next); // the first solution has been solved again with rows for more contact nodes
         else
-          { // it did converge to the tolerance requested
+          { // it has converged to the requested tolerance
             const auto counts   = the_solution.counts;
             the_solution        = before;
             the_solution.counts = counts;

@@ -81,7 +81,7 @@ namespace slipstick
 
   double process_age()
   {
-    // /proc/self/stat: field 22 is the start in clock ticks since boot; field 2 may hold spaces
+    // /proc/self/stat: field 22 is the start in clock ticks since boot; field 2 may contain spaces
     std::ifstream file("/proc/self/stat");
     std::string   text;
     std::getline(file, text);
@@ -99,14 +99,14 @@ namespace slipstick
 
   double peak_memory_mb()
   {
-    // deal.II's reader of this file never returns if there is no /proc
+    // deal.II's reader of this file never returns if /proc is missing
     std::ifstream status("/proc/self/status");
     std::string   word;
     double        kilobytes;
     while (status >> word)
       if (word == "VmHWM:" && status >> kilobytes)
         return kilobytes / 1024;
-    rusage usage; // may include memory that the process used before this program
+    rusage usage; // may include memory used by the process before this program
     return getrusage(RUSAGE_SELF, &usage) == 0 ? usage.ru_maxrss / 1024. : 0;
   }
 } // namespace slipstick

@@ -30,13 +30,13 @@ namespace slipstick
       {
         std::ifstream limit(group);
         double        bytes;
-        if (limit >> bytes) // "max": none
+        if (limit >> bytes) // "max" means no limit
           free = std::min(free, bytes / 1048576);
       }
     rlimit limit;
     if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
       {
-        std::ifstream size("/proc/self/statm"); // first: pages of the address space
+        std::ifstream size("/proc/self/statm"); // first number: pages of the address space
         double        pages = 0;
         size >> pages;
         const double left = limit.rlim_cur - pages * sysconf(_SC_PAGESIZE);

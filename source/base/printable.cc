@@ -9,9 +9,9 @@ namespace slipstick
 {
   namespace
   {
-    constexpr std::size_t longest_value = 80, longest_line = 2000; // characters of a message
+    constexpr std::size_t longest_value = 80, longest_line = 2000; // characters
 
-    /// Bytes of the UTF-8 character at @p k, 0 when there is none.
+    /// Number of bytes of the UTF-8 character at @p k, 0 if it is invalid.
     unsigned int length_at(const std::string &text, const std::size_t k)
     {
       const auto byte = [&](const std::size_t i) {
@@ -27,7 +27,7 @@ namespace slipstick
       for (unsigned int i = 1; i < n; ++i)
         if ((byte(k + i) & 0xC0) != 0x80)
           return 0;
-      const unsigned char second = byte(k + 1); // neither overlong nor surrogates nor beyond the last plane
+      const unsigned char second = byte(k + 1); // excludes overlong forms, surrogates, code points above the last plane
       if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) || (first == 0xF0 && second < 0x90) ||
           (first == 0xF4 && second > 0x8F))
         return 0;
@@ -92,7 +92,7 @@ namespace slipstick
     std::string        line, result;
     while (std::getline(lines, line))
       {
-        // a value begins at a quotation mark before which there is no letter and ends at one behind which there is none
+        // a value starts at a quotation mark not preceded by a letter and ends at one not followed by a letter
         const auto is_letter = [&](const std::size_t k) {
           return k < line.size() && std::isalnum(static_cast<unsigned char>(line[k]));
         };

@@ -54,7 +54,7 @@ namespace slipstick
     const auto  result = std::from_chars(digits.data(), end, value);
     if (digits.empty() || result.ptr != end || result.ec == std::errc::invalid_argument)
       return {};
-    if (result.ec == std::errc::result_out_of_range) // 1e-999 is as useless as 1e999
+    if (result.ec == std::errc::result_out_of_range) // underflow (1e-999) is treated like overflow
       return std::numeric_limits<double>::infinity();
     return value;
   }

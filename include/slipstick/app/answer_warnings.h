@@ -1,4 +1,4 @@
-// Warnings about an answer that was found: violated assumptions of the theory, and input that is probably a mistake.
+// Warnings about a solution: violated assumptions of the theory, and input that is probably wrong.
 #pragma once
 
 #include <slipstick/contact/checks.h>
@@ -9,11 +9,11 @@
 namespace slipstick::app
 {
   /// Texts of the warnings of one load step, with remedies, keyed by subject (a kind, with the contact pair): sides
-  /// that overlap, or slide past each other, by more than an element; pressure above the modulus; strain, rotation and
-  /// motion beyond small displacements; moduli in other units; forces whose split between pairs is not determined.
+  /// that overlap, or slide past each other, by more than an element; pressure above the modulus; strains, rotations
+  /// and displacements that are not small; moduli in other units; forces whose distribution over pairs is not unique.
   /// Collective.
   /// @param free owned rows whose multiplier is strictly inside its bounds.
-  /// @param nodes contact nodes of this rank with the points that they belong to at the front of Constraints.
+  /// @param nodes contact nodes of this rank; the first ones correspond to the points of Constraints.
   template <int dim>
   std::map<std::string, std::string> answer_warnings(const scene::Scene<dim>                 &scene,
                                                      const mesh::Mesh<dim>                   &mesh,

@@ -9,7 +9,7 @@
 
 namespace slipstick::app
 {
-  /// What the user asks for. If `message`, `list_parameters` or `new_scene` is set, the case file may be missing.
+  /// The requests of the user. If `message`, `list_parameters` or `new_scene` is set, the case file may be missing.
   struct CommandLine
   {
     std::string                      case_file;
@@ -22,12 +22,12 @@ namespace slipstick::app
     bool                             quiet   = false;
     bool                             verbose = false;
     std::optional<scene::ListFormat> list_parameters;
-    std::optional<std::string>       new_scene; // name of one to write
+    std::optional<std::string>       new_scene; // name of the scene to write
     std::optional<std::string>       message;   // text of --help or --version: print it and exit with 0
   };
 
-  /// Prints nothing and never exits; knows no MPI.
-  /// @throws InputError for an unknown or incomplete option (names the nearest), for a missing case file, and for an
-  /// override without '='.
+  /// Prints nothing, never exits and does not use MPI.
+  /// @throws InputError for an unknown or incomplete option (suggesting the nearest), for a missing case file, and for
+  /// an override without '='.
   CommandLine parse_command_line(int argc, const char *const *argv);
 } // namespace slipstick::app

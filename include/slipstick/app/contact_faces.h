@@ -10,9 +10,9 @@
 
 namespace slipstick::app
 {
-  /// Polygons between contact nodes, which go by pair, then key, in @p number. A facet of degree 2 is drawn as four polygons of degree
-  /// 1. The corners of triangles of degree 2 are no contact nodes: the middles of the edges around such a corner are a polygon of
-  /// their own. Collective.
+  /// Polygons between contact nodes, which are ordered by pair, then key, in @p number. A facet of degree 2 is drawn as
+  /// four polygons of degree 1. The corners of triangles of degree 2 are not contact nodes: the midpoints of the edges
+  /// around such a corner form a polygon of their own. Collective.
   std::vector<std::vector<std::int64_t>> contact_faces(
     const scene::Scene<3>                                                     &scene,
     const mesh::Mesh<3>                                                       &mesh,

@@ -1,4 +1,4 @@
-// Arcs that a mesh replaces by polygons, and the effect on contact.
+// Warnings about arcs that a mesh replaces by polygons, and the effect on contact.
 #pragma once
 
 #include <slipstick/contact/result.h>
@@ -9,9 +9,10 @@
 
 namespace slipstick::app
 {
-  /// Warnings with remedy, keyed by subject, for pairs of bodies whose edges or faces leave out a curve (EdgeCurve::left_out)
-  /// that is not small compared with the indentation or, where nothing touches, with the gap. Collective.
-  /// @param nodes contact nodes of this rank with the points that they belong to at the front of Constraints.
+  /// Warnings with remedy, keyed by subject, for pairs of bodies whose edges or faces neglect a sagitta
+  /// (EdgeCurve::left_out) that is not small compared with the indentation or, for open contact, with the gap.
+  /// Collective.
+  /// @param nodes contact nodes of this rank; the first ones correspond to the points of Constraints.
   template <int dim>
   std::map<std::string, std::string> curve_warnings(const scene::Scene<dim>                 &scene,
                                                     const mesh::Mesh<dim>                   &mesh,

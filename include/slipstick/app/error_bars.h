@@ -1,4 +1,4 @@
-// "1281 +- 9 MPa": figures of the results with the estimates of their errors.
+// Error bars: "1281 +- 9 MPa", results with the estimates of their errors.
 #pragma once
 
 #include <slipstick/app/goals.h>
@@ -6,20 +6,21 @@
 
 namespace slipstick::app
 {
-  /// Bars of the goals, and of the lengths of contact and stick, whose ends are known to half an element; in space of their areas.
-  /// @param results what is printed: a goal that does not reproduce its figure there (of a pair some of whose nodes supports
-  /// hold) has no bar.
-  /// @param nodes of the last load step; on rank 0, whose result counts.
+  /// Error bars of the goals, and of the lengths of contact and stick, whose ends are known to half an element; in
+  /// space of their areas.
+  /// @param results the printed values: a goal whose value differs from them (pairs with nodes held by supports) gets
+  /// no error bar.
+  /// @param nodes of the last load step; only those of rank 0 are used.
   template <int dim>
   std::vector<output::ErrorBar> error_bars(const std::vector<GoalError>               &goals,
                                            const output::ResultSummary                &results,
                                            const std::vector<contact::ContactNode>    &nodes,
                                            const std::vector<scene::ContactPair<dim>> &pairs);
 
-  /// A line a figure.
+  /// Prints one line per quantity.
   void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars);
 
-  /// Those of the figures @p promised whose errors are larger than the part @p accuracy of them, if any.
+  /// Prints which of the quantities @p promised have errors larger than the part @p accuracy of their values, if any.
   void print_inaccurate(const Log                           &log,
                         const std::vector<output::ErrorBar> &bars,
                         const std::vector<std::string>      &promised,

@@ -1,4 +1,4 @@
-// Penetrations after loading that the contact rows do not see.
+// Checks for penetrations after loading at places without contact rows.
 #pragma once
 
 #include <slipstick/interface/penetration.h>
@@ -9,14 +9,15 @@ namespace slipstick::app
 {
   struct GeometryFindings
   {
-    /// A declared contact is violated, so that the answer is not a solution: what penetrates where, with the remedy.
+    /// A declared contact is violated, so that the result is not a solution: place and amount of the penetration, with
+    /// a remedy.
     std::optional<std::string> failure;
 
-    /// Texts of warnings with remedy, keyed by subject: obstacles between nodes, bodies that no pair joins.
+    /// Texts of warnings with remedy, keyed by subject: obstacles between nodes, bodies that are not joined by a pair.
     std::map<std::string, std::string> warnings;
   };
 
-  /// @param largest displacement [mm], to compare with.
+  /// @param largest displacement [mm], the reference length.
   template <int dim>
   GeometryFindings geometry_findings(const scene::Scene<dim>       &scene,
                                      const interface::Penetrations &found,

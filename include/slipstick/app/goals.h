@@ -1,4 +1,4 @@
-// Errors of the figures that a user reads off, by dual weighted residuals with the contact set as it was found.
+// Errors of result quantities by dual weighted residuals, for a fixed contact state.
 #pragma once
 
 #include <slipstick/app/step_solver.h>
@@ -9,27 +9,28 @@
 
 namespace slipstick::app
 {
-  /// Estimated discretisation error of one figure.
+  /// Estimated discretisation error of one quantity.
   struct GoalError
   {
     std::string                  quantity; // as in Goal
     std::string                  unit;
     bool                         is_known = false;
-    std::string                  reason;       // why it is not
-    double                       value    = 0; // of the figure
-    double                       signed_  = 0; // sum over the cells: what should be added to the figure
+    std::string                  reason;       // why there is no estimate
+    double                       value    = 0; // of the quantity
+    double                       signed_  = 0; // sum over the cells: the correction to be added to the value
     double                       absolute = 0; // sum of the magnitudes
-    std::vector<Eigen::VectorXd> cells;        // by subdomain of this rank: the parts of the cells
+    std::vector<Eigen::VectorXd> cells;        // by subdomain of this rank: contributions of the cells
   };
 
-  /// Dual weighted residuals (Becker, Rannacher, Acta Numerica 2001): the error of a figure is the energy product of the
-  /// errors of the solution and of the displacement that the figure stands for, a linear problem on the set of the solution
-  /// (contact::Adjoint); added is what the gaps between the nodes would change (interface::gap_defects). Both errors of energy products are those of recovered stresses, as in the estimate of the energy norm. Bounds of
-  /// friction stay as they are in that problem; in the tangential force of a pair that slides as a whole they follow the
-  /// pressure. In space friction forces of slipping nodes keep their directions, too, and the tangential force is the sum of their
-  /// magnitudes.
-  /// @param quantities of which errors are wanted; empty: all.
-  /// The dual problem of @p solver is changed: for the last load step. Collective.
+  /// Dual weighted residuals (Becker, Rannacher, Acta Numerica 2001): the error of a quantity is the energy product of
+  /// the errors of the solution and of the adjoint displacement, which solves a linear problem on the active set of the
+  /// solution (contact::Adjoint); the effect of the gaps between the nodes is added (interface::gap_defects). Both
+  /// errors in energy products are those of recovered stresses, as in the estimate of the energy norm. Friction bounds
+  /// are fixed in the adjoint problem; only for the tangential force of a pair that slides as a whole they follow the
+  /// pressure. In space the friction forces of slipping nodes also keep their directions, and the tangential force is
+  /// the sum of their magnitudes.
+  /// @param quantities whose errors are requested; empty: all.
+  /// Changes the dual problem of @p solver, which is set to the last load step. Collective.
   template <int dim>
   std::vector<GoalError> goal_errors(StepSolver<dim>                &solver,
                                      const mechanics::Probes<dim>   &probes,

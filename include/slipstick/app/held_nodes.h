@@ -1,4 +1,4 @@
-// Contact nodes that supports hold, in an answer.
+// Contact nodes of a solution that are held by supports.
 #pragma once
 
 #include <slipstick/contact/held.h>
@@ -6,7 +6,7 @@
 
 namespace slipstick::app
 {
-  /// Adds them to the nodes of an answer. Collective.
+  /// Adds them to the nodes of a solution. Collective.
   template <int dim>
   void add_held_nodes(const scene::Scene<dim>            &scene,
                       const tfeti::DualProblem           &dual,

@@ -1,14 +1,14 @@
-// What the user is told when Ctrl-C or SIGTERM ends a run.
+// Message to the user when Ctrl-C or SIGTERM ends a run.
 #pragma once
 
 #include <string>
 
 namespace slipstick::app
 {
-  /// From the first call on, SIGINT and SIGTERM write "interrupted" and @p text on standard error before they end the
-  /// process as they always do. For use on one rank only, the one that prints. Signals that are ignored stay ignored.
+  /// From the first call on, SIGINT and SIGTERM write "interrupted" and @p text to standard error before they end the
+  /// process as usual. To be called on one rank only, the one that prints. Signals that are ignored stay ignored.
   void tell_when_interrupted(const std::string &text);
 
-  /// From now on they end the process silently again.
+  /// From now on these signals end the process without a message again.
   void do_not_tell_when_interrupted();
 } // namespace slipstick::app

@@ -1,4 +1,4 @@
-// What settings are called in .prm files, in the log and in summary.json.
+// Names of settings in .prm files, in the log and in summary.json.
 #pragma once
 
 #include <slipstick/scene/scene.h>

@@ -1,4 +1,4 @@
-// slipstick --new NAME: a commented scene to start from.
+// slipstick --new NAME: writes a commented scene as a starting point.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace slipstick::app
 {
-  /// Names and texts, from prm/ (cmake/new_scenes.cmake).
+  /// Names and texts of the scenes, from prm/ (cmake/new_scenes.cmake).
   std::vector<std::pair<std::string, std::string>> new_scene_texts();
 
-  /// Names of the scenes that can be written.
+  /// Names of the available scenes.
   std::vector<std::string> new_scene_names();
 
-  /// Writes NAME.prm into the working directory. @return what to tell the user.
+  /// Writes NAME.prm into the working directory. @return a message for the user.
   /// @throws InputError when there is no such scene, the file exists already, or it cannot be written.
   std::string write_new_scene(const std::string &name);
 } // namespace slipstick::app

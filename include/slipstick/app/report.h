@@ -1,4 +1,4 @@
-// What a run says on the console.
+// Console output of a run.
 #pragma once
 
 #include <slipstick/app/run_summary.h>
@@ -6,26 +6,26 @@
 
 namespace slipstick::app
 {
-  /// Greeting: program, libraries, ranks, case.
+  /// Prints the header: program, libraries, ranks, case.
   template <int dim>
   void print_header(const Log &log, const scene::Scene<dim> &scene, const MPI_Comm comm);
 
-  /// Sizes of the problem, one line a stage.
+  /// Prints the sizes of the problem, one line per stage.
   template <int dim>
   void print_mesh(const Log                    &log,
                   const scene::Scene<dim>      &scene,
                   const mesh::Mesh<dim>        &mesh,
                   const mechanics::Spaces<dim> &spaces);
-  /// Texts of the warnings that this printed, without "warning: ".
+  /// @return the texts of the printed warnings, without "warning: ".
   template <int dim>
   std::vector<std::string> warnings_before(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh);
   void                     print_constraints(const Log &log, const tfeti::Constraints &constraints);
   void                     print_dual(const Log &log, const tfeti::DualProblem &dual);
 
-  /// The checks from the recovered displacement.
+  /// Prints the checks computed from the recovered displacement.
   void print_checks(const Log &log, const contact::Checks &checks, const double tolerance);
 
-  /// For an answer that does not pass: which test failed, by how much and where, and what to do.
+  /// Message for a solution that fails the checks: which check, by how much and where, and a remedy.
   template <int dim>
   void print_failure(const Log                   &log,
                      const scene::Scene<dim>     &scene,
@@ -33,10 +33,10 @@ namespace slipstick::app
                      const contact::Checks       &checks,
                      const double                 tolerance);
 
-  /// Resultants of loads, supports, foundations and contact pairs, and the sum of those from outside.
+  /// Prints the resultants of loads, supports, foundations and contact pairs, and the sum of the external ones.
   template <int dim>
   void print_forces(const Log &log, const scene::Scene<dim> &scene, const output::ResultSummary &results);
 
-  /// The figures that matter and the file to open.
+  /// Prints the main results and the file to open.
   void print_result(const Log &log, const output::Summary &summary, const std::string &pvd);
 } // namespace slipstick::app

@@ -1,4 +1,4 @@
-// Files from which a run continues after its last finished load step.
+// Restart files, from which a run continues after its last completed load step.
 #pragma once
 
 #include <slipstick/app/step_state.h>
@@ -12,11 +12,11 @@
 
 namespace slipstick::app
 {
-  /// Of contact nodes, by pair and node: the slip of all load steps so far, a vector in space, in the plane its first
-  /// component [mm].
+  /// For contact nodes, by pair and node: slip of all load steps so far; a vector in space, in the plane only the first
+  /// component is used [mm].
   using TotalSlip = std::map<std::pair<unsigned int, mechanics::NodeKey>, std::array<double, 3>>;
 
-  /// What one rank knows after a load step.
+  /// State of one rank after a load step.
   struct RunState
   {
     StepState                        solver;
@@ -27,7 +27,7 @@ namespace slipstick::app
     std::set<std::string>            warned_about;
   };
 
-  /// Writes restart_NNN_RRRR.bin of every rank (NNN: finished steps) and then restart.bin, which names them; the
+  /// Writes restart_NNN_RRRR.bin of every rank (NNN: completed steps) and then restart.bin, which names them; the
   /// previous files are removed last. Collective.
   /// @throws InputError if they cannot be written.
   template <int dim>
@@ -37,10 +37,10 @@ namespace slipstick::app
                      const MPI_Comm                 comm);
 
   /// @throws InputError if there is nothing to resume, or if scene, mesh files, version or number of ranks differ from
-  /// those of the run. Load factors may differ after the finished steps. Collective.
+  /// those of the run. Load factors may differ after the completed steps. Collective.
   template <int dim>
   RunState read_restart(const output::OutputDirectory &directory, const scene::Scene<dim> &scene, const MPI_Comm comm);
 
-  /// Of a run that has ended. Collective.
+  /// Removes the restart files of a finished run. Collective.
   void remove_restart(const output::OutputDirectory &directory, const MPI_Comm comm);
 } // namespace slipstick::app

@@ -1,4 +1,4 @@
-// The load steps of a scene on one mesh: solved, checked, written.
+// The load steps of a scene on one mesh: solution, checks, output.
 #pragma once
 
 #include <slipstick/app/adaptivity.h>
@@ -11,7 +11,7 @@
 
 namespace slipstick::app
 {
-  /// What is said of motions that nothing resists.
+  /// Message about a motion that no support resists.
   std::string set_to_zero(const std::string &motion);
 
   /// Load steps and their results. Members are collective, except those that only return known values.
@@ -19,8 +19,8 @@ namespace slipstick::app
   class Run
   {
   public:
-    /// @param wanted error bars of these, after the last load step; with an empty list of all; nothing: none.
-    /// @param refinement of single cells, if any.
+    /// @param wanted quantities that get error bars after the last load step; empty list: all; no value: none.
+    /// @param refinement local refinement, if any.
     Run(const scene::Scene<dim>                &scene,
         const output::OutputDirectory          &directory,
         const Log                              &log,
@@ -28,21 +28,21 @@ namespace slipstick::app
         std::optional<std::vector<std::string>> wanted     = {},
         mesh::Refinement                       *refinement = nullptr);
 
-    /// @return the summary, which rank 0 knows completely.
+    /// @return the summary, complete on rank 0 only.
     const output::Summary &solve_and_write(const bool resumes);
 
-    /// What was found, at the end of a run.
+    /// Prints the results, at the end of a run.
     void print(const Log &to) const;
 
-    /// Warnings about input and answer.
+    /// Prints the warnings about input and solution.
     void print_warnings(const Log &to) const;
 
-    /// Says in the summary what became of an accuracy that was asked for.
+    /// Records in the summary whether a requested accuracy was reached.
     void finish(const std::vector<output::MeshRow> &meshes,
                 const std::vector<std::string>     &notes,
                 const std::string                  &missed);
 
-    /// After a step without equilibrium: the results of the steps before it are kept and marked.
+    /// After a step without equilibrium: writes the results of the previous steps, marked as such.
     void write_without_equilibrium();
 
     /// Of the last load step.
@@ -61,48 +61,48 @@ namespace slipstick::app
     std::vector<LeftOut<dim>> point_forces() const;
 
   private:
-    /// Takes over what an earlier run has found. @return its summary.
+    /// Takes over the results of an earlier run. @return its summary.
     output::Summary resume();
 
-    /// What is left of the run [s], if its steps take as long as those so far; none before the first one has ended.
+    /// Estimated remaining time of the run, assuming equal times per step; empty before the first step has ended.
     std::string time_left(const unsigned int step) const;
 
     bool prints() const;
 
-    /// What is said when the user interrupts load step @p step.
+    /// Sets the message for an interruption during load step @p step.
     void announce(const unsigned int step) const;
 
-    /// Writes the tables of the steps so far while others are still to come, for a run that does not live to see its end;
-    /// less often where writing takes longer than solving.
+    /// Writes the tables of the steps so far, for the case that the run is interrupted later; less often if writing
+    /// takes longer than solving.
     void keep(const unsigned int step, output::Summary summary);
 
-    /// One warning for each kind and pair.
+    /// Adds warnings, one for each kind and pair.
     void warn(const Warnings &texts);
 
-    /// @param so_far of the steps before.
+    /// @param so_far summary of the previous steps.
     output::Summary load_step(const unsigned int step, const output::Summary &so_far);
 
-    /// Prints the checks of an answer and warns of what is found in it. @return whether its contacts are kept.
+    /// Prints the checks of a solution and adds warnings about it. @return whether no declared contact is violated.
     bool warn_of_answer(const double t, const StepAnswer &answer);
 
-    /// After the last load step.
+    /// Called after the last load step.
     void estimate_errors(const double t, output::Summary &summary);
 
     void write_tables(const output::Summary &summary) const;
 
     void write_fields(const unsigned int step, const StepAnswer &answer) const;
 
-    /// Puts times, memory and warnings into @p summary.
+    /// Adds times, memory and warnings to @p summary.
     void describe_run(output::Summary &summary) const;
 
     const output::OutputDirectory          &directory;
     const Log                              &log;
     const MPI_Comm                          comm;
-    std::optional<std::vector<std::string>> wanted; // error bars
+    std::optional<std::vector<std::string>> wanted; // quantities with error bars
     const bool                              refines;
     StageClock                              clock;
     StepSolver<dim>                         solver;
-    const scene::Scene<dim>                &scene; // with the contact pairs that are found
+    const scene::Scene<dim>                &scene; // including the contact pairs found by the search
     mechanics::Probes<dim>                  probes;
     std::unique_ptr<StepAnswer>             last;   // load step
     std::vector<GoalError>                  errors; // of its figures

@@ -1,4 +1,4 @@
-// What a run says in summary.json, and whether its answer passes.
+// Contents of summary.json, and the acceptance test of a solution.
 #pragma once
 
 #include <slipstick/contact/checks.h>
@@ -8,32 +8,32 @@
 
 namespace slipstick::app
 {
-  // A check may exceed the solver's tolerance by this factor (checks compare with displacements and forces, the
-  // tolerance with |Pd|), but never this part of the answer.
+  // A check may exceed the solver's tolerance by this factor (checks refer to displacements and forces, the tolerance
+  // to |Pd|), but never this part of the solution.
   constexpr double check_factor  = 1000;
   constexpr double largest_limit = 0.05;
 
   /// The tolerance of a solution: that of the options, or with Tolerance = auto the residual at which it was accepted.
   double tolerance_of(const scene::SolverOptions &options, const contact::DualSolution &solution);
 
-  /// Checks above this limit do not count as converged.
+  /// Checks above this limit count as failed.
   double check_limit(const double tolerance);
 
-  /// Did the solver converge, and are all checks within the limit?
+  /// Whether the solver converged and all checks are within the limit.
   bool passes(const contact::DualSolution &solution, const contact::Checks &checks, const double tolerance);
 
-  /// Case, version, ranks.
+  /// Case, version, number of ranks.
   template <int dim>
   output::Summary empty_summary(const scene::Scene<dim> &scene, const MPI_Comm comm);
 
-  /// Appends the step that @p summary describes to the previous ones: counts are summed, the worst residuals kept.
+  /// Combines the step in @p summary with the previous steps: counts are summed, the worst residuals kept.
   void add_step(const output::Summary &so_far, const double load_factor, output::Summary &summary);
 
-  /// Forces around a circumference have no moment: of bodies of revolution all moments become 0.
+  /// Forces distributed over a circumference have no moment: all moments of bodies of revolution are set to 0.
   template <int dim>
   void drop_moments(const scene::Scene<dim> &scene, output::ResultSummary &results);
 
-  /// Everything in summary.json but times and memory.
+  /// All entries of summary.json except times and memory.
   template <int dim>
   output::Summary make_summary(const scene::Scene<dim>       &scene,
                                const mesh::Mesh<dim>         &mesh,

@@ -1,4 +1,4 @@
-// The mesh of a scene and the dual problem of a load step: what changes with the step, and what is made once.
+// The mesh of a scene and the dual problem of a load step: data that change with the step, and data computed once.
 #pragma once
 
 #include <slipstick/base/log.h>
@@ -15,16 +15,16 @@
 
 namespace slipstick::app
 {
-  /// K_p, B and F of the load steps, one after another, with rows for the contact nodes that may touch: at first for those
-  /// whose gap is small, for more when others would penetrate. Motions that nothing holds and no load drives are held where
-  /// the scene has no support. Members are collective, except those that only return known values.
+  /// K_p, B and F of successive load steps, with rows for the potential contact nodes: initially for those with a small
+  /// gap, later for more if others would penetrate. Motions that nothing resists and no load drives are suppressed if
+  /// the scene has no support for them. Members are collective, except those that only return known values.
   template <int dim>
   class StepProblem
   {
   public:
-    /// Makes the mesh, and finds the contact pairs that the scene leaves to a search.
-    /// @param refinement of single cells, if any.
-    /// @throws InputError for meshes and pairs that do not fit.
+    /// Generates the mesh, and finds the contact pairs if the scene requests an automatic search.
+    /// @param refinement local refinement, if any.
+    /// @throws InputError for inconsistent meshes and pairs.
     StepProblem(const scene::Scene<dim>    &scene,
                 const Log                  &log,
                 StageClock                 &clock,
@@ -32,35 +32,35 @@ namespace slipstick::app
                 const scene::SolverOptions &options,
                 mesh::Refinement           *refinement);
 
-    /// At load factor t. @throws InputError, NoEquilibrium.
+    /// Builds the problem at load factor t. @throws InputError, NoEquilibrium.
     void build(const double t);
 
-    /// Loads and right-hand sides of a later step; slip starts at @p u, where the previous step ended.
+    /// Sets loads and right-hand sides of a later step; slip is measured from @p u, the end of the previous step.
     /// @return whether the rows are those of the previous step, so that its multipliers fit.
     bool advance(const double t, const std::vector<Eigen::VectorXd> &u);
 
-    /// Rows for more contact nodes, as others penetrate or nothing holds the bodies without them.
+    /// Adds rows for more contact nodes, because others penetrate or the bodies are not held without them.
     void keep_more(const double t);
 
-    /// Slip is measured from @p u.
+    /// Sets the displacement @p u from which slip is measured.
     void start_slip_from(const std::vector<Eigen::VectorXd> &u);
 
-    /// The loads of the present step once more, with bolts as they are now.
+    /// Sets the loads of the current step again, with the current shortening of the bolts.
     void reload(const double t);
 
-    /// Bolts are tightened to what the scene gives at load factor t.
+    /// Sets the tensions prescribed by the scene at load factor t.
     void begin_bolts(const double t);
 
     /// Penetration of contact nodes that have no rows [mm].
     double penetration_of_pruned(const std::vector<Eigen::VectorXd> &u) const;
 
-    /// Have contact nodes been left out?
+    /// Whether contact nodes have been omitted.
     bool is_pruned() const
     {
       return pruned.rows->size() > 0;
     }
 
-    /// Goes on from a run that ended with these: kept_part(), largest_load().
+    /// Continues from a run that ended with these values of kept_part() and largest_load().
     void restore(const double part, const double load)
     {
       the_kept_part    = part;
@@ -73,12 +73,12 @@ namespace slipstick::app
     {
       return the_kept_part;
     }
-    /// Of the steps so far [N].
+    /// Largest load of the steps so far [N].
     double largest_load() const
     {
       return the_largest_load;
     }
-    /// With the contact pairs that were found.
+    /// The scene with the contact pairs found by the search.
     const scene::Scene<dim> &discrete_scene() const
     {
       return scene;
@@ -104,17 +104,17 @@ namespace slipstick::app
     {
       return held;
     }
-    /// Number of supports in the scene as given; supports after these hold motions that nothing else holds.
+    /// Number of supports in the scene as given; additional supports hold motions that nothing else holds.
     unsigned int n_given_supports() const
     {
       return n_given;
     }
-    /// Motions that nothing holds and no load drives, in words (empty: none); they are set to zero.
+    /// Description of the motions that nothing resists and no load drives (empty: none); they are set to zero.
     const std::string &unheld() const
     {
       return unheld_motions;
     }
-    /// Null where the scene has none.
+    /// Null if the scene has none.
     const mechanics::Bolts<dim> *bolts() const
     {
       return the_bolts ? &*the_bolts : nullptr;
@@ -127,23 +127,23 @@ namespace slipstick::app
     {
       return bolts_so_far;
     }
-    /// What of a displacement strains the bodies: all but what bolts are shortened by.
+    /// The part of a displacement that strains the bodies: without the shortening of bolts.
     std::vector<Eigen::VectorXd> elastic_part(const std::vector<Eigen::VectorXd> &u) const
     {
       return the_bolts ? the_bolts->elastic_part(u, bolts_so_far.shortening()) : u;
     }
-    /// Of all load steps so far [s].
+    /// Total of all load steps so far [s].
     double factorization_seconds() const
     {
       return factorization;
     }
 
   private:
-    /// Without the rows of pruned contact nodes unless a body is held by them.
+    /// Builds the dual problem without the rows of pruned contact nodes, unless these are needed to hold a body.
     void make_dual(const double t);
     void make_dual_as_it_is(const double t);
 
-    /// Of this rank's subdomains, bolts included, without rounding.
+    /// Loads of this rank's subdomains, including bolts, with rounding set to zero.
     std::vector<Eigen::VectorXd> loads_at(const double t);
 
     /// Sets loads of this rank's subdomains to zero if they are only rounding compared with those of earlier steps.
@@ -169,7 +169,7 @@ namespace slipstick::app
     std::unique_ptr<tfeti::DualProblem> the_dual;
     tfeti::Constraints                  pruned;  // normal rows of the contact nodes without multipliers
     tfeti::HeldContacts                 held;    // contact nodes whose gap supports prescribe
-    unsigned int                        n_given; // supports
+    unsigned int                        n_given; // number of supports
     std::string                         unheld_motions;
     mechanics::Tightening               bolts_so_far;
     double                              the_kept_part;

@@ -1,4 +1,4 @@
-// Of a load step that is solved: forces, places, probes and contact nodes, as the results show them.
+// Results of a solved load step: forces, places, probes and contact nodes.
 #pragma once
 
 #include <slipstick/app/restart.h>
@@ -12,19 +12,20 @@
 
 namespace slipstick::app
 {
-  /// Texts by what they are about, which is warned of once in a run.
+  /// Texts by subject; each subject is reported once per run.
   using Warnings = std::map<std::string, std::string>;
 
   /// Resultants of loads, supports and foundations at load factor @p t. Collective.
-  /// @param warnings gets loads whose formulas no mesh resolves, and forces on motions that are held because nothing
-  /// resists them.
+  /// @param warnings receives loads whose formulas are not resolved by any mesh, and forces on motions that are held
+  /// because nothing resists them.
   template <int dim>
   output::ForceSummary forces(const StepSolver<dim> &solver,
                               const StepAnswer      &answer,
                               const double           t,
                               Warnings              &warnings);
 
-  /// Puts into @p summary where stress and error are largest, and whether more than the mesh is in the way there. Collective.
+  /// Sets in @p summary the places of the largest stress and error, and whether the stress there is singular.
+  /// Collective.
   template <int dim>
   void add_places(const StepSolver<dim> &solver, const mechanics::StressResult &stress, output::Summary &summary);
 
@@ -36,8 +37,8 @@ namespace slipstick::app
                                                  const mechanics::StressResult      &stress);
 
   /// Contact nodes of all ranks on rank 0, with their arc lengths; in space with the faces between them. Collective.
-  /// @param total_slip gets the slip of this step added, on rank 0. @param keys_of_nodes gets those of the contact nodes, in
-  /// their order, on rank 0.
+  /// @param total_slip the slip of this step is added to it, on rank 0. @param keys_of_nodes returns the keys of the
+  /// contact nodes, in their order, on rank 0.
   template <int dim>
   output::ContactStep gather_contact(const StepSolver<dim>           &solver,
                                      const contact::CheckedContact   &own,

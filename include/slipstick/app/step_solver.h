@@ -15,7 +15,7 @@
 
 namespace slipstick::app
 {
-  /// A recovered displacement, and what was found from it.
+  /// A recovered displacement with the results computed from it.
   struct StepAnswer
   {
     tfeti::Recovery                        recovery;
@@ -23,17 +23,17 @@ namespace slipstick::app
     std::optional<mechanics::StressResult> stress;
   };
 
-  /// The solver of a scene: of the problem of every load step. Members are collective, except those that only return known values.
+  /// Solves the load steps of a scene. Members are collective, except those that only return known values.
   template <int dim>
   class StepSolver
   {
   public:
     using Answer = StepAnswer;
 
-    /// Makes the mesh, and finds the contact pairs that the scene leaves to a search.
-    /// @param solves_adjoints are other problems to be solved with the same matrices afterwards?
-    /// @param refinement of single cells, if any.
-    /// @throws InputError for meshes and pairs that do not fit.
+    /// Generates the mesh, and finds the contact pairs if the scene requests an automatic search.
+    /// @param solves_adjoints whether other problems will be solved with the same matrices afterwards.
+    /// @param refinement local refinement, if any.
+    /// @throws InputError for inconsistent meshes and pairs.
     StepSolver(const scene::Scene<dim> &scene,
                const Log               &log,
                StageClock              &clock,
@@ -41,18 +41,18 @@ namespace slipstick::app
                const bool               solves_adjoints = false,
                mesh::Refinement        *refinement      = nullptr);
 
-    /// The dual problem of the first load step. @throws InputError, NoEquilibrium.
+    /// Builds the dual problem of the first load step. @throws InputError, NoEquilibrium.
     void build();
 
-    /// Solves the next load step, until the checks of its answer pass or cannot be improved any more.
-    /// @param multiplications_before by F in the steps before.
+    /// Solves the next load step, until the checks of its solution pass or cannot be improved any further.
+    /// @param multiplications_before multiplications by F in the previous steps.
     std::unique_ptr<Answer> solve(const unsigned int step, const std::uint64_t multiplications_before);
 
-    /// In place of build(): as after load step @p step of an earlier run. @throws InputError where the state does not
-    /// fit.
+    /// Replaces build(): restores the state after load step @p step of an earlier run. @throws InputError if the state
+    /// does not fit.
     void resume(const unsigned int step, const StepState &state);
 
-    /// After a load step, for resume(). Not of the last step of a scene.
+    /// The state after a load step, for resume(). Not available for the last step of a scene.
     StepState state() const;
 
     // see StepProblem
@@ -72,7 +72,7 @@ namespace slipstick::app
     {
       return problem.dual();
     }
-    /// For problems with other loads on the same rows, after the last load step.
+    /// The dual problem, for other loads on the same rows after the last load step.
     tfeti::DualProblem &dual_for_adjoints()
     {
       return problem.dual();
@@ -97,42 +97,43 @@ namespace slipstick::app
     {
       return problem.elastic_part(u);
     }
-    /// Of the step solved last.
+    /// Solution of the last step.
     const contact::DualSolution &solution() const
     {
       return the_solution;
     }
-    /// Forces and lengths of the bolts, after the step solved last.
+    /// Forces and shortenings of the bolts after the last step.
     const mechanics::Tightening &tightening() const
     {
       return problem.tightening();
     }
-    /// All steps so far.
+    /// Rows of all steps so far.
     const std::vector<output::ConvergenceRow> &convergence() const
     {
       return rows;
     }
 
   private:
-    /// Solves the step again, with bolts shortened by other amounts, until those that are tightened bear their forces.
+    /// Repeats the step with different shortenings of the bolts until the prescribed bolt forces are reached.
     std::unique_ptr<Answer> tighten_bolts(const unsigned int      step,
                                           const std::uint64_t     multiplications_before,
                                           std::unique_ptr<Answer> answer);
 
-    /// The displacement of the solution, whose status becomes stagnated where its rows do not hold the bodies though they may.
-    /// @param bounds_follow the pressure?
+    /// Recovers the displacement of the solution. Its status becomes `stagnated` if its rows do not hold the bodies
+    /// although others may.
+    /// @param bounds_follow whether bounds follow the pressure.
     tfeti::Recovery recovered(bool bounds_follow);
 
-    /// Computes checks and stresses of an answer that was recovered from @p from.
+    /// Computes checks and stresses of a solution recovered from @p from.
     void evaluate(Answer &answer, const contact::DualSolution &from, const double t) const;
 
-    /// Is the algebraic error of an iterate a small part of its discretisation error, and does it pass the checks? The
-    /// last estimate of the step, which errors of earlier iterates can only have made too large, is examined first; a
-    /// displacement is recovered only if that does not decide.
+    /// Whether the algebraic error of an iterate is a small part of its discretisation error, and the iterate passes
+    /// the checks. The last estimate of the step, which errors of earlier iterates can only have increased, is tested
+    /// first; a displacement is recovered only if that is not conclusive.
     bool is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t);
 
     /// Solves the current step, adding rows for more contact nodes as long as pruned ones penetrate.
-    /// @param goes_on from the solution of this step.
+    /// @param goes_on start from the solution of this step.
     std::unique_ptr<Answer> solve_step(const unsigned int  step,
                                        const std::uint64_t multiplications_before,
                                        const bool          goes_on);
@@ -145,7 +146,8 @@ namespace slipstick::app
                                     const std::uint64_t     multiplications_before,
                                     std::unique_ptr<Answer> answer);
 
-    /// Corrects the displacement of an answer, on its set, until its checks are within the limit or stop decreasing.
+    /// Corrects the displacement of a solution, with its active set, until its checks are within the limit or stop
+    /// decreasing.
     /// @return whether they are within the limit.
     bool close_gaps(Answer &answer, const unsigned int step, const double limit);
 
@@ -154,11 +156,11 @@ namespace slipstick::app
     const MPI_Comm                      comm;
     scene::SolverOptions                options;
     StepProblem<dim>                    problem;
-    double                              discretization_error; // last estimate in the step [sqrt(N mm)]
+    double                              discretization_error; // last estimate in this step [sqrt(N mm)]
     contact::DualSolution               the_solution;
-    std::unique_ptr<Answer>             accepted; // by the test of accuracy, in the step
+    std::unique_ptr<Answer>             accepted; // by the accuracy test in this step
     std::vector<Eigen::VectorXd>        u;        // of the last step
-    contact::History                    history;  // of the steps before
+    contact::History                    history;  // of the previous steps
     std::vector<output::ConvergenceRow> rows;
   };
 } // namespace slipstick::app

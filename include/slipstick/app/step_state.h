@@ -1,4 +1,4 @@
-// What the solver of load steps carries from one step to the next.
+// Data that the solver passes from one load step to the next.
 #pragma once
 
 #include <slipstick/contact/checks.h>
@@ -26,7 +26,7 @@ namespace slipstick::app
     double                              largest_traction   = 0;
     std::vector<std::vector<double>>    u; // of this rank's subdomains [mm]
 
-    /// A direction that the solver has kept, with its product and the error of that (qp/direction_store.h); owned rows.
+    /// A direction in the store, with its product with F and the error of that (qp/direction_store.h); owned rows.
     struct Direction
     {
       std::vector<double> p, Fp;
@@ -34,6 +34,6 @@ namespace slipstick::app
     };
     std::vector<Direction> directions; // oldest first
 
-    std::vector<std::vector<double>> bolts; // numbers of Tightening::state()
+    std::vector<std::vector<double>> bolts; // from Tightening::state()
   };
 } // namespace slipstick::app

@@ -1,4 +1,4 @@
-// Directions across a direction.
+// Unit vectors perpendicular to a direction.
 #pragma once
 
 #include <deal.II/base/tensor.h>
@@ -8,8 +8,8 @@
 
 namespace slipstick
 {
-  /// Unit vectors across a unit vector and each other: in the plane to its left, in space the first is nearest to the axis that
-  /// is most across.
+  /// Unit vectors perpendicular to a unit vector and to each other: in the plane the one to its left; in space the
+  /// first is nearest to the axis most perpendicular to the unit vector.
   template <int dim>
   std::array<dealii::Tensor<1, dim>, dim - 1> across(const dealii::Tensor<1, dim> &direction)
   {

@@ -13,7 +13,7 @@
 
 namespace slipstick
 {
-  /// Tree of boxes; numbers are positions in the list that it was made from.
+  /// Tree of bounding boxes; numbers are positions in the list from which it was constructed.
   template <int dim>
   class BoxTree
   {
@@ -23,7 +23,7 @@ namespace slipstick
 
     explicit BoxTree(const std::vector<Box> &boxes);
 
-    /// Boxes that meet @p box, ascending.
+    /// Boxes that intersect @p box, ascending.
     std::vector<unsigned int> near(const Box &box) const;
 
     /// Calls f(number) in order of the distance of the boxes from @p x (equal ones ascending) until it returns false or
@@ -31,14 +31,14 @@ namespace slipstick
     template <class Radius, class F>
     void for_each_by_distance(const dealii::Point<dim> &x, const Radius &radius, const F &f) const
     {
-      // the nearest few, then more of them: much faster than an incremental query
+      // query the nearest few, then more: much faster than an incremental query
       std::pair<double, unsigned int> last(-1., 0);
       for (std::size_t n = first_batch; !tree.empty(); n *= growth_of_batch)
         {
           const auto batch = nearest(x, n);
           for (const auto &next : batch)
             {
-              // others may be as far as the last one, but for rounding
+              // further boxes may be at the same distance up to rounding
               if (batch.size() < tree.size() && next.first >= (1 - same_distance) * batch.back().first)
                 break;
               if (next <= last)
@@ -52,10 +52,10 @@ namespace slipstick
         }
     }
 
-    /// Smallest box around points.
+    /// Bounding box of points.
     static Box box_around(const std::vector<dealii::Point<dim>> &points);
 
-    /// @p box, wider by @p more on all sides.
+    /// @p box enlarged by @p more on all sides.
     static Box widened(const Box &box, const double more);
 
   private:

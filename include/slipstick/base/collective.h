@@ -1,4 +1,4 @@
-// An error found on one rank is raised on all ranks, so that no rank is left waiting.
+// Throws an error found on one rank on all ranks, so that no rank is left waiting.
 #pragma once
 
 #include <mpi.h>

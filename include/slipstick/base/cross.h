@@ -5,7 +5,7 @@
 
 namespace slipstick
 {
-  /// The component of a x b across the plane: positive when b is on the left of a.
+  /// The out-of-plane component of a x b: positive if b is to the left of a.
   inline double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
   {
     return a[0] * b[1] - a[1] * b[0];

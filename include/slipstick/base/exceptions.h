@@ -1,4 +1,4 @@
-// Errors that a user sees: what is wrong, its value, what is allowed, and the remedy.
+// Errors reported to the user: the fault, its value, the allowed values, and the remedy.
 #pragma once
 
 #include <stdexcept>
@@ -24,7 +24,7 @@ namespace slipstick
       : std::runtime_error(problem + "\n  remedy: " + remedy)
     {}
 
-    /// A text that already carries its remedy, passed on from another rank.
+    /// A text that already contains its remedy, received from another rank.
     struct Ready
     {};
     Error(Ready, const std::string &text)
@@ -32,30 +32,30 @@ namespace slipstick
     {}
   };
 
-  /// The scene cannot be solved as given: file, parameter or mesh. Thrown on all ranks alike (see
-  /// base/collective.h for how an error found by one rank is made so).
+  /// The scene cannot be solved as given: file, parameter or mesh. Thrown on all ranks (base/collective.h distributes
+  /// errors found on one rank).
   class InputError : public Error
   {
   public:
     using Error::Error;
   };
 
-  /// The loads cannot be balanced; the message names the body, the motion and what to add. Thrown on all ranks alike.
+  /// The loads cannot be balanced; the message names the body, the motion and a remedy. Thrown on all ranks.
   class NoEquilibrium : public Error
   {
   public:
     using Error::Error;
   };
 
-  /// No load acts along a motion that nothing holds: there is an equilibrium, but the position is not determined.
+  /// No load acts along a motion that nothing resists: there is an equilibrium, but the position is not determined.
   class UndeterminedPosition : public NoEquilibrium
   {
   public:
     using NoEquilibrium::NoEquilibrium;
   };
 
-  /// Numerics failed where the theory says that they cannot (a factorisation that breaks down, a kernel that is
-  /// larger than the rigid motions).
+  /// A numerical method failed although the theory excludes it (e.g. a breakdown of a factorisation, a kernel larger
+  /// than the rigid motions).
   class NumericalError : public Error
   {
   public:

@@ -1,4 +1,4 @@
-// What the user sees while the program runs; only rank 0 prints.
+// Console output of the program; only rank 0 prints.
 #pragma once
 
 #include <mpi.h>
@@ -39,15 +39,15 @@ namespace slipstick
   /// printf-style formatting into a string.
   std::string format(const char *pattern, ...) __attribute__((format(printf, 1, 2)));
 
-  /// Wall time of the stages of a run [s]. Stages do not nest: entering one ends the one before, so that they add up
-  /// to the time since the process was started, which counts as stage "startup" until the first is entered.
+  /// Wall time of the stages of a run [s]. Stages are not nested: entering one ends the previous one, so that they add
+  /// up to the time since the start of the process, which counts as stage "startup" until the first one is entered.
   class StageClock
   {
   public:
     StageClock();
 
     void enter(const std::string &stage);
-    /// Ends the current stage; time counts as "other" until the next.
+    /// Ends the current stage; time then counts as "other" until the next stage.
     void   leave();
     double seconds(const std::string &stage) const;
     double total() const;
@@ -62,6 +62,6 @@ namespace slipstick
   /// Age of this process [s], to the resolution of the kernel's clock (10 ms); 0 if the system does not provide it.
   double process_age();
 
-  /// Largest resident memory of this process so far [MB].
+  /// Peak resident memory of this process so far [MB].
   double peak_memory_mb();
 } // namespace slipstick

@@ -1,4 +1,4 @@
-// The valid name that a misspelt one most probably means.
+// Suggestions for misspelt names.
 #pragma once
 
 #include <optional>
@@ -7,16 +7,16 @@
 
 namespace slipstick
 {
-  /// Number of single character insertions, deletions, replacements and swaps of neighbours that turn @p a into
-  /// @p b (optimal string alignment), upper and lower case taken as equal.
+  /// Number of insertions, deletions, replacements and transpositions of characters that turn @p a into @p b (optimal
+  /// string alignment), not case-sensitive.
   unsigned int edit_distance(const std::string &a, const std::string &b);
 
-  /// The candidate with the smallest edit distance to @p name, the first among equals; none if there is no candidate or
-  /// if so much would have to change (over half of the longer word) that a suggestion would mislead.
+  /// The candidate with the smallest edit distance to @p name, the first of several; nothing if there is no candidate
+  /// or if more than half of the longer word would have to change.
   std::optional<std::string> nearest_name(const std::string &name, const std::vector<std::string> &candidates);
 
-  /// "did you mean X?" followed by all valid names, or "there are none" when @p candidates is empty: the usual
-  /// remedy of an unknown name.
+  /// The usual remedy for an unknown name: "did you mean X?" followed by all valid names, or "there are none" if @p
+  /// candidates is empty.
   std::string suggest_name(const std::string &name, const std::vector<std::string> &candidates);
 
   /// "a, b, c"

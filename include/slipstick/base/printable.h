@@ -1,4 +1,4 @@
-// Text from files and command lines, made fit for messages.
+// Makes text from files and command lines printable in messages.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace slipstick
   /// message; line breaks are kept.
   std::string printable(const std::string &text);
 
-  /// @p text if it has at most @p most characters, otherwise its beginning and end around "...".
+  /// @p text if it has at most @p most characters, otherwise its start and end around "...".
   std::string shortened(const std::string &text, const std::size_t most = 80);
 
   /// A message for the terminal: printable, values in quotation marks shortened to 80 characters, lines to 2000.

@@ -5,14 +5,13 @@
 
 namespace slipstick
 {
-  /// Of forces in the plane (z is 0 then, and so are all moments but that about z) or in space.
+  /// Resultant of forces in the plane (z and all moments except that about z are 0) or in space.
   struct Resultant
   {
-    std::array<double, 3> force{{0, 0, 0}}; // [N]
-    std::array<double, 3> moment{
-      {0, 0, 0}}; // about the origin of coordinates; that about z from x to y positive [N mm]
+    std::array<double, 3> force{{0, 0, 0}};  // [N]
+    std::array<double, 3> moment{{0, 0, 0}}; // about the origin, positive from x to y about z [N mm]
 
-    /// A force at a place, both of @p dim components.
+    /// Adds a force at a place, both with @p dim components.
     template <int dim, class Force, class Place>
     void add(const Force &f, const Place &at)
     {
@@ -36,7 +35,7 @@ namespace slipstick
       return *this;
     }
 
-    /// All numbers, as for sums over ranks.
+    /// All components, for sums over ranks.
     static constexpr unsigned int n_numbers = 6;
     std::array<double, n_numbers> numbers() const
     {

@@ -10,16 +10,16 @@ namespace slipstick
   /// @p text without blanks at both ends.
   std::string trim(const std::string &text);
 
-  /// @p text trimmed, with every run of blanks within it reduced to one space, since names may be aligned in a file.
+  /// @p text trimmed, with every run of blanks reduced to one space, since names may be aligned in a file.
   std::string collapse_blanks(const std::string &text);
 
-  /// The parts of a comma-separated list, trimmed; none for an empty @p text.
+  /// The parts of a comma-separated list, trimmed; empty for an empty @p text.
   std::vector<std::string> split_list(const std::string &text, const char separator = ',');
 
-  /// The number that the whole of @p text spells, with a decimal point in any locale; infinite when it overflows.
+  /// The number given by the whole of @p text, with a decimal point in any locale; infinite on overflow.
   std::optional<double> parse_number(const std::string &text);
 
-  /// @p value as %.6g prints it.
+  /// @p value in the format %.6g.
   std::string short_text(const double value);
 
   /// The shortest text that reads back as @p value.
@@ -35,6 +35,6 @@ namespace slipstick
     return text + ")";
   }
 
-  /// @p value, positive, rounded to two digits, never below it.
+  /// Positive @p value rounded up to two digits.
   double rounded_up(const double value);
 } // namespace slipstick
