@@ -1,4 +1,4 @@
-// Where the multipliers of a problem may be.
+// The admissible set of the multipliers.
 #pragma once
 
 #include <slipstick/qp/box.h>
@@ -8,8 +8,8 @@
 
 namespace slipstick::qp
 {
-  /// Where multipliers may be: in a box, tangential ones within bounds that may follow normal ones (they are set in the
-  /// box as x moves). All refer to entries of this process.
+  /// Admissible multipliers: a box; bounds of tangential entries may follow normal ones (the box is updated as x
+  /// moves). All indices refer to entries of this process.
   template <typename Vector>
   struct AdmissibleSet
   {

@@ -7,7 +7,7 @@ namespace slipstick::qp
 {
   namespace detail
   {
-    /// A = P F P + rho Q. Follows Q x through the steps of MPGP (a Tracker), which saves a projection each.
+    /// A = P F P + rho Q. As a Tracker it updates Q x in the steps of MPGP, which saves one projection each.
     template <typename Vector, typename Problem>
     class AugmentedOperator
     {
@@ -48,13 +48,13 @@ namespace slipstick::qp
         rho = penalty;
       }
 
-      /// Q x, as followed.
+      /// Q x from the updates.
       const Vector &range_part() const
       {
         return Qx;
       }
 
-      /// Q x, anew.
+      /// Recomputes Q x.
       const Vector &range_part(const Vector &x)
       {
         problem.project_range(x, Qx);

@@ -1,7 +1,7 @@
-// Two-sided bounds: projection, parts of the gradient, longest step, active entries, Farkas gap.
+// Box constraints: projection, parts of the gradient, longest step, active entries, Farkas gap.
 //
-// Signs: steps go along minus the gradient, x - a g. An entry is free strictly inside its bounds; an entry with
-// lower == upper is fixed: never free, without chopped gradient, no violation.
+// Signs: steps are x - a g, along the negative gradient. An entry is free strictly inside its bounds; an entry with
+// lower == upper is fixed: never free, without chopped gradient, without violation.
 #pragma once
 
 #include <slipstick/qp/kernels.h>
@@ -10,7 +10,7 @@
 
 namespace slipstick::qp
 {
-  /// lower <= x <= upper, entry by entry; +-infinity = no bound.
+  /// lower <= x <= upper, componentwise; +-infinity: no bound.
   template <typename Vector>
   struct Box
   {
@@ -20,7 +20,7 @@ namespace slipstick::qp
 
   struct ActiveEntries
   {
-    std::size_t lower = 0; // at the lower bound; fixed entries are counted here
+    std::size_t lower = 0; // at the lower bound; includes fixed entries
     std::size_t upper = 0; // at the upper bound only
   };
 
@@ -36,13 +36,13 @@ namespace slipstick::qp
     return lower < x && x < upper;
   }
 
-  /// phi_i: the gradient g_i of a free entry, else 0.
+  /// phi_i: the gradient g_i of a free entry, otherwise 0.
   inline double free_gradient(const double x, const double g, const double lower, const double upper)
   {
     return is_free(x, lower, upper) ? g : 0.0;
   }
 
-  /// beta_i: the part of g_i along which an active entry may leave its bound, else 0.
+  /// beta_i: the part of g_i along which an active entry may leave its bound, otherwise 0.
   inline double chopped_gradient(const double x, const double g, const double lower, const double upper)
   {
     if (is_free(x, lower, upper) || !(lower < upper))
@@ -56,7 +56,7 @@ namespace slipstick::qp
     return is_free(x, lower, upper) ? g : chopped_gradient(x, g, lower, upper);
   }
 
-  /// phi~_i: phi_i cut such that x - step phi~ stays within the bounds.
+  /// phi~_i: phi_i reduced such that x - step phi~ stays within the bounds.
   inline double reduced_free_gradient(const double x,
                                       const double phi,
                                       const double lower,
@@ -68,7 +68,7 @@ namespace slipstick::qp
     return phi < 0 ? std::max((x - upper) / step, phi) : phi;
   }
 
-  /// Longest a >= 0 such that lower <= x - a p <= upper; infinity if nothing stops it.
+  /// Longest a >= 0 such that lower <= x - a p <= upper; infinity if there is no limit.
   inline double longest_step(const double x, const double p, const double lower, const double upper)
   {
     if (p > 0)
@@ -76,13 +76,13 @@ namespace slipstick::qp
     return p < 0 ? (x - upper) / p : infinity;
   }
 
-  /// What the gradient at one entry has in it.
+  /// Parts of the gradient at one entry.
   struct GradientParts
   {
     double free    = 0; // phi
     double chopped = 0; // beta
     double reduced = 0; // phi~
-    double descent = 0; // x - step times this is projected; of bounds gP, of curved sets the whole gradient
+    double descent = 0; // gradient for a projected step: gP for bounds, the whole gradient for curved sets
   };
 
   /// Calls f(i, parts) for the owned entries of x with the gradient g.
@@ -105,7 +105,7 @@ namespace slipstick::qp
     return false;
   }
 
-  /// Owned entries that a step along p has brought to their bounds, or beyond.
+  /// Owned entries that a step along p has moved to or beyond their bounds.
   template <typename Vector>
   std::size_t n_leaving(const Box<Vector> &box, const Vector &p, const Vector &x)
   {
@@ -129,7 +129,7 @@ namespace slipstick::qp
       xi[i] = clip(xi[i], l[i], u[i]);
   }
 
-  /// Longest a >= 0 such that x - a p stays within the box (x within it), over all processes.
+  /// Longest a >= 0 such that x - a p stays in the box (x is in the box), over all processes.
   template <typename Vector, typename Reduction>
   double longest_step(const Box<Vector> &box, const Vector &x, const Vector &p, const Reduction &reduction)
   {
@@ -142,7 +142,7 @@ namespace slipstick::qp
     return reduction.min(step);
   }
 
-  /// x := x - a p within the box, where a <= longest_step(): entries that a brings to a bound are set on it exactly.
+  /// x := x - a p within the box, with a <= longest_step(): entries that reach a bound are set exactly to it.
   template <typename Vector>
   void step_within(const Box<Vector> &box, const double a, const Vector &p, Vector &x)
   {
@@ -199,7 +199,7 @@ namespace slipstick::qp
     return std::sqrt(reduction.sum(std::array<double, 1>{{sum}})[0]);
   }
 
-  /// p := derivative of the projection at y, times p: free entries stay, the others become 0.
+  /// p := derivative of the projection at y, times p: free entries are unchanged, the others become 0.
   template <typename Vector>
   void multiply_derivative(const Box<Vector> &box, const Vector &y, Vector &p)
   {
@@ -226,8 +226,8 @@ namespace slipstick::qp
 
   namespace detail
   {
-    /// Of the owned entries: r'x_e - sup r'x over the bounded entries; |r|^2 of the unbounded ones; magnitude of the
-    /// terms summed.
+    /// For the owned entries: r'x_e - sup r'x over the bounded entries; |r|^2 over the unbounded ones; magnitude of the
+    /// summed terms.
     template <typename Vector>
     std::array<double, 3> farkas_sums(const Box<Vector> &box, const Vector &r, const Vector &x_e)
     {
@@ -248,9 +248,9 @@ namespace slipstick::qp
     }
   } // namespace detail
 
-  /// Does r, a vector in the range of Q, prove that no x with Q(x - x_e) = 0 and |x| <= radius lies within the box?
-  /// It does if r'x_e > max r'x over the box; unbounded entries are taken as bounded by the radius, r'x <= |r||x|, and
-  /// rounding is left a margin: `rounding` times |r| |x_e| and |r_i l_i|, |r_i u_i|. Farkas. One reduction.
+  /// Whether r, a vector in the range of Q, proves that no x with Q(x - x_e) = 0 and |x| <= radius is in the box. It
+  /// does if r'x_e > max r'x over the box; unbounded entries are bounded by the radius, r'x <= |r||x|, and there is a
+  /// margin for rounding: `rounding` times |r| |x_e| and |r_i l_i|, |r_i u_i|. Farkas. One reduction.
   template <typename Vector, typename Reduction>
   bool is_farkas_certificate(const Box<Vector> &box,
                              const Vector      &r,

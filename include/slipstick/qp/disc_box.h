@@ -1,9 +1,9 @@
-// Bounds of entries, and discs for pairs of them: the operations of box.h on a set with curved parts.
+// Bounds on entries, and discs for pairs of entries: the operations of box.h on a set with curved parts.
 //
-// Dostal, Kozubek 2012, doi:10.1007/s10107-011-0454-2 (separable convex constraints). On its circle a point has no free
-// gradient; chopped is what is left of the gradient without its part that pushes outward. Projections follow the whole
-// gradient: the multiplier of the circle slows the turn along it. Steps are judged by the objective, which tells gradients
-// along a circle apart down to the root of rounding: residuals fall to some 1e-8 of |b|.
+// Dostal, Kozubek 2012, doi:10.1007/s10107-011-0454-2 (separable convex constraints). A point on its circle has no free
+// gradient; its chopped gradient is the gradient without the part that points outward. Projected steps use the whole
+// gradient: the multiplier of the circle slows the motion along it. Steps are assessed by the objective, which resolves
+// gradients along a circle only to the square root of rounding: residuals decrease to about 1e-8 of |b|.
 #pragma once
 
 #include <slipstick/qp/box.h>
@@ -12,7 +12,7 @@
 
 namespace slipstick::qp
 {
-  /// Two entries, both owned, no farther than the radius (positive) from the centre.
+  /// Two entries, both owned, whose distance from the centre is at most the radius (positive).
   struct Disc
   {
     std::size_t           first, second;
@@ -30,7 +30,7 @@ namespace slipstick::qp
 
   namespace detail
   {
-    // Points are on the circle when they are within it by no more than this part of the radius.
+    // Points are on the circle if they are inside it by at most this part of the radius.
     constexpr double on_circle = 1e-12;
 
     /// The pair of entries of a disc.
@@ -70,7 +70,7 @@ namespace slipstick::qp
       }
     };
 
-    /// From the centre.
+    /// Vector from the centre.
     template <typename Vector>
     Pair from_center(const Disc &disc, const Vector &x)
     {
@@ -196,7 +196,7 @@ namespace slipstick::qp
         detail::put(set.discs[k], ends[k], x);
   }
 
-  /// Both entries of a node on its circle count as at the upper bound.
+  /// Both entries of a node on its circle count as active at the upper bound.
   template <typename Vector>
   ActiveEntries own_active(const DiscBox<Vector> &set, const Vector &x)
   {
@@ -222,7 +222,7 @@ namespace slipstick::qp
         const double       of_center = disc.center[0] * along.first + disc.center[1] * along.second;
         const double       support   = of_center + disc.radius * along.size();
         s[0] -= support;
-        s[1] -= dot(along, along); // the box took both as unbounded
+        s[1] -= dot(along, along); // the box treated both as unbounded
         s[2] += std::abs(of_center) + disc.radius * along.size();
       }
     s = reduction.sum(s);

@@ -1,10 +1,11 @@
-// The point of a box (or of admissible forces) and of equalities nearest to zero, or the proof that there is none.
+// The point nearest to zero of a box (or of admissible forces) with equality constraints, or a proof that there is
+// none.
 //
 // min 1/2 |x|^2 over the set and Q x = Q x_e. Dual: x = proj(y), y in the range of Q, maximise the concave
 //   theta(y) = 1/2 |proj(y)|^2 - y'proj(y) + y'x_e,   grad theta = r = Q(x_e - proj(y)),
-// by a semismooth Newton method (Newton matrix Q D Q, D = derivative of the projection at y) with line search.
-// If there is no such point, theta is unbounded and r tends to Q(x_e - x) of least length within the set, a Farkas
-// certificate: r'x <= r'x_e - |r|^2 for all x of the set, while Q x = Q x_e would need r'x = r'x_e.
+// by a semismooth Newton method (Newton matrix Q D Q, D = derivative of the projection at y) with line search. If there
+// is no such point, theta is unbounded and r tends to the shortest Q(x_e - x) over the set, a Farkas certificate: r'x
+// <= r'x_e - |r|^2 for all x of the set, while Q x = Q x_e requires r'x = r'x_e.
 #pragma once
 
 #include <slipstick/qp/force_set.h>
@@ -15,11 +16,11 @@ namespace slipstick::qp
   template <typename Vector>
   struct FeasiblePoint
   {
-    Status       status;      // converged; infeasible, with a certificate; else neither was reached
+    Status       status;      // converged; infeasible, with a certificate; otherwise neither was found
     Vector       x;           // within the set
     Vector       certificate; // infeasible: r in the range of Q, r'x_e > r'x for all x of the box; else Q(x_e - x)
     double       residual;    // |Q(x - x_e)| over the reference length max(|Q x_e|, |projection of 0 on the box|)
-    bool         is_nearest;  // converged: is x the point nearest to zero, or just any?
+    bool         is_nearest;  // if converged: x is the point nearest to zero, not just a feasible one
     unsigned int newton_steps;
     unsigned int projections; // multiplications with Q
   };
@@ -106,7 +107,7 @@ namespace slipstick::qp
           }
       }
 
-      // (Q D Q + regularization Q) d = r by conjugate gradients; d is a direction of ascent wherever they are stopped.
+      // (Q D Q + regularization Q) d = r by conjugate gradients; every iterate d is an ascent direction.
       void find_direction()
       {
         const double tolerance =
@@ -127,7 +128,7 @@ namespace slipstick::qp
             combine(1.0, residual, next / square, p);
             square = next;
           }
-        project_range(d, p); // rounding must not carry y out of the range of Q
+        project_range(d, p); // keeps y in the range of Q despite rounding
         const bool ascends = dot(p, r, reduction) > 0;
         std::copy(ascends ? p.begin() : r.begin(), ascends ? p.end() : r.end(), d.begin());
       }
@@ -141,7 +142,7 @@ namespace slipstick::qp
         project_range(x, Ap);
       }
 
-      // d/dt theta(y + t d), falling in t
+      // d/dt theta(y + t d), decreasing in t
       double slope(const double t)
       {
         std::copy(y.begin(), y.end(), x.begin());
@@ -150,7 +151,7 @@ namespace slipstick::qp
         return reduction.sum(std::array<double, 1>{{local_dot(d, Qx_e) - local_dot(d, x)}})[0];
       }
 
-      // Step length t > 0 with |slope(t)| small against slope(0): growth, then regula falsi (Illinois).
+      // Step length t > 0 with |slope(t)| small relative to slope(0): expansion, then regula falsi (Illinois).
       double line_search()
       {
         double       low = 0, low_slope = slope(0), high = 1, high_slope = slope(high);
@@ -189,11 +190,12 @@ namespace slipstick::qp
         return low > 0 ? low : high;
       }
 
-      // Newton did not end: least |Q(x - x_e)| within the set, by MPGP. It is positive if there is no such point.
+      // If Newton's method failed: minimises |Q(x - x_e)| over the set by MPGP. The minimum is positive if there is no
+      // such point.
       Status least_squares(const Status failure)
       {
         is_nearest = false;
-        // if there is no such point y diverges, and far out rounding exceeds the residual sought
+        // if there is no such point y diverges, and its rounding finally exceeds the required residual
         const bool is_far = norm(y, reduction) > options.certificate_radius * reference;
         std::copy(is_far ? Qx_e.begin() : y.begin(), is_far ? Qx_e.end() : y.end(), x.begin());
         project(box, x);
@@ -201,7 +203,7 @@ namespace slipstick::qp
           minimize([this](const Vector &v, Vector &Qv) { project_range(v, Qv); }, 1., Qx_e, box);
         else if (reduction.min(are_cones(box) ? 1. : 0.) > 0)
           {
-            // of the parts along the sides of the cones, which have bounds: S'Q S, |S|^2 <= 2
+            // for the parts along the sides of the cones, which have bounds: S'Q S, |S|^2 <= 2
             const auto multiply = [this](const Vector &v, Vector &product) {
               std::copy(v.begin(), v.end(), p.begin());
               add_sides(box, p);
@@ -213,13 +215,13 @@ namespace slipstick::qp
             resolve_into_sides(box, x);
             minimize(multiply, 2., d, bounds_of_sides(box));
             add_sides(box, x);
-            project(box, x); // to the last bit
+            project(box, x); // exactly
           }
         const Status status = examine(failure);
         return status == failure ? accelerated_gradients(failure) : status;
       }
 
-      // Is x the point that is looked for, or r the certificate?
+      // Whether x is the point sought, or r the certificate.
       Status examine(const Status neither)
       {
         project_range(x, r);
@@ -230,8 +232,8 @@ namespace slipstick::qp
         return proves_infeasibility(r) ? Status::infeasible : neither;
       }
 
-      // x := least 1/2 x'Ax - x'b within bounds, down to rounding. It has a minimum: where rounding in directions that A does
-      // not see looks like a direction of unbounded descent, MPGP is restarted.
+      // Minimises 1/2 x'Ax - x'b within bounds, down to rounding. A minimum exists: if rounding in the kernel of A
+      // looks like a direction of unbounded descent, MPGP is restarted.
       template <typename Operator>
       void minimize(const Operator &A, const double norm_A, const Vector &b, const Box<Vector> &bounds)
       {
@@ -246,8 +248,8 @@ namespace slipstick::qp
           }
       }
 
-      // The same as least_squares by accelerated projected gradients from x (Nesterov 1983; restarts: O'Donoghue, Candes
-      // 2015), for where MPGP gave up. Q has norm 1.
+      // As least_squares, by accelerated projected gradients from x (Nesterov 1983; restarts: O'Donoghue, Candes 2015),
+      // if MPGP has failed. Q has norm 1.
       Status accelerated_gradients(const Status failure)
       {
         std::copy(x.begin(), x.end(), y.begin()); // the extrapolated point
@@ -291,8 +293,8 @@ namespace slipstick::qp
     };
   } // namespace detail
 
-  /// The point nearest to zero of the set (a Box, ForceSet) with Q x = Q x_e. Uses `problem.project_range` and
-  /// `problem.reduction` only.
+  /// The point nearest to zero of the set (a Box, ForceSet) with Q x = Q x_e. Uses only `problem.project_range` and
+  /// `problem.reduction`.
   /// status: infeasible with a certificate, see FeasiblePoint (without, if some lower > upper); iteration_limit or
   /// stagnated if neither a point nor a certificate was found.
   /// @code

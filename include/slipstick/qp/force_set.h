@@ -1,4 +1,4 @@
-// The forces that the laws of contact admit as a feasible set: those of nodes in polygons, bounds on all others.
+// The admissible forces of contact laws as a feasible set: polygons for nodes, bounds for all other entries.
 //
 // The operations are those of box.h: projection, its derivative, Farkas certificate.
 #pragma once
@@ -15,12 +15,12 @@ namespace slipstick::qp
   struct ForceSet
   {
     Box<Vector>                box;
-    std::vector<PressureBound> nodes; // of discs that follow no normal force the radius alone counts
+    std::vector<PressureBound> nodes; // for discs that follow no normal force only the radius is used
   };
 
   namespace detail
   {
-    /// The forces of a node in space by the length of the tangential force, whose direction c, s stays.
+    /// Forces of a node in space in terms of the magnitude of the tangential force, whose direction c, s is fixed.
     class DiscPoint
     {
     public:
@@ -44,7 +44,7 @@ namespace slipstick::qp
           x[node.normal] = near_normal;
       }
 
-      /// p := derivative of the projection, times p: across the force the circle shrinks.
+      /// p := derivative of the projection, times p: transverse to the force, p is scaled by the ratio of the forces' lengths.
       template <typename Iterator>
       void multiply_derivative(const Iterator p) const
       {
@@ -111,7 +111,7 @@ namespace slipstick::qp
     return n_contradictions(set.box);
   }
 
-  /// Are all nodes cones of the plane, which have two sides (on this process)?
+  /// Whether all nodes are plane cones, which have two sides (on this process).
   template <typename Vector>
   bool are_cones(const ForceSet<Vector> &set)
   {
@@ -120,10 +120,11 @@ namespace slipstick::qp
     });
   }
 
-  // A point of a cone is the sum of parts along its two sides, which are any numbers from 0: x_T = s (a - b),
-  // x_N = c (a + b) with s, c the sine and cosine of half the angle between them, a in the place of x_T, b in that of x_N.
+  // A point of a cone is the sum of nonnegative parts along its two sides: x_T = s (a - b), x_N = c (a + b) with s, c
+  // the sine and cosine of half the angle between them; a is stored in place of x_T, b in place of x_N.
 
-  /// Bounds of the parts along the sides of the cones; other entries keep theirs. Without friction there is one side.
+  /// Bounds of the parts along the sides of the cones; other entries keep their bounds. Without friction there is one
+  /// side.
   template <typename Vector>
   Box<Vector> bounds_of_sides(const ForceSet<Vector> &set)
   {
@@ -137,7 +138,7 @@ namespace slipstick::qp
     return box;
   }
 
-  /// x := parts along the sides, of a point within the set.
+  /// x := parts along the sides, for a point in the set.
   template <typename Vector>
   void resolve_into_sides(const ForceSet<Vector> &set, Vector &x)
   {
@@ -178,7 +179,7 @@ namespace slipstick::qp
       }
   }
 
-  /// See box.h; a node is unbounded along r as far as r is in the cone of directions in which its set has no end.
+  /// See box.h; a node is unbounded along the projection of r on the recession cone of its set.
   template <typename Vector, typename Reduction>
   bool is_farkas_certificate(const ForceSet<Vector> &set,
                              const Vector           &r,
@@ -195,7 +196,7 @@ namespace slipstick::qp
         const double n       = node.normal == no_entry ? 0. : ri[node.normal];
         const auto   support = node.forces.support(t, n);
         s[0] -= support.value;
-        s[1] += support.unbounded - (t * t + n * n); // the box took both as unbounded
+        s[1] += support.unbounded - (t * t + n * n); // the box treated both as unbounded
         s[2] += std::abs(support.value);
       }
     s = reduction.sum(s);

@@ -48,7 +48,7 @@ namespace slipstick::qp
     combine(a, x, 1.0, y);
   }
 
-  /// x'y of the owned entries: to be summed over the processes.
+  /// x'y of the owned entries, to be summed over the processes.
   template <typename Vector>
   double local_dot(const Vector &x, const Vector &y)
   {
@@ -61,8 +61,8 @@ namespace slipstick::qp
     return sum;
   }
 
-  /// Weights of the entries of a residual in its norm: `residual_weights()` of a problem that has it, of the owned
-  /// entries; null for others, and when it is empty: all 1.
+  /// Weights of the entries of a residual in its norm: `residual_weights()` of the problem, for the owned entries; null
+  /// if the problem has none or they are empty: all 1.
   template <typename Problem>
   auto residual_weights(const Problem &problem, int) -> decltype(problem.residual_weights(), (const double *)nullptr)
   {
@@ -89,7 +89,8 @@ namespace slipstick::qp
     return sum;
   }
 
-  /// p := the nearest point with G p = 0, by `project_kernel(p)` of a problem that has it, else p - Q p. w: storage.
+  /// p := the nearest point with G p = 0, by `project_kernel(p)` if the problem has it, otherwise p - Q p. w: work
+  /// vector.
   template <typename Problem, typename Vector>
   auto project_kernel(const Problem &problem, Vector &p, Vector &, int) -> decltype(problem.project_kernel(p))
   {

@@ -1,9 +1,9 @@
 // MPGP: modified proportioning with gradient projections, for min 1/2 x'Ax - x'b within two-sided bounds and discs.
 // Dostal, Schoeberl 2005; Dostal 2009, section 5.8; expansions of Kruzik, Horak, Cermak, Pospisil, Pecha 2020.
 //
-// Every step lowers the objective: a projected step that does not is cut short, |A| grows when a Rayleigh quotient
-// above it is met, a proportioning step along -beta is replaced by a gradient projection when the bounds would cut it
-// shorter than 1/|A|. None of this costs a multiplication.
+// Every step decreases the objective: a projected step that does not is shortened; |A| is increased if a larger
+// Rayleigh quotient occurs; a proportioning step along -beta is replaced by a gradient projection if the bounds would
+// shorten it below 1/|A|. None of this needs a multiplication.
 #pragma once
 
 #include <slipstick/qp/mpgp_iterate.h>
@@ -17,16 +17,16 @@ namespace slipstick::qp
   struct MpgpResult
   {
     Status status;
-    Vector x;                  // within the box, exactly
+    Vector x;                  // exactly in the box
     Vector gradient;           // A x - b
     double projected_gradient; // |gP|
-    double norm;               // |A|: as given, or raised by what was met
+    double norm;               // |A|: as given, or increased during the iteration
     Counts counts;
   };
 
   namespace detail
   {
-    /// The decisions of MPGP on its iterate.
+    /// The choice of steps of MPGP.
     template <typename Iterate>
     class Mpgp
     {
@@ -66,7 +66,7 @@ namespace slipstick::qp
       }
 
     private:
-      // nullopt: go on.
+      // nullopt: continue.
       using Outcome   = std::optional<Status>;
       using Curvature = typename Iterate::Curvature;
 
@@ -77,7 +77,7 @@ namespace slipstick::qp
           return failure;
         if (is_flat(c))
           return leave_flat(c);
-        if (c.pg <= 0) // rounding has spoilt the conjugacy
+        if (c.pg <= 0) // rounding has destroyed the conjugacy
           return restart();
         if (!iterate.conjugate_step(c.pg / c.pAp, c.pAp))
           return expand(c);
@@ -86,8 +86,8 @@ namespace slipstick::qp
         return {};
       }
 
-      // The conjugate gradient step would leave the box. From the boundary, projecting the rest of that step leads to
-      // the projection of all of it.
+      // The conjugate gradient step would leave the box. Starting from the boundary, projecting the rest of that step
+      // gives the projection of the whole step.
       Outcome expand(const Curvature &c)
       {
         ++steps.expansion_steps;
@@ -104,7 +104,7 @@ namespace slipstick::qp
         return {};
       }
 
-      // Along -beta, unless the bounds cut the step below 1/|A|, which is never more than the optimal length.
+      // Step along -beta, unless the bounds shorten it below 1/|A|, which is never more than the optimal length.
       Outcome proportioning()
       {
         ++steps.proportioning_steps;
@@ -124,15 +124,15 @@ namespace slipstick::qp
         return restart();
       }
 
-      // x := projection of x - alpha gP, on discs of x - alpha g
+      // x := projection of x - alpha gP, for discs of x - alpha g.
       Outcome project_gradient()
       {
         iterate.template set_direction<&GradientParts::descent>();
         return project_step(iterate.step_length()) ? Outcome() : Outcome(Status::stagnated);
       }
 
-      // x := projection of x - length p. If that hardly lowers the objective (a length of 2/|A| may lead to and fro
-      // between two points), the best point on the way. False if x does not move.
+      // x := projection of x - length p. If that hardly decreases the objective (a length of 2/|A| may alternate
+      // between two points), x := the best point on the way. Returns false if x does not move.
       bool project_step(const double length)
       {
         const auto trial = iterate.evaluate_trial(length);
@@ -164,7 +164,7 @@ namespace slipstick::qp
         return c.pAp <= options.smallest_curvature * iterate.norm() * c.pp;
       }
 
-      // A p = 0 up to rounding: descend as far as the bounds allow.
+      // A p = 0 up to rounding: descend to the bounds.
       Outcome leave_flat(const Curvature &c)
       {
         if (c.pg <= iterate.noise() * std::sqrt(c.pp))
@@ -180,15 +180,16 @@ namespace slipstick::qp
       Iterate           &iterate;
       const MpgpOptions &options;
       Counts             steps;
-      bool               is_conjugate = false; // p is no part of the gradient at x alone
+      bool               is_conjugate = false; // p is not just a part of the gradient at x
     };
   } // namespace detail
 
-  /// Minimise 1/2 x'Ax - x'b within the set (Box or DiscBox) until stop(x, |gP|) is true. `A(v, Av)` applies A, symmetric positive
-  /// semidefinite; `norm` is |A|, best not too small; `stop` must answer alike on all processes. A start outside of the
-  /// box is projected on it. From x = 0, or from a start with gradient, nothing is multiplied before the first step.
-  /// status: converged if and only if stop() was true; stagnated at rounding level; infeasible if some lower > upper
-  /// (x is then of no use) or if the objective is unbounded from below.
+  /// Minimises 1/2 x'Ax - x'b over the set (Box or DiscBox) until stop(x, |gP|) is true. `A(v, Av)` applies A,
+  /// symmetric positive semidefinite; `norm` is |A|, preferably not too small; `stop` must return the same on all
+  /// processes. A start outside the box is projected onto it. From x = 0, or from a start with gradient, there is no
+  /// multiplication before the first step.
+  /// status: converged if and only if stop() was true; stagnated at rounding level; infeasible if some lower > upper (x
+  /// is then meaningless) or if the objective is unbounded from below.
   /// @code
   /// using Vector = std::vector<double>;
   /// const Vector      b{2, -3, 0.5};

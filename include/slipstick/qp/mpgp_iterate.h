@@ -1,4 +1,4 @@
-// The iterate of MPGP: point, gradient, direction, and the passes over them. What to do with them: mpgp.h.
+// The iterate of MPGP: point, gradient, direction, and operations on them. The algorithm: mpgp.h.
 #pragma once
 
 #include <slipstick/qp/disc_box.h>
@@ -10,7 +10,7 @@
 
 namespace slipstick::qp
 {
-  /// Where MPGP starts. The gradient A x - b, if known, saves a multiplication; it is used only if x is within the set.
+  /// Start of MPGP. The gradient A x - b, if known, saves a multiplication; it is used only if x is in the set.
   template <typename Vector>
   struct MpgpStart
   {
@@ -18,8 +18,8 @@ namespace slipstick::qp
     std::optional<Vector> gradient = std::nullopt;
   };
 
-  /// Told of the steps of MPGP, to keep a linear function of x up to date; this one does nothing. v is the
-  /// vector last multiplied by A.
+  /// Callbacks for the steps of MPGP, to update a linear function of x; this class does nothing. v is the vector last
+  /// multiplied by A.
   struct NoTracker
   {
     void stepped(double) {}       // x := x - a v
@@ -39,14 +39,14 @@ namespace slipstick::qp
         double pg, pAp, pp;
       };
 
-      /// What a step to `trial` would do: distance, change of the objective; the fraction of the step, in [0, 1], at
-      /// which the objective is least, and its change there.
+      /// Effect of a step to `trial`: its length and the change of the objective; the fraction of the step, in [0, 1],
+      /// that minimises the objective, and the change there.
       struct Trial
       {
         double distance, change, best_fraction, best_change;
       };
 
-      /// Squares of |phi|, |beta|, |x|, and phi~'phi.
+      /// Squares of |phi|, |beta|, |x|; phi~'phi.
       struct Sums
       {
         double free = 0, chopped = 0, reduced = 0, x = 0;
@@ -92,7 +92,8 @@ namespace slipstick::qp
       {
         return options.rounding * (norm_A * std::sqrt(sums.x) + norm_b);
       }
-      /// Rounding of the change of the objective along arcs: their points are off them, times the force across.
+      /// Rounding of the change of the objective along arcs: distance of their points from the circle times the force
+      /// normal to it.
       double noise_of_change() const
       {
         return is_curved(set) ? noise() * std::sqrt(sums.x) : 0.;
@@ -122,7 +123,8 @@ namespace slipstick::qp
         return multiplications;
       }
 
-      /// Bring x into the set, find the gradient. False if some lower > upper, or a bound is not a number.
+      /// Projects x onto the set and computes the gradient. Returns false if some lower > upper, or a bound is not a
+      /// number.
       bool prepare()
       {
         std::copy(x.begin(), x.end(), p.begin());
@@ -155,7 +157,7 @@ namespace slipstick::qp
         return true;
       }
 
-      /// Split the gradient at x, begin conjugate gradients anew: p = phi.
+      /// Splits the gradient at x and restarts the conjugate gradients: p = phi.
       void restart()
       {
         const Sums s     = own_sums(x, g);
@@ -164,8 +166,8 @@ namespace slipstick::qp
         set_direction<&GradientParts::free>();
       }
 
-      /// p = a part of the gradient. The part is a template argument since g++ 14.2 at -O2 reads a member through a pointer
-      /// known at run time before the temporary that it is in has been written (doc/decisions/0095).
+      /// p = a part of the gradient. The part is a template argument since g++ 14.2 at -O2 reads a member through a
+      /// pointer known at run time before the temporary that contains it has been written (doc/decisions/0095).
       template <double GradientParts::*part>
       void set_direction()
       {
@@ -175,7 +177,7 @@ namespace slipstick::qp
         });
       }
 
-      /// Multiply A p.
+      /// Multiplies A p.
       Curvature curvature()
       {
         multiply(p, Ap);
@@ -184,8 +186,8 @@ namespace slipstick::qp
         return {s[0], s[1], s[2]};
       }
 
-      /// x := x - a p and the next conjugate direction, unless that leaves the set: then false and nothing has changed.
-      /// To end on a bound counts as leaving, as p must vanish on the active entries.
+      /// x := x - a p and the next conjugate direction, unless the step leaves the set: then returns false and changes
+      /// nothing. Ending on a bound counts as leaving, since p must vanish on the active entries.
       bool conjugate_step(const double a, const double pAp)
       {
         std::copy(x.begin(), x.end(), trial.begin());
@@ -216,7 +218,7 @@ namespace slipstick::qp
         return true;
       }
 
-      /// x := x - a p, a no longer than the longest step; A p is known. To be followed by restart() or a trial.
+      /// x := x - a p with a at most the longest step; A p is known. Must be followed by restart() or a trial.
       void step(const double a)
       {
         step_within(set, a, p, x);
@@ -224,7 +226,7 @@ namespace slipstick::qp
         tracker.stepped(a);
       }
 
-      /// trial = projection of x - a p: its gradient and the change of the objective.
+      /// trial = projection of x - a p: computes its gradient and the change of the objective.
       Trial evaluate_trial(const double a)
       {
         std::copy(x.begin(), x.end(), trial.begin());
@@ -246,7 +248,7 @@ namespace slipstick::qp
         const auto total = reduction.sum(std::array<double, 7>{{ss, sAs, sg, t.free, t.chopped, t.reduced, t.x}});
         trial_sums       = {total[3], total[4], total[5], total[6]};
         note_curvature(total[1], total[0]);
-        // on the way: fraction sg + fraction^2 / 2 sAs
+        // change of the objective on the way: fraction sg + fraction^2 / 2 sAs
         const double best = total[1] > 0 ? clip(-total[2] / total[1], 0, 1) : total[2] < 0 ? 1.0 : 0.0;
         return {std::sqrt(total[0]), total[2] + 0.5 * total[1], best, best * (total[2] + 0.5 * best * total[1])};
       }
@@ -262,7 +264,7 @@ namespace slipstick::qp
         set_direction<&GradientParts::free>();
       }
 
-      /// x := x + fraction (trial - x). To be followed by restart().
+      /// x := x + fraction (trial - x). Must be followed by restart().
       void move_towards_trial(const double fraction)
       {
         combine(fraction, trial, 1 - fraction, x);
@@ -278,7 +280,7 @@ namespace slipstick::qp
         ++multiplications;
       }
 
-      // Split the gradient g_y at y.
+      // Splits the gradient g_y at y.
       Sums own_sums(const Vector &y, const Vector &gy) const
       {
         Sums s;
@@ -296,7 +298,7 @@ namespace slipstick::qp
         s.x += y * y;
       }
 
-      // Is |A| larger than thought? s'As against s's.
+      // Increases |A| if s'As shows that it is larger than assumed.
       void note_curvature(const double sAs, const double ss)
       {
         if (sAs - norm_A * ss > noise() * std::sqrt(ss))

@@ -1,4 +1,4 @@
-// The forces that a law of contact admits at one node: the one form in which friction reaches the solvers.
+// The admissible forces of a contact law at one node: the only form in which friction enters the solvers.
 #pragma once
 
 #include <algorithm>
@@ -7,11 +7,11 @@
 
 namespace slipstick::qp
 {
-  /// Normal force n >= 0 (compression positive), tangential force within a disc (in the plane: an interval) whose radius
-  /// follows n: |t| <= min(fixed + coefficient n, cap) while n is positive, else 0. No friction: all zero; Tresca where the
-  /// pair is closed: fixed alone; Coulomb: coefficient alone. All functions but radius() are those of the closure, in
-  /// which the radius at n = 0 is `fixed` (at most `cap`): a convex polygon. As the disc is round, t may be the length of
-  /// a tangential force wherever its sign does not matter.
+  /// Normal force n >= 0 (compression positive), tangential force in a disc (in the plane: an interval) whose radius
+  /// follows n: |t| <= min(fixed + coefficient n, cap) if n is positive, otherwise 0. No friction: all zero; Tresca on
+  /// closed contact: only `fixed`; Coulomb: only `coefficient`. All functions except radius() refer to the closure, in
+  /// which the radius at n = 0 is `fixed` (at most `cap`): a convex polygon. As the disc is rotationally symmetric, t
+  /// may be the magnitude of a tangential force wherever its sign does not matter.
   struct NodeSet
   {
     double fixed       = 0;        // >= 0
@@ -28,7 +28,8 @@ namespace slipstick::qp
       return n > 0 ? closed_radius(n) : 0.;
     }
 
-    /// Derivative of the radius by n where it has this value: what ties a slipping force to the normal one.
+    /// Derivative of the radius with respect to n where it has this value; it ties a slipping force to the normal
+    /// force.
     double slope(const double radius) const
     {
       return radius < cap ? coefficient : 0.;
@@ -39,8 +40,8 @@ namespace slipstick::qp
       return fixed == 0 && std::isinf(cap);
     }
 
-    /// Where the point of the closure nearest to (t, n) lies: two edges meet in the foot (n = 0) and in the corner, where
-    /// the cap is reached. A foot of no width is the apex of a cone.
+    /// The part of the boundary nearest to (t, n): two edges meet at the foot (n = 0) and at the corner, where the cap
+    /// is reached. A foot of zero width is the apex of a cone.
     enum class Part
     {
       inside,
@@ -58,7 +59,7 @@ namespace slipstick::qp
         return Part::inside;
       if (n < 0 && size < width)
         return Part::base;
-      const double along = coefficient * (size - width) + n; // the side, from the foot
+      const double along = coefficient * (size - width) + n; // position along the side, measured from the foot
       if (along <= 0)
         return Part::foot;
       const double height = corner_height();
@@ -99,8 +100,8 @@ namespace slipstick::qp
         }
     }
 
-    /// (dt, dn) := derivative of the projection at (t, n), times (dt, dn): free on the inside, fixed at corners, tied to each
-    /// other on the side.
+    /// (dt, dn) := derivative of the projection at (t, n), times (dt, dn): the identity inside, zero at corners, a
+    /// projection along the side.
     void multiply_derivative(const double t, const double n, double &dt, double &dn) const
     {
       const Part at = part(t, n);
@@ -117,12 +118,12 @@ namespace slipstick::qp
         dn = 0;
     }
 
-    /// Support function of the closure, as far as it is finite: the part of (t, n) along which the set has no end, its
-    /// projection on the cone of these directions, is taken from (t, n) first.
+    /// Support function of the closure, as far as it is finite: the part of (t, n) along which the set is unbounded,
+    /// i.e. its projection onto the recession cone, is subtracted from (t, n) first.
     struct Support
     {
-      double value;     // largest product of the rest with a point of the set
-      double unbounded; // square of the length of what was taken
+      double value;     // maximum scalar product of the remainder with a point of the set
+      double unbounded; // squared length of the subtracted part
     };
 
     Support support(const double t, const double n) const

@@ -1,4 +1,4 @@
-// What problems may have and semismooth Newton uses (semismooth_newton.h).
+// Optional members of problems, used by the semismooth Newton method (semismooth_newton.h).
 #pragma once
 
 #include <algorithm>
@@ -6,12 +6,12 @@
 
 namespace slipstick::qp::detail
 {
-  // s of the natural map over the stiffness of a point whose neighbours are held: they yield with it, and the diagonal of
-  // F is some ten times the inverse of that stiffness (doc/decisions/0090).
+  // Ratio of s in the natural map to the stiffness of a point with its neighbours held: the neighbours move with it,
+  // and the diagonal of F is about ten times the inverse of that stiffness (doc/decisions/0090).
   constexpr double yielding_neighbours = 0.1;
 
-  /// s times the norm of F, of an entry of weight 1: by the stiffness of single points, where the problem tells it, but never
-  /// less than bodies need.
+  /// s times the norm of F, for an entry of weight 1: from the stiffness of single points if the problem provides it,
+  /// but never less than the value for whole bodies.
   template <typename Problem>
   auto step_of_points(const Problem &problem, const double least, int) -> decltype(problem.point_stiffness())
   {
@@ -23,7 +23,8 @@ namespace slipstick::qp::detail
     return least;
   }
 
-  /// What loose bodies of problems do that have them (semismooth_newton.h); others have no bodies that contact alone holds.
+  /// Uses the loose bodies of problems that have them (semismooth_newton.h); other problems have no bodies held by
+  /// contact alone.
   template <typename Problem, typename Set>
   auto balance_bodies(const Problem             &problem,
                       const std::vector<double> &stiffness,

@@ -1,9 +1,9 @@
 // PCPG: preconditioned conjugate gradients in the kernel of Q, for min 1/2 x'Fx - x'b without bounds.
 // Farhat, Crivelli, Roux 1994.
 //
-// A preconditioned problem may have `project_kernel(p)`, which makes G p = 0, apart from `project_range`, which then gives
-// some range part G'a of a residual: so oblique projections do, one the transpose of the other. `residual_weights()`
-// weighs the entries of residuals in their norms.
+// A preconditioned problem may have `project_kernel(p)`, which makes G p = 0, in addition to `project_range`, which
+// then gives some range part G'a of a residual: this allows oblique projections, each the transpose of the other.
+// `residual_weights()` weights the entries of residuals in their norms.
 #pragma once
 
 #include <slipstick/qp/kernels.h>
@@ -35,8 +35,8 @@ namespace slipstick::qp
   struct NoPreconditioner
   {};
 
-  /// F-orthogonal directions p with F p and p'Fp. Kept from one solve to the next they solve for what lies in their span
-  /// without a multiplication, as long as F, P and the free entries stay.
+  /// F-orthogonal directions p with F p and p'Fp. Kept from one solve to the next, they give the solution in their span
+  /// without a multiplication, as long as F, P and the free entries are the same.
   template <typename Vector>
   class DirectionHistory
   {
@@ -100,20 +100,20 @@ namespace slipstick::qp
       double qFq;
     };
 
-    static constexpr std::size_t batch = 32; // scalars of one reduction: latency against wasted length
+    static constexpr std::size_t batch = 32; // scalars per reduction: compromise between latency and message length
 
     const bool             keeps_all;
     std::vector<Direction> directions;
   };
 
-  /// Where PCPG starts. The product F x, if known, saves a multiplication.
+  /// Start of PCPG. The product F x, if known, saves a multiplication.
   template <typename Vector>
   struct PcpgStart
   {
     Vector                x;
     std::optional<Vector> product = std::nullopt;
 
-    /// Directions of earlier solves with the same F and P, and where this one leaves its own; full reorthogonalisation
+    /// Directions of earlier solves with the same F and P, to which this solve adds its own; full reorthogonalisation
     /// only.
     std::shared_ptr<DirectionHistory<Vector>> history = nullptr;
   };
@@ -213,7 +213,7 @@ namespace slipstick::qp
         return z;
       }
 
-      // nullopt: go on.
+      // nullopt: continue.
       std::optional<Status> step()
       {
         Vector p = new_direction();
@@ -263,10 +263,10 @@ namespace slipstick::qp
     };
   } // namespace detail
 
-  /// Minimise 1/2 x'Fx - x'b over start + range of P until |P(b - F x)| <= goal.tolerance times goal.reference (default
-  /// |b|). So Q x stays that of the start; b need not be in the range of P. `preconditioner(r, y)`: y = M r, symmetric
-  /// positive (semi)definite. From x = 0, or from a start with product, nothing is multiplied before the first step.
-  /// Full reorthogonalisation keeps two vectors a step.
+  /// Minimises 1/2 x'Fx - x'b over start + range of P until |P(b - F x)| <= goal.tolerance times goal.reference
+  /// (default |b|). Q x keeps its initial value; b need not be in the range of P. `preconditioner(r, y)`: y = M r,
+  /// symmetric positive (semi)definite. From x = 0, or from a start with product, there is no multiplication before the
+  /// first step. Full reorthogonalisation stores two vectors per step.
   /// The observer is called after every step, on every process.
   /// status: infeasible if F is singular along a direction of descent (unbounded from below).
   /// @code

@@ -10,13 +10,13 @@ namespace slipstick::qp
 {
   constexpr std::size_t no_entry = std::numeric_limits<std::size_t>::max();
 
-  /// The entries of a vector that are the tangential and the normal force of a node, and what they may be. All are owned by
-  /// the same process. In space there are two tangential ones, along directions across each other, and their residuals have
-  /// equal weights, so that the nearest point of the disc is the same with and without these.
+  /// The entries of a vector that are the tangential and the normal force of a node, and their admissible values. All
+  /// are owned by the same process. In space there are two tangential entries, along orthogonal directions, and their
+  /// residuals have equal weights, so that the nearest point of the disc is the same with and without weights.
   struct PressureBound
   {
     std::size_t tangential;
-    std::size_t normal; // no_entry: none, the radius is that at no normal force (discs only)
+    std::size_t normal; // no_entry: none, the radius is that at zero normal force (discs only)
     NodeSet     forces;
     std::size_t second = no_entry; // the other tangential entry
 
@@ -26,7 +26,7 @@ namespace slipstick::qp
     }
   };
 
-  /// An entry that a face holds at a bound which moves with a free one: its increments are factor times those of `to`.
+  /// An entry at a bound that follows a free entry: in a face problem its increments are factor times those of `to`.
   struct Tie
   {
     std::size_t tied;
@@ -34,10 +34,10 @@ namespace slipstick::qp
     double      factor;
   };
 
-  /// A slipping node in space: a face sees its tangential entries turned, x_r = c x_1 + s x_2 along the force in place of the
-  /// first, x_s = c x_2 - s x_1 across it in place of the second. x_r is at its bound. x_s is free and yields: the circle on
-  /// which the force lies turns by x_s over its radius, which counts as a gradient of compliance times x_s (Newton's method
-  /// on the circle; compliance = -(gradient along the force) over the radius).
+  /// A slipping node in space: in a face problem its tangential entries are turned; x_r = c x_1 + s x_2 along the force
+  /// replaces the first, x_s = c x_2 - s x_1 across it replaces the second. x_r is at its bound. x_s is free with a
+  /// compliance: the force turns on its circle by x_s over the radius, which acts as a gradient of compliance times x_s
+  /// (Newton's method on the circle; compliance = -(gradient along the force) over the radius).
   struct Turn
   {
     std::size_t first;
@@ -47,7 +47,7 @@ namespace slipstick::qp
     double      compliance = 0; // >= 0
   };
 
-  /// x := with turned entries.
+  /// Turns the entries of x.
   template <typename Vector>
   void turn(const std::vector<Turn> &turns, Vector &x)
   {
@@ -73,7 +73,7 @@ namespace slipstick::qp
       }
   }
 
-  /// y += C x, C the compliances of the turned entries; neither is turned.
+  /// y += C x, C the compliances of the turned entries; x and y are not turned.
   template <typename Vector>
   void add_compliance(const std::vector<Turn> &turns, const Vector &x, Vector &y)
   {

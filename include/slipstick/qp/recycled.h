@@ -1,4 +1,4 @@
-// The part of a direction store that a face can use: the combinations that it admits (direction_store.h).
+// The part of a direction store that a face problem can use: the admissible combinations (direction_store.h).
 #pragma once
 
 #include <slipstick/qp/direction_store.h>
@@ -12,10 +12,11 @@ namespace slipstick::qp
 {
   namespace detail
   {
-    // Directions whose energies (residuals) are combinations of others' up to this part of their square are left out.
+    // Directions are skipped if the remainder of their energy (residual) after subtracting combinations of others is
+    // below this part of its square.
     constexpr double dependent_direction = 1e-12;
 
-    /// The combinations of the store that a face admits, and what is solved by them.
+    /// The combinations in the store that are admissible for a face problem, and the solution in their span.
     template <typename Vector>
     class Recycled
     {
@@ -30,16 +31,16 @@ namespace slipstick::qp
         return combinations.size();
       }
 
-      /// of[j] of the directions summed up for every combination.
+      /// of[j] of the directions, summed for every combination.
       std::vector<double> combined(const std::vector<double> &of) const
       {
         std::vector<double> result;
         for (const auto &c : combinations)
-          result.push_back(local_dot(c, of)); // not distributed
+          result.push_back(local_dot(c, of)); // not a distributed vector
         return result;
       }
 
-      /// Coefficients of the directions, of amounts of the combinations.
+      /// Coefficients of the directions from amounts of the combinations.
       std::vector<double> coefficients(const std::vector<double> &amounts) const
       {
         std::vector<double> result(store.size(), 0.);
@@ -49,8 +50,8 @@ namespace slipstick::qp
         return result;
       }
 
-      /// Factors of A(c_i, c_j) of all pairs of combinations, of A(j, k) of the directions. Combinations that cancel to
-      /// rounding are left out.
+      /// Factors of the matrix A(c_i, c_j) of all pairs of combinations, from A(j, k) of the directions. Combinations
+      /// that cancel to rounding are skipped.
       template <typename Energy>
       PivotedCholesky factor(const Energy &of) const
       {
@@ -76,7 +77,7 @@ namespace slipstick::qp
         return PivotedCholesky(std::move(result), sizes, dependent_direction);
       }
 
-      /// x += sum of factor times coefficient times what `part` takes of each direction.
+      /// x += sum of factor times coefficient times `part` of each direction.
       template <typename Part>
       void add_combination(const double               factor,
                            const std::vector<double> &coefficients,

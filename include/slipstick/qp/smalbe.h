@@ -1,4 +1,4 @@
-// SMALBE-M: semimonotonic augmented Lagrangians for bounds and equalities, with MPGP inside.
+// SMALBE-M: semimonotonic augmented Lagrangians for bounds and equalities, with MPGP as the inner solver.
 // Dostal, Horak 2004; Dostal 2009, sections 8.1-8.9; Dostal et al. 2010, doi:10.1016/j.cam.2010.05.042. With discs (friction
 // in space) it is SMALSE-M: Dostal, Kozubek, Markopoulos, Brzobohaty, Vondrak, Horyl 2012.
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace slipstick::qp
 {
-  /// Where SMALBE starts. shift = G'mu, the multiplier of the equalities in the range of G', if known.
+  /// Start of SMALBE. shift = G'mu, the multiplier of the equalities in the range of G', if known.
   template <typename Vector>
   struct SmalbeStart
   {
@@ -24,21 +24,21 @@ namespace slipstick::qp
   struct SmalbeResult
   {
     Status status;
-    Vector x;                  // within the box, exactly
+    Vector x;                  // exactly in the box
     Vector gradient;           // (P F P + rho Q) x - b + shift
     Vector shift;              // G'mu
     double projected_gradient; // |gP| over the reference of the goal
     double equality_residual;  // |PFP| |Gx| over the reference of the goal
-    double reference;          // the norm that the residuals refer to
+    double reference;          // reference value of the residuals
     double penalty;            // rho
     Counts counts;
   };
 
   namespace detail
   {
-    // |G x| beyond this part of the forces that balance the loads is too large, whatever the goal ...
+    // An error |G x| above this part of the forces that balance the loads is too large, whatever the goal ...
     constexpr double gross_imbalance = 0.01;
-    // ... unless the forces are less than this part of all.
+    // ... unless these forces are less than this part of all forces.
     constexpr double negligible_forces = 1e-9;
 
     template <typename Vector, typename Problem, typename Set>
@@ -129,7 +129,7 @@ namespace slipstick::qp
           }
       }
 
-      // MPGP on the augmented Lagrangian of the present multiplier.
+      // MPGP on the augmented Lagrangian of the current multiplier.
       Status minimise()
       {
         const auto stop = [this](const Vector &, const double gradient) {
@@ -139,7 +139,7 @@ namespace slipstick::qp
           const double balanced = std::min(M * residual, reference);
           return gradient <= (residual <= feasible ? std::max(balanced, target) : balanced);
         };
-        MpgpOptions how = options.inner; // an iteration takes one multiplication or two
+        MpgpOptions how = options.inner; // an iteration takes one or two multiplications
         how.max_iterations =
           std::min<std::uint64_t>(how.max_iterations, options.max_multiplications - counts.hessian_multiplications);
         auto inner =
@@ -173,7 +173,7 @@ namespace slipstick::qp
         feasibility = norm * Gx;
         lagrangian  = s[2];
         noise       = options.inner.rounding * norm * std::sqrt(s[5]);
-        // where gaps make the reference, forces may be next to nothing beside it
+        // if gaps determine the reference, forces may be negligible compared with it
         feasible =
           std::min(target, gross_imbalance * norm * std::max(goal_forces, negligible_forces * std::sqrt(s[5])));
         if (observer)
@@ -185,7 +185,8 @@ namespace slipstick::qp
                     static_cast<std::size_t>(s[4])});
       }
 
-      // mu += rho G x; the gradient follows without a multiplication. M falls unless the Lagrangian rose enough.
+      // mu += rho G x; the gradient is updated without a multiplication. M is reduced unless the Lagrangian has
+      // increased enough.
       void update_multiplier(const bool may_balance)
       {
         if (may_balance && lagrangian_before && lagrangian < *lagrangian_before + 0.5 * rho * Gx * Gx)
@@ -196,7 +197,7 @@ namespace slipstick::qp
         add(-rho, A.range_part(), rhs);
       }
 
-      // rho too small for the bounds: in a small box |Gx| is small, and mu far.
+      // rho is too small for the bounds: in a small box |Gx| is small although mu is far from its solution.
       void raise_penalty()
       {
         const double raise = (options.penalty_growth - 1) * rho;
@@ -207,7 +208,7 @@ namespace slipstick::qp
         lagrangian_before.reset();
       }
 
-      // Does -Qx prove that nothing within the box has Q x = 0?
+      // Whether -Qx proves that no point of the box has Q x = 0.
       bool is_contradictory() const
       {
         Vector r = zero_like(x);
@@ -234,20 +235,20 @@ namespace slipstick::qp
       Vector                shift, rhs; // rhs = b - shift
       double                inner_norm, M;
       double                reference = 0, target = 0;     // of residuals
-      double                feasible = 0, goal_forces = 0; // of |PFP| |G x|; those that balance the loads
+      double                feasible = 0, goal_forces = 0; // of |PFP| |G x|; forces that balance the loads
       double                gP = 0, Gx = 0, feasibility = 0, lagrangian = 0, noise = 0;
       std::optional<double> lagrangian_before;
       Counts                counts;
     };
   } // namespace detail
 
-  /// Minimise 1/2 x'PFPx - x'b, b in the range of P, over the set (Box or DiscBox) and Q x = 0, until |gP| and |PFP| |Gx| are at most
-  /// goal.tolerance times goal.reference (default |b|; if that is 0, |PFP| times |start|). `norm` is |PFP|. A start
-  /// outside of the box is projected on it; from 0 nothing is multiplied before the first step. The observer is called
-  /// after every outer step, on every process; so is @p accepts, with x and the gradient, which may end the solve
-  /// before its goal (with the same answer on every process).
-  /// status: infeasible if bounds contradict each other (x is then of no use), or them the equalities (provably; if in
-  /// doubt the status is stagnated), or if the objective is unbounded from below.
+  /// Minimises 1/2 x'PFPx - x'b, b in the range of P, over the set (Box or DiscBox) and Q x = 0, until |gP| and |PFP|
+  /// |Gx| are at most goal.tolerance times goal.reference (default |b|; if that is 0, |PFP| times |start|). `norm` is
+  /// |PFP|. A start outside the box is projected onto it; from 0 there is no multiplication before the first step. The
+  /// observer is called after every outer step, on every process; so is @p accepts, with x and the gradient, which may
+  /// end the solve before the goal is reached (it must return the same on every process).
+  /// status: infeasible if bounds contradict each other (x is then meaningless) or the equalities (proved; without
+  /// proof the status is stagnated), or if the objective is unbounded from below.
   /// @code
   /// using Vector = std::vector<double>;
   /// struct Problem // F = diag(1, 3), G = (1, 1) / sqrt(2)

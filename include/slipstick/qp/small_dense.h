@@ -1,4 +1,4 @@
-// Dense symmetric systems of the size of a Krylov space, the same on every process.
+// Small dense symmetric systems (size of a Krylov space), the same on every process.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace slipstick::qp
 {
-  /// A = A' of n x n numbers.
+  /// A = A', n x n.
   class SmallSymmetric
   {
   public:
@@ -36,14 +36,14 @@ namespace slipstick::qp
     std::vector<double> values;
   };
 
-  /// Cholesky factors with diagonal pivoting of a positive semidefinite matrix, scaled. What depends on the pivots before it
-  /// is left out, so that solve() gives a basic solution of consistent systems. Higham 2002, section 10.3.
+  /// Scaled Cholesky factors with diagonal pivoting of a positive semidefinite matrix. Rows that depend on previous
+  /// pivots are skipped, so that solve() gives a basic solution of consistent systems. Higham 2002, section 10.3.
   class PivotedCholesky
   {
   public:
-    /// @param sizes rows and columns are divided by their roots: what the diagonal would be without cancellation, so that
-    ///        one that is all rounding does not pass for a pivot.
-    /// @param dependence pivots of the scaled matrix below it count as zero.
+    /// @param sizes values of the diagonal without cancellation; rows and columns are divided by their square roots, so
+    /// that a diagonal entry that is only rounding is not used as a pivot.
+    /// @param dependence pivots of the scaled matrix below this count as zero.
     PivotedCholesky(SmallSymmetric A, const std::vector<double> &sizes, const double dependence)
       : L(std::move(A))
       , scale(L.size())
@@ -99,7 +99,7 @@ namespace slipstick::qp
       return true;
     }
 
-    // One column of L; the trailing block becomes its Schur complement.
+    // Computes one column of L; the trailing block becomes its Schur complement.
     void eliminate()
     {
       const std::size_t n = L.size(), k = rank;
@@ -111,7 +111,7 @@ namespace slipstick::qp
           L(i, j) -= L(i, k) * L(j, k);
     }
 
-    SmallSymmetric           L; // in its leading rows; the block after them is what was left out
+    SmallSymmetric           L; // in its leading rows; followed by the block of skipped rows
     std::vector<double>      scale;
     std::vector<std::size_t> order;
     std::size_t              rank = 0;

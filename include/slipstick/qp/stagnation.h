@@ -1,4 +1,4 @@
-// When to give up: a residual that has not fallen for too long.
+// Stopping test for residuals that no longer decrease.
 #pragma once
 
 #include <cmath>
@@ -6,8 +6,8 @@
 
 namespace slipstick::qp
 {
-  /// Told the residual of every step, says whether to give up: the least one so far has not fallen below `progress`
-  /// times its old value within `window` steps, or it is not a number.
+  /// Receives the residual of every step; returns true to stop: the smallest residual so far has not decreased below
+  /// `progress` times its old value within `window` steps, or the residual is not a number.
   class StagnationWatch
   {
   public:

@@ -1,4 +1,4 @@
-// What the solvers of this layer share: status, counts, accuracy, and the concepts they are templated on.
+// Common definitions of the solvers in this layer: status, counts, accuracy, and their template concepts.
 //
 // Vector      copyable; `begin()`, `end()` are contiguous random access iterators over the entries OWNED BY THIS
 //             PROCESS; a copy has the same layout. std::vector<double> is one, so is
@@ -24,16 +24,16 @@
 
 namespace slipstick::qp
 {
-  /// How a solver ended.
+  /// Result status of a solver.
   enum class Status
   {
-    converged,       // the residuals asked for are reached
+    converged,       // the required residuals are reached
     iteration_limit, // an iteration limit of the options was reached
-    stagnated,       // residuals at rounding level, or not falling over a long time, or not numbers
-    infeasible       // no solution: contradicting constraints, or unbounded from below
+    stagnated,       // residuals at rounding level, or not decreasing for a long time, or not numbers
+    infeasible       // no solution: contradictory constraints, or unbounded from below
   };
 
-  /// Work done, counted where it happens.
+  /// Numbers of operations performed.
   struct Counts
   {
     unsigned int hessian_multiplications     = 0; // with F, or with A in MPGP
@@ -68,8 +68,8 @@ namespace slipstick::qp
 
   using Observer = std::function<void(const OuterStep &)>;
 
-  /// Accuracy asked for: residuals <= tolerance * reference; reference 0 means |b|. Where gaps make the reference, forces
-  /// have a size of their own.
+  /// Required accuracy: residuals <= tolerance * reference; reference 0 means |b|. If gaps determine the reference,
+  /// forces have a scale of their own.
   struct Goal
   {
     Goal(const double tolerance_, const double reference_ = 0, const double forces_ = HUGE_VAL)
@@ -80,7 +80,7 @@ namespace slipstick::qp
 
     double tolerance;
     double reference;
-    double forces; // size of those that balance the loads, beside which errors must not be gross; infinite: not known
+    double forces; // magnitude of the forces that balance the loads, for limiting their errors; infinite: unknown
   };
 
   /// Reduction of a single process.
