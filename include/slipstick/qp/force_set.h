@@ -44,7 +44,8 @@ namespace slipstick::qp
           x[node.normal] = near_normal;
       }
 
-      /// p := derivative of the projection, times p: transverse to the force, p is scaled by the ratio of the forces' lengths.
+      /// p := derivative of the projection, times p: transverse to the force, p is scaled by the ratio of the
+    /// forces' lengths.
       template <typename Iterator>
       void multiply_derivative(const Iterator p) const
       {

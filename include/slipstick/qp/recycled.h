@@ -12,8 +12,8 @@ namespace slipstick::qp
 {
   namespace detail
   {
-    // Directions are skipped if the remainder of their energy (residual) after subtracting combinations of others is
-    // below this part of its square.
+    // Directions are skipped if their squared energy (residual) without the part in the span of others is below this
+    // part of its original value.
     constexpr double dependent_direction = 1e-12;
 
     /// The combinations in the store that are admissible for a face problem, and the solution in their span.
