@@ -58,7 +58,7 @@ namespace slipstick::app
     {
       if constexpr (dim == 3)
         return format(
-          "Contact %s: at %s plane faces leave out a surface %.4g mm above them, which is not small compared with %s of %.4g mm, "
+          "Contact %s: at %s plane faces deviate by %.4g mm from a curved surface, which is not small compared with %s of %.4g mm, "
           "so that pressures are those of a polyhedron; use a mesh of second order (built-in shapes: Outline = smooth), or a finer "
           "one",
           pair.name.c_str(),
@@ -67,7 +67,7 @@ namespace slipstick::app
           is_closed ? "the deformation" : "the gap",
           worst[4]);
       return format(
-        "Contact %s: at (%.6g, %.6g) straight edges leave out an arc %.4g mm high, which is not small compared with %s "
+        "Contact %s: at (%.6g, %.6g) straight edges deviate by %.4g mm from an arc, which is not small compared with %s "
         "of %.4g mm, so that pressures are those of a polygon; set Outline = smooth or a larger Corner angle for the "
         "bodies, or use a finer mesh or one of second order (if the corners are intended: Outline = polygon)",
         pair.name.c_str(),

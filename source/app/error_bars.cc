@@ -344,8 +344,8 @@ namespace slipstick::app
           (names.empty() ? "" : ", ") + bar.quantity + format(" (%.2g %%)", 100 * *bar.error / std::abs(bar.value));
     if (!names.empty())
       log.line(
-        format("             known to less than the %g %% that the preset stands for: %s; Mesh = adaptive refines "
-               "until they are known to it",
+        format("             errors above the %g %% of the preset: %s; Mesh = adaptive refines the mesh until they are "
+               "below",
                100 * accuracy,
                names.c_str()));
   }

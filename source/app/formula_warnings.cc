@@ -206,8 +206,8 @@ namespace slipstick::app
           continue;
         const auto &body                     = scene.bodies[subjects[k].where.body].name;
         texts["formula " + subjects[k].name] = format(
-          "%s: the formula is %.4g %s at %s, but %.4g at the nearest nodes of its %s of %.3g mm: it acts at nodes, so "
-          "that this is lost; refine %s there (%sRefinements) until nodes see it, or place nodes there",
+          "%s: the formula is %.4g %s at %s, but %.4g at the nearest nodes of its %s of %.3g mm: it is evaluated "
+          "at nodes only, so that this is lost; refine %s there (%sRefinements) until nodes resolve it, or place nodes there",
           subjects[k].name.c_str(),
           found.value,
           subjects[k].unit.c_str(),

@@ -83,8 +83,8 @@ namespace slipstick::app
     left_out = std::move(places);
     for (const auto &place : left_out)
       {
-        notes.push_back(format("the accuracy leaves out what is within %.3g mm of %s of body %s, %s: the energy "
-                               "is infinite there; spread the force over %s to have it estimated",
+        notes.push_back(format("the accuracy excludes the region within %.3g mm of %s of body %s, %s: the energy "
+                               "is infinite there; spread the force over %s to include it",
                                place.radius,
                                point_text(place.position, dim).c_str(),
                                scene.bodies[place.body].name.c_str(),
@@ -177,7 +177,7 @@ namespace slipstick::app
     constexpr double cells_for_one = 12;
     const double     growth        = 1 + cells_for_one * n_marked / summary.problem.cells;
     if (n_marked == 0)
-      return so_far + "; no cell is left that refinement would help";
+      return so_far + "; no cell is left whose refinement would reduce the error";
     if (growth * rows.back().unknowns > options.max_unknowns)
       return so_far + format("; the next mesh may have %.2g unknowns, allowed are %u (Adaptivity/Max unknowns)",
                              growth * rows.back().unknowns,

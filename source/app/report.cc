@@ -189,7 +189,7 @@ namespace slipstick::app
         if (!worst.is_balance && reached > residual_rounding)
           {
             log.warning(what +
-                        format("\n  remedy: set Solver/Tolerance to %.1g, and look at the residuals in convergence.csv",
+                        format("\n  remedy: set Solver/Tolerance to %.1g, and check the residuals in convergence.csv",
                                reached / check_factor));
             return;
           }
@@ -232,8 +232,9 @@ namespace slipstick::app
       {
         log.warning(
           (balances
-             ? format("not converged: friction and normal forces do not come to agree (residuals of %.1e of |Pd|)",
-                      reached)
+             ? format(
+                 "not converged: friction and normal forces do not converge to consistent values (residuals of %.1e of |Pd|)",
+                 reached)
              : format(
                  "not converged: the contact forces found do not balance the loads (violation of G x = e of %.1e of |Pd|)",
                  solution.equality)) +
@@ -244,12 +245,11 @@ namespace slipstick::app
       }
     const std::string raise =
       is_tolerance(rounded_up(reached))
-        ? format("set Solver/Tolerance to %g or more, and look at the residuals in convergence.csv",
-                 rounded_up(reached))
-        : "look at the residuals in convergence.csv; loads and supports that hardly balance, and moduli or sizes far apart, are possible causes";
+        ? format("set Solver/Tolerance to %g or more, and check the residuals in convergence.csv", rounded_up(reached))
+        : "check the residuals in convergence.csv; possible causes are loads and supports that are barely in equilibrium, and very different moduli or sizes";
     log.warning(
       format("not converged: the solver %s: %s is %.1e of |Pd|, the tolerance is %g",
-             limit ? "reached its iteration limit" : "came to a standstill",
+             limit ? "reached its iteration limit" : "stagnated",
              solution.projected_gradient >= solution.equality ? "the projected gradient" : "the violation of G x = e",
              reached,
              tolerance) +
@@ -308,9 +308,9 @@ namespace slipstick::app
           count(results.contact[k].on_slave);
       }
     if (is_revolution) // radial forces are balanced around the circumference
-      log.line(format("             %-30s %14s %14.6g", "sum of all from outside", "", left.force[1]));
+      log.line(format("             %-30s %14s %14.6g", "sum of external forces", "", left.force[1]));
     else
-      log.line(row<dim>("sum of all from outside", left, is_revolution));
+      log.line(row<dim>("sum of external forces", left, is_revolution));
   }
 
   void print_result(const Log &log, const output::Summary &summary, const std::string &pvd)

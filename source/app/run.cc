@@ -220,7 +220,7 @@ namespace slipstick::app
         format("in load step %u of %zu; ", step + 1, scene.load_factors.size()) +
         (kept_steps > 0
            ? format(
-               "summary.json, history.csv and contact.csv in %s hold the results of the first %u, after which --resume goes on",
+               "summary.json, history.csv and contact.csv in %s hold the results of the first %u, from which --resume continues",
                directory.path("").c_str(),
                kept_steps)
            : std::string("there are no results")));

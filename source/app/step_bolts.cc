@@ -58,7 +58,7 @@ namespace slipstick::app
           return answer;
         if (attempt == max_attempts)
           {
-            log.warning("the bolts do not come to their forces");
+            log.warning("the bolts do not reach their prescribed forces");
             the_solution.status = qp::Status::iteration_limit;
             return answer;
           }
@@ -69,10 +69,10 @@ namespace slipstick::app
         if (const auto longest = so_far.move())
           throw NoEquilibrium(
             format(
-              "Pretension %s: shortened by the length of the bolt, it bears %.3g N in place of the force that is given",
+              "Pretension %s: shortened by the length of the bolt, it carries %.3g N instead of the prescribed force",
               scene.pretensions[*longest].name.c_str(),
               tensions[*longest]),
-            "let supports or contact hold both ends of the bolt against what it is to clamp");
+            "let supports or contact hold both ends of the bolt against the clamped parts");
         if (so_far.are_vague())
           of_solver = std::max(sharpest, sharper * of_solver);
         problem.reload(t);

@@ -464,7 +464,7 @@ namespace slipstick::mesh
       if (!all.empty())
         mesh.remarks.push_back(
           "warning: mesh file " + mesh.file +
-          ": only its mesh counts; materials, supports, loads and steps come from the scene. Not used: " + all);
+          ": only its mesh is used; materials, supports, loads and steps come from the scene. Not used: " + all);
     }
 
     MeshFile AbaqusReader::read()

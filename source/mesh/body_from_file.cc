@@ -42,7 +42,7 @@ namespace slipstick::mesh
         check_conformity();
         if (file.is_curved && mesh.middles.empty() && mesh.piece.line_middles.empty())
           mesh.remarks.push_back("body " + body.name + ": only the corners of the curved cells in " + file.file +
-                                 " are used (mid nodes are kept of cells of second order alone)");
+                                 " are used (mid nodes are used for cells of second order only)");
         return std::move(mesh);
       }
 

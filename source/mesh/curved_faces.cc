@@ -214,8 +214,7 @@ namespace slipstick::mesh
     mesh.remarks.push_back(
       "body " + body.name + ": " + std::to_string(n_bent) + " of " + std::to_string(piece.boundary_faces.size()) +
       " boundary faces are curved by their mid nodes (Outline = polygon: straight)" +
-      (n_spoilt == 0
-         ? ""
-         : "; the edges of " + std::to_string(n_spoilt) + " cells that this would turn over stay straight"));
+      (n_spoilt == 0 ? ""
+                     : "; the edges of " + std::to_string(n_spoilt) + " cells that this would invert stay straight"));
   }
 } // namespace slipstick::mesh

@@ -78,17 +78,17 @@ namespace slipstick::scene
       adaptive_mesh.first,
       "fixed",
       {"fixed", adaptive_mesh.second},
-      "fixed: as the scene has it (a percentage as Accuracy refines it all the same); adaptive: refined until the "
-      "figures of Goal, or if there are none displacement, energy, forces and pressures, are known to what the preset "
-      "stands for: draft 10 %, engineering 3 %, reference 0.3 %",
+      "fixed: as in the scene (it is still refined if Accuracy is a percentage); adaptive: refined until the quantities of "
+      "Goal (default: displacement, energy, forces and pressures) have the accuracy of the preset: draft 10 %, "
+      "engineering 3 %, reference 0.3 %",
       [&options](const std::string &word) { options.adapts_mesh = word == adaptive_mesh.second; });
     add_entry(
       prm,
       "Goal",
       "",
       "",
-      "of meshes that are refined: the quantities that are to have the accuracy, such as PAIR.max_pressure; empty: the "
-      "energy norm, or with a preset what Mesh says",
+      "if meshes are refined: the quantities that must reach the accuracy, such as PAIR.max_pressure; empty: the energy "
+      "norm, or with a preset the default described for Mesh",
       "names separated by commas",
       [](const std::string &) { return true; },
       [&options](const std::string &text) { options.goals = split_list(text); });
@@ -97,13 +97,13 @@ namespace slipstick::scene
   void declare(dealii::ParameterHandler &prm, AdaptivityOptions &options)
   {
     prm.enter_subsection("Adaptivity");
-    add_count(prm, "Max meshes", options.max_meshes, 1, most_meshes, "meshes before giving up");
+    add_count(prm, "Max meshes", options.max_meshes, 1, most_meshes, "maximum number of meshes");
     add_count(prm,
               "Max unknowns",
               options.max_unknowns,
               1,
               most_unknowns,
-              "of a mesh, of all subdomains together: no finer one is made");
+              "maximum number of unknowns of a mesh, summed over all subdomains");
     prm.leave_subsection();
   }
 } // namespace slipstick::scene

@@ -180,9 +180,9 @@ namespace slipstick::scene
                "Outline",
                body.has_smooth_outline,
                Choices<bool>{{"smooth", true}, {"polygon", false}},
-               "what edges stand for in gaps and normals of contact, where refinement puts new nodes, and of cells of "
+               "shape of edges in gaps and normals of contact, for new nodes of refinement, and in cells of "
                "degree 2: smooth: arcs of built-in shapes; of meshes the curves through the mid nodes of the file, or "
-               "splines through the nodes; polygon: straight edges, which leave out their sagitta");
+               "splines through the nodes; polygon: straight edges, neglecting the sagitta");
     add_number(prm,
                "Corner angle",
                body.corner_angle,
@@ -234,9 +234,9 @@ namespace slipstick::scene
       "Outline",
       body.has_smooth_outline,
       Choices<bool>{{"smooth", true}, {"polygon", false}},
-      "what faces stand for in gaps and normals of contact, and in cells of degree 2: smooth: balls and cylinders of "
+      "shape of faces in gaps and normals of contact, and in cells of degree 2: smooth: balls and cylinders of "
       "built-in shapes, of meshes the surfaces through the mid nodes of the file; polygon: faces with straight "
-      "edges, which leave out their sagitta");
+      "edges, neglecting the sagitta");
   }
 
   template <int dim>

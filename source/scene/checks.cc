@@ -80,7 +80,8 @@ namespace slipstick::scene
       for (const auto &[user, where] : used_boundaries(scene))
         if (!part_of_boundary(where.boundary).condition.empty())
           throw parameters.error("Decomposition/Method",
-                                 "knows no parts of boundaries, but " + user + " has one, '" + where.boundary + "'",
+                                 "does not support parts of boundaries, but " + user + " has one, '" + where.boundary +
+                                   "'",
                                  "set it to METIS or auto");
       for (const Body<dim> &body : scene.bodies)
         {

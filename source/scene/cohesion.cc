@@ -14,7 +14,7 @@ namespace slipstick::scene
               "set it in MPa, or set Law = Coulomb"},
              {"Friction coefficient",
               "-",
-              "cohesion: by which the pressure adds to that; must be set",
+              "cohesion: increase of this shear stress per pressure; must be set",
               "",
               "set it, to 0 for none"},
              {"Shear limit", "MPa", "cohesion: the shear stress is nowhere larger; none is no limit", "none", ""}},

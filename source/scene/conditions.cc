@@ -103,7 +103,7 @@ namespace slipstick::scene
       }
     if (!boundary.empty())
       throw parameters.error(section + "/Boundary",
-                             "stands beside a point",
+                             "is given in addition to a point",
                              "set either Boundary, or Body and Point, and remove the other");
     parameters.require(section + "/Body", "set the body that the point belongs to");
     parameters.require(section + "/Point", "set the point of the body, for example: set Point = 0, 0");

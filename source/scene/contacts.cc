@@ -106,12 +106,13 @@ namespace slipstick::scene
   void ContactSection<dim>::declare(dealii::ParameterHandler &prm)
   {
     prm.enter_subsection("Contact " + name);
-    add_text(prm,
-             "Slave",
-             slave,
-             "",
-             boundary_format,
-             "boundary that may touch the master; the finer or softer side of two bodies; must be set");
+    add_text(
+      prm,
+      "Slave",
+      slave,
+      "",
+      boundary_format,
+      "boundary that may come into contact with the master; the finer or softer side of two bodies; must be set");
     add_text(prm,
              "Master",
              master,

@@ -209,7 +209,7 @@ namespace slipstick::scene
     declare_dual(prm, solver.dual);
     declare_smalbe(prm, solver.smalbe);
     prm.enter_subsection("PCG");
-    add_count(prm, "Max iterations", solver.pcpg.max_iterations, 1, max_iterations, "iterations before giving up");
+    add_count(prm, "Max iterations", solver.pcpg.max_iterations, 1, max_iterations, "maximum number of iterations");
     prm.leave_subsection();
     prm.leave_subsection();
   }

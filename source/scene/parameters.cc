@@ -241,7 +241,7 @@ namespace slipstick::scene
                       "separate names by commas; names must not contain / or =");
         if (std::find(reserved_names.begin(), reserved_names.end(), name) != reserved_names.end())
           throw error(kind.list,
-                      "'" + name + "' is reserved: where names may stand it means all of them",
+                      "'" + name + "' is reserved: in place of a name it means all of them",
                       "choose another name for the " + kind.kind);
         if (!seen.insert(name).second)
           throw error(kind.list, "'" + name + "' is declared twice", "give every " + kind.kind + " its own name");

@@ -65,7 +65,7 @@ namespace slipstick::scene
       if (t <= bolt.tightened_until && !(bolt.force.value(bolt.point, t) >= 0))
         throw parameters.error(section + "/Force",
                                "is negative at t = " + number_text(t),
-                               "give the tension that the bolt bears, 0 or more, or turn the bolt loose with 0");
+                               "give a tension of 0 or more; with 0 the bolt keeps its length");
     if (!(bolt.tightened_until >= scene.load_factors.front()))
       throw parameters.error(section + "/Tightened until",
                              "lies before the first of Load steps/Factors, so that the bolt is never tightened",

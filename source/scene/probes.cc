@@ -24,11 +24,11 @@ namespace slipstick::scene
   void ProbeSection<dim>::declare(dealii::ParameterHandler &prm)
   {
     prm.enter_subsection("Probe " + name);
-    add_text(prm, "Body", body, "", "a name from Bodies", "body that is looked at; must be set");
+    add_text(prm, "Body", body, "", "a name from Bodies", "body of the probe; must be set");
     add_text(prm, "Point", point, "mm", format<dim>(), "a point of it; this or From and To must be set");
-    add_text(prm, "From", from, "mm", format<dim>(), "beginning of a straight line");
+    add_text(prm, "From", from, "mm", format<dim>(), "start of a straight line");
     add_text(prm, "To", to, "mm", format<dim>(), "its end");
-    add_count(prm, "Number of points", n_points, 2, most_points, "points on the line, its ends among them");
+    add_count(prm, "Number of points", n_points, 2, most_points, "points on the line, including its ends");
     prm.leave_subsection();
   }
 
@@ -36,7 +36,7 @@ namespace slipstick::scene
   Probe<dim> ProbeSection<dim>::read(const Parameters &parameters, const Scene<dim> &scene) const
   {
     const std::string section = "Probe " + name;
-    parameters.require(section + "/Body", "set the body that is looked at");
+    parameters.require(section + "/Body", "set the body of the probe");
     Probe<dim> probe;
     probe.name     = name;
     probe.n_points = n_points;
@@ -47,8 +47,8 @@ namespace slipstick::scene
     const bool is_line = !from.empty() || !to.empty();
     if (is_line && !point.empty())
       throw parameters.error(section + "/Point",
-                             "stands beside a line",
-                             "set either Point, or From and To, and leave the other away");
+                             "is given in addition to a line",
+                             "set either Point, or From and To, and remove the other");
     if (is_line)
       {
         end(from, "From");

@@ -152,7 +152,7 @@ namespace slipstick::scene
           Choices<PlaneState>{{"plane stress", PlaneState::plane_stress},
                               {"plane strain", PlaneState::plane_strain},
                               {"axisymmetric", PlaneState::axisymmetric}},
-          "what the section stands for, of all bodies; axisymmetric: half a section of bodies of revolution, x the "
+          "meaning of the plane section, for all bodies; axisymmetric: half a section of bodies of revolution, x the "
           "radius, y the axis, all forces over the whole circumference");
       const auto presets = std::vector<std::pair<std::string, Accuracy>>{{"draft", Accuracy::draft},
                                                                          {"engineering", Accuracy::engineering},
@@ -268,7 +268,7 @@ namespace slipstick::scene
         return;
       if (!adaptivity.refines())
         throw parameters.error("Goal",
-                               "there is no accuracy that it should have",
+                               "no accuracy is requested to which it would apply",
                                "set Accuracy = 1 %, or Mesh = adaptive, or leave the goal out");
       const auto names = quantity_names(scene);
       for (const std::string &goal : adaptivity.goals)

@@ -32,7 +32,7 @@ namespace slipstick::scene
       if (n > max_triangles)
         throw InputError("STL file " + file + " has " + std::to_string(n) + " triangles, at most " +
                            std::to_string(max_triangles) + " are allowed",
-                         "export it with a coarser tolerance, or cut away what nothing touches");
+                         "export it with a coarser tolerance, or remove parts that cannot come into contact");
     }
 
     double checked(const std::string &file, const double value)

@@ -130,7 +130,7 @@ namespace slipstick::scene
       "the edge from " + point_text(vertices[wrong->low], 3) + " to " + point_text(vertices[wrong->high], 3);
     const std::string more = n_wrong > 1 ? ", and " + std::to_string(n_wrong - 1) + " other edges are wrong, too" : "";
     if (n_of_wrong == 2)
-      throw InputError(name + " is not oriented: the two triangles at " + where + " run opposite ways around" + more,
+      throw InputError(name + " is not oriented: the two triangles at " + where + " have opposite orientations" + more,
                        "make the normals consistent in the program that exported it");
     throw InputError(name + " is not closed: " + where + " belongs to " + std::to_string(n_of_wrong) +
                        (n_of_wrong == 1 ? " triangle" : " triangles") + ", not to two" + more,

@@ -57,7 +57,7 @@ class CurvedSolids(Solids):
     def test_polygons_are_warned_of(self):
         found, warnings = self.pressures(16, 20, polygon('shaft', 'ring'))
         self.assertGreater(max(found), 1.5 * LAME)
-        self.assertEqual(len([text for text in warnings if 'plane faces leave out a surface' in text]), 1)
+        self.assertEqual(len([text for text in warnings if 'plane faces deviate by' in text]), 1)
 
 
 if __name__ == '__main__':

@@ -54,7 +54,7 @@ class Interrupted(unittest.TestCase):
             self.assertEqual(status, -number, message)
             self.assertIn('error: interrupted in load step ', message)
             self.assertIn(' of {}; summary.json, history.csv and contact.csv in {}'.format(STEPS, directory), message)
-            said = int(re.search(r'the first (\d+), after which --resume goes on$', message.rstrip()).group(1))
+            said = int(re.search(r'the first (\d+), from which --resume continues$', message.rstrip()).group(1))
             self.assertLessEqual(abs(self.kept(directory) - said), 1)
 
     def test_several_ranks(self):

@@ -44,7 +44,7 @@ class Probes(unittest.TestCase):
         for probe, words in (({'Body': 'box', 'Point': '11, 3'}, "(11, 3) is not on body 'box'"),
                              ({'Body': 'box', 'From': '0, 0', 'To': '10, 10.5'}, '(9.8, 10.29) is not on'),
                              ({'Body': 'box', 'From': '0, 0'}, 'Probe p: To is not set'),
-                             ({'Body': 'box', 'Point': '1, 1', 'To': '2, 2'}, 'stands beside a line'),
+                             ({'Body': 'box', 'Point': '1, 1', 'To': '2, 2'}, 'is given in addition to a line'),
                              ({'Body': 'bax', 'Point': '1, 1'}, 'bax'), ({'Point': '1, 1'}, 'Probe p: Body is not set')):
             result = run(stretched(probes={'p': probe}), '--check', ranks=1 + (len(words) > 10))
             self.assertEqual(result.status, 2, result)

@@ -51,7 +51,7 @@ class Accuracy(Extremes):
             self.converges(table, '{:g}, {} as it says'.format(ratio, reachable), case,
                            {'Solver/Tolerance': float(reachable)}, checks=1000 * float(reachable))
         table = Table('no contact, tolerance beyond rounding')
-        result = self.ends(3, table, '1e-15', shipped('box_linear'), 'came to a standstill', 'the projected gradient is',
+        result = self.ends(3, table, '1e-15', shipped('box_linear'), 'stagnated', 'the projected gradient is',
                            ' of body box', overrides={**BLOCKS, 'Solver/Tolerance': 1e-15})
         reachable = result.stderr.split('set Solver/Tolerance to ')[1].split()[0]
         self.converges(table, reachable + ' as it says', shipped('box_linear'),

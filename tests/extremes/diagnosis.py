@@ -22,7 +22,7 @@ class NotConverged(Extremes):
                 ('conjugate gradients, three steps', shipped('box_linear'),
                  ('reached its iteration limit', 'the projected gradient is', 'error in the energy norm', ' of body box',
                   'Solver/PCG/Max iterations'), {**BLOCKS, 'Solver/PCG/Max iterations': 3}),
-                ('tolerance below rounding', shipped('box_linear'), ('came to a standstill', 'set Solver/Tolerance to '),
+                ('tolerance below rounding', shipped('box_linear'), ('stagnated', 'set Solver/Tolerance to '),
                  {**BLOCKS, 'Solver/Tolerance': 1e-15}),
                 ('check below rounding', stack(box={'Young modulus': '2.1e14'}),
                  ('the check from the recovered displacement fails: equilibrium of a node is', ' at (', ') of body box',

@@ -799,7 +799,7 @@ TEST(MeshFiles, every_item_of_an_abaqus_file_is_used_refused_or_listed)
   EXPECT_SAYS(read("*NSET", "*SYSTEM\n1, 0, 0\n*NSET"), "*SYSTEM is not supported");
   const std::string listed =
     read("*NSET", "*MATERIAL, NAME=s\n*ELASTIC\n1, 0\n*STEP\n*BOUNDARY\nFoot, 1, 2\n*END STEP\n*BOUNDARY\n3, 1\n*NSET");
-  EXPECT_SAYS(listed, "nothing was refusedwarning: mesh file a.inp: only its mesh counts");
+  EXPECT_SAYS(listed, "nothing was refusedwarning: mesh file a.inp: only its mesh is used");
   EXPECT_SAYS(listed, "Not used: *BOUNDARY (2), *ELASTIC, *END STEP, *MATERIAL, *STEP");
 }
 
