@@ -335,7 +335,8 @@ namespace slipstick::contact
           }
       }
 
-      /// Of every body; also of stiff bodies among soft ones, whose share of the total energy is small.
+      /// Checks the energy of every body; also of stiff bodies among soft ones, whose share of the total energy is
+      /// small.
       void check_energies(const tfeti::JumpEnergies &error_energies, const Balance &on_bodies, const Scales &scales)
       {
         const double least_load = negligible_load * on_bodies.scale.maxCoeff();

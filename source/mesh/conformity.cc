@@ -347,7 +347,7 @@ namespace slipstick::mesh
         return boxes;
       }
 
-      /// Between any two corners; diagonals are never the shortest.
+      /// Shortest distance between any two corners (diagonals are never the shortest).
       double shortest_side(const Face &face) const
       {
         const auto v        = vertices_of(face);
@@ -358,8 +358,8 @@ namespace slipstick::mesh
         return shortest;
       }
 
-      /// In one of the triangles formed by the corners (which cover the face in any order of the corners), but not at a
-      /// corner.
+      /// Whether a vertex lies in one of the triangles formed by the corners (which cover the face in any order of the
+      /// corners), but not at a corner.
       bool lies_on(const unsigned int vertex, const Face &face, const double margin) const
       {
         const auto v = vertices_of(face);

@@ -78,7 +78,7 @@ namespace slipstick::output
                     const std::vector<LoadPlace<dim>>               &places)
     {
       constexpr unsigned int n_ends = dim == 2 ? 2 : 4;
-      // Scenes without such loads keep the columns of earlier versions.
+      // columns for these loads exist only if there are any
       const std::string no_value = places.empty() ? "" : ",";
       const auto        row =
         [&](const std::string &kind, const std::string &name, const std::string &side, const unsigned int body) {

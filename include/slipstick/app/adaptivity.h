@@ -27,21 +27,21 @@ namespace slipstick::app
     std::string        what;       // "the point load tip"
   };
 
-  /// Of all point loads and point supports. Collective.
+  /// The surroundings of all point loads and point supports. Collective.
   template <int dim>
   std::vector<LeftOut<dim>> point_forces(const scene::Scene<dim>      &scene,
                                          const mesh::Mesh<dim>        &mesh,
                                          const mechanics::Spaces<dim> &spaces,
                                          const unsigned int            n_supports);
 
-  /// From the estimate in the energy norm: squares of the cell errors relative to that of the displacement. Collective.
+  /// Cell errors from the estimate in the energy norm: squares relative to that of the displacement. Collective.
   template <int dim>
   CellErrors energy_errors(const mesh::Mesh<dim>           &mesh,
                            const mechanics::StressResult   &stress,
                            const std::vector<LeftOut<dim>> &left_out,
                            const double                     accuracy);
 
-  /// From goals: magnitudes relative to the values, summed over the goals. Collective.
+  /// Cell errors from goals: magnitudes relative to the values, summed over the goals. Collective.
   CellErrors errors_of_goals(const std::vector<GoalError> &goals, const double accuracy, const MPI_Comm comm);
 
   /// Adds the cells with the largest errors to @p refinement: the fewest that make the error small enough if it

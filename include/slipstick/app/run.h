@@ -45,7 +45,7 @@ namespace slipstick::app
     /// After a step without equilibrium: writes the results of the previous steps, marked as such.
     void write_without_equilibrium();
 
-    /// Of the last load step.
+    /// Stresses of the last load step.
     const mechanics::StressResult &stress() const
     {
       return *last->stress;

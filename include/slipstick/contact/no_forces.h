@@ -9,7 +9,8 @@ namespace slipstick::contact
 {
   /// Whether all forces are zero because there are no loads and no prescribed displacements, and the bodies either
   /// touch nothing in their initial position or, where no slip bound acts, can be moved apart. Collective.
-  /// @param feasible forces that balance the loads [N]. @param box bounds of the forces [N]. @param slip_bound of the owned rows [N].
+  /// @param feasible forces that balance the loads [N]. @param box bounds of the forces [N]. @param slip_bound of the
+  /// owned rows [N].
   bool bears_nothing(const tfeti::DualProblem       &dual,
                      const tfeti::DistributedVector &feasible,
                      const Box                      &box,

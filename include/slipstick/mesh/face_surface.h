@@ -51,7 +51,7 @@ namespace slipstick::mesh
       return n_nodes == 6 ? 3 : 4;
     }
 
-    /// For a patch.
+    /// Point and area vector of a patch.
     Point  point(const Place &s) const;
     Tensor area_vector(const Place &s) const;
 
@@ -93,7 +93,7 @@ namespace slipstick::mesh
     };
     Hit hit(const Point &x, const Tensor &direction) const;
 
-    /// Of a patch, with respect to both local coordinates.
+    /// Derivatives of a patch with respect to both local coordinates.
     std::array<Tensor, 2> tangents(const Place &s) const;
 
     /// Unit vector of the axis of a cylinder.

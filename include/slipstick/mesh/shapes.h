@@ -18,10 +18,11 @@ namespace slipstick::mesh
     unsigned int across, along; // from the inner to the outer surface (0: no tube); in axial direction
   };
 
-  /// For a cylinder or tube, before refinements.
+  /// Numbers of cells of a cylinder or tube, before refinements.
   RoundBarCells round_bar_cells(const scene::Body<3> &body);
 
-  /// Boundary ids of a built-in shape, in the order of scene::boundary_names(); in space (@p dim = 3) rectangles are cuboids.
+  /// Boundary ids of a built-in shape, in the order of scene::boundary_names(); in space (@p dim = 3) rectangles are
+  /// cuboids.
   std::map<std::string, dealii::types::boundary_id> shape_boundary_ids(const scene::Shape shape,
                                                                        const unsigned int dim = 2);
 } // namespace slipstick::mesh

@@ -13,7 +13,7 @@ namespace slipstick::mesh
     std::string largest;       // the body with the most cells, and the reason
   };
 
-  /// From the numbers in the scene and, if bodies of mesh files are refined, the number of cells in the files.
+  /// Estimate from the numbers in the scene and, if bodies of mesh files are refined, the number of cells in the files.
   /// @throws InputError as read_mesh_file() does.
   template <int dim>
   SizeEstimate estimate_size(const scene::Scene<dim> &scene);

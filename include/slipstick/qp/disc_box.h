@@ -196,7 +196,7 @@ namespace slipstick::qp
         detail::put(set.discs[k], ends[k], x);
   }
 
-  /// Both entries of a node on its circle count as active at the upper bound.
+  /// Active owned entries; both entries of a node on its circle count as active at the upper bound.
   template <typename Vector>
   ActiveEntries own_active(const DiscBox<Vector> &set, const Vector &x)
   {

@@ -45,7 +45,7 @@ namespace slipstick::qp
       }
 
       /// p := derivative of the projection, times p: transverse to the force, p is scaled by the ratio of the
-    /// forces' lengths.
+      /// forces' lengths.
       template <typename Iterator>
       void multiply_derivative(const Iterator p) const
       {

@@ -1,6 +1,6 @@
 // SMALBE-M: semimonotonic augmented Lagrangians for bounds and equalities, with MPGP as the inner solver.
-// Dostal, Horak 2004; Dostal 2009, sections 8.1-8.9; Dostal et al. 2010, doi:10.1016/j.cam.2010.05.042. With discs (friction
-// in space) it is SMALSE-M: Dostal, Kozubek, Markopoulos, Brzobohaty, Vondrak, Horyl 2012.
+// Dostal, Horak 2004; Dostal 2009, sections 8.1-8.9; Dostal et al. 2010, doi:10.1016/j.cam.2010.05.042. With discs
+// (friction in space) it is SMALSE-M: Dostal, Kozubek, Markopoulos, Brzobohaty, Vondrak, Horyl 2012.
 #pragma once
 
 #include <slipstick/qp/augmented_operator.h>

@@ -121,12 +121,12 @@ namespace slipstick::tfeti
     {
       ContactPoint              contact; // without rows
       bool                      is_bonded = false;
-      unsigned int              holder    = 0;       // of a bond: its own number, as in Reaction
-      std::vector<unsigned int> reactions;           // at the node, indices into Constraints::reactions; obstacles only
-      std::vector<unsigned int> holders;             // of all nodes of the row, numbered as in Reaction
-      unsigned int              place = invalid_row; // in Constraints::contact_points; invalid: no tangential row
-      bool                      is_known = false;    // whether supports alone prescribe the gap
-      double                    closing  = 0;        // if so: by how much they close it [mm]
+      unsigned int              holder    = 0; // of a bond: its own number, as in Reaction
+      std::vector<unsigned int> reactions;     // at the node, indices into Constraints::reactions; obstacles only
+      std::vector<unsigned int> holders;       // of all nodes of the row, numbered as in Reaction
+      unsigned int              place    = invalid_row; // in Constraints::contact_points; invalid: no tangential row
+      bool                      is_known = false;       // whether supports alone prescribe the gap
+      double                    closing  = 0;           // if so: by how much they close it [mm]
     };
 
     std::vector<Point> points;

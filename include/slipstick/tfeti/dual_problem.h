@@ -43,7 +43,7 @@ namespace slipstick::tfeti
   /// DualProblem dual(std::move(spring), rows, {}, {"spring"}, MPI_COMM_SELF);
   /// // both rows are closed: G x = e gives x_0 + x_1 = 100 N, the jumps give the rest
   /// DistributedVector x = dual.particular(); // x_0 = x_1 = 50 N
-  /// x(0)                = 40;                // what stretches the spring by 0.4e-3 mm
+  /// x(0)                = 40;                // stretches the spring by 0.4e-3 mm
   /// x(1)                = 60;
   /// const auto solution = recover(dual, x, {true, true});
   /// assert(std::abs(solution.u[0][1] - 4e-4) < 1e-15);

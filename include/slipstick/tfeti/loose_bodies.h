@@ -74,6 +74,6 @@ namespace slipstick::tfeti
     const BodyMotions &motions;
     const Constraints &rows;
     MPI_Comm           comm;
-    BodyEquilibrium    held_by_contact; // held by contact alone
+    BodyEquilibrium    held_by_contact;
   };
 } // namespace slipstick::tfeti
