@@ -18,11 +18,12 @@ namespace slipstick::interface
     // Biorthogonal functions require a scaled mass matrix with eigenvalues above this (for whole facets of degree 2:
     // 0.25 or more).
     constexpr double least_eigenvalue = 1e-3;
-    // Order of the symmetric quadrature on the triangles of a part. Products of shape functions are of fourth order on
-    // parallelograms and triangles, where the fifth-order rule is exact; on other quadrilaterals they are rational
-    // functions.
+    // Parameters of the symmetric quadrature (QWitherdenVincentSimplex) on the triangles of a part. Products of shape
+    // functions are of fourth order on parallelograms and triangles, where the first rule, exact for fifth order, is
+    // sufficient; on other quadrilaterals they are rational functions.
     constexpr unsigned int n_exact = 3, n_rational = 6;
-    // The same for facets of degree 2, where products are of eighth order at most; the rule is exact for ninth order.
+    // The same for facets of degree 2, where products are of eighth order at most; the first rule is exact for ninth
+    // order.
     constexpr unsigned int n_exact_quadratic = 5, n_rational_quadratic = 7;
     // A facet is fully covered if at most this fraction of it is missing.
     constexpr double whole_facet = 1e-9;

@@ -11,7 +11,8 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // A projected residual below this part of the residual is rounding: supports move bodies without deforming them.
+    // A projected residual below this part of the residual is rounding, as when supports move bodies without
+    // deforming them.
     constexpr double rounding_of_projection = 1e-14;
   } // namespace
 

@@ -64,7 +64,7 @@ namespace slipstick::app
     /// Takes over the results of an earlier run. @return its summary.
     output::Summary resume();
 
-    /// Estimated remaining time of the run, assuming equal times per step; empty before the first step has ended.
+    /// Estimated remaining time of the run [s], assuming equal times per step; empty before the first step has ended.
     std::string time_left(const unsigned int step) const;
 
     bool prints() const;

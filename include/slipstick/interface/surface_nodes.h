@@ -15,7 +15,7 @@ namespace slipstick::interface
     unsigned int           side = 0;
     dealii::Point<dim>     position;    // [mm]
     dealii::Tensor<1, dim> normal;      // outward, unit length
-    double                 size    = 0; // largest size of the edges or facets there
+    double                 size    = 0; // largest size of the edges or facets there [mm]
     double                 covered = 0; // integral of the shape function over these [mm], in space [mm^2]
     double                 measure = 0; // the same with the measure of the kinematics
     double                 scale   = 0; // the measure of the edges or facets there
