@@ -1,4 +1,4 @@
-# What scripts/setup, scripts/run and scripts/test share. Sourced, never run: defines functions and variables only.
+# Functions and variables shared by scripts/setup, scripts/run and scripts/test. To be sourced; runs nothing itself.
 # shellcheck shell=bash
 
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
@@ -7,7 +7,7 @@ build=$root/build
 # Status of a script that could not install or build; slipstick itself uses 0 to 4 (doc/interface.md).
 readonly setup_failed=10
 
-# One line of reason per package: doc/dependencies.md.
+# The reason for each package: doc/dependencies.md.
 readonly packages=(
   g++ cmake ninja-build ccache libdeal.ii-dev libtrilinos-amesos2-dev libtrilinos-tpetra-dev libmetis-dev
   libsuitesparse-dev libopenblas-dev openmpi-bin libopenmpi-dev libeigen3-dev nlohmann-json3-dev libcli11-dev
@@ -46,14 +46,14 @@ missing_packages() {
     grep -vxFf <(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null | sed -n 's/^installed //p') || true
 }
 
-# have_candidates PACKAGE...: true when apt's lists know all of them.
+# have_candidates PACKAGE...: true if apt's lists contain all of them.
 have_candidates() {
   local known
   known=$(LC_ALL=C apt-cache policy "$@" 2>/dev/null | awk '/^  Candidate:/ && $2 != "(none)"' | wc -l)
   [[ $known -ge $# ]]
 }
 
-# install_packages PACKAGE...: installs what is missing; silent and quick when nothing is.
+# install_packages PACKAGE...: installs what is missing; silent and quick if nothing is missing.
 install_packages() {
   local missing
   mapfile -t missing < <(missing_packages "$@")
@@ -65,13 +65,13 @@ install_packages() {
   fi
   as_root apt-get update --quiet || die "apt-get update failed (see above): check the network and /etc/apt/sources.list"
   have_candidates "${missing[@]}" ||
-    die "this release of Debian does not have all of: ${missing[*]} (Debian 12 and 13 have; for others see" \
+    die "this release of Debian does not have all of: ${missing[*]} (Debian 12 and 13 have them; for others see" \
       "doc/platforms.md)"
   as_root "${install[@]}" || die "apt-get could not install: ${missing[*]} (see above)"
 }
 
-# The reference BLAS is an order of magnitude slower: where it is selected, select OpenBLAS. A choice other than the
-# reference (such as MKL) is the owner's and stays.
+# The reference BLAS is an order of magnitude slower: where it is selected, select OpenBLAS. Any other choice
+# (such as MKL) is left unchanged.
 select_openblas() {
   local name value openblas
   command -v update-alternatives >/dev/null || return 0
@@ -83,7 +83,7 @@ select_openblas() {
   done < <(update-alternatives --get-selections)
 }
 
-# Without apt the libraries must be there already; CMake's own checks tell.
+# Without apt the libraries must be installed already; CMake's own checks report missing ones.
 require_libraries() {
   [[ -f $build/CMakeCache.txt ]] && return 0
   local trial log

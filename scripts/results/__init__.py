@@ -1,1 +1,1 @@
-"""What scripts/render, report, gallery and sweep share: reading the folder of a run, and drawing it."""
+"""Shared by scripts/render, report, gallery and sweep: reading the folder of a run, and drawing it."""

@@ -1,4 +1,4 @@
-"""Title above and legend below, or both above, in bands that the axes leave free: they cover nothing and nothing cuts them."""
+"""Title above and legend below, or both above, in bands outside the axes, so that they neither cover anything nor are cut off."""
 
 import textwrap
 

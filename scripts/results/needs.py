@@ -1,4 +1,4 @@
-"""Packages that a script lacks are installed as scripts/run does it, once. Standard library only."""
+"""Installs missing packages of a script in the same way as scripts/run, once. Standard library only."""
 
 import os
 import pathlib

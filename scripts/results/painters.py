@@ -1,4 +1,4 @@
-"""The painters that fit a run: of the plane or of solids."""
+"""Selects the drawing functions of a run: for the plane or for solids."""
 
 from . import contact_plot, pictures, solids
 
