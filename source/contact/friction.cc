@@ -468,7 +468,14 @@ namespace slipstick::contact
       /// A few steps, in space with squares around the discs: they tell the first set as well.
       Vector start_by_smalbe(const Vector &feasible)
       {
-        return smalbe_on(shifted(box, feasible), feasible, options.newton.start_tolerance, {}, false, nullptr);
+        return smalbe_on(shifted(box, feasible),
+                         feasible,
+                         options.newton.start_tolerance,
+                         {},
+                         false,
+                         nullptr,
+                         law.depends_on_pressure() ? options.newton.start_multiplications_with_friction
+                                                   : options.newton.start_multiplications);
       }
 
       template <typename Set>
@@ -477,7 +484,8 @@ namespace slipstick::contact
                        const double        tolerance,
                        const qp::Observer &progress,
                        const bool          may_end_early,
-                       Reached            *reached)
+                       Reached            *reached,
+                       const unsigned int  most_multiplications = longest_fallback)
       {
         const auto with_start = [&progress](qp::OuterStep step) {
           ++step.hessian_multiplications; // F x~ in the homogenised load
@@ -494,7 +502,7 @@ namespace slipstick::contact
           };
         auto how = options.smalbe;
         if (options.algorithm == scene::Algorithm::semismooth_newton)
-          how.max_multiplications = longest_fallback;
+          how.max_multiplications = most_multiplications;
         // at lower accuracy it goes on all the same
         const double forces = tolerance <= options.tolerance && size_of_forces > 0 ? size_of_forces : qp::infinity;
         const auto   result = qp::smalbe(dual,

@@ -144,6 +144,18 @@ namespace slipstick::tfeti
     qp::turn_back(turns, p);
   }
 
+  void Face::clear_held(DistributedVector &p) const
+  {
+    std::vector<bool> moves = free;
+    for (const qp::Tie &tie : ties)
+      moves[tie.tied] = true;
+    qp::turn(turns, p);
+    for (unsigned int r = 0; r < moves.size(); ++r)
+      if (!moves[r])
+        p.local_element(r) = 0;
+    qp::turn_back(turns, p);
+  }
+
   void Face::multiplier_shift(const DistributedVector &v, DistributedVector &y) const
   {
     std::optional<DistributedVector> copy;

@@ -88,33 +88,87 @@ namespace slipstick::tfeti
         u[p] -= dual.body_motions().displacements(p, amplitudes);
     }
 
-    /// Moves bodies along loose motions to minimise the sum of squares of the violations: jumps of the wrong sign at
-    /// rows at a bound.
+    /// The conditions at rows at a bound for a position of loose bodies: jumps on the side that the force tells and, at nodes that
+    /// slip in space, no slip across the force. An equation counts as two conditions.
+    class SlidingConditions
+    {
+    public:
+      SlidingConditions(const DualProblem              &dual,
+                        const std::vector<RigidMotion> &loose,
+                        const std::vector<bool>        &free_,
+                        const DistributedVector        &x_,
+                        const DistributedVector        &jump_)
+        : rows(dual.constraints())
+        , free(free_)
+        , x(x_)
+        , jump(jump_)
+        , per_motion(dual.body_motions().jumps(loose).toDense())
+      {
+        per_motion = (per_motion.array().abs() < least_jump).select(0., per_motion); // rounding moves no row
+        std::vector<bool> is_in_disc(free.size(), false);
+        for (const ContactPoint &point : rows.contact_points)
+          if (point.tangential_row != invalid_row && point.second_row != invalid_row)
+            {
+              is_in_disc[point.tangential_row] = is_in_disc[point.second_row] = true;
+              add_disc(point.tangential_row, point.second_row);
+            }
+        for (unsigned int r = 0; r < free.size(); ++r)
+          if (!free[r] && !is_equality(rows.kind[r]) && !is_in_disc[r])
+            add_row(r);
+      }
+
+      /// Of the owned rows, as least_violation() takes them.
+      std::vector<std::vector<double>> conditions;
+
+    private:
+      void add(const double value, const Eigen::RowVectorXd &derivatives)
+      {
+        conditions.push_back({value});
+        conditions.back().insert(conditions.back().end(), derivatives.data(), derivatives.data() + derivatives.size());
+      }
+
+      double beyond(const unsigned int r) const
+      {
+        return jump.local_element(r) - rows.c[r];
+      }
+
+      void add_row(const unsigned int r)
+      {
+        const double force = x.local_element(r);
+        if (rows.kind[r] == RowKind::tangential && force == 0)
+          return;
+        const double side = rows.kind[r] == RowKind::tangential && force > 0 ? 1. : -1.;
+        add(side * beyond(r), side * per_motion.row(r));
+      }
+
+      void add_disc(const unsigned int first, const unsigned int second)
+      {
+        const double x1 = x.local_element(first), x2 = x.local_element(second), size = std::hypot(x1, x2);
+        if (free[first] || free[second] || size == 0)
+          return;
+        const double c = x1 / size, s = x2 / size;
+        add(c * beyond(first) + s * beyond(second), c * per_motion.row(first) + s * per_motion.row(second));
+        for (const double side : {1., -1.})
+          add(side * (c * beyond(second) - s * beyond(first)),
+              side * (c * per_motion.row(second) - s * per_motion.row(first)));
+      }
+
+      const Constraints       &rows;
+      const std::vector<bool> &free;
+      const DistributedVector &x, &jump;
+      Eigen::MatrixXd          per_motion; // owned rows x loose motions
+    };
+
+    /// Moves bodies along loose motions to minimise the sum of squares of the violations of the sliding conditions.
     void slide_apart(const DualProblem              &dual,
                      const std::vector<RigidMotion> &loose,
                      const std::vector<bool>        &free,
                      const DistributedVector        &x,
                      Recovery                       &at)
     {
-      const Constraints &rows               = dual.constraints();
-      const auto        &systems            = dual.subdomains();
-      Eigen::MatrixXd    own                = dual.body_motions().jumps(loose).toDense();
-      own                                   = (own.array().abs() < least_jump).select(0., own); // rounding moves no row
-      const DistributedVector          jump = dual.dual_operator().jumps(at.u);
-      std::vector<std::vector<double>> conditions; // jump on the right side, then its derivatives
-      for (unsigned int r = 0; r < free.size(); ++r)
-        {
-          const double force = x.local_element(r);
-          const double side =
-            free[r] || is_equality(rows.kind[r]) || (rows.kind[r] == RowKind::tangential && force == 0) ? 0.
-            : rows.kind[r] == RowKind::tangential && force > 0                                          ? 1.
-                                                                                                        : -1.;
-          if (side == 0)
-            continue;
-          conditions.push_back({side * (jump.local_element(r) - rows.c[r])});
-          for (unsigned int m = 0; m < loose.size(); ++m)
-            conditions.back().push_back(side * own(r, m));
-        }
+      const auto                      &systems    = dual.subdomains();
+      const DistributedVector          jump       = dual.dual_operator().jumps(at.u);
+      const auto                       conditions = SlidingConditions(dual, loose, free, x, jump).conditions;
       std::vector<std::vector<double>> all;
       for (const auto &part : dealii::Utilities::MPI::all_gather(dual.communicator(), conditions))
         all.insert(all.end(), part.begin(), part.end());

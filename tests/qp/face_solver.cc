@@ -22,15 +22,17 @@ namespace
     FaceSolution<Vector> solve(const std::vector<std::size_t> &at_bounds,
                                const std::vector<Tie>         &ties,
                                DirectionStore<Vector>         &store,
-                               const double                    target = 1e-10) const
+                               const double                    target = 1e-10,
+                               const std::vector<Turn>        &turns  = {}) const
     {
       std::vector<bool> free(d.size(), true);
       for (const std::size_t i : at_bounds)
         free[i] = false;
       for (const Tie &tie : ties)
         free[tie.tied] = false;
-      const auto face       = problem.face(free, ties);
+      const auto face       = problem.face(free, ties, turns);
       const auto conditions = [&](Vector p) {
+        turn(turns, p);
         const Vector present = p;
         for (const Tie &tie : ties)
           p[tie.tied] -= tie.factor * present[tie.to];
@@ -41,18 +43,18 @@ namespace
         return values;
       };
       const FaceSolverOptions                options;
-      const Vector                           x = start(free, ties);
-      FaceSolver<Vector, FacedProblem::Face> solver(face, d, store, conditions, options);
+      const Vector                           x = start(free, ties, turns);
+      FaceSolver<Vector, FacedProblem::Face> solver(face, d, store, conditions, options, turns);
       solver.start(x, problem.F * x);
       return ties.empty() ? solver.solve_symmetric(target) : solver.solve_unsymmetric(target);
     }
 
-    Vector start(const std::vector<bool> &free, const std::vector<Tie> &ties) const
+    Vector start(const std::vector<bool> &free, const std::vector<Tie> &ties, const std::vector<Turn> &turns = {}) const
     {
       Vector x(d.size(), 0.);
       for (std::size_t i = 0; i < x.size(); ++i)
         x[i] = free[i] ? 0. : 0.1 * static_cast<double>(i);
-      problem.face(free, ties).balance(x);
+      problem.face(free, ties, turns).balance(x);
       return x;
     }
 
@@ -251,6 +253,27 @@ TEST(FaceSolver, a_face_with_few_other_entries_costs_fewer_multiplications_than_
           << seed << ", ties " << ties.size();
         EXPECT_LT(distance(reused.x, p.exact({0, 8, 20, 30}, ties)), 1e-8) << seed;
       }
+}
+
+TEST(FaceSolver, directions_of_a_face_with_slightly_other_turns_save_multiplications)
+{
+  const auto turned = [](const double angle) {
+    return std::vector<Turn>{{3, 4, std::cos(angle), std::sin(angle), 0.2},
+                             {10, 11, std::cos(angle), -std::sin(angle), 0.1}};
+  };
+  const std::vector<Tie> slipping{{3, 2, 0.4}, {10, 9, -0.3}};
+  for (unsigned int seed = 0; seed < 20; ++seed)
+    {
+      const Held             p(seed, 40, 2);
+      DirectionStore<Vector> store(100), empty(100);
+      p.solve({0}, slipping, store, 1e-10, turned(0.3));
+      const auto reused = p.solve({0}, slipping, store, 1e-7, turned(0.301)),
+                 fresh  = p.solve({0}, slipping, empty, 1e-7, turned(0.301));
+      EXPECT_EQ(reused.status, Status::converged) << seed;
+      EXPECT_LE(reused.counts.hessian_multiplications + 5, fresh.counts.hessian_multiplications) << seed;
+      EXPECT_LT(distance(reused.x, fresh.x), 1e-5) << seed;
+      EXPECT_LT(distance(reused.product, p.problem.F * reused.x), 1e-10) << seed;
+    }
 }
 
 // What is left of them is rounding, in energies too.

@@ -89,6 +89,15 @@ namespace slipstick::qp::test
         turn_back(turns, p);
       }
 
+      void clear_held(Vector &p) const
+      {
+        turn(turns, p);
+        for (std::size_t i = 0; i < p.size(); ++i)
+          if (!free[i] && std::none_of(ties.begin(), ties.end(), [i](const Tie &tie) { return tie.tied == i; }))
+            p[i] = 0;
+        turn_back(turns, p);
+      }
+
       void precondition(const Vector &r, Vector &z) const
       {
         Vector at = r;

@@ -51,7 +51,7 @@ namespace slipstick::qp
       , options(options_)
       , turns(std::move(turns_))
       , reduction(face_.reduction())
-      , yields(reduction.min(turns.empty() ? 1. : 0.) < 1)
+      , is_turned(reduction.min(turns.empty() ? 1. : 0.) < 1)
       , weights(residual_weights(face_, 0))
       , recycled(store_, admissible_combinations(store_, conditions, reduction))
       , n_recycled(store_.size())
@@ -59,7 +59,11 @@ namespace slipstick::qp
       , Fx(d_)
       , r(d_)
       , w(d_)
-    {}
+    {
+      if (is_turned && recycled.size() < n_recycled)
+        for (std::size_t j = 0; j < n_recycled; ++j)
+          violations.push_back(conditions(store[j].p));
+    }
 
     /// @param product F x. @param error_of_product by rounding, weighted. @return the weighted residual |P(d - F x)|.
     double start(Vector x_, Vector product, const double error_of_product = 0)
@@ -71,13 +75,13 @@ namespace slipstick::qp
       return norm_r;
     }
 
-    /// By conjugate gradients from the start until the weighted residual is at most @p target.
+    /// By conjugate gradients from the start until the weighted residual is at most @p target. For faces without ties.
     FaceSolution<Vector> solve_symmetric(const double target)
     {
       std::optional<PivotedCholesky> known;
       if (recycled.size() > 0 && norm_r > target)
         {
-          if (yields)
+          if (is_turned)
             known.emplace(recycled.factor(energies_with_compliance()));
           else
             known.emplace(
@@ -92,7 +96,7 @@ namespace slipstick::qp
         {
           if (counts.cg_steps == options.max_iterations)
             return ended(Status::iteration_limit);
-          Vector p = preconditioned();
+          Vector p = preconditioned(r);
           if (known)
             {
               const auto c = recycled.coefficients(known->solve(recycled.combined(dots_with_products(p))));
@@ -134,19 +138,22 @@ namespace slipstick::qp
       return ended(Status::converged);
     }
 
-    /// The same by generalised conjugate residuals.
+    /// The same by generalised conjugate residuals, for any face.
     FaceSolution<Vector> solve_unsymmetric(const double target)
     {
-      std::vector<Vector>            images; // weighted P F p of the directions of the store
-      std::optional<PivotedCholesky> known;
-      if (recycled.size() > 0 && norm_r > target)
+      std::vector<Vector>            images;        // weighted P (F + C) p of the directions of the store
+      std::optional<PivotedCholesky> known, nearly; // of admissible combinations; of all directions
+      if (n_recycled > 0 && norm_r > target)
         {
           for (std::size_t j = 0; j < n_recycled; ++j)
             images.push_back(image(store[j].p, store[j].Fp));
           const SmallSymmetric all = gram(images);
-          known.emplace(recycled.factor([&all](const std::size_t i, const std::size_t j) { return all(i, j); }));
-          for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
+          if (recycled.size() > 0)
+            known.emplace(recycled.factor([&all](const std::size_t i, const std::size_t j) { return all(i, j); }));
+          for (unsigned int pass = 0; known && pass < 2 && norm_r > target; ++pass)
             move(recycled.coefficients(known->solve(recycled.combined(dots(weighted(r), images)))));
+          if (!violations.empty())
+            nearly.emplace(regularized(all, gram(violations)));
         }
       struct Own
       {
@@ -158,7 +165,7 @@ namespace slipstick::qp
         {
           if (counts.cg_steps == options.max_iterations)
             return ended(Status::iteration_limit);
-          Vector p = preconditioned();
+          Vector p = nearly ? preconditioned(*nearly, images) : preconditioned(r);
           Vector Fp(p);
           multiply(p, Fp);
           Vector       q       = image(p, Fp);
@@ -303,7 +310,7 @@ namespace slipstick::qp
     {
       std::copy(d.begin(), d.end(), r.begin());
       add(-1.0, Fx, r);
-      if (yields)
+      if (is_turned)
         {
           set_zero(w);
           add_compliance(turns, x, w);
@@ -314,11 +321,45 @@ namespace slipstick::qp
       norm_r = std::sqrt(reduction.sum(std::array<double, 1>{{local_weighted_dot(weights, r, r)}})[0]);
     }
 
-    Vector preconditioned()
+    Vector preconditioned(const Vector &residual)
     {
-      Vector p(r);
-      face.precondition(static_cast<const Vector &>(r), p);
+      Vector p(residual);
+      face.precondition(residual, p);
       ++counts.preconditioner_applications;
+      face.project_kernel(p);
+      return p;
+    }
+
+    // Factors of the least squares for all directions of the store, in which the violation of the conditions of the face counts as a
+    // residual.
+    PivotedCholesky regularized(SmallSymmetric images, const SmallSymmetric &of_violations) const
+    {
+      std::vector<double> sizes;
+      for (std::size_t i = 0; i < n_recycled; ++i)
+        {
+          for (std::size_t j = 0; j < n_recycled; ++j)
+            images(i, j) += options.violation_weight * options.violation_weight * of_violations(i, j);
+          sizes.push_back(images(i, i));
+        }
+      return PivotedCholesky(std::move(images), sizes, detail::dependent_direction);
+    }
+
+    // What the directions of the store, moved onto the face, reduce the residual by (their products are then only near those of the
+    // moved ones), and M times what they leave.
+    Vector preconditioned(const PivotedCholesky &nearly, const std::vector<Vector> &images)
+    {
+      Vector     left = weighted(r), p = zero_like(r);
+      const auto c = nearly.solve(dots(left, images));
+      for (std::size_t j = 0; j < n_recycled; ++j)
+        {
+          add(-c[j], images[j], left);
+          add(c[j], store[j].p, p);
+        }
+      if (weights)
+        for (std::size_t i = 0; i < local_size(left); ++i)
+          left.begin()[i] /= weights[i];
+      face.clear_held(p);
+      add(1., preconditioned(left), p);
       face.project_kernel(p);
       return p;
     }
@@ -354,7 +395,7 @@ namespace slipstick::qp
     // v'(F + C) p_j
     std::vector<double> dots_with_products(const Vector &v) const
     {
-      if (!yields)
+      if (!is_turned)
         return dots(v, &Direction::Fp);
       Vector Cv = zero_like(v);
       add_compliance(turns, v, Cv);
@@ -394,16 +435,18 @@ namespace slipstick::qp
       return result;
     }
 
-    SmallSymmetric gram(const std::vector<Vector> &images) const
+    // v_i'v_j of all pairs of distributed vectors
+    template <typename Any>
+    SmallSymmetric gram(const std::vector<Any> &vectors) const
     {
       std::vector<double> products;
-      for (std::size_t i = 0; i < images.size(); ++i)
+      for (std::size_t i = 0; i < vectors.size(); ++i)
         for (std::size_t j = 0; j <= i; ++j)
-          products.push_back(local_dot(images[i], images[j]));
+          products.push_back(local_dot(vectors[i], vectors[j]));
       sum_all(products, reduction);
-      SmallSymmetric result(images.size());
+      SmallSymmetric result(vectors.size());
       std::size_t    next = 0;
-      for (std::size_t i = 0; i < images.size(); ++i)
+      for (std::size_t i = 0; i < vectors.size(); ++i)
         for (std::size_t j = 0; j <= i; ++j)
           result(i, j) = result(j, i) = products[next++];
       return result;
@@ -417,7 +460,7 @@ namespace slipstick::qp
     const FaceSolverOptions &options;
     const std::vector<Turn>  turns;
     const ReductionType     &reduction;
-    const bool               yields; // turns on any process
+    const bool               is_turned; // on any process
     const double            *weights;
     detail::Recycled<Vector> recycled;
     const std::size_t        n_recycled;
@@ -428,6 +471,8 @@ namespace slipstick::qp
     bool              is_replaced = false;
     unsigned int      n_stuck     = 0;
     std::vector<Made> made;
-    Counts            counts;
+
+    std::vector<std::vector<double>> violations; // of the conditions of a turned face by the directions of the store
+    Counts                           counts;
   };
 } // namespace slipstick::qp

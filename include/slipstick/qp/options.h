@@ -76,17 +76,21 @@ namespace slipstick::qp
     double progress       = 0.999; // a step that leaves more than this part of the residual ...
     unsigned int patience = 10;    // ... this many times in a row ends the solve
     double       accuracy = 0.3;   // products are trusted up to this part of the target
+    double       violation_weight =
+      1; // of the conditions of a turned face, as a residual: |F| is 1 and local stiffnesses are larger
   };
 
   /// Options of the semismooth Newton method (own choice; doc/method.md).
   struct NewtonOptions
   {
-    double       start_tolerance = 0.3;  // of the SMALBE steps that give the first active set
-    double       set_step        = 3;    // least s of the natural residual, times norm over weight
-    double       forcing         = 0.1;  // residual that faces are solved to, over the natural residual
-    double       last_forcing    = 0.6;  // times the tolerance: never below
-    double       tightening      = 0.1;  // of the residual reached, where the goal is met and x is not right ...
-    double       least_part      = 1e-5; // ... down to this part of the goal
+    double       start_tolerance       = 0.3; // of the SMALBE steps that give the first active set, ...
+    unsigned int start_multiplications = 20;  // ... the most that they may take (they have no preconditioner) ...
+    unsigned int start_multiplications_with_friction = 100; // ... and the same where bounds follow the pressure
+    double       set_step                            = 3;   // least s of the natural residual, times norm over weight
+    double       forcing      = 0.1;  // residual that faces are solved to, over the natural residual
+    double       last_forcing = 0.6;  // times the tolerance: never below
+    double       tightening   = 0.1;  // of the residual reached, where the goal is met and x is not right ...
+    double       least_part   = 1e-5; // ... down to this part of the goal
     double       astray = 1e3; // or where faces that meet the goal lead twice to so much larger a natural residual
     double       gaps_over_forces     = 10; // |gP| may be at most this times the tolerance times |PFP| times the forces
     unsigned int memory               = 6;  // a step must end below the largest natural residual of so many ...

@@ -35,6 +35,9 @@ namespace slipstick::tfeti
     /// times the row it is tied to.
     void project_kernel(DistributedVector &p) const;
 
+    /// p := 0 on the rows that are neither free nor tied.
+    void clear_held(DistributedVector &p) const;
+
     /// y = G'a on all rows, with the a that minimises |v - G'a| on the free rows.
     void multiplier_shift(const DistributedVector &v, DistributedVector &y) const;
 
