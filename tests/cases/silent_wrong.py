@@ -268,7 +268,7 @@ class FormulasAtNodes(Case):
         held = {'hold': {'Boundary': 'bar/left', 'Displacement x': '0', 'Displacement y': '0', **(support or {})}}
         result = converged(bar(supports=held, tractions={'pressed': PRESSED}, contacts={'touch': {**TOUCH, **(contact or {})}},
                                **kinds))
-        return result, [text for text in result.summary['warnings'] if 'it acts at nodes' in text]
+        return result, [text for text in result.summary['warnings'] if 'it is evaluated at nodes only' in text]
 
     def test_peaks_between_nodes_are_warned_of(self):
         peak = 'exp(-((x-4.37)/0.05)^2)'

@@ -191,7 +191,7 @@ class FormulasAtNodes(Case):
     def formulas(self, contact, **kinds):
         result = converged(bar(supports={'hold': held('bar/left')}, tractions={'p': {'Boundary': 'bar/top', 'Traction y': '-1'}},
                                contacts={'touch': {**TOUCH, **contact}}, **kinds))
-        return [text for text in result.summary['warnings'] if 'it acts at nodes' in text]
+        return [text for text in result.summary['warnings'] if 'it is evaluated at nodes only' in text]
 
     def test_peaks_within_a_face_are_warned_of(self):
         peak = 'exp(-((x-4.9)^2+(z-5.13)^2)/0.3^2)'
