@@ -80,9 +80,10 @@ class Supports(Extremes):
                                   two(contacts={'joint': {**JOINT, 'Law': 'frictionless'}}), 'body box: translation along (1, 0)')
         self.in_balance(result, 100, 0)
         self.ends(4, table, 'lifted off', two(tractions={'up': {**DOWN, 'Traction y': '10'}}), 'body box: ')
-        self.ends(4, table, 'tipped over its edge', two(tractions={'tip': {**DOWN, 'Traction x': '6'}},
-                                                        contacts={'joint': {**JOINT, 'Friction coefficient': '5'}}),
-                  'body box: rotation about (10, 10)')
+        tipping = two(tractions={'tip': {**DOWN, 'Traction x': '6'}}, contacts={'joint': {**JOINT, 'Friction coefficient': '5'}})
+        for seed in range(4):
+            self.ends(4, table, 'tipped over its edge, cut {}'.format(seed), tipping, 'body box: rotation about (10, 10)',
+                      overrides={'Decomposition/Seed': seed})
         elsewhere = {'side': {'Boundary': 'base/right', 'Traction x': '1'}}
         for law in ({'Law': 'Coulomb', 'Friction coefficient': '0.3'}, {'Law': 'frictionless'},
                     {'Law': 'Tresca', 'Slip bound': '1'}):

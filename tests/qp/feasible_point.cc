@@ -49,7 +49,6 @@ TEST(FeasiblePoint, agrees_with_the_enumeration_of_all_active_sets)
         {
           ++n_feasible;
           EXPECT_EQ(result.status, Status::converged) << seed;
-          EXPECT_TRUE(result.is_nearest) << seed;
           EXPECT_LT(distance(result.x, *exact), 1e-8) << seed;
         }
       else
@@ -196,26 +195,6 @@ TEST(FeasiblePoint, does_not_depend_on_the_unit)
       const auto scaled = feasible_point(problem, x_e, box);
       EXPECT_EQ(scaled.status, plain.status) << seed;
       EXPECT_EQ(scaled.x, expected) << seed;
-    }
-}
-
-TEST(FeasiblePoint, least_squares_takes_over_when_newton_may_not_step)
-{
-  FeasiblePointOptions options;
-  options.max_newton_steps = 0;
-  for (unsigned int seed = 0; seed < 100; ++seed)
-    {
-      Random             random(seed);
-      const DenseProblem problem(identity(6), random.orthonormal(2, 6));
-      const auto         box    = random.box(6, seed % 2 == 0);
-      const Vector       x_e    = random.vector(6, 1.2);
-      const auto         newton = feasible_point(problem, x_e, box);
-      const auto         result = feasible_point(problem, x_e, box, options);
-      EXPECT_EQ(result.status, newton.status) << seed;
-      if (result.status == Status::infeasible)
-        expect_certificate(problem, box, x_e, result.certificate);
-      else
-        EXPECT_LT(length(problem.range(minus(x_e, result.x))), 1e-10) << seed;
     }
 }
 
@@ -367,49 +346,39 @@ TEST(FeasiblePoint, in_friction_cones_is_the_nearest)
     }
 }
 
-TEST(ForceSet, points_are_sums_of_their_parts_along_the_sides)
+TEST(FeasiblePoint, body_that_tips_over_its_edge_is_certified_also_near_the_limit)
 {
-  for (unsigned int seed = 0; seed < 20; ++seed)
+  // Three rows balance a body on 20 points of a floor, at 0 .. 19; twelve others those of its parts, which ten free entries glue.
+  for (unsigned int seed = 0; seed < 100; ++seed)
     {
       Random       random(seed);
-      const auto   set = random_cones(random, 20);
-      const Vector x = random_point(random, set, 20), r = random.vector(20);
-      Vector       parts = x, transposed = r;
-      resolve_into_sides(set, parts);
-      add_sides_transposed(set, transposed);
-      EXPECT_GE(*std::min_element(parts.begin(), parts.end()), -1e-15 * length(x)) << seed;
-      EXPECT_NEAR(inner(parts, transposed), inner(x, r), 1e-14 * length(x) * length(r)) << seed;
-      add_sides(set, parts);
-      EXPECT_LT(distance(parts, x), 1e-15 * length(x)) << seed;
-    }
-}
-
-TEST(FeasiblePoint, least_squares_in_friction_cones_finds_a_point_or_the_certificate)
-{
-  FeasiblePointOptions options;
-  options.max_newton_steps  = 0;
-  unsigned int n_infeasible = 0;
-  for (unsigned int seed = 0; seed < 60; ++seed)
-    {
-      Random             random(seed);
-      const DenseProblem problem(identity(20), random.orthonormal(8, 20));
-      const auto         set    = random_cones(random, 20);
-      const Vector       x_e    = seed % 2 == 0 ? random_point(random, set, 20) : random.vector(20);
-      const auto         newton = feasible_point(problem, x_e, set);
-      const auto         result = feasible_point(problem, x_e, set, options);
-      Vector             there  = result.x;
-      project(set, there);
-      EXPECT_LT(distance(there, result.x), 1e-14 * length(x_e)) << seed;
-      ASSERT_EQ(result.status, newton.status) << seed;
-      if (result.status == Status::converged)
-        EXPECT_LT(length(problem.range(minus(x_e, result.x))), 1e-11 * length(x_e)) << seed;
-      else
+      const Matrix parts = random.orthonormal(12, 50);
+      Matrix       G(15, 50);
+      auto         set = random_cones(random, 50);
+      set.nodes.resize(20);
+      for (std::size_t j = 0; j < 50; ++j)
         {
-          ++n_infeasible;
-          EXPECT_LT(length(result.certificate), 1.001 * length(newton.certificate)) << seed; // the least there is
+          for (std::size_t i = 0; i < 12; ++i)
+            G(i + 3, j) = parts(i, j);
+          if (j < 40)
+            {
+              G(j % 2, j) = 1;
+              G(2, j)     = j % 2 == 1 ? double(j / 2) : 0.;
+            }
         }
+      const DenseProblem problem(identity(50), orthonormalized(G));
+      const double       beyond = (seed % 2 == 0 ? -1 : 1) * std::pow(10., -1. - seed % 6); // of the weight
+      Vector             x_e(50, 0.);
+      x_e[39] = 1; // at 19, and pulled down or up at 0
+      x_e[1]  = -beyond;
+      for (std::size_t i = 40; i < 50; ++i)
+        x_e[i] = random.uniform(-1, 1);
+      for (PressureBound &node : set.nodes)
+        node.forces.coefficient = 5;
+      const auto result = feasible_point(problem, x_e, set);
+      EXPECT_EQ(result.status, beyond > 0 ? Status::infeasible : Status::converged) << seed;
+      EXPECT_LT(length(result.x), 100 * length(x_e)) << seed;
     }
-  EXPECT_GT(n_infeasible, 10u);
 }
 
 TEST(FeasiblePoint, outside_of_friction_cones_is_certified)
@@ -522,31 +491,28 @@ TEST(ForceSet, support_is_the_largest_product_with_a_point_of_a_node)
 TEST(FeasiblePoint, within_the_shear_strength_of_nodes_is_found_or_refuted)
 {
   unsigned int n_infeasible = 0;
-  for (const unsigned int max_newton_steps : {FeasiblePointOptions().max_newton_steps, 0u})
-    for (unsigned int seed = 0; seed < 60; ++seed)
-      {
-        FeasiblePointOptions options;
-        options.max_newton_steps = max_newton_steps;
-        Random             random(seed);
-        const DenseProblem problem(identity(20), random.orthonormal(8, 20));
-        const auto         set    = random_polygons(random, 20);
-        const Vector       inside = random_point(random, set, 20);
-        const Vector       x_e    = seed % 2 == 0 ? inside : random.vector(20, 2.);
-        const auto         result = feasible_point(problem, x_e, set, options);
-        Vector             there  = result.x;
-        project(set, there);
-        EXPECT_LT(distance(there, result.x), 1e-13 * length(x_e)) << seed;
-        if (result.status == Status::converged)
-          EXPECT_LT(length(problem.range(minus(x_e, result.x))), 1e-11 * length(x_e)) << seed;
-        else
-          {
-            ASSERT_EQ(result.status, Status::infeasible) << seed;
-            ++n_infeasible;
-            const double along = inner(result.certificate, x_e);
-            for (unsigned int k = 0; k < 100; ++k)
-              EXPECT_LT(inner(result.certificate, random_point(random, set, 20)), along * (1 + 1e-9)) << seed;
-          }
-        EXPECT_TRUE(result.status == Status::converged || seed % 2 == 1) << seed;
-      }
-  EXPECT_GT(n_infeasible, 20u);
+  for (unsigned int seed = 0; seed < 60; ++seed)
+    {
+      Random             random(seed);
+      const DenseProblem problem(identity(20), random.orthonormal(8, 20));
+      const auto         set    = random_polygons(random, 20);
+      const Vector       inside = random_point(random, set, 20);
+      const Vector       x_e    = seed % 2 == 0 ? inside : random.vector(20, 2.);
+      const auto         result = feasible_point(problem, x_e, set);
+      Vector             there  = result.x;
+      project(set, there);
+      EXPECT_LT(distance(there, result.x), 1e-13 * length(x_e)) << seed;
+      if (result.status == Status::converged)
+        EXPECT_LT(length(problem.range(minus(x_e, result.x))), 1e-11 * length(x_e)) << seed;
+      else
+        {
+          ASSERT_EQ(result.status, Status::infeasible) << seed;
+          ++n_infeasible;
+          const double along = inner(result.certificate, x_e);
+          for (unsigned int k = 0; k < 100; ++k)
+            EXPECT_LT(inner(result.certificate, random_point(random, set, 20)), along * (1 + 1e-9)) << seed;
+        }
+      EXPECT_TRUE(result.status == Status::converged || seed % 2 == 1) << seed;
+    }
+  EXPECT_GT(n_infeasible, 10u);
 }

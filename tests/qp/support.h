@@ -161,6 +161,29 @@ namespace slipstick::qp::test
     mutable unsigned int n_multiplications = 0, n_projections = 0;
   };
 
+  /// The rows of G, orthonormalized by Gram-Schmidt.
+  inline Matrix orthonormalized(Matrix G)
+  {
+    for (std::size_t k = 0; k < G.m; ++k)
+      {
+        for (int twice = 0; twice < 2; ++twice)
+          for (std::size_t i = 0; i < k; ++i)
+            {
+              double s = 0;
+              for (std::size_t j = 0; j < G.n; ++j)
+                s += G(i, j) * G(k, j);
+              for (std::size_t j = 0; j < G.n; ++j)
+                G(k, j) -= s * G(i, j);
+            }
+        double square = 0;
+        for (std::size_t j = 0; j < G.n; ++j)
+          square += G(k, j) * G(k, j);
+        for (std::size_t j = 0; j < G.n; ++j)
+          G(k, j) /= std::sqrt(square);
+      }
+    return G;
+  }
+
   class Random
   {
   public:
@@ -200,23 +223,8 @@ namespace slipstick::qp::test
     Matrix orthonormal(const std::size_t m, const std::size_t n)
     {
       Matrix G(m, n);
-      for (std::size_t k = 0; k < m; ++k)
-        {
-          Vector v = vector(n);
-          for (int twice = 0; twice < 2; ++twice)
-            for (std::size_t i = 0; i < k; ++i)
-              {
-                double s = 0;
-                for (std::size_t j = 0; j < n; ++j)
-                  s += G(i, j) * v[j];
-                for (std::size_t j = 0; j < n; ++j)
-                  v[j] -= s * G(i, j);
-              }
-          const double size = length(v);
-          for (std::size_t j = 0; j < n; ++j)
-            G(k, j) = v[j] / size;
-        }
-      return G;
+      G.entries = vector(m * n);
+      return orthonormalized(std::move(G));
     }
 
     /// Two-sided bounds; around 0 if asked for.

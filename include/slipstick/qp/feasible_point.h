@@ -3,13 +3,18 @@
 //
 // min 1/2 |x|^2 over the set and Q x = Q x_e. Dual: x = proj(y), y in the range of Q, maximise the concave
 //   theta(y) = 1/2 |proj(y)|^2 - y'proj(y) + y'x_e,   grad theta = r = Q(x_e - proj(y)),
-// by a semismooth Newton method (Newton matrix Q D Q, D = derivative of the projection at y) with line search. If there
-// is no such point, theta is unbounded and r tends to the shortest Q(x_e - x) over the set, a Farkas certificate: r'x
-// <= r'x_e - |r|^2 for all x of the set, while Q x = Q x_e requires r'x = r'x_e.
+// by the proximal point method (Rockafellar 1976; with the quadratic term of x it is the method of multipliers): y_k+1
+// maximises theta(y) - eps/2 |y - y_k|^2, which has one maximum whether or not there is such a point x. A semismooth Newton method
+// (Newton matrix Q D Q + eps Q, D = derivative of the projection at y) with line search finds it. There r = eps (y_k+1 - y_k). If
+// there is no point x, theta is unbounded and r tends to the shortest Q(x_e - x) over the set, a Farkas certificate:
+// r'x <= r'x_e - |r|^2 for all x of the set, while Q x = Q x_e requires r'x = r'x_e.
 #pragma once
 
 #include <slipstick/qp/force_set.h>
-#include <slipstick/qp/mpgp.h>
+#include <slipstick/qp/options.h>
+#include <slipstick/qp/stagnation.h>
+
+#include <optional>
 
 namespace slipstick::qp
 {
@@ -20,7 +25,6 @@ namespace slipstick::qp
     Vector       x;           // within the set
     Vector       certificate; // infeasible: r in the range of Q, r'x_e > r'x for all x of the box; else Q(x_e - x)
     double       residual;    // |Q(x - x_e)| over the reference length max(|Q x_e|, |projection of 0 on the box|)
-    bool         is_nearest;  // if converged: x is the point nearest to zero, not just a feasible one
     unsigned int newton_steps;
     unsigned int projections; // multiplications with Q
   };
@@ -38,8 +42,10 @@ namespace slipstick::qp
         , options(options_)
         , Qx_e(x_e)
         , y(zero_like(x_e))
+        , center(y)
         , x(y)
         , r(y)
+        , gradient(y)
         , d(y)
         , p(y)
         , Ap(y)
@@ -55,11 +61,9 @@ namespace slipstick::qp
 
       FeasiblePoint<Vector> run()
       {
-        Status status = is_empty ? Status::infeasible : newton();
-        if (status != Status::converged && status != Status::infeasible)
-          status = least_squares(status);
-        const double scale = reference > 0 ? reference : 1.0;
-        return {status, std::move(x), std::move(r), norm_r / scale, is_nearest, newton_steps, projections};
+        const Status status = is_empty ? Status::infeasible : proximal_points();
+        const double scale  = reference > 0 ? reference : 1.0;
+        return {status, std::move(x), std::move(r), norm_r / scale, newton_steps, projections};
       }
 
     private:
@@ -79,7 +83,7 @@ namespace slipstick::qp
                                      reduction);
       }
 
-      // x = clip(y), r = Q(x_e - x)
+      // x = proj(y), r = Q(x_e - x), gradient of theta(y) - eps/2 |y - y_k|^2
       void update_residual()
       {
         std::copy(y.begin(), y.end(), x.begin());
@@ -87,35 +91,61 @@ namespace slipstick::qp
         project_range(x, r);
         combine(1.0, Qx_e, -1.0, r);
         norm_r = norm(r, reduction);
+        std::copy(r.begin(), r.end(), gradient.begin());
+        add(-eps, y, gradient);
+        add(eps, center, gradient);
       }
 
-      Status newton()
+      Status proximal_points()
       {
         StagnationWatch stagnates(options.stagnation_window, options.stagnation_progress);
-        for (update_residual();; ++newton_steps, update_residual())
+        eps = options.first_regularization;
+        for (;;)
           {
+            const auto status = maximum();
+            if (status == Status::converged || status == Status::infeasible)
+              return *status;
+            if (newton_steps >= options.max_newton_steps)
+              return Status::iteration_limit;
+            if (status && stagnates(norm_r))
+              return Status::stagnated;
+            eps = status ? std::max(options.reduction * eps, options.least_regularization)
+                         : std::min(eps / options.reduction, options.first_regularization);
+            std::copy(y.begin(), y.end(), center.begin());
+          }
+      }
+
+      // Newton's method for the maximum with the present eps and y_k. @return converged or infeasible as soon as the question
+      // is decided, iteration_limit at the maximum, nothing if that was not found (eps is too small then).
+      std::optional<Status> maximum()
+      {
+        for (unsigned int k = 0;; ++k, ++newton_steps)
+          {
+            update_residual();
             if (norm_r <= options.tolerance * reference)
               return Status::converged;
             if (proves_infeasibility(r))
               return Status::infeasible;
-            if (stagnates(norm_r))
-              return Status::stagnated;
-            if (newton_steps == options.max_newton_steps)
+            const double size = norm(gradient, reduction);
+            if (size <= std::max(options.maximum_tolerance * norm_r, options.least_gradient * reference))
               return Status::iteration_limit;
-            find_direction();
+            if (k == options.newton_steps_per_maximum || newton_steps >= options.max_newton_steps)
+              return {};
+            find_direction(size);
             add(line_search(), d, y);
           }
       }
 
-      // (Q D Q + regularization Q) d = r by conjugate gradients; every iterate d is an ascent direction.
-      void find_direction()
+      // (Q D Q + eps Q) d = gradient by conjugate gradients; every iterate d is an ascent direction.
+      void find_direction(const double norm_gradient)
       {
         const double tolerance =
-          std::max(options.least_cg_tolerance, std::min(options.cg_tolerance, norm_r / reference)) * norm_r;
+          std::max(options.least_cg_tolerance, std::min(options.cg_tolerance, norm_gradient / reference)) *
+          norm_gradient;
         set_zero(d);
-        std::copy(r.begin(), r.end(), residual.begin());
-        std::copy(r.begin(), r.end(), p.begin());
-        double square = norm_r * norm_r;
+        std::copy(gradient.begin(), gradient.end(), residual.begin());
+        std::copy(gradient.begin(), gradient.end(), p.begin());
+        double square = norm_gradient * norm_gradient;
         for (unsigned int k = 0; k < options.max_cg_iterations && std::sqrt(square) > tolerance; ++k)
           {
             multiply_newton_matrix();
@@ -129,26 +159,28 @@ namespace slipstick::qp
             square = next;
           }
         project_range(d, p); // keeps y in the range of Q despite rounding
-        const bool ascends = dot(p, r, reduction) > 0;
-        std::copy(ascends ? p.begin() : r.begin(), ascends ? p.end() : r.end(), d.begin());
+        const bool ascends = dot(p, gradient, reduction) > 0;
+        std::copy(ascends ? p.begin() : gradient.begin(), ascends ? p.end() : gradient.end(), d.begin());
       }
 
-      // Ap = (Q D Q + regularization Q) p, p in the range of Q
+      // Ap = (Q D Q + eps Q) p, p in the range of Q
       void multiply_newton_matrix()
       {
         std::copy(p.begin(), p.end(), x.begin());
         multiply_derivative(box, y, x);
-        add(options.newton_regularization, p, x);
+        add(eps, p, x);
         project_range(x, Ap);
       }
 
-      // d/dt theta(y + t d), decreasing in t
+      // d/dt of theta(y + t d) - eps/2 |y + t d - y_k|^2, decreasing in t
       double slope(const double t)
       {
         std::copy(y.begin(), y.end(), x.begin());
         add(t, d, x);
+        std::copy(x.begin(), x.end(), p.begin());
+        add(-1.0, center, p);
         project(box, x);
-        return reduction.sum(std::array<double, 1>{{local_dot(d, Qx_e) - local_dot(d, x)}})[0];
+        return reduction.sum(std::array<double, 1>{{local_dot(d, Qx_e) - local_dot(d, x) - eps * local_dot(d, p)}})[0];
       }
 
       // Step length t > 0 with |slope(t)| small relative to slope(0): expansion, then regula falsi (Illinois).
@@ -190,105 +222,14 @@ namespace slipstick::qp
         return low > 0 ? low : high;
       }
 
-      // If Newton's method failed: minimises |Q(x - x_e)| over the set by MPGP. The minimum is positive if there is no
-      // such point.
-      Status least_squares(const Status failure)
-      {
-        is_nearest = false;
-        // if there is no such point y diverges, and its rounding finally exceeds the required residual
-        const bool is_far = norm(y, reduction) > options.certificate_radius * reference;
-        std::copy(is_far ? Qx_e.begin() : y.begin(), is_far ? Qx_e.end() : y.end(), x.begin());
-        project(box, x);
-        if constexpr (std::is_same_v<Set, Box<Vector>>)
-          minimize([this](const Vector &v, Vector &Qv) { project_range(v, Qv); }, 1., Qx_e, box);
-        else if (reduction.min(are_cones(box) ? 1. : 0.) > 0)
-          {
-            // for the parts along the sides of the cones, which have bounds: S'Q S, |S|^2 <= 2
-            const auto multiply = [this](const Vector &v, Vector &product) {
-              std::copy(v.begin(), v.end(), p.begin());
-              add_sides(box, p);
-              project_range(p, product);
-              add_sides_transposed(box, product);
-            };
-            std::copy(Qx_e.begin(), Qx_e.end(), d.begin());
-            add_sides_transposed(box, d);
-            resolve_into_sides(box, x);
-            minimize(multiply, 2., d, bounds_of_sides(box));
-            add_sides(box, x);
-            project(box, x); // exactly
-          }
-        const Status status = examine(failure);
-        return status == failure ? accelerated_gradients(failure) : status;
-      }
-
-      // Whether x is the point sought, or r the certificate.
-      Status examine(const Status neither)
-      {
-        project_range(x, r);
-        combine(1.0, Qx_e, -1.0, r); // Q(x_e - x)
-        norm_r = norm(r, reduction);
-        if (norm_r <= options.tolerance * reference)
-          return Status::converged;
-        return proves_infeasibility(r) ? Status::infeasible : neither;
-      }
-
-      // Minimises 1/2 x'Ax - x'b within bounds, down to rounding. A minimum exists: if rounding in the kernel of A
-      // looks like a direction of unbounded descent, MPGP is restarted.
-      template <typename Operator>
-      void minimize(const Operator &A, const double norm_A, const Vector &b, const Box<Vector> &bounds)
-      {
-        const auto stop = [this](const Vector &, const double gP) { return gP <= options.least_gradient * reference; };
-        Status     status = Status::infeasible;
-        for (unsigned int k = 0; k < max_starts && status == Status::infeasible; ++k)
-          {
-            auto result =
-              mpgp(A, norm_A, b, bounds, MpgpStart<Vector>{std::move(x)}, stop, options.fallback, reduction);
-            x      = std::move(result.x);
-            status = result.status;
-          }
-      }
-
-      // As least_squares, by accelerated projected gradients from x (Nesterov 1983; restarts: O'Donoghue, Candes 2015),
-      // if MPGP has failed. Q has norm 1.
-      Status accelerated_gradients(const Status failure)
-      {
-        std::copy(x.begin(), x.end(), y.begin()); // the extrapolated point
-        double momentum = 1;
-        for (unsigned int k = 0; k < options.fallback.max_iterations; ++k)
-          {
-            project_range(y, r);
-            combine(1.0, Qx_e, -1.0, r); // Q(x_e - y)
-            std::copy(x.begin(), x.end(), p.begin());
-            std::copy(y.begin(), y.end(), x.begin());
-            add(1.0, r, x);
-            project(box, x);
-            combine(1.0, x, -1.0, p); // the step
-            const double next    = 0.5 * (1 + std::sqrt(1 + 4 * momentum * momentum));
-            const bool   ascends = dot(r, p, reduction) < 0;
-            std::copy(x.begin(), x.end(), y.begin());
-            if (!ascends)
-              add((momentum - 1) / next, p, y);
-            momentum = ascends ? 1 : next;
-            if (k % check_interval != 0)
-              continue;
-            const Status status = examine(failure);
-            if (status != failure)
-              return status;
-          }
-        return failure;
-      }
-
-      static constexpr unsigned int check_interval = 10; // of the accelerated gradients
-      static constexpr unsigned int max_starts     = 10; // of MPGP
-
       const Problem                                        &problem;
       decltype(std::declval<const Problem &>().reduction()) reduction;
       const Set                                            &box;
       const FeasiblePointOptions                           &options;
 
-      Vector       Qx_e, y, x, r, d, p, Ap, residual;
-      double       reference = 0, norm_r = 0;
-      bool         is_empty = false, is_nearest = true;
+      Vector       Qx_e, y, center, x, r, gradient, d, p, Ap, residual;
+      double       eps = 0, reference = 0, norm_r = 0;
+      bool         is_empty     = false;
       unsigned int newton_steps = 0, projections = 0;
     };
   } // namespace detail

@@ -35,11 +35,6 @@ namespace slipstick::qp
       return radius < cap ? coefficient : 0.;
     }
 
-    bool is_cone() const
-    {
-      return fixed == 0 && std::isinf(cap);
-    }
-
     /// The part of the boundary nearest to (t, n): two edges meet at the foot (n = 0) and at the corner, where the cap
     /// is reached. A foot of zero width is the apex of a cone.
     enum class Part

@@ -106,23 +106,26 @@ namespace slipstick::qp
   /// Options of the point nearest to zero within the bounds and the equalities (own choice).
   struct FeasiblePointOptions
   {
-    double       tolerance             = 1e-12; // |Q(x - x_e)| over max(|Q x_e|, |projection of 0 on the bounds|)
-    unsigned int max_newton_steps      = 100;
-    unsigned int max_cg_iterations     = 200;  // per Newton step
-    double       cg_tolerance          = 1e-2; // at most: residual of the Newton equation over its right-hand side
-    double       least_cg_tolerance    = 1e-6; // at least; in between it is the residual over the reference length
-    double       newton_regularization = 1e-8; // Newton matrix: Q D Q + this Q
-    unsigned int max_line_search_steps = 40;
-    double       line_search_slope     = 0.1; // accepted slope of the dual function over the slope at the start
-    double       line_search_growth    = 4.0; // > 1: factor on the step length while the dual function rises
-    double       longest_step          = 1e4; // times the Newton step
+    double       tolerance            = 1e-12; // |Q(x - x_e)| over max(|Q x_e|, |projection of 0 on the bounds|)
+    unsigned int max_newton_steps     = 300;
+    double       first_regularization = 1e-3;    // eps of the proximal point method, over the norm of Q, which is 1 ...
+    double       reduction            = 0.1;     // ... times this from one point to the next ...
+    double       least_regularization = 1e-8;    // ... but not below this
+    double       maximum_tolerance    = 1e-3;    // of a proximal point: its gradient over Q(x - x_e) ...
+    double       least_gradient       = 1e-13;   // ... or over the reference length
+    unsigned int newton_steps_per_maximum = 20;  // more than these: eps is too small
+    unsigned int max_cg_iterations        = 200; // per Newton step
+    double       cg_tolerance             = 1e-2; // at most: residual of the Newton equation over its right-hand side
+    double       least_cg_tolerance       = 1e-6; // at least; in between it is the residual over the reference length
+    unsigned int max_line_search_steps    = 40;
+    double       line_search_slope        = 0.1; // accepted slope of the dual function over the slope at the start
+    double       line_search_growth       = 4.0; // > 1: factor on the step length while the dual function rises
+    double       longest_step             = 1e4; // times the Newton step
 
     double certificate_radius = 1e4;  // a certificate excludes all points up to this times the reference length
     double certificate_margin = 1e-9; // ... with this margin relative to the numbers that are summed
 
-    unsigned int stagnation_window   = 20;   // Newton steps in which the least residual so far must fall ...
+    unsigned int stagnation_window   = 20;   // proximal points in which the least residual so far must fall ...
     double       stagnation_progress = 0.99; // ... below this times its old value
-    MpgpOptions  fallback;                   // least squares of Q(x - x_e) within the set, when Newton does not end
-    double       least_gradient = 1e-15;     // ... ends at this |gP| over the reference length, or at rounding
   };
 } // namespace slipstick::qp
