@@ -59,6 +59,7 @@ namespace slipstick::qp
       , Fx(d_)
       , r(d_)
       , w(d_)
+      , first(d_)
     {
       if (is_turned && recycled.size() < n_recycled)
         for (std::size_t j = 0; j < n_recycled; ++j)
@@ -69,8 +70,10 @@ namespace slipstick::qp
     double start(Vector x_, Vector product, const double error_of_product = 0)
     {
       x     = std::move(x_);
+      first = x;
       Fx    = std::move(product);
       error = error_of_product;
+      least = rounding_of_product(reduction.sum(std::array<double, 1>{{local_squares(weights, x, Fx)}})[0]);
       update_residual();
       return norm_r;
     }
@@ -79,20 +82,20 @@ namespace slipstick::qp
     FaceSolution<Vector> solve_symmetric(const double target)
     {
       std::optional<PivotedCholesky> known;
-      if (recycled.size() > 0 && norm_r > target)
+      if (recycled.size() > 0 && is_left(target))
         {
           if (is_turned)
             known.emplace(recycled.factor(energies_with_compliance()));
           else
             known.emplace(
               recycled.factor([this](const std::size_t i, const std::size_t j) { return store.energy(i, j); }));
-          for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
+          for (unsigned int pass = 0; pass < 2 && is_left(target); ++pass)
             move(recycled.coefficients(known->solve(recycled.combined(dots(r, &Direction::p)))));
         }
       std::vector<std::pair<Vector, Vector>> own; // F-orthogonal, with products
       std::vector<double>                    energies;
       double                                 largest = 0;
-      while (norm_r > target || !is_true(target))
+      while (is_left(target) || !is_true(target))
         {
           if (counts.cg_steps == options.max_iterations)
             return ended(Status::iteration_limit);
@@ -143,14 +146,14 @@ namespace slipstick::qp
     {
       std::vector<Vector>            images;        // weighted P (F + C) p of the directions of the store
       std::optional<PivotedCholesky> known, nearly; // of admissible combinations; of all directions
-      if (n_recycled > 0 && norm_r > target)
+      if (n_recycled > 0 && is_left(target))
         {
           for (std::size_t j = 0; j < n_recycled; ++j)
             images.push_back(image(store[j].p, store[j].Fp));
           const SmallSymmetric all = gram(images);
           if (recycled.size() > 0)
             known.emplace(recycled.factor([&all](const std::size_t i, const std::size_t j) { return all(i, j); }));
-          for (unsigned int pass = 0; known && pass < 2 && norm_r > target; ++pass)
+          for (unsigned int pass = 0; known && pass < 2 && is_left(target); ++pass)
             move(recycled.coefficients(known->solve(recycled.combined(dots(weighted(r), images)))));
           if (!violations.empty())
             nearly.emplace(regularized(all, gram(violations)));
@@ -161,7 +164,7 @@ namespace slipstick::qp
         double error; // of Fp
       };
       std::vector<Own> own; // q orthonormal
-      while (norm_r > target || !is_true(target))
+      while (is_left(target) || !is_true(target))
         {
           if (counts.cg_steps == options.max_iterations)
             return ended(Status::iteration_limit);
@@ -269,22 +272,35 @@ namespace slipstick::qp
       return std::sqrt(square);
     }
 
-    // Is the residual that of F x, as far as the target tells? Where it may not be F is multiplied once more (residual replacement:
-    // van der Vorst, Ye 2000), if that is more accurate.
+    // Is the residual that of F x, and is x on the face, as far as the target tells? Where they may not be, the step so far is moved onto
+    // the face and F multiplied once more (residual replacement: van der Vorst, Ye 2000), if that is more accurate.
     bool is_true(const double target)
     {
-      const double trusted = options.accuracy * target;
-      if (error <= trusted || is_replaced)
+      if (is_replaced)
         return true;
-      const double least =
-        rounding_of_product(reduction.sum(std::array<double, 1>{{local_squares(weights, x, Fx)}})[0]);
-      if (!(least <= trusted))
+      Vector step(x), on_face(x);
+      add(-1., first, step);
+      std::copy(step.begin(), step.end(), on_face.begin());
+      face.clear_held(on_face);
+      face.project_kernel(on_face);
+      add(-1., on_face, step);
+      const double off     = norm(step, reduction),
+                   trusted = std::max(options.accuracy * target, options.worthwhile * least);
+      if (error <= trusted && off <= trusted)
         return true;
       is_replaced = true;
+      std::copy(first.begin(), first.end(), x.begin());
+      add(1., on_face, x);
       multiply(x, Fx);
       error = least;
       update_residual();
-      return norm_r <= target;
+      return !is_left(target);
+    }
+
+    // Is there more of the residual than the target or what rounding leaves?
+    bool is_left(const double target) const
+    {
+      return norm_r > std::max(target, options.noise * least);
     }
 
     // Into the store at the end: until then its numbering is that of the combinations.
@@ -465,9 +481,10 @@ namespace slipstick::qp
     detail::Recycled<Vector> recycled;
     const std::size_t        n_recycled;
 
-    Vector            x, Fx, r, w;
+    Vector            x, Fx, r, w, first; // first: the start
     double            norm_r      = 0;
     double            error       = 0; // of Fx
+    double            least       = 0; // that the error may be
     bool              is_replaced = false;
     unsigned int      n_stuck     = 0;
     std::vector<Made> made;

@@ -96,38 +96,54 @@ namespace slipstick::qp
         add(eps, center, gradient);
       }
 
+      // eps falls while the residual does; then y moves by r / eps with every point, and its rounding should stay small beside r.
       Status proximal_points()
       {
         StagnationWatch stagnates(options.stagnation_window, options.stagnation_progress);
-        eps = options.first_regularization;
+        double          before   = HUGE_VAL; // |r| of the last point
+        double          accuracy = options.maximum_tolerance;
+        eps                      = options.first_regularization;
         for (;;)
           {
-            const auto status = maximum();
+            const auto status = maximum(accuracy);
             if (status == Status::converged || status == Status::infeasible)
               return *status;
+            const bool has_settled = norm_r > options.progress * before;
+            if (has_settled && norm_r <= std::max(options.tolerance * reference,
+                                                  std::min(options.rounding * norm(y, reduction),
+                                                           options.largest_rounding * reference)))
+              return Status::converged;
             if (newton_steps >= options.max_newton_steps)
               return Status::iteration_limit;
             if (status && stagnates(norm_r))
               return Status::stagnated;
-            eps = status ? std::max(options.reduction * eps, options.least_regularization)
-                         : std::min(eps / options.reduction, options.first_regularization);
+            if (has_settled)
+              accuracy *= options.reduction;
+            if (!status)
+              eps = std::min(eps / options.reduction, options.first_regularization);
+            else if (norm_r < options.stagnation_progress * before)
+              eps = std::max(options.reduction * eps, options.least_regularization);
+            before = norm_r;
             std::copy(y.begin(), y.end(), center.begin());
           }
       }
 
       // Newton's method for the maximum with the present eps and y_k. @return converged or infeasible as soon as the question
       // is decided, iteration_limit at the maximum, nothing if that was not found (eps is too small then).
-      std::optional<Status> maximum()
+      // @param accuracy of the gradient, over |r|.
+      std::optional<Status> maximum(const double accuracy)
       {
         for (unsigned int k = 0;; ++k, ++newton_steps)
           {
             update_residual();
-            if (norm_r <= options.tolerance * reference)
+            if (norm_r <= options.rounding * reference)
               return Status::converged;
             if (proves_infeasibility(r))
               return Status::infeasible;
             const double size = norm(gradient, reduction);
-            if (size <= std::max(options.maximum_tolerance * norm_r, options.least_gradient * reference))
+            if (size <=
+                std::max(
+                  {accuracy * norm_r, options.least_gradient * reference, options.rounding * norm(y, reduction)}))
               return Status::iteration_limit;
             if (k == options.newton_steps_per_maximum || newton_steps >= options.max_newton_steps)
               return {};
@@ -187,7 +203,10 @@ namespace slipstick::qp
       double line_search()
       {
         double       low = 0, low_slope = slope(0), high = 1, high_slope = slope(high);
-        const double accepted = options.line_search_slope * low_slope;
+        const double accepted =
+          std::max(options.line_search_slope * low_slope, options.rounding * norm(d, reduction) * norm(y, reduction));
+        if (std::abs(high_slope) <= accepted)
+          return high;
         while (high_slope > accepted && high < options.longest_step)
           {
             low       = high;

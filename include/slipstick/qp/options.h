@@ -72,10 +72,12 @@ namespace slipstick::qp
   {
     unsigned int max_iterations = 300;
     double smallest_curvature   = 1e-15; // p'Fp over p'p and the largest such quotient so far: below it F is singular
-    double rounding       = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
-    double progress       = 0.999; // a step that leaves more than this part of the residual ...
-    unsigned int patience = 10;    // ... this many times in a row ends the solve
-    double       accuracy = 0.3;   // products are trusted up to this part of the target
+    double rounding         = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
+    double progress         = 0.999; // a step that leaves more than this part of the residual ...
+    unsigned int patience   = 10;    // ... this many times in a row ends the solve
+    double       accuracy   = 0.3;   // products are trusted up to this part of the target, ...
+    double       worthwhile = 10; // ... and up to this times the rounding of a new one, which would not be much better
+    double       noise      = 3;  // residuals are not reduced below this times the rounding of a product
     double       violation_weight =
       1; // of the conditions of a turned face, as a residual: |F| is 1 and local stiffnesses are larger
   };
@@ -91,7 +93,8 @@ namespace slipstick::qp
     double       last_forcing = 0.6;  // times the tolerance: never below
     double       tightening   = 0.1;  // of the residual reached, where the goal is met and x is not right ...
     double       least_part   = 1e-5; // ... down to this part of the goal
-    double       astray = 1e3; // or where faces that meet the goal lead twice to so much larger a natural residual
+    double sharpening = 0.01; // of the residual of an earlier face with the same set, where others came in between, ...
+    unsigned int n_remembered_sets    = 10; // ... among so many of the last faces
     double       gaps_over_forces     = 10; // |gP| may be at most this times the tolerance times |PFP| times the forces
     unsigned int memory               = 6;  // a step must end below the largest natural residual of so many ...
     double       sufficient_decrease  = 1e-2; // ... by this part times its length, ...
@@ -106,15 +109,18 @@ namespace slipstick::qp
   /// Options of the point nearest to zero within the bounds and the equalities (own choice).
   struct FeasiblePointOptions
   {
-    double       tolerance            = 1e-12; // |Q(x - x_e)| over max(|Q x_e|, |projection of 0 on the bounds|)
+    double       tolerance = 1e-12; // |Q(x - x_e)| over max(|Q x_e|, |projection of 0 on the bounds|) at most ...
+    double       rounding  = 1e-15; // ... and as small as it gets, down to this; or this times |y|, ...
+    double       largest_rounding     = 1e-10; // ... which may be at most this times that length
     unsigned int max_newton_steps     = 300;
-    double       first_regularization = 1e-3;    // eps of the proximal point method, over the norm of Q, which is 1 ...
-    double       reduction            = 0.1;     // ... times this from one point to the next ...
-    double       least_regularization = 1e-8;    // ... but not below this
-    double       maximum_tolerance    = 1e-3;    // of a proximal point: its gradient over Q(x - x_e) ...
-    double       least_gradient       = 1e-13;   // ... or over the reference length
-    unsigned int newton_steps_per_maximum = 20;  // more than these: eps is too small
-    unsigned int max_cg_iterations        = 200; // per Newton step
+    double       first_regularization = 1e-3; // eps of the first proximal point, over the norm of Q, which is 1 ...
+    double       reduction            = 0.1;  // ... times this from one point to the next while the residual falls, ...
+    double       least_regularization = 1e-10; // ... not below this
+    double maximum_tolerance = 1e-3;  // of a proximal point: gradient over Q(x - x_e), less where that has settled, ...
+    double least_gradient    = 1e-13; // ... or over the reference length
+    double progress          = 0.5;   // a residual that falls by less has settled
+    unsigned int newton_steps_per_maximum = 20;   // more than these: eps is too small
+    unsigned int max_cg_iterations        = 200;  // per Newton step
     double       cg_tolerance             = 1e-2; // at most: residual of the Newton equation over its right-hand side
     double       least_cg_tolerance       = 1e-6; // at least; in between it is the residual over the reference length
     unsigned int max_line_search_steps    = 40;
