@@ -75,6 +75,7 @@ namespace slipstick::qp
       error = error_of_product;
       least = rounding_of_product(reduction.sum(std::array<double, 1>{{local_squares(weights, x, Fx)}})[0]);
       update_residual();
+      remember_best();
       return norm_r;
     }
 
@@ -95,6 +96,7 @@ namespace slipstick::qp
       std::vector<std::pair<Vector, Vector>> own; // F-orthogonal, with products
       std::vector<double>                    energies;
       double                                 largest = 0;
+      lowest                                         = norm_r;
       while (is_left(target) || !is_true(target))
         {
           if (counts.cg_steps == options.max_iterations)
@@ -164,6 +166,7 @@ namespace slipstick::qp
         double error; // of Fp
       };
       std::vector<Own> own; // q orthonormal
+      lowest = norm_r;
       while (is_left(target) || !is_true(target))
         {
           if (counts.cg_steps == options.max_iterations)
@@ -239,8 +242,33 @@ namespace slipstick::qp
       double error; // of Fp
     };
 
+    // Steps that raise the residual by more are made of rounding.
+    static constexpr double largest_rise = 1e3;
+
+    // The least residual so far with where it was found: beyond the rounding of products, steps may lead anywhere.
+    struct Best
+    {
+      Vector      x, Fx;
+      double      residual, error;
+      std::size_t n_made;
+    };
+
+    void remember_best()
+    {
+      if (!best || norm_r < best->residual)
+        best = Best{x, Fx, norm_r, error, made.size()};
+    }
+
     FaceSolution<Vector> ended(const Status status)
     {
+      if (best && best->residual < norm_r)
+        {
+          x      = std::move(best->x);
+          Fx     = std::move(best->Fx);
+          norm_r = best->residual;
+          error  = best->error;
+          made.erase(made.begin() + best->n_made, made.end());
+        }
       for (auto &[p, Fp, error_of_Fp] : made)
         store.push(std::move(p), std::move(Fp), error_of_Fp, reduction);
       return {status, std::move(x), std::move(Fx), norm_r, error, counts};
@@ -294,6 +322,8 @@ namespace slipstick::qp
       multiply(x, Fx);
       error = least;
       update_residual();
+      best.reset(); // what was found before is not what it seemed to be
+      remember_best();
       return !is_left(target);
     }
 
@@ -312,7 +342,9 @@ namespace slipstick::qp
     bool stagnates(const double before)
     {
       n_stuck = norm_r > options.progress * before ? n_stuck + 1 : 0;
-      return !std::isfinite(norm_r) || n_stuck >= options.patience;
+      remember_best();
+      lowest = std::min(lowest, norm_r);
+      return !(norm_r <= largest_rise * lowest) || n_stuck >= options.patience;
     }
 
     void multiply(const Vector &v, Vector &Fv)
@@ -488,6 +520,9 @@ namespace slipstick::qp
     bool              is_replaced = false;
     unsigned int      n_stuck     = 0;
     std::vector<Made> made;
+
+    std::optional<Best> best;
+    double              lowest = 0; // residual since the first own step
 
     std::vector<std::vector<double>> violations; // of the conditions of a turned face by the directions of the store
     Counts                           counts;
