@@ -61,8 +61,13 @@ namespace slipstick::qp
 
       FeasiblePoint<Vector> run()
       {
-        const Status status = is_empty ? Status::infeasible : proximal_points();
-        const double scale  = reference > 0 ? reference : 1.0;
+        Status status = is_empty ? Status::infeasible : newton();
+        if (status != Status::converged && status != Status::infeasible)
+          {
+            set_zero(y);
+            status = proximal_points();
+          }
+        const double scale = reference > 0 ? reference : 1.0;
         return {status, std::move(x), std::move(r), norm_r / scale, newton_steps, projections};
       }
 
@@ -96,6 +101,30 @@ namespace slipstick::qp
         add(eps, center, gradient);
       }
 
+      // Newton's method for theta itself, which may have no maximum: then it stagnates.
+      Status newton()
+      {
+        constexpr double regularization = 1e-8; // of its matrix only
+        StagnationWatch  stagnates(options.stagnation_window, options.stagnation_progress);
+        for (;; ++newton_steps)
+          {
+            eps = 0;
+            update_residual();
+            if (norm_r <= options.tolerance * reference)
+              return Status::converged;
+            if (proves_infeasibility(r))
+              return Status::infeasible;
+            if (stagnates(norm_r))
+              return Status::stagnated;
+            if (newton_steps == max_newton_steps_at_first)
+              return Status::iteration_limit;
+            eps = regularization;
+            find_direction(norm_r);
+            eps = 0;
+            add(line_search(), d, y);
+          }
+      }
+
       // eps falls while the residual does; then y moves by r / eps with every point, and its rounding should stay small beside r.
       Status proximal_points()
       {
@@ -113,7 +142,7 @@ namespace slipstick::qp
                                                   std::min(options.rounding * norm(y, reduction),
                                                            options.largest_rounding * reference)))
               return Status::converged;
-            if (newton_steps >= options.max_newton_steps)
+            if (newton_steps >= options.max_newton_steps + max_newton_steps_at_first)
               return Status::iteration_limit;
             if (status && stagnates(norm_r))
               return Status::stagnated;
@@ -145,7 +174,8 @@ namespace slipstick::qp
                 std::max(
                   {accuracy * norm_r, options.least_gradient * reference, options.rounding * norm(y, reduction)}))
               return Status::iteration_limit;
-            if (k == options.newton_steps_per_maximum || newton_steps >= options.max_newton_steps)
+            if (k == options.newton_steps_per_maximum ||
+                newton_steps >= options.max_newton_steps + max_newton_steps_at_first)
               return {};
             find_direction(size);
             add(line_search(), d, y);
@@ -240,6 +270,8 @@ namespace slipstick::qp
           }
         return low > 0 ? low : high;
       }
+
+      static constexpr unsigned int max_newton_steps_at_first = 100;
 
       const Problem                                        &problem;
       decltype(std::declval<const Problem &>().reduction()) reduction;
