@@ -59,7 +59,6 @@ namespace slipstick::qp
       , Fx(d_)
       , r(d_)
       , w(d_)
-      , first(d_)
     {
       if (is_turned && recycled.size() < n_recycled)
         for (std::size_t j = 0; j < n_recycled; ++j)
@@ -70,12 +69,9 @@ namespace slipstick::qp
     double start(Vector x_, Vector product, const double error_of_product = 0)
     {
       x     = std::move(x_);
-      first = x;
       Fx    = std::move(product);
       error = error_of_product;
-      least = rounding_of_product(reduction.sum(std::array<double, 1>{{local_squares(weights, x, Fx)}})[0]);
       update_residual();
-      remember_best();
       return norm_r;
     }
 
@@ -83,21 +79,20 @@ namespace slipstick::qp
     FaceSolution<Vector> solve_symmetric(const double target)
     {
       std::optional<PivotedCholesky> known;
-      if (recycled.size() > 0 && is_left(target))
+      if (recycled.size() > 0 && norm_r > target)
         {
           if (is_turned)
             known.emplace(recycled.factor(energies_with_compliance()));
           else
             known.emplace(
               recycled.factor([this](const std::size_t i, const std::size_t j) { return store.energy(i, j); }));
-          for (unsigned int pass = 0; pass < 2 && is_left(target); ++pass)
+          for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
             move(recycled.coefficients(known->solve(recycled.combined(dots(r, &Direction::p)))));
         }
       std::vector<std::pair<Vector, Vector>> own; // F-orthogonal, with products
       std::vector<double>                    energies;
       double                                 largest = 0;
-      lowest                                         = norm_r;
-      while (is_left(target) || !is_true(target))
+      while (norm_r > target || !is_true(target))
         {
           if (counts.cg_steps == options.max_iterations)
             return ended(Status::iteration_limit);
@@ -148,14 +143,14 @@ namespace slipstick::qp
     {
       std::vector<Vector>            images;        // weighted P (F + C) p of the directions of the store
       std::optional<PivotedCholesky> known, nearly; // of admissible combinations; of all directions
-      if (n_recycled > 0 && is_left(target))
+      if (n_recycled > 0 && norm_r > target)
         {
           for (std::size_t j = 0; j < n_recycled; ++j)
             images.push_back(image(store[j].p, store[j].Fp));
           const SmallSymmetric all = gram(images);
           if (recycled.size() > 0)
             known.emplace(recycled.factor([&all](const std::size_t i, const std::size_t j) { return all(i, j); }));
-          for (unsigned int pass = 0; known && pass < 2 && is_left(target); ++pass)
+          for (unsigned int pass = 0; known && pass < 2 && norm_r > target; ++pass)
             move(recycled.coefficients(known->solve(recycled.combined(dots(weighted(r), images)))));
           if (!violations.empty())
             nearly.emplace(regularized(all, gram(violations)));
@@ -166,8 +161,7 @@ namespace slipstick::qp
         double error; // of Fp
       };
       std::vector<Own> own; // q orthonormal
-      lowest = norm_r;
-      while (is_left(target) || !is_true(target))
+      while (norm_r > target || !is_true(target))
         {
           if (counts.cg_steps == options.max_iterations)
             return ended(Status::iteration_limit);
@@ -242,33 +236,8 @@ namespace slipstick::qp
       double error; // of Fp
     };
 
-    // Steps that raise the residual by more are made of rounding.
-    static constexpr double largest_rise = 1e3;
-
-    // The least residual so far with where it was found: beyond the rounding of products, steps may lead anywhere.
-    struct Best
-    {
-      Vector      x, Fx;
-      double      residual, error;
-      std::size_t n_made;
-    };
-
-    void remember_best()
-    {
-      if (!best || norm_r < best->residual)
-        best = Best{x, Fx, norm_r, error, made.size()};
-    }
-
     FaceSolution<Vector> ended(const Status status)
     {
-      if (best && best->residual < norm_r)
-        {
-          x      = std::move(best->x);
-          Fx     = std::move(best->Fx);
-          norm_r = best->residual;
-          error  = best->error;
-          made.erase(made.begin() + best->n_made, made.end());
-        }
       for (auto &[p, Fp, error_of_Fp] : made)
         store.push(std::move(p), std::move(Fp), error_of_Fp, reduction);
       return {status, std::move(x), std::move(Fx), norm_r, error, counts};
@@ -300,37 +269,22 @@ namespace slipstick::qp
       return std::sqrt(square);
     }
 
-    // Is the residual that of F x, and is x on the face, as far as the target tells? Where they may not be, the step so far is moved onto
-    // the face and F multiplied once more (residual replacement: van der Vorst, Ye 2000), if that is more accurate.
+    // Is the residual that of F x, as far as the target tells? Where it may not be F is multiplied once more (residual replacement:
+    // van der Vorst, Ye 2000), if that is more accurate.
     bool is_true(const double target)
     {
-      if (is_replaced)
+      const double trusted = options.accuracy * target;
+      if (error <= trusted || is_replaced)
         return true;
-      Vector step(x), on_face(x);
-      add(-1., first, step);
-      std::copy(step.begin(), step.end(), on_face.begin());
-      face.clear_held(on_face);
-      face.project_kernel(on_face);
-      add(-1., on_face, step);
-      const double off     = norm(step, reduction),
-                   trusted = std::max(options.accuracy * target, options.worthwhile * least);
-      if (error <= trusted && off <= trusted)
+      const double least =
+        rounding_of_product(reduction.sum(std::array<double, 1>{{local_squares(weights, x, Fx)}})[0]);
+      if (!(least <= trusted))
         return true;
       is_replaced = true;
-      std::copy(first.begin(), first.end(), x.begin());
-      add(1., on_face, x);
       multiply(x, Fx);
       error = least;
       update_residual();
-      best.reset(); // what was found before is not what it seemed to be
-      remember_best();
-      return !is_left(target);
-    }
-
-    // Is there more of the residual than the target or what rounding leaves?
-    bool is_left(const double target) const
-    {
-      return norm_r > std::max(target, options.noise * least);
+      return norm_r <= target;
     }
 
     // Into the store at the end: until then its numbering is that of the combinations.
@@ -342,9 +296,7 @@ namespace slipstick::qp
     bool stagnates(const double before)
     {
       n_stuck = norm_r > options.progress * before ? n_stuck + 1 : 0;
-      remember_best();
-      lowest = std::min(lowest, norm_r);
-      return !(norm_r <= largest_rise * lowest) || n_stuck >= options.patience;
+      return !std::isfinite(norm_r) || n_stuck >= options.patience;
     }
 
     void multiply(const Vector &v, Vector &Fv)
@@ -513,16 +465,12 @@ namespace slipstick::qp
     detail::Recycled<Vector> recycled;
     const std::size_t        n_recycled;
 
-    Vector            x, Fx, r, w, first; // first: the start
+    Vector            x, Fx, r, w;
     double            norm_r      = 0;
     double            error       = 0; // of Fx
-    double            least       = 0; // that the error may be
     bool              is_replaced = false;
     unsigned int      n_stuck     = 0;
     std::vector<Made> made;
-
-    std::optional<Best> best;
-    double              lowest = 0; // residual since the first own step
 
     std::vector<std::vector<double>> violations; // of the conditions of a turned face by the directions of the store
     Counts                           counts;

@@ -72,12 +72,10 @@ namespace slipstick::qp
   {
     unsigned int max_iterations = 300;
     double smallest_curvature   = 1e-15; // p'Fp over p'p and the largest such quotient so far: below it F is singular
-    double rounding         = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
-    double progress         = 0.999; // a step that leaves more than this part of the residual ...
-    unsigned int patience   = 10;    // ... this many times in a row ends the solve
-    double       accuracy   = 0.3;   // products are trusted up to this part of the target, ...
-    double       worthwhile = 10; // ... and up to this times the rounding of a new one, which would not be much better
-    double       noise      = 3;  // residuals are not reduced below this times the rounding of a product
+    double rounding       = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
+    double progress       = 0.999; // a step that leaves more than this part of the residual ...
+    unsigned int patience = 10;    // ... this many times in a row ends the solve
+    double       accuracy = 0.3;   // products are trusted up to this part of the target
     double       violation_weight =
       1; // of the conditions of a turned face, as a residual: |F| is 1 and local stiffnesses are larger
   };
@@ -93,8 +91,7 @@ namespace slipstick::qp
     double       last_forcing = 0.6;  // times the tolerance: never below
     double       tightening   = 0.1;  // of the residual reached, where the goal is met and x is not right ...
     double       least_part   = 1e-5; // ... down to this part of the goal
-    double sharpening = 0.01; // of the residual of an earlier face with the same set, where others came in between, ...
-    unsigned int n_remembered_sets    = 10; // ... among so many of the last faces
+    double       astray = 1e3; // or where faces that meet the goal lead twice to so much larger a natural residual
     double       gaps_over_forces     = 10; // |gP| may be at most this times the tolerance times |PFP| times the forces
     unsigned int memory               = 6;  // a step must end below the largest natural residual of so many ...
     double       sufficient_decrease  = 1e-2; // ... by this part times its length, ...

@@ -33,7 +33,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -136,12 +135,6 @@ namespace slipstick::qp
       }
 
     private:
-      struct Solved
-      {
-        Sides  sides;
-        double residual;
-      };
-
       struct Found
       {
         Vector x, gradient;
@@ -190,6 +183,7 @@ namespace slipstick::qp
                 has_met_goal = true;
                 tolerance    = options.tightening * left;
               }
+            tell_sets(residual + violation / goal.reference);
             if (!step())
               return ended(Status::stagnated);
           }
@@ -201,6 +195,16 @@ namespace slipstick::qp
         std::swap(x, y);
         std::swap(g, gy);
         return Status::converged;
+      }
+
+      // A face that is solved to the goal, but on a set whose bounds are violated by far more than before. Where that happens again, sets
+      // are told by gradients below the goal (compliances that are far apart), and faces are solved to less.
+      void tell_sets(const double natural_residual)
+      {
+        if (residual <= goal.tolerance &&
+            natural_residual > options.astray * std::max(goal.tolerance, last_natural_residual) && ++n_astray > 1)
+          tolerance = std::min(tolerance, options.tightening * residual);
+        last_natural_residual = natural_residual;
       }
 
       // Where gaps of open contact make the reference, the forces may be next to nothing beside it.
@@ -329,40 +333,15 @@ namespace slipstick::qp
           [this](const Vector &p) { return set.conditions(p, ties); },
           options.face,
           set.turns());
-        const double first  = solver.start(std::move(y), std::move(Fy), error_of_Fx);
-        const double target = std::min(std::max(options.last_forcing * tolerance * goal.reference,
-                                                options.forcing * std::min(first, merits.back())),
-                                       options.sharpening * residual_of_earlier_solution());
-        auto         result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
-        remember({set.sides(), result.residual});
+        const double first = solver.start(std::move(y), std::move(Fy), error_of_Fx);
+        const double target =
+          std::max(options.last_forcing * tolerance * goal.reference, options.forcing * std::min(first, merits.back()));
+        auto result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
         counts += result.counts;
         y           = std::move(result.x);
         Fy          = std::move(result.product);
         error_of_Fy = result.error;
         gradient_on(face, y, Fy, gy);
-      }
-
-      // The residual that a face with the present set was solved to before, if another set came in between: sets were then told by
-      // what was left of residuals, and the solution must tell more. Infinite: none.
-      double residual_of_earlier_solution() const
-      {
-        std::vector<double> differs; // on how many processes
-        for (const Solved &earlier : solved)
-          differs.push_back(earlier.sides == set.sides() ? 0. : 1.);
-        sum_all(differs, problem.reduction());
-        double residual = infinity;
-        if (!differs.empty() && differs.back() > 0)
-          for (std::size_t i = 0; i < solved.size(); ++i)
-            if (differs[i] == 0)
-              residual = std::min(residual, solved[i].residual);
-        return residual;
-      }
-
-      void remember(Solved present)
-      {
-        solved.push_back(std::move(present));
-        if (solved.size() > options.n_remembered_sets)
-          solved.pop_front();
       }
 
       // on any process
@@ -532,14 +511,15 @@ namespace slipstick::qp
       ActiveSet<Vector, Problem>                    set;
       const std::shared_ptr<DirectionStore<Vector>> directions;
       DirectionStore<Vector>                       &store;
-      std::vector<Tie>                              ties;   // of the present face
-      std::deque<Solved>                            solved; // the last sets and what their faces were solved to
+      std::vector<Tie>                              ties; // of the present face
 
       Vector               x, Fx, g;  // where the method is
       Vector               y, Fy, gy; // where the present step leads
       std::vector<double>  merits;    // natural residuals of all x so far
       std::optional<Found> best;      // where the natural residual is least, or where the goal was met last
-      double               residual    = HUGE_VAL;
+      double               residual              = HUGE_VAL;
+      double               last_natural_residual = std::numeric_limits<double>::infinity(); // over the reference
+      unsigned int         n_astray              = 0;
       double               error_of_Fx = 0, error_of_Fy = 0; // by rounding, weighted, estimates
       bool                 is_stuck = false;                 // the last step did not lower the residual
       bool                 is_rough; // the start, and no step was made yet in spite of the residual
