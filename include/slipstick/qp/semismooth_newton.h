@@ -33,6 +33,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -334,14 +335,46 @@ namespace slipstick::qp
           options.face,
           set.turns());
         const double first = solver.start(std::move(y), std::move(Fy), error_of_Fx);
-        const double target =
-          std::max(options.last_forcing * tolerance * goal.reference, options.forcing * std::min(first, merits.back()));
+        const double target = std::min(
+          std::max(options.last_forcing * tolerance * goal.reference, options.forcing * std::min(first, merits.back())),
+          0.01 * residual_of_earlier_solution());
         auto result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
+        solved.push_back({set.sides(), result.residual});
+        if (solved.size() > 10)
+          solved.pop_front();
         counts += result.counts;
         y           = std::move(result.x);
         Fy          = std::move(result.product);
         error_of_Fy = result.error;
         gradient_on(face, y, Fy, gy);
+      }
+
+      // Stiffnesses so far apart that some forces change gradients by less than the tolerance?
+      bool is_wide() const
+      {
+        const double *weights = residual_weights(problem, 0);
+        double        largest = 1;
+        for (std::size_t i = 0; weights && i < local_size(d); ++i)
+          largest = std::max(largest, weights[i]);
+        return problem.reduction().min(-largest) < -1e6;
+      }
+
+      // The residual that a face with the present set was solved to before, if another set came in between: sets were then told by
+      // what was left of residuals. Infinite: none.
+      double residual_of_earlier_solution() const
+      {
+        if (!is_wide())
+          return HUGE_VAL;
+        std::vector<double> differs; // on how many processes
+        for (const auto &earlier : solved)
+          differs.push_back(earlier.first == set.sides() ? 0. : 1.);
+        sum_all(differs, problem.reduction());
+        double found = HUGE_VAL;
+        if (!differs.empty() && differs.back() > 0)
+          for (std::size_t i = 0; i < solved.size(); ++i)
+            if (differs[i] == 0)
+              found = std::min(found, solved[i].second);
+        return found;
       }
 
       // on any process
@@ -515,6 +548,8 @@ namespace slipstick::qp
 
       Vector               x, Fx, g;  // where the method is
       Vector               y, Fy, gy; // where the present step leads
+      std::deque<std::pair<Sides, double>> solved; // the last sets and what their faces were solved to
+
       std::vector<double>  merits;    // natural residuals of all x so far
       std::optional<Found> best;      // where the natural residual is least, or where the goal was met last
       double               residual              = HUGE_VAL;
