@@ -3,9 +3,9 @@
 //
 // min 1/2 |x|^2 over the set and Q x = Q x_e. Dual: x = proj(y), y in the range of Q, maximise the concave
 //   theta(y) = 1/2 |proj(y)|^2 - y'proj(y) + y'x_e,   grad theta = r = Q(x_e - proj(y)),
-// by the proximal point method (Rockafellar 1976; with the quadratic term of x it is the method of multipliers): y_k+1
-// maximises theta(y) - eps/2 |y - y_k|^2, which has one maximum whether or not there is such a point x. A semismooth Newton method
-// (Newton matrix Q D Q + eps Q, D = derivative of the projection at y) with line search finds it. There r = eps (y_k+1 - y_k). If
+// by a semismooth Newton method (Newton matrix Q D Q, D = derivative of the projection at y) with line search. Where it stagnates, by the
+// proximal point method (Rockafellar 1976): y_k+1 maximises theta(y) - eps/2 |y - y_k|^2, which has one maximum whether or not there is such a
+// point x; the same Newton method finds it, with Q D Q + eps Q. There r = eps (y_k+1 - y_k). If
 // there is no point x, theta is unbounded and r tends to the shortest Q(x_e - x) over the set, a Farkas certificate:
 // r'x <= r'x_e - |r|^2 for all x of the set, while Q x = Q x_e requires r'x = r'x_e.
 #pragma once
@@ -116,7 +116,7 @@ namespace slipstick::qp
               return Status::infeasible;
             if (stagnates(norm_r))
               return Status::stagnated;
-            if (newton_steps == max_newton_steps_at_first)
+            if (newton_steps == options.max_plain_steps)
               return Status::iteration_limit;
             eps = regularization;
             find_direction(norm_r);
@@ -142,7 +142,7 @@ namespace slipstick::qp
                                                   std::min(options.rounding * norm(y, reduction),
                                                            options.largest_rounding * reference)))
               return Status::converged;
-            if (newton_steps >= options.max_newton_steps + max_newton_steps_at_first)
+            if (newton_steps >= options.max_plain_steps + options.max_newton_steps)
               return Status::iteration_limit;
             if (status && stagnates(norm_r))
               return Status::stagnated;
@@ -175,7 +175,7 @@ namespace slipstick::qp
                   {accuracy * norm_r, options.least_gradient * reference, options.rounding * norm(y, reduction)}))
               return Status::iteration_limit;
             if (k == options.newton_steps_per_maximum ||
-                newton_steps >= options.max_newton_steps + max_newton_steps_at_first)
+                newton_steps >= options.max_plain_steps + options.max_newton_steps)
               return {};
             find_direction(size);
             add(line_search(), d, y);
@@ -270,8 +270,6 @@ namespace slipstick::qp
           }
         return low > 0 ? low : high;
       }
-
-      static constexpr unsigned int max_newton_steps_at_first = 100;
 
       const Problem                                        &problem;
       decltype(std::declval<const Problem &>().reduction()) reduction;

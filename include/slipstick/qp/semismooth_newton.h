@@ -104,6 +104,7 @@ namespace slipstick::qp
         , observer(observer_)
         , accepts(accepts_)
         , is_right(is_right_)
+        , has_wide_stiffnesses(ratio_of_weights(problem_, d_) > options_.wide_stiffnesses)
         , tolerance(goal_.tolerance)
         , set(problem_, norm_, std::move(admissible), options.set_step, noise_of(problem_, d_))
         , directions(start.directions ? std::move(start.directions)
@@ -136,6 +137,12 @@ namespace slipstick::qp
       }
 
     private:
+      struct Solved
+      {
+        Sides  sides;
+        double residual;
+      };
+
       struct Found
       {
         Vector x, gradient;
@@ -143,6 +150,16 @@ namespace slipstick::qp
       };
 
       using Face = decltype(std::declval<Problem>().face(std::vector<bool>(), std::vector<Tie>(), std::vector<Turn>()));
+
+      // The largest weight of a residual over the least, which is 1.
+      static double ratio_of_weights(const Problem &problem, const Vector &d)
+      {
+        const double *weights = residual_weights(problem, 0);
+        double        largest = 1;
+        for (std::size_t i = 0; weights && i < local_size(d); ++i)
+          largest = std::max(largest, weights[i]);
+        return -problem.reduction().min(-largest);
+      }
 
       // Gradients are differences of entries of d and F x.
       static double noise_of(const Problem &problem, const Vector &d)
@@ -334,14 +351,13 @@ namespace slipstick::qp
           [this](const Vector &p) { return set.conditions(p, ties); },
           options.face,
           set.turns());
-        const double first = solver.start(std::move(y), std::move(Fy), error_of_Fx);
-        const double target = std::min(
-          std::max(options.last_forcing * tolerance * goal.reference, options.forcing * std::min(first, merits.back())),
-          0.01 * residual_of_earlier_solution());
-        auto result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
-        solved.push_back({set.sides(), result.residual});
-        if (solved.size() > 10)
-          solved.pop_front();
+        const double first  = solver.start(std::move(y), std::move(Fy), error_of_Fx);
+        const double target = std::min(std::max(options.last_forcing * tolerance * goal.reference,
+                                                options.forcing * std::min(first, merits.back())),
+                                       options.sharpening * residual_of_earlier_solution());
+        auto         result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
+        if (has_wide_stiffnesses)
+          remember({set.sides(), result.residual});
         counts += result.counts;
         y           = std::move(result.x);
         Fy          = std::move(result.product);
@@ -349,32 +365,27 @@ namespace slipstick::qp
         gradient_on(face, y, Fy, gy);
       }
 
-      // Stiffnesses so far apart that some forces change gradients by less than the tolerance?
-      bool is_wide() const
-      {
-        const double *weights = residual_weights(problem, 0);
-        double        largest = 1;
-        for (std::size_t i = 0; weights && i < local_size(d); ++i)
-          largest = std::max(largest, weights[i]);
-        return problem.reduction().min(-largest) < -1e6;
-      }
-
       // The residual that a face with the present set was solved to before, if another set came in between: sets were then told by
       // what was left of residuals. Infinite: none.
       double residual_of_earlier_solution() const
       {
-        if (!is_wide())
-          return HUGE_VAL;
         std::vector<double> differs; // on how many processes
-        for (const auto &earlier : solved)
-          differs.push_back(earlier.first == set.sides() ? 0. : 1.);
+        for (const Solved &earlier : solved)
+          differs.push_back(earlier.sides == set.sides() ? 0. : 1.);
         sum_all(differs, problem.reduction());
-        double found = HUGE_VAL;
+        double found = infinity;
         if (!differs.empty() && differs.back() > 0)
           for (std::size_t i = 0; i < solved.size(); ++i)
             if (differs[i] == 0)
-              found = std::min(found, solved[i].second);
+              found = std::min(found, solved[i].residual);
         return found;
+      }
+
+      void remember(Solved present)
+      {
+        solved.push_back(std::move(present));
+        if (solved.size() > options.n_remembered_sets)
+          solved.pop_front();
       }
 
       // on any process
@@ -538,18 +549,18 @@ namespace slipstick::qp
       const Observer           &observer;
       const Acceptance<Vector> &accepts;
       const ErrorTest<Vector>  &is_right;
+      const bool                has_wide_stiffnesses; // gradients may tell sets that are below the tolerance
       double                    tolerance; // that faces are solved to: of the goal, or below it until x is right
       bool                      has_met_goal = false;
 
       ActiveSet<Vector, Problem>                    set;
       const std::shared_ptr<DirectionStore<Vector>> directions;
       DirectionStore<Vector>                       &store;
-      std::vector<Tie>                              ties; // of the present face
+      std::vector<Tie>                              ties;   // of the present face
+      std::deque<Solved>                            solved; // the last sets and what their faces were solved to
 
       Vector               x, Fx, g;  // where the method is
       Vector               y, Fy, gy; // where the present step leads
-      std::deque<std::pair<Sides, double>> solved; // the last sets and what their faces were solved to
-
       std::vector<double>  merits;    // natural residuals of all x so far
       std::optional<Found> best;      // where the natural residual is least, or where the goal was met last
       double               residual              = HUGE_VAL;
