@@ -1,5 +1,6 @@
 # add_mpi_test_executable(TARGET SOURCES file... LINKS target...): GoogleTest under MPI. What its files share (torn.h, main)
-# is compiled once: the headers of deal.II and Eigen cost more than the tests. Tests run for seconds, so that -O1 pays.
+# is compiled once, and all sources as one unit: the headers of deal.II and Eigen cost more than the tests. Tests run for
+# seconds, so that -O1 pays.
 if(NOT TARGET slipstick_testing)
   add_library(slipstick_testing STATIC ${CMAKE_CURRENT_LIST_DIR}/mpi_main.cc ${CMAKE_CURRENT_LIST_DIR}/torn.cc)
   deal_ii_setup_target(slipstick_testing)
@@ -12,6 +13,7 @@ endif()
 function(add_mpi_test_executable target)
   cmake_parse_arguments(ARGUMENT "" "" "SOURCES;LINKS" ${ARGN})
   add_executable(${target} ${ARGUMENT_SOURCES})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
   deal_ii_setup_target(${target})
   target_link_libraries(${target} slipstick_testing ${ARGUMENT_LINKS})
   target_precompile_headers(${target} REUSE_FROM slipstick_testing)

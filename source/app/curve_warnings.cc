@@ -89,11 +89,11 @@ namespace slipstick::app
     std::map<std::string, std::string> texts;
     if (!mesh::leaves_out_curves(mesh)) // the usual case
       return texts;
-    std::map<std::pair<unsigned int, mechanics::NodeKey>, double> left_out;
+    std::map<std::pair<unsigned int, mechanics::NodeKey>, double> neglected_sagitta;
     const auto contacts = interface::pair_bodies(scene, mesh, spaces);
     for (unsigned int k = 0; k < contacts.rows.size(); ++k)
       for (const auto &row : contacts.rows[k])
-        left_out[{k, row.slave}] = std::max(left_out[{k, row.slave}], row.left_out);
+        neglected_sagitta[{k, row.slave}] = std::max(neglected_sagitta[{k, row.slave}], row.neglected_sagitta);
     const auto of_pair = extremes(scene.contacts.size(), points, nodes, mesh.comm);
     for (unsigned int k = 0; k < scene.contacts.size(); ++k)
       {
@@ -108,7 +108,7 @@ namespace slipstick::app
               const double length = dim == 3 ? std::sqrt(points[i].area) : points[i].length;
               const double scale =
                 pressure > 0 ? 2 * length * pressure / (dealii::numbers::PI * modulus_of_both(scene, pair)) : gap;
-              const double sagitta = left_out[{k, points[i].key}];
+              const double sagitta = neglected_sagitta[{k, points[i].key}];
               if (sagitta > largest_share * scale && sagitta / scale > worst[0])
                 {
                   worst = {sagitta / scale, points[i].position[0], points[i].position[1], sagitta, scale};

@@ -45,7 +45,7 @@ namespace slipstick::app
     class Functionals
     {
     public:
-      Functionals(const StepSolver<dim> &solver_, const mechanics::Probes<dim> &probes_, const StepAnswer &answer_)
+      Functionals(const StepSolver<dim> &solver_, const mechanics::Probes<dim> &probes_, const StepSolution &answer_)
         : solver(solver_)
         , probes(probes_)
         , answer(answer_)
@@ -243,7 +243,7 @@ namespace slipstick::app
 
       const StepSolver<dim>          &solver;
       const mechanics::Probes<dim>   &probes;
-      const StepAnswer               &answer;
+      const StepSolution             &answer;
       const tfeti::Constraints       &rows;
       const tfeti::DistributedVector &x;
       const MPI_Comm                  comm;
@@ -255,7 +255,7 @@ namespace slipstick::app
     class ErrorProducts
     {
     public:
-      ErrorProducts(const StepSolver<dim> &solver_, const StepAnswer &answer_, const double t_)
+      ErrorProducts(const StepSolver<dim> &solver_, const StepSolution &answer_, const double t_)
         : solver(solver_)
         , answer(answer_)
         , t(t_)
@@ -313,7 +313,7 @@ namespace slipstick::app
       }
 
       const StepSolver<dim> &solver;
-      const StepAnswer      &answer;
+      const StepSolution    &answer;
       const double           t;
     };
 
@@ -373,7 +373,7 @@ namespace slipstick::app
 
     /// Estimate from the adjoint displacement @p z, if it exists.
     template <int dim>
-    void complete(const StepAnswer                              &answer,
+    void complete(const StepSolution                            &answer,
                   const ErrorProducts<dim>                      &products,
                   const GapErrors<dim>                          &gaps,
                   const std::optional<contact::Adjoint::Answer> &z,
@@ -396,7 +396,7 @@ namespace slipstick::app
     /// With w, the displacement due to the gaps of the bodies without loads: |e|^2 / 2 - a(e, w).
     template <int dim>
     GoalError energy_error(const StepSolver<dim>     &solver,
-                           const StepAnswer          &answer,
+                           const StepSolution        &answer,
                            const std::vector<double> &gaps,
                            const ErrorProducts<dim>  &products,
                            const GapErrors<dim>      &gap_errors,
@@ -443,7 +443,7 @@ namespace slipstick::app
   template <int dim>
   std::vector<GoalError> goal_errors(StepSolver<dim>                &solver,
                                      const mechanics::Probes<dim>   &probes,
-                                     const StepAnswer               &answer,
+                                     const StepSolution             &answer,
                                      const double                    t,
                                      const std::vector<std::string> &quantities)
   {
@@ -493,12 +493,12 @@ namespace slipstick::app
 
   template std::vector<GoalError> goal_errors(StepSolver<2> &,
                                               const mechanics::Probes<2> &,
-                                              const StepAnswer &,
+                                              const StepSolution &,
                                               const double,
                                               const std::vector<std::string> &);
   template std::vector<GoalError> goal_errors(StepSolver<3> &,
                                               const mechanics::Probes<3> &,
-                                              const StepAnswer &,
+                                              const StepSolution &,
                                               const double,
                                               const std::vector<std::string> &);
 } // namespace slipstick::app

@@ -1,4 +1,3 @@
-#include <slipstick/app/answer_warnings.h>
 #include <slipstick/app/error_bars.h>
 #include <slipstick/app/formula_warnings.h>
 #include <slipstick/app/geometry_checks.h>
@@ -6,6 +5,7 @@
 #include <slipstick/app/interruption.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/run.h>
+#include <slipstick/app/solution_warnings.h>
 #include <slipstick/base/memory.h>
 #include <slipstick/contact/equilibrium_limit.h>
 #include <slipstick/output/conditions.h>
@@ -310,7 +310,7 @@ namespace slipstick::app
   }
 
   template <int dim>
-  bool Run<dim>::warn_of_answer(const double t, const StepAnswer &answer)
+  bool Run<dim>::warn_of_answer(const double t, const StepSolution &answer)
   {
     const auto  &u         = answer.recovery.u;
     const auto  &contact   = *answer.contact;
@@ -319,13 +319,13 @@ namespace slipstick::app
     print_checks(log, contact.checks, tolerance);
     if (!passes(solution, contact.checks, tolerance))
       print_failure(log, scene, solution, contact.checks, tolerance);
-    warn(answer_warnings(scene,
-                         solver.mesh(),
-                         solver.spaces(),
-                         solver.dual(),
-                         solution.free,
-                         contact.nodes,
-                         solver.elastic_part(u)));
+    warn(solution_warnings(scene,
+                           solver.mesh(),
+                           solver.spaces(),
+                           solver.dual(),
+                           solution.free,
+                           contact.nodes,
+                           solver.elastic_part(u)));
     warn(held_node_warnings(scene, solver.held_contacts(), contact, comm));
     if (scene.has_contact())
       if (const std::string text = contact::limit_warning(solver.dual(),
@@ -350,7 +350,7 @@ namespace slipstick::app
   }
 
   template <int dim>
-  void Run<dim>::write_fields(const unsigned int step, const StepAnswer &answer) const
+  void Run<dim>::write_fields(const unsigned int step, const StepSolution &answer) const
   {
     if (!scene.output.vtu)
       return;

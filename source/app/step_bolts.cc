@@ -24,9 +24,9 @@ namespace slipstick::app
   } // namespace
 
   template <int dim>
-  std::unique_ptr<StepAnswer> StepSolver<dim>::tighten_bolts(const unsigned int      step,
-                                                             const std::uint64_t     multiplications_before,
-                                                             std::unique_ptr<Answer> answer)
+  std::unique_ptr<StepSolution> StepSolver<dim>::tighten_bolts(const unsigned int      step,
+                                                               const std::uint64_t     multiplications_before,
+                                                               std::unique_ptr<Answer> answer)
   {
     const auto                  &scene     = discrete_scene();
     auto                        &so_far    = problem.tightening();
@@ -78,14 +78,16 @@ namespace slipstick::app
         problem.reload(t);
         options.tolerance        = of_solver;
         the_solution.multipliers = answer->recovery.multipliers;
-        answer = tighten(step, multiplications_before, checked(solve_step(step, multiplications_before, true), t));
+        answer                   = continue_to_smaller_residual(step,
+                                              multiplications_before,
+                                              checked(solve_step(step, multiplications_before, true), t));
       }
   }
 
-  template std::unique_ptr<StepAnswer> StepSolver<2>::tighten_bolts(const unsigned int,
-                                                                    const std::uint64_t,
-                                                                    std::unique_ptr<StepAnswer>);
-  template std::unique_ptr<StepAnswer> StepSolver<3>::tighten_bolts(const unsigned int,
-                                                                    const std::uint64_t,
-                                                                    std::unique_ptr<StepAnswer>);
+  template std::unique_ptr<StepSolution> StepSolver<2>::tighten_bolts(const unsigned int,
+                                                                      const std::uint64_t,
+                                                                      std::unique_ptr<StepSolution>);
+  template std::unique_ptr<StepSolution> StepSolver<3>::tighten_bolts(const unsigned int,
+                                                                      const std::uint64_t,
+                                                                      std::unique_ptr<StepSolution>);
 } // namespace slipstick::app

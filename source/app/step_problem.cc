@@ -7,8 +7,8 @@
 #include <slipstick/interface/pair_checks.h>
 #include <slipstick/interface/shared_sides.h>
 #include <slipstick/mechanics/assembly.h>
+#include <slipstick/mechanics/auxiliary_supports.h>
 #include <slipstick/mechanics/loads.h>
-#include <slipstick/mechanics/still_points.h>
 #include <slipstick/mesh/decomposition.h>
 
 #include <deal.II/base/mpi.h>
@@ -140,7 +140,8 @@ namespace slipstick::app
         std::vector<Eigen::VectorXd> motions;
         for (const auto &motion : unheld.motions)
           motions.push_back(motion.amplitudes);
-        for (auto &support : mechanics::still_points(*the_mesh, *the_spaces, motions, unheld.motions.front().frames))
+        for (auto &support :
+             mechanics::auxiliary_supports(*the_mesh, *the_spaces, motions, unheld.motions.front().frames))
           scene.supports.push_back(std::move(support));
         make_dual_as_it_is(t);
       }

@@ -41,7 +41,7 @@ namespace slipstick::app
     /// places.
     template <int dim>
     void add_held_motions(const StepSolver<dim>        &solver,
-                          const StepAnswer             &answer,
+                          const StepSolution           &answer,
                           const std::vector<Resultant> &reactions,
                           output::ForceSummary         &sums,
                           Warnings                     &warnings)
@@ -128,7 +128,7 @@ namespace slipstick::app
 
   template <int dim>
   output::ForceSummary forces(const StepSolver<dim> &solver,
-                              const StepAnswer      &answer,
+                              const StepSolution    &answer,
                               const double           t,
                               Warnings              &warnings)
   {
@@ -232,7 +232,7 @@ namespace slipstick::app
     return names;
   }
 
-  template output::ForceSummary forces(const StepSolver<2> &, const StepAnswer &, const double, Warnings &);
+  template output::ForceSummary forces(const StepSolver<2> &, const StepSolution &, const double, Warnings &);
   template void                 add_places(const StepSolver<2> &, const mechanics::StressResult &, output::Summary &);
   template std::vector<output::ProbeResult> probe_results(const scene::Scene<2> &,
                                                           const mechanics::Probes<2> &,
@@ -243,8 +243,8 @@ namespace slipstick::app
                                                            TotalSlip &,
                                                            std::vector<mechanics::NodeKey> &);
   template output::ContactNames             contact_names(const scene::Scene<2> &);
-  template output::ForceSummary             forces(const StepSolver<3> &, const StepAnswer &, const double, Warnings &);
-  template void add_places(const StepSolver<3> &, const mechanics::StressResult &, output::Summary &);
+  template output::ForceSummary forces(const StepSolver<3> &, const StepSolution &, const double, Warnings &);
+  template void                 add_places(const StepSolver<3> &, const mechanics::StressResult &, output::Summary &);
   template std::vector<output::ProbeResult> probe_results(const scene::Scene<3> &,
                                                           const mechanics::Probes<3> &,
                                                           const std::vector<Eigen::VectorXd> &,

@@ -191,8 +191,8 @@ namespace slipstick::app
   }
 
   template <int dim>
-  std::unique_ptr<StepAnswer> StepSolver<dim>::solve(const unsigned int  step,
-                                                     const std::uint64_t multiplications_before)
+  std::unique_ptr<StepSolution> StepSolver<dim>::solve(const unsigned int  step,
+                                                       const std::uint64_t multiplications_before)
   {
     const double t    = discrete_scene().load_factors[step];
     options.tolerance = discrete_scene().solver.tolerance;
@@ -202,7 +202,9 @@ namespace slipstick::app
         if (step == 0)
           problem.reload(t);
       }
-    auto answer = tighten(step, multiplications_before, checked(solve_step(step, multiplications_before, false), t));
+    auto answer = continue_to_smaller_residual(step,
+                                               multiplications_before,
+                                               checked(solve_step(step, multiplications_before, false), t));
     if (problem.bolts())
       answer = tighten_bolts(step, multiplications_before, std::move(answer));
     if (step + 1 < discrete_scene().load_factors.size())
@@ -228,7 +230,7 @@ namespace slipstick::app
                      scene.bodies.size(),
                      history,
                      problem.bolts()
-                       ? problem.bolts()->energies_beside(u, tightening().shortening(), scene.bodies.size())
+                       ? problem.bolts()->initial_strain_energies(u, tightening().shortening(), scene.bodies.size())
                        : std::vector<double>());
     add_held_nodes(scene, dual(), held_contacts(), x, u, *answer.contact);
     answer.stress = mechanics::recover_stress(scene, mesh(), spaces(), dual().constraints(), elastic_part(u), t);
@@ -258,9 +260,9 @@ namespace slipstick::app
   }
 
   template <int dim>
-  std::unique_ptr<StepAnswer> StepSolver<dim>::solve_step(const unsigned int  step,
-                                                          const std::uint64_t multiplications_before,
-                                                          const bool          goes_on)
+  std::unique_ptr<StepSolution> StepSolver<dim>::solve_step(const unsigned int  step,
+                                                            const std::uint64_t multiplications_before,
+                                                            const bool          goes_on)
   {
     const double t         = discrete_scene().load_factors[step];
     bool         is_warm   = goes_on || (step > 0 && problem.advance(t, u));
@@ -337,7 +339,7 @@ namespace slipstick::app
   }
 
   template <int dim>
-  std::unique_ptr<StepAnswer> StepSolver<dim>::checked(std::unique_ptr<Answer> answer, const double t) const
+  std::unique_ptr<StepSolution> StepSolver<dim>::checked(std::unique_ptr<Answer> answer, const double t) const
   {
     if (!answer->stress)
       evaluate(*answer, the_solution, t);
@@ -345,9 +347,10 @@ namespace slipstick::app
   }
 
   template <int dim>
-  std::unique_ptr<StepAnswer> StepSolver<dim>::tighten(const unsigned int      step,
-                                                       const std::uint64_t     multiplications_before,
-                                                       std::unique_ptr<Answer> answer)
+  std::unique_ptr<StepSolution> StepSolver<dim>::continue_to_smaller_residual(
+    const unsigned int      step,
+    const std::uint64_t     multiplications_before,
+    std::unique_ptr<Answer> answer)
   {
     const double limit = check_limit(tolerance_of(discrete_scene().solver, the_solution));
     for (unsigned int n = 0; n < max_tightenings && the_solution.status == qp::Status::converged; ++n)

@@ -150,7 +150,7 @@ namespace slipstick::contact
         , free(free_)
         , n_bodies(n_bodies_)
         , history(history_)
-        , energies_beside(energies_beside_)
+        , initial_strain_energies(energies_beside_)
         , jumps(dual_.dual_operator().jumps(u_))
         , deformed(deformations(dual_, u_))
         , forces(nodal_forces(dual_, deformed))
@@ -202,8 +202,8 @@ namespace slipstick::contact
               Eigen::Map<const Eigen::MatrixXd>(u[p].data(), dim, u[p].size() / dim).colwise().norm().maxCoeff());
             energies[dual.subdomains()[p]->body()] += deformed[p].dot(forces[p] + dual.subdomains()[p]->load());
           }
-        for (std::size_t b = 0; b < energies_beside.size(); ++b)
-          energies[b] += energies_beside[b];
+        for (std::size_t b = 0; b < initial_strain_energies.size(); ++b)
+          energies[b] += initial_strain_energies[b];
         checks.max_displacement = dealii::Utilities::MPI::max(checks.max_displacement, comm);
         MPI_Allreduce(MPI_IN_PLACE, energies.data(), energies.size(), MPI_DOUBLE, MPI_SUM, comm);
         checks.energy = energies.sum();
@@ -383,7 +383,7 @@ namespace slipstick::contact
       const std::vector<bool>            &free;
       const unsigned int                  n_bodies;
       const History                      &history;
-      const std::vector<double>          &energies_beside; // of this rank's bodies [N mm]; empty: none
+      const std::vector<double>          &initial_strain_energies; // of this rank's bodies [N mm]; empty: none
 
       const DistributedVector                jumps;
       const std::vector<Eigen::VectorXd>     deformed; // u without rigid motions
@@ -437,8 +437,8 @@ namespace slipstick::contact
                        const std::vector<bool>            &free,
                        const unsigned int                  n_bodies,
                        const History                      &history,
-                       const std::vector<double>          &energies_beside)
+                       const std::vector<double>          &initial_strain_energies)
   {
-    return Inspection(dual, multipliers, u, slip_bound, free, n_bodies, history, energies_beside)();
+    return Inspection(dual, multipliers, u, slip_bound, free, n_bodies, history, initial_strain_energies)();
   }
 } // namespace slipstick::contact

@@ -98,7 +98,7 @@ namespace slipstick::contact
         const auto feasible = feasible_start(start);
         solution.algorithm  = options.algorithm == scene::Algorithm::semismooth_newton ? "semismooth newton" : "smalbe";
         set_bounds(law.bounds(feasible));
-        if (bears_nothing(dual, feasible, box, solution.slip_bound))
+        if (all_forces_vanish(dual, feasible, box, solution.slip_bound))
           {
             solution.multipliers = dual.zero();
             return finished();

@@ -21,7 +21,7 @@ namespace slipstick::contact
     }
 
     /// Whether the bodies can be moved apart so that nothing overlaps.
-    bool come_apart(const tfeti::DualProblem &dual, const Box &box)
+    bool can_be_separated(const tfeti::DualProblem &dual, const Box &box)
     {
       const auto         &kind    = dual.constraints().kind;
       const auto         &weights = dual.residual_weights();
@@ -39,10 +39,10 @@ namespace slipstick::contact
     }
   } // namespace
 
-  bool bears_nothing(const tfeti::DualProblem       &dual,
-                     const tfeti::DistributedVector &feasible,
-                     const Box                      &box,
-                     const std::vector<double>      &slip_bound)
+  bool all_forces_vanish(const tfeti::DualProblem       &dual,
+                         const tfeti::DistributedVector &feasible,
+                         const Box                      &box,
+                         const std::vector<double>      &slip_bound)
   {
     const auto         &kind = dual.constraints().kind;
     std::vector<double> largest{feasible.linfty_norm(), 0., 0.}; // loads; overlaps and slip; slip bounds
@@ -58,6 +58,6 @@ namespace slipstick::contact
     dealii::Utilities::MPI::max(largest, dual.communicator(), largest);
     if (largest[0] > 0)
       return false;
-    return largest[1] == 0 || (largest[2] == 0 && come_apart(dual, box));
+    return largest[1] == 0 || (largest[2] == 0 && can_be_separated(dual, box));
   }
 } // namespace slipstick::contact

@@ -68,8 +68,8 @@ namespace slipstick::interface
       row.master_weights  = mean(row.master_weights, row.measure, held.master_weights, share);
       row.master_position = row.master_position + share / sum * (held.master_position - row.master_position);
       row.gap += share / sum * (held.gap - row.gap);
-      row.left_out = std::max(row.left_out, held.left_out);
-      row.measure  = sum;
+      row.neglected_sagitta = std::max(row.neglected_sagitta, held.neglected_sagitta);
+      row.measure           = sum;
       row.length += part * held.length;
       row.full_measure += part * held.full_measure;
       row.full_length += part * held.full_length;

@@ -55,7 +55,7 @@ namespace slipstick::interface
             {
               auto row = row_of(pairing.nodes()[i], sums[i], nodes);
               row.gap += row.normal * sums[i].rise / sums[i].measure;
-              row.left_out = sums[i].left_out;
+              row.neglected_sagitta = sums[i].neglected_sagitta;
               result.push_back(std::move(row));
             }
         return result;
@@ -65,7 +65,7 @@ namespace slipstick::interface
       struct Sums : NodeIntegrals
       {
         Tensor rise; // <phi_i (rise of the master - rise of the slave) n>
-        double left_out = 0;
+        double neglected_sagitta = 0;
       };
 
       /// Adds the contributions of slave edge e to the integrals of its nodes.
@@ -86,7 +86,7 @@ namespace slipstick::interface
         Eigen::VectorXd                               measures = Eigen::VectorXd::Zero(n_test);             // <T_a>
         Eigen::VectorXd                               lengths  = Eigen::VectorXd::Zero(n_test);    // in the plane
         Eigen::MatrixXd                               rises    = Eigen::MatrixXd::Zero(n_test, 2); // <T_a rise n>
-        double                                        left_out = 0;
+        double                                        neglected_sagitta = 0;
         std::map<mechanics::NodeKey, Eigen::VectorXd> other; // <T_a N_j(y)>
         for (const auto &part : parts)
           for (unsigned int q = 0; q < gauss.size(); ++q)
@@ -108,7 +108,8 @@ namespace slipstick::interface
               slave_ += dx * test * Eigen::Map<const Eigen::RowVectorXd>(N.data(), edge.n_nodes);
               measures += dx * test;
               lengths += length * test;
-              left_out = std::max(left_out, edge.curve.left_out + to.curve.left_out);
+              neglected_sagitta =
+                std::max(neglected_sagitta, edge.curve.neglected_sagitta + to.curve.neglected_sagitta);
               if (edge.curve || to.curve)
                 {
                   const Tensor n    = pairing.direction(e, s);
@@ -130,7 +131,7 @@ namespace slipstick::interface
             node.length += lengths[i];
             for (unsigned int d = 0; d < 2; ++d)
               node.rise[d] += of_curves(i, d);
-            node.left_out = std::max(node.left_out, left_out);
+            node.neglected_sagitta = std::max(node.neglected_sagitta, neglected_sagitta);
             for (unsigned int k = 0; k < edge.n_nodes; ++k)
               if (!(n_test == edge.n_nodes && i != k)) // biorthogonal
                 node.slave[edge.keys[k]] += n_test == edge.n_nodes ? measures[i] : D(i, k);

@@ -196,7 +196,8 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  typename RowBuilder<dim>::Vector RowBuilder<dim>::jump(const Touch<dim> &touch, const Tensor &direction) const
+  typename RowBuilder<dim>::Vector RowBuilder<dim>::jump(const ContactCandidate<dim> &touch,
+                                                         const Tensor                &direction) const
   {
     Vector row;
     for (unsigned int c = 0; c < dim; ++c)
@@ -210,7 +211,8 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  typename RowBuilder<dim>::Vector RowBuilder<dim>::bond(const Touch<dim> &touch, const unsigned int direction) const
+  typename RowBuilder<dim>::Vector RowBuilder<dim>::bond(const ContactCandidate<dim> &touch,
+                                                         const unsigned int           direction) const
   {
     return jump(touch, direction == 0 ? touch.normal : across(touch.normal)[direction - 1]);
   }
@@ -248,7 +250,7 @@ namespace slipstick::interface
     auto        touching = touches.of(i);
     const auto &key      = nodes[i].key;
     const auto  is_free  = [](const Vector &left) { return norm(left) > held_direction_tolerance; };
-    for (Touch<dim> &touch : touching)
+    for (ContactCandidate<dim> &touch : touching)
       if (scene.contacts[touch.pair].law.is_bonded)
         {
           for (unsigned int d = 0; d < dim; ++d)
@@ -264,7 +266,7 @@ namespace slipstick::interface
           if (touch.point.normal_row != tfeti::invalid_row || touch.point.tangential_row != tfeti::invalid_row)
             constraints.bonded_points.push_back(touch.point);
         }
-    for (Touch<dim> &touch : touching)
+    for (ContactCandidate<dim> &touch : touching)
       {
         if (scene.contacts[touch.pair].law.is_bonded)
           continue;
@@ -306,8 +308,8 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  std::vector<typename RowBuilder<dim>::Vector> RowBuilder<dim>::free_tangents(Touch<dim>   &touch,
-                                                                               const Vector &left) const
+  std::vector<typename RowBuilder<dim>::Vector> RowBuilder<dim>::free_tangents(ContactCandidate<dim> &touch,
+                                                                               const Vector          &left) const
   {
     const auto free_of = [&](const Vector &row) {
       auto free = bonds.reduce(free_part(row));
@@ -346,7 +348,7 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  void RowBuilder<dim>::add_held(const unsigned int i, const Touch<dim> &touch, const Vector &coefficients)
+  void RowBuilder<dim>::add_held(const unsigned int i, const ContactCandidate<dim> &touch, const Vector &coefficients)
   {
     tfeti::HeldContacts::Point point;
     point.contact = touch.point;
@@ -386,13 +388,13 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  bool RowBuilder<dim>::is_pruned(const Touch<dim> &touch) const
+  bool RowBuilder<dim>::is_pruned(const ContactCandidate<dim> &touch) const
   {
     return touch.point.gap > limits[touch.pair] && scene.contacts[touch.pair].law.acts_where_closed_alone();
   }
 
   template <int dim>
-  void RowBuilder<dim>::add_pruned(const Touch<dim> &touch, const Vector &coefficients)
+  void RowBuilder<dim>::add_pruned(const ContactCandidate<dim> &touch, const Vector &coefficients)
   {
     fill(pruned.c.size(), coefficients, pruned_entries);
     pruned.kind.push_back(tfeti::RowKind::normal);

@@ -103,7 +103,7 @@ namespace slipstick::interface
             {
               auto row = row_of(pairing.nodes()[i], sums[i], nodes);
               row.gap += row.normal * sums[i].rise / sums[i].measure;
-              row.left_out = sums[i].left_out;
+              row.neglected_sagitta = sums[i].neglected_sagitta;
               result.push_back(std::move(row));
             }
         return result;
@@ -130,7 +130,7 @@ namespace slipstick::interface
       struct Sums : NodeIntegrals
       {
         dealii::Tensor<1, 3> rise; // <phi_i (rise of the master - rise of the slave) n>
-        double               left_out = 0;
+        double               neglected_sagitta = 0;
       };
 
       /// Integrals over one facet: <N_a N_b>, <N_a>, <N_a N_j(y)>, <N_a (rise of the master - rise of the slave)>.
@@ -141,8 +141,8 @@ namespace slipstick::interface
         std::map<mechanics::NodeKey, Eigen::VectorXd> master;
         Eigen::VectorXd                               rises;
         Facet::Tensor                                 normal; // direction of the rises
-        double                                        left_out = 0;
-        bool                                          is_whole = false; // the facet is fully covered
+        double                                        neglected_sagitta = 0;
+        bool                                          is_whole          = false; // the facet is fully covered
       };
 
       Moments moments_of(const unsigned int e) const
@@ -168,7 +168,8 @@ namespace slipstick::interface
           {
             const Facet &to   = master[part.master];
             const auto  &rule = is_affine(facet) && is_affine(to) ? exact : rational;
-            sum.left_out      = std::max(sum.left_out, facet.surface.left_out + to.surface.left_out);
+            sum.neglected_sagitta =
+              std::max(sum.neglected_sagitta, facet.surface.neglected_sagitta + to.surface.neglected_sagitta);
             integrate(part.polygon, rule, [&](const dealii::Point<2> &x, const double weight) {
               if (is_stack && is_hidden(view, part, x))
                 return;
@@ -202,7 +203,7 @@ namespace slipstick::interface
           {
             Sums &node = sums[pairing.nodes_of(e)[i]];
             node.rise += rises[i] * moments.normal;
-            node.left_out = std::max(node.left_out, moments.left_out);
+            node.neglected_sagitta = std::max(node.neglected_sagitta, moments.neglected_sagitta);
             node.measure += phi.areas[i];
             node.length += phi.areas[i];
             if (phi.is_biorthogonal)

@@ -52,7 +52,7 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  std::vector<Touch<dim>> Touches<dim>::of(const unsigned int i) const
+  std::vector<ContactCandidate<dim>> Touches<dim>::of(const unsigned int i) const
   {
     auto touches = nearest_of(i);
     for (unsigned int a = 0; a < touches.size(); ++a)
@@ -64,12 +64,12 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  std::vector<Touch<dim>> Touches<dim>::nearest_of(const unsigned int i) const
+  std::vector<ContactCandidate<dim>> Touches<dim>::nearest_of(const unsigned int i) const
   {
-    const auto             &node = nodes[i];
-    std::vector<Touch<dim>> touches;
+    const auto                        &node = nodes[i];
+    std::vector<ContactCandidate<dim>> touches;
     for (const auto &[pair, area] : node.areas)
-      if (Touch<dim> touch; !scene.contacts[pair].law.is_bonded && place_on_obstacle(i, pair, area, touch))
+      if (ContactCandidate<dim> touch; !scene.contacts[pair].law.is_bonded && place_on_obstacle(i, pair, area, touch))
         touches.push_back(touch);
     if (const auto found = pairs_of.find(node.key); found != pairs_of.end())
       for (const auto &[pair, row] : found->second)
@@ -77,7 +77,7 @@ namespace slipstick::interface
     for (auto &touch : touches)
       complete(i, touch);
     // of obstacles in the same direction the nearest
-    std::vector<Touch<dim>> kept;
+    std::vector<ContactCandidate<dim>> kept;
     for (unsigned int a = 0; a < touches.size(); ++a)
       {
         bool is_nearest = true;
@@ -93,10 +93,10 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  bool Touches<dim>::place_on_obstacle(const unsigned int i,
-                                       const unsigned int pair,
-                                       const Tributary   &area,
-                                       Touch<dim>        &touch) const
+  bool Touches<dim>::place_on_obstacle(const unsigned int     i,
+                                       const unsigned int     pair,
+                                       const Tributary       &area,
+                                       ContactCandidate<dim> &touch) const
   {
     const auto &node    = nodes[i];
     const auto &where   = scene.contacts[pair];
@@ -115,13 +115,15 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  Touch<dim> Touches<dim>::touch_body(const unsigned int i, const unsigned int pair, const MortarRow<dim> &row) const
+  ContactCandidate<dim> Touches<dim>::touch_body(const unsigned int    i,
+                                                 const unsigned int    pair,
+                                                 const MortarRow<dim> &row) const
   {
-    Touch<dim>  touch;
-    const auto &where = scene.contacts[pair];
-    touch.pair        = pair;
-    touch.side        = row.side;
-    touch.normal      = row.normal;
+    ContactCandidate<dim> touch;
+    const auto           &where = scene.contacts[pair];
+    touch.pair                  = pair;
+    touch.side                  = row.side;
+    touch.normal                = row.normal;
     for (const auto &[key, weight] : row.slave_weights)
       touch.slave.emplace_back(number.at(key), weight);
     for (const auto &[key, weight] : row.master_weights)
@@ -142,11 +144,11 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  std::vector<Touch<dim>> Touches<dim>::bonds_to_obstacles(const unsigned int i) const
+  std::vector<ContactCandidate<dim>> Touches<dim>::bonds_to_obstacles(const unsigned int i) const
   {
-    std::vector<Touch<dim>> touches;
+    std::vector<ContactCandidate<dim>> touches;
     for (const auto &[pair, area] : nodes[i].areas)
-      if (Touch<dim> touch; scene.contacts[pair].law.is_bonded && place_on_obstacle(i, pair, area, touch))
+      if (ContactCandidate<dim> touch; scene.contacts[pair].law.is_bonded && place_on_obstacle(i, pair, area, touch))
         {
           complete(i, touch);
           touches.push_back(touch);
@@ -155,9 +157,9 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  std::vector<std::vector<std::pair<unsigned int, Touch<dim>>>> Touches<dim>::bonds_between_bodies() const
+  std::vector<std::vector<std::pair<unsigned int, ContactCandidate<dim>>>> Touches<dim>::bonds_between_bodies() const
   {
-    std::vector<std::vector<std::pair<unsigned int, Touch<dim>>>> by_pair(scene.contacts.size());
+    std::vector<std::vector<std::pair<unsigned int, ContactCandidate<dim>>>> by_pair(scene.contacts.size());
     for (const auto &[key, list] : pairs_of)
       for (const auto &[pair, row] : list)
         if (scene.contacts[pair].law.is_bonded)
@@ -166,7 +168,7 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  void Touches<dim>::complete(const unsigned int i, Touch<dim> &touch) const
+  void Touches<dim>::complete(const unsigned int i, ContactCandidate<dim> &touch) const
   {
     touch.point.pair          = touch.pair;
     touch.point.slave_body    = nodes[i].body;

@@ -128,9 +128,9 @@ namespace slipstick::mechanics
   }
 
   template <int dim>
-  std::vector<double> Bolts<dim>::energies_beside(const std::vector<Eigen::VectorXd> &u,
-                                                  const std::vector<double>          &shortening,
-                                                  const unsigned int                  n_bodies) const
+  std::vector<double> Bolts<dim>::initial_strain_energies(const std::vector<Eigen::VectorXd> &u,
+                                                          const std::vector<double>          &shortening,
+                                                          const unsigned int                  n_bodies) const
   {
     // v'K v - u'K u = s h'K (v + u), summed over the bolts, as K is symmetric
     std::vector<double> result(n_bodies, 0.);

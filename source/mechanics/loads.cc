@@ -18,7 +18,7 @@ namespace slipstick::mechanics
   namespace
   {
     // Admissible difference of two quadratures, summed over cells (and faces of solids), relative to the force.
-    constexpr double allowed_misfit = 0.01;
+    constexpr double allowed_difference = 0.01;
 
     /// One subdomain and its load at load factor t.
     template <int dim>
@@ -36,7 +36,7 @@ namespace slipstick::mechanics
         , spaces(spaces_)
         , element(spaces.of(p))
         , sums(scene.tractions.size() + scene.body_forces.size())
-        , misfits_of_tractions(scene.tractions.size())
+        , differences_of_tractions(scene.tractions.size())
         , dof_handler(*spaces.dof_handlers[p])
         , number(mesh.subdomains[p]->body)
         , body(scene.bodies[number])
@@ -61,9 +61,9 @@ namespace slipstick::mechanics
       }
 
       /// Quadrature differences: tractions given by formulas in space, then body forces.
-      std::vector<Misfit> misfits()
+      std::vector<QuadratureDifference> differences()
       {
-        std::vector<Misfit> all = misfits_of_tractions, others = volume.misfits();
+        std::vector<QuadratureDifference> all = differences_of_tractions, others = volume.differences();
         all.insert(all.end(), others.begin(), others.end());
         return all;
       }
@@ -187,7 +187,7 @@ namespace slipstick::mechanics
           facet.n_corners(),
           [&](const std::array<double, 2> &s) { return forces_at(traction, facet, SurfaceFacet::Place(s[0], s[1])); });
         add_to_nodes(facet, forces.integral, face, sums[k]);
-        misfits_of_tractions[k].add(forces.scale, forces.difference, in_space(facet.middle()));
+        differences_of_tractions[k].add(forces.scale, forces.difference, in_space(facet.middle()));
       }
 
       template <class Part, class Forces>
@@ -229,7 +229,7 @@ namespace slipstick::mechanics
       const Spaces<dim>                           &spaces;
       const Element<dim>                          &element;
       std::vector<LoadResultant>                   sums;
-      std::vector<Misfit>                          misfits_of_tractions; // in space
+      std::vector<QuadratureDifference>            differences_of_tractions; // in space
       const dealii::DoFHandler<dim>               &dof_handler;
       unsigned int                                 number;
       const scene::Body<dim>                      &body;
@@ -297,17 +297,17 @@ namespace slipstick::mechanics
                                                  const Spaces<dim>       &spaces,
                                                  const double             t)
     {
-      const unsigned int         n_spread = scene.tractions.size() + scene.body_forces.size();
-      std::vector<LoadResultant> sums(n_spread);
-      std::vector<Misfit>        misfits(n_spread);
+      const unsigned int                n_spread = scene.tractions.size() + scene.body_forces.size();
+      std::vector<LoadResultant>        sums(n_spread);
+      std::vector<QuadratureDifference> differences(n_spread);
       collectively(mesh.comm, [&] {
         for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
           {
             SubdomainLoad<dim> load(scene, mesh, spaces, p, t);
-            const auto         own_misfits = load.misfits();
+            const auto         own_differences = load.differences();
             for (unsigned int k = 0; k < n_spread; ++k)
               {
-                misfits[k].add(own_misfits[k]);
+                differences[k].add(own_differences[k]);
                 const auto &own = load.resultants()[k];
                 sums[k].sum += own.sum;
                 if (!sums[k].unresolved)
@@ -315,13 +315,13 @@ namespace slipstick::mechanics
               }
           }
       });
-      for (unsigned int k = 0; k < misfits.size(); ++k)
+      for (unsigned int k = 0; k < differences.size(); ++k)
         {
-          const double size       = dealii::Utilities::MPI::sum(misfits[k].size, mesh.comm);
-          const double difference = dealii::Utilities::MPI::sum(misfits[k].difference, mesh.comm);
-          const double largest    = dealii::Utilities::MPI::max(misfits[k].largest, mesh.comm);
-          if (difference > allowed_misfit * size && misfits[k].largest == largest)
-            sums[k].unresolved = misfits[k].at;
+          const double size       = dealii::Utilities::MPI::sum(differences[k].size, mesh.comm);
+          const double difference = dealii::Utilities::MPI::sum(differences[k].difference, mesh.comm);
+          const double largest    = dealii::Utilities::MPI::max(differences[k].largest, mesh.comm);
+          if (difference > allowed_difference * size && differences[k].largest == largest)
+            sums[k].unresolved = differences[k].at;
         }
       return over_all_ranks(sums, mesh.comm);
     }

@@ -119,10 +119,10 @@ namespace slipstick::mechanics
 
   // For body forces given by formulas: difference from a finer quadrature.
   template <int dim>
-  std::vector<Misfit> VolumeLoad<dim>::misfits() const
+  std::vector<QuadratureDifference> VolumeLoad<dim>::differences() const
   {
-    std::vector<Misfit> result(scene.body_forces.size());
-    const bool          any = std::any_of(body_forces.begin(), body_forces.end(), [this](const unsigned int k) {
+    std::vector<QuadratureDifference> result(scene.body_forces.size());
+    const bool any = std::any_of(body_forces.begin(), body_forces.end(), [this](const unsigned int k) {
       return !is_constant(scene.body_forces[k]);
     });
     if (!any)

@@ -91,7 +91,7 @@ namespace slipstick::mesh
           if (faces.size() == 2)
             add_turn(line, normal(faces[0]), normal(faces[1]));
         for (unsigned int f = 0; f < piece.boundary_faces.size(); ++f)
-          piece.boundary_faces[f].curve.left_out = of_face(f);
+          piece.boundary_faces[f].curve.neglected_sagitta = of_face(f);
       }
 
     private:
@@ -125,19 +125,19 @@ namespace slipstick::mesh
       double of_face(const unsigned int f) const
       {
         const double area    = normal(f).norm() / 2;
-        double       largest = 0, left_out = 0;
+        double       largest = 0, neglected_sagitta = 0;
         for (const auto &line : lines_of(f))
           if (const auto found = turns.find(line); found != turns.end() && found->second > smallest_turn)
             {
               const double length = piece.vertices[line[0]].distance(piece.vertices[line[1]]);
               const double height = (around.at(piece.boundary_faces[f].vertices).size() == 3 ? 2 : 1) * area / length;
               largest             = std::max(largest, found->second);
-              left_out            = std::max(left_out, height * found->second / 8);
+              neglected_sagitta   = std::max(neglected_sagitta, height * found->second / 8);
             }
         for (const unsigned int v : around.at(piece.boundary_faces[f].vertices))
           if (const auto found = at_vertex.find(v); found != at_vertex.end() && found->second < share_of_turn * largest)
             return 0;
-        return left_out;
+        return neglected_sagitta;
       }
 
       const double                                           limit;
@@ -201,8 +201,9 @@ namespace slipstick::mesh
         face.curve = patch;
         if (!body.has_smooth_outline)
           {
-            face.curve          = {};
-            face.curve.left_out = sagitta(patch, {patch.points.begin(), patch.points.begin() + vertices.size()});
+            face.curve = {};
+            face.curve.neglected_sagitta =
+              sagitta(patch, {patch.points.begin(), patch.points.begin() + vertices.size()});
           }
       }
     if (!body.has_smooth_outline)

@@ -166,7 +166,7 @@ namespace slipstick::mesh
         for (const auto &[a, b] : {std::pair(0, 1), {1, 3}, {3, 2}, {2, 0}})
           size = std::max(size, (vector_of(part[corners[a]]) - vector_of(part[corners[b]])).norm() / n_parts);
         if (surface.kind != FaceSurface::Kind::patch)
-          surface.left_out *= size * size;
+          surface.neglected_sagitta *= size * size;
         else
           surface = part_of(surface,
                             {place_on(surface, cell, part[corners[0]]),

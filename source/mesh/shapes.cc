@@ -44,7 +44,7 @@ namespace slipstick::mesh
             if (body.has_smooth_outline)
               face.curve = arc;
             else
-              face.curve.left_out = sagitta(arc);
+              face.curve.neglected_sagitta = sagitta(arc);
           }
     }
 

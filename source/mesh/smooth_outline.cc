@@ -324,12 +324,12 @@ namespace slipstick::mesh
           Curve curve = by_middles ? through_middle(edge) : spline(edge);
           if (!body.has_smooth_outline)
             {
-              const double sagitta_ = sagitta(curve);
-              curve                 = Curve();
-              curve.left_out        = sagitta_;
+              const double sagitta_   = sagitta(curve);
+              curve                   = Curve();
+              curve.neglected_sagitta = sagitta_;
             }
           else if (!curve && is_coarse_circle(edge))
-            curve.left_out = 0.5 * edge.length * std::tan(std::abs(edge.turn) / 4);
+            curve.neglected_sagitta = 0.5 * edge.length * std::tan(std::abs(edge.turn) / 4);
           n_bent += bool(curve);
           curves[{{edge.from, edge.to}}] = {curve, &edge};
         }
@@ -360,11 +360,11 @@ namespace slipstick::mesh
   template <int dim>
   bool leaves_out_curves(const Mesh<dim> &mesh)
   {
-    bool is_left_out = false;
+    bool is_neglected = false;
     for (const auto &subdomain : mesh.subdomains)
       for (const auto &[vertices, curve] : subdomain->curves)
-        is_left_out = is_left_out || curve.left_out > 0;
-    return dealii::Utilities::MPI::logical_or(is_left_out, mesh.comm);
+        is_neglected = is_neglected || curve.neglected_sagitta > 0;
+    return dealii::Utilities::MPI::logical_or(is_neglected, mesh.comm);
   }
 
   template bool leaves_out_curves(const Mesh<2> &);

@@ -219,7 +219,7 @@ namespace slipstick::mesh
     if (surface.kind != FaceSurface::Kind::patch)
       {
         FaceSurface part = surface;
-        part.left_out /= 4; // edges are half as long
+        part.neglected_sagitta /= 4; // edges are half as long
         return part;
       }
     // vertices are nodes of the patch

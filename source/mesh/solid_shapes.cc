@@ -20,7 +20,7 @@ namespace slipstick::mesh
       if (body.has_smooth_outline)
         return surface;
       FaceSurface none;
-      none.left_out = sagitta(surface, corners);
+      none.neglected_sagitta = sagitta(surface, corners);
       return none;
     }
 
@@ -28,7 +28,7 @@ namespace slipstick::mesh
     FaceSurface cylinder_over(const EdgeCurve<2> &arc)
     {
       FaceSurface none;
-      none.left_out = arc.left_out;
+      none.neglected_sagitta = arc.neglected_sagitta;
       if (!arc)
         return none;
       const auto &center = arc.points[2];

@@ -43,7 +43,7 @@ namespace slipstick::mesh
             face->set_boundary_id(found == boundary.end() ? cut_id : found->second.id);
             if (found == boundary.end())
               continue;
-            if (const auto &curve = found->second.curve; curve || curve.left_out > 0)
+            if (const auto &curve = found->second.curve; curve || curve.neglected_sagitta > 0)
               mesh->curves[key] = curve;
             if constexpr (dim == 2)
               if (middles.count(key) > 0)

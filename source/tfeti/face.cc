@@ -170,9 +170,9 @@ namespace slipstick::tfeti
         z.copy_locally_owned_data_from(r);
         return;
       }
-    const RowPreconditioner   &M        = *problem.preconditioner();
-    const std::vector<double> &yielding = metric.yielding();
-    if (turns.empty() && yielding.empty())
+    const RowPreconditioner   &M                  = *problem.preconditioner();
+    const std::vector<double> &compliance_factors = metric.compliance_factors();
+    if (turns.empty() && compliance_factors.empty())
       M.apply(*weights, r, z);
     else
       {
@@ -181,9 +181,9 @@ namespace slipstick::tfeti
         M.apply(*weights, at, z);
         soften(z);
       }
-    for (std::size_t row = 0; row < yielding.size(); ++row) // their own stiffness also bears smooth loads
-      z.local_element(row) +=
-        (1 - yielding[row] * yielding[row]) * metric.weights()[row] * metric.least() * r.local_element(row);
+    for (std::size_t row = 0; row < compliance_factors.size(); ++row) // their own stiffness also bears smooth loads
+      z.local_element(row) += (1 - compliance_factors[row] * compliance_factors[row]) * metric.weights()[row] *
+                              metric.least() * r.local_element(row);
     z *= problem.norm();
   }
 
@@ -200,9 +200,9 @@ namespace slipstick::tfeti
   // Square root of the effect that the compliance of rows and of turned rows has on M.
   void Face::soften(DistributedVector &x) const
   {
-    const std::vector<double> &yielding = metric.yielding();
-    for (std::size_t r = 0; r < yielding.size(); ++r)
-      x.local_element(r) *= yielding[r];
+    const std::vector<double> &compliance_factors = metric.compliance_factors();
+    for (std::size_t r = 0; r < compliance_factors.size(); ++r)
+      x.local_element(r) *= compliance_factors[r];
     qp::turn(turns, x);
     for (std::size_t k = 0; k < turns.size(); ++k)
       x.local_element(turns[k].second) *= std::sqrt(stiffness[k]);
@@ -213,8 +213,7 @@ namespace slipstick::tfeti
   {
     const Face all(problem, std::vector<bool>(r.locally_owned_size(), true));
     if (!all.is_regular())
-      throw InputError("the stiffnesses of the bodies differ by more than double precision can tell",
-                       "check their thicknesses, moduli and sizes for wrong units");
+      throw stiffnesses_too_far_apart();
     DistributedVector part(r), range = problem.zero();
     all.project_range(r, range);
     part -= range;

@@ -256,7 +256,7 @@ namespace slipstick::tfeti
   {
     std::vector<bool> result = free;
     auto              loose  = motions.free(free, well ? weak_resistance : BodyMotions::rounding_of_resistance, turns);
-    if (!well && !tell_sets() && !loose.empty() && stop_driven(loose, gaps, result))
+    if (!well && !predict_active_sets() && !loose.empty() && stop_driven(loose, gaps, result))
       loose = motions.free(result, BodyMotions::rounding_of_resistance, turns);
     if (loose.empty())
       return result;
@@ -273,7 +273,7 @@ namespace slipstick::tfeti
     return result;
   }
 
-  bool LooseBodies::tell_sets() const
+  bool LooseBodies::predict_active_sets() const
   {
     return !held_by_contact.empty() && !motions.are_solids();
   }

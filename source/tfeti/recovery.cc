@@ -180,6 +180,23 @@ namespace slipstick::tfeti
         at.u[p] += dual.body_motions().displacements(p, amplitudes);
     }
 
+    /// The projector of displacements: restricted to the free rows, with the weights of residuals.
+    Projector projector_of_displacements(const DualProblem &dual, const std::vector<bool> &free)
+    {
+      try
+        {
+          return Projector(dual.projector(),
+                           free,
+                           dual.communicator(),
+                           std::vector<qp::Tie>(),
+                           dual.residual_weights());
+        }
+      catch (const NumericalError &) // on all ranks: no motion is free, but the stiff rows hide the others
+        {
+          throw stiffnesses_too_far_apart();
+        }
+    }
+
     /// u += R a: a least squares fit to the free rows, to which the projector is restricted.
     void fit_motions(const DualProblem &dual, const Projector &on_free, const std::vector<bool> &free, Recovery &at)
     {
@@ -236,11 +253,7 @@ namespace slipstick::tfeti
       if (!is_at_rest)
         place_by_any_row(dual, placement);
       const auto       &systems = dual.subdomains();
-      const Projector   on_free(dual.projector(),
-                              fixed,
-                              dual.communicator(),
-                              std::vector<qp::Tie>(),
-                              dual.residual_weights());
+      const Projector   on_free = projector_of_displacements(dual, fixed);
       Recovery          result{{}, dual.zero(), {}};
       DistributedVector step{dual.zero()};
       result.multipliers = x;
@@ -312,9 +325,6 @@ namespace slipstick::tfeti
         at.u[p] -= change[p];
       }
     at.multipliers += step;
-    fit_motions(dual,
-                Projector(dual.projector(), free, dual.communicator(), std::vector<qp::Tie>(), dual.residual_weights()),
-                free,
-                at);
+    fit_motions(dual, projector_of_displacements(dual, free), free, at);
   }
 } // namespace slipstick::tfeti

@@ -37,4 +37,10 @@ namespace slipstick::tfeti
     const double largest = relative.empty() ? 1. : *std::max_element(relative.begin(), relative.end());
     differs_much         = dealii::Utilities::MPI::max(largest, comm) > large_stiffness_ratio;
   }
+
+  InputError stiffnesses_too_far_apart()
+  {
+    return InputError("the stiffnesses of the bodies differ by more than double precision can tell",
+                      "check their thicknesses, moduli and sizes for wrong units");
+  }
 } // namespace slipstick::tfeti

@@ -15,7 +15,7 @@ namespace
     return parse_command_line(static_cast<int>(arguments.size()), arguments.data());
   }
 
-  void refused(const std::vector<const char *> &arguments, const std::vector<std::string> &parts)
+  void line_refused(const std::vector<const char *> &arguments, const std::vector<std::string> &parts)
   {
     expect_parts(error_of([&] { parse(arguments); }), parts);
   }
@@ -60,7 +60,7 @@ TEST(command_line, list_parameters_needs_no_case)
   EXPECT_EQ(*parse({"--list-parameters", "json"}).list_parameters, scene::ListFormat::json);
   EXPECT_EQ(*parse({"--list-parameters", "latex"}).list_parameters, scene::ListFormat::latex);
   EXPECT_EQ(*parse({"--list-parameters", "prm"}).list_parameters, scene::ListFormat::prm);
-  refused({"--list-parameters", "jsn"}, {"jsn", "did you mean 'json'?"});
+  line_refused({"--list-parameters", "jsn"}, {"jsn", "did you mean 'json'?"});
 }
 
 TEST(command_line, help_and_version_are_values)
@@ -75,30 +75,30 @@ TEST(command_line, help_and_version_are_values)
 
 TEST(command_line, unknown_option_gives_the_nearest)
 {
-  refused({"a.prm", "--chekc"}, {"--chekc", "did you mean '--check'?"});
-  refused({"a.prm", "--ouput=x"}, {"--ouput", "did you mean '--output'?"});
+  line_refused({"a.prm", "--chekc"}, {"--chekc", "did you mean '--check'?"});
+  line_refused({"a.prm", "--ouput=x"}, {"--ouput", "did you mean '--output'?"});
 }
 
 TEST(command_line, missing_case_file)
 {
-  refused({}, {"no case file", "CASE.prm"});
-  refused({"--quiet"}, {"no case file", "CASE.prm"});
+  line_refused({}, {"no case file", "CASE.prm"});
+  line_refused({"--quiet"}, {"no case file", "CASE.prm"});
 }
 
 TEST(command_line, second_case_file)
 {
-  refused({"a.prm", "b.prm"}, {"'b.prm'", "one case file"});
+  line_refused({"a.prm", "b.prm"}, {"'b.prm'", "one case file"});
 }
 
 TEST(command_line, set_without_value)
 {
-  refused({"a.prm", "--set", "Solver/Tolerance"}, {"--set Solver/Tolerance", "Name=value"});
-  refused({"a.prm", "--set", "=3"}, {"--set =3", "Name=value"});
-  refused({"a.prm", "--set"}, {"--set"});
+  line_refused({"a.prm", "--set", "Solver/Tolerance"}, {"--set Solver/Tolerance", "Name=value"});
+  line_refused({"a.prm", "--set", "=3"}, {"--set =3", "Name=value"});
+  line_refused({"a.prm", "--set"}, {"--set"});
 }
 
 TEST(command_line, contradictions_and_empty_names)
 {
-  refused({"a.prm", "--quiet", "--verbose"}, {"--quiet", "--verbose"});
-  refused({"a.prm", "--output", ""}, {"--output"});
+  line_refused({"a.prm", "--quiet", "--verbose"}, {"--quiet", "--verbose"});
+  line_refused({"a.prm", "--output", ""}, {"--output"});
 }

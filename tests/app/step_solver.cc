@@ -35,11 +35,11 @@ namespace
       return solver.dual().constraints().counts.normal;
     }
 
-    Log                                           log;
-    StageClock                                    clock;
-    app::StepSolver<2>                            solver;
-    unsigned long long                            rows_at_first = 0;
-    std::vector<std::unique_ptr<app::StepAnswer>> answers;
+    Log                                             log;
+    StageClock                                      clock;
+    app::StepSolver<2>                              solver;
+    unsigned long long                              rows_at_first = 0;
+    std::vector<std::unique_ptr<app::StepSolution>> answers;
   };
 
   void expect_same(const Steps &a, const Steps &b, const double tolerance)
@@ -126,7 +126,9 @@ TEST(StepSolver, state_is_the_same_after_it_was_written_and_taken_over)
   run.summary.steps.resize(1);
   std::string path = (std::filesystem::temp_directory_path() / "slipstick-XXXXXX").string();
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-    ASSERT_NE(mkdtemp(path.data()), nullptr);
+    {
+      ASSERT_NE(mkdtemp(path.data()), nullptr);
+    }
   path = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, path);
   const output::OutputDirectory directory(path, MPI_COMM_WORLD);
   app::write_restart(directory, scene, run, MPI_COMM_WORLD);

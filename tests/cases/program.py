@@ -1,8 +1,8 @@
 """Runs slipstick as a user does and reads what it leaves. Standard library only.
 
 Where things are comes from the environment: SLIPSTICK (the program), SLIPSTICK_SOURCE_DIR; without it from the place of
-this file and a build in build/. MPIEXEC is read by scripts/mpirun. With SLIPSTICK_FORK_SERVER (tests/fork_server) runs on one rank
-do not load the libraries anew.
+this file and a build in build/. MPIEXEC is read by scripts/mpirun. With SLIPSTICK_FORK_SERVER (tests/fork_server) runs do
+not load the libraries anew.
 """
 
 import atexit
@@ -63,11 +63,6 @@ def fork_server():
     return _servers[0] if _servers else None
 
 
-def is_text(arguments):
-    """Whether a request to the fork server, which is text, can carry these."""
-    return all(argument.isprintable() for argument in arguments)
-
-
 class Result:
     """What one run printed, returned and wrote."""
 
@@ -108,14 +103,11 @@ def run(*arguments, ranks=1, directory=None):
     """slipstick with these arguments, as they are. @p directory: where the caller expects output, for the result."""
     arguments = [str(argument) for argument in arguments]
     command = launcher(ranks) + [PROGRAM] + arguments
-    if ranks == 1 and is_text(arguments) and fork_server():
-        status, stdout, stderr, is_late = fork_server().run(arguments, WORK, TIME_LIMIT)
-        stdout, stderr = stdout.decode(), stderr.decode()
-        if is_late:
-            raise hang(command, stdout, stderr)
-        return Result(command, status, stdout, stderr, directory)
-    process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                               text=True, env={**ENVIRONMENT, **NO_GRACE}, cwd=WORK, start_new_session=True)
+    server = fork_server()
+    started = launcher(ranks) + [server.client] + arguments if server else command
+    process = subprocess.Popen(started, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                               env={**ENVIRONMENT, **NO_GRACE, **(server.variables if server else {})}, cwd=WORK,
+                               start_new_session=True)
     try:
         stdout, stderr = process.communicate(timeout=TIME_LIMIT)
     except subprocess.TimeoutExpired:

@@ -9,7 +9,7 @@ using tfeti::RowKind;
 
 namespace
 {
-  const std::vector<Cut> cuts = {whole(), blocks(2), blocks(4), metis(6)};
+  const std::vector<Cut> four_cuts = {whole(), blocks(2), blocks(4), metis(6)};
 
   /// The box pressed on the circle, pushed sideways too.
   Scene pushed_box(const std::string &slip_bound, const unsigned int degree = 1)
@@ -181,7 +181,7 @@ namespace
 TEST(ContactSolve, multipliers_are_optimal)
 {
   for (const std::string &bound : slip_bounds)
-    for (const Cut &how : cuts)
+    for (const Cut &how : four_cuts)
       {
         SCOPED_TRACE("slip bound " + bound + ", cut " + std::to_string(how.n));
         expect_optimal(Solved(cut(pushed_box(bound), how)));
@@ -193,7 +193,7 @@ TEST(ContactSolve, contact_forces_agree_with_those_of_the_untorn_body)
   for (const std::string &bound : slip_bounds)
     {
       const auto expect = reference_forces(pushed_box(bound));
-      for (const Cut &how : cuts)
+      for (const Cut &how : four_cuts)
         {
           SCOPED_TRACE("slip bound " + bound + ", cut " + std::to_string(how.n));
           expect_forces(contact_forces(Solved(cut(pushed_box(bound), how))), expect, 1e-6);
@@ -228,13 +228,13 @@ TEST(ContactSolve, some_nodes_slip_some_stick_some_are_open)
 TEST(ContactSolve, slip_bound_zero_is_no_friction)
 {
   const auto expect = contact_forces(Solved(cut(pushed_box(""), whole())));
-  for (const Cut &how : cuts)
+  for (const Cut &how : four_cuts)
     expect_forces(contact_forces(Solved(cut(pushed_box("0"), how))), expect, 1e-7);
 }
 
 TEST(ContactSolve, free_rows_are_those_strictly_inside_their_bounds)
 {
-  for (const Cut &how : cuts)
+  for (const Cut &how : four_cuts)
     {
       const Solved solved(cut(pushed_box("20"), how));
       const auto box = contact::multiplier_box(*solved.dual, contact::slip_bounds(solved.torn.scene, *solved.dual, 1.));
@@ -313,7 +313,7 @@ TEST(ContactSolve, linear_scene_goes_to_conjugate_gradients)
 
 TEST(ContactSolve, no_loads_give_no_forces)
 {
-  for (const Cut &how : cuts)
+  for (const Cut &how : four_cuts)
     {
       Scene scene = pushed_box("20");
       scene.tractions.clear();
@@ -327,7 +327,7 @@ TEST(ContactSolve, no_loads_give_no_forces)
 
 TEST(ContactSolve, linear_scene_without_loads_stays_at_rest)
 {
-  for (const Cut &how : cuts)
+  for (const Cut &how : four_cuts)
     {
       Scene scene = box(8);
       support(scene, 0, "left", "0", "0");
@@ -340,7 +340,7 @@ TEST(ContactSolve, linear_scene_without_loads_stays_at_rest)
 
 TEST(ContactSolve, circle_that_is_not_reached_carries_nothing)
 {
-  for (const Cut &how : cuts)
+  for (const Cut &how : four_cuts)
     {
       Scene scene               = pushed_box("");
       scene.obstacles[0].radius = 10;
@@ -363,7 +363,7 @@ TEST(ContactSolve, overlap_is_pushed_out)
 
 TEST(ContactSolve, floating_box_is_carried_by_the_circle)
 {
-  for (const Cut &how : cuts)
+  for (const Cut &how : four_cuts)
     {
       SCOPED_TRACE(how.n);
       const Solved solved(cut(floating_box("0.5", "-20-x"), how));
@@ -385,7 +385,7 @@ TEST(ContactSolve, floating_box_is_carried_by_the_circle)
 
 TEST(ContactSolve, load_that_lifts_the_box_off_has_no_equilibrium_on_any_rank)
 {
-  for (const Cut &how : cuts)
+  for (const Cut &how : four_cuts)
     {
       const Scene       scene = cut(floating_box("0", "5000"), how);
       const Torn        torn(scene);
@@ -400,7 +400,7 @@ TEST(ContactSolve, load_that_lifts_the_box_off_has_no_equilibrium_on_any_rank)
 
 TEST(ContactSolve, push_beyond_the_slip_bound_has_no_equilibrium_on_any_rank)
 {
-  for (const Cut &how : cuts)
+  for (const Cut &how : four_cuts)
     {
       const Scene       scene = cut(floating_box("200", "-20"), how);
       const Torn        torn(scene);
@@ -416,7 +416,7 @@ TEST(ContactSolve, frictionless_box_on_a_circle_may_roll_off)
 {
   Scene scene           = floating_box("0", "-20");
   scene.contacts[0].law = {};
-  for (const Cut &how : cuts)
+  for (const Cut &how : four_cuts)
     {
       const std::string text = message_on_all_ranks<NoEquilibrium>([&] { Torn(cut(scene, how)).dual(); });
       EXPECT_NE(text.find("nothing holds body box: rotation about (5, -20)"), std::string::npos) << text;

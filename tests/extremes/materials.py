@@ -15,9 +15,7 @@ class Materials(Extremes):
         table = Table('stiffness of the upper body over that of the lower one')
         energy, pressure = {}, {}
         for power in (-8, -6, -3, 0, 3, 6, 9):
-            result = self.converges(table, '1e{}'.format(power), stack(box={'Young modulus': repr(E * 10.**power)}),
-                                    # one node cycles, SMALBE ends it; at 1e-8 for longer
-                                    most=110 if power > -6 else 500 if power > -8 else 3000)
+            result = self.converges(table, '1e{}'.format(power), stack(box={'Young modulus': repr(E * 10.**power)}), most=110)
             self.in_balance(result)
             self.assertEqual(any('same units' in text for text in result.summary['warnings']), abs(power) > 5, result)
             energy[power] = result.summary['results']['strain_energy']
@@ -29,12 +27,11 @@ class Materials(Extremes):
         self.near(pressure[9], pressure[6], 1e-5)
 
     def test_stiffness_ratio_for_other_subdomains(self):
-        """Sets that Newton's method takes from gradients below rounding cycle for some partitions (decision 0100)."""
+        """Sets recurred where faces were solved to more than the gradients that tell slip from stick (decision 0111)."""
         table = Table('the same at 1e-8, seeds of METIS')
         case = stack(box={'Young modulus': repr(E * 1e-8)})
-        long = [seed for seed in range(12)
-                if count(self.converges(table, str(seed), case, {'Decomposition/Seed': seed}, most=10000)) > 500]
-        self.assertLessEqual(len(long), 1, long)
+        for seed in range(12):
+            self.converges(table, str(seed), case, {'Decomposition/Seed': seed}, most=100)
 
     def test_stiffness_ratio_beyond_rounding(self):
         """At 1e-9 rounding of the soft box would show in the stresses of the base (1e-3) if it were not overcome."""

@@ -12,7 +12,7 @@ NOWHERE = pathlib.Path('/nonexistent')
 
 
 def is_late(script):
-    options = argparse.Namespace(program=sys.executable, server=None, time=2, memory=2048)
+    options = argparse.Namespace(started=sys.executable, time=2, memory=2048)
     return scenes.start_patiently(['-c', script], options, 1, NOWHERE)[2]
 
 

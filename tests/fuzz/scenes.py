@@ -4,12 +4,13 @@ mutated scenes, and mesh files in them, through the program. Each run must end w
 error and one remedy where it is refused, nothing left half written, and where it converges with an answer that its files themselves
 show to be one (answer.py). Scenes are shipped ones, those of scenes/ (every kind of section), solids drawn at random and plates and
 blocks from mesh files; lines, values, numbers (also by powers of ten), bytes, included files and settings of any parameter are
-mutated. PART of them run on two ranks; with the program of tests/fork_server the others do not load the libraries anew. What fails
+mutated. PART of them run on two ranks; with the program of tests/fork_server they do not load the libraries anew. What fails
 is kept in DIR (default output/fuzz) under its seed. SECONDS are those of the clock; where a run takes longer on one rank it is made
 again, and they are those of its processor time, since other programs may keep the machine busy. Status 1 when any did. Standard library only.
 """
 
 import argparse
+import atexit
 import concurrent.futures
 import json
 import os
@@ -22,7 +23,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import unicodedata
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -283,20 +283,12 @@ def limit(memory, seconds=None):
 
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1', OMPI_ALLOW_RUN_AS_ROOT='1',
                    OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
-of_thread = threading.local()
-servers = []  # a child that Python forks drops the locals of other threads, which must not delete the folders of their servers
 
 
 def start(arguments, options, ranks):
     """Returns the status, what was printed on standard error as bytes, and whether the time limit was hit."""
-    if ranks == 1 and options.server and all(argument.isprintable() for argument in arguments):
-        if not hasattr(of_thread, 'server'):
-            of_thread.server = ForkServer(options.server, ENVIRONMENT)
-            servers.append(of_thread.server)
-        status, _, stderr, is_late = of_thread.server.run(arguments, os.getcwd(), options.time, options.memory)
-        return status, stderr, is_late
     launcher = [str(ROOT / 'scripts' / 'mpirun'), '--shared-cores', '-n', str(ranks)] if ranks > 1 else []
-    return wait_for([*launcher, options.program, *arguments], limit(options.memory), options.time)
+    return wait_for([*launcher, options.started, *arguments], limit(options.memory), options.time)
 
 
 def wait_for(command, limits, seconds):
@@ -317,7 +309,7 @@ def start_patiently(arguments, options, ranks, output):
     result = start(arguments, options, ranks)
     if result[2] and ranks == 1:
         shutil.rmtree(output, ignore_errors=True)
-        result = wait_for([options.program, *arguments], limit(options.memory, int(options.time)), PATIENCE * options.time)
+        result = wait_for([options.started, *arguments], limit(options.memory, int(options.time)), PATIENCE * options.time)
     return result
 
 
@@ -370,6 +362,12 @@ def main():
     parser.add_argument('--two-ranks', type=float, default=0.01)
     options = parser.parse_args()
     options.parameters = parameters_of(options.program)
+    options.started = options.program
+    if options.server:
+        server = ForkServer(options.server, ENVIRONMENT)
+        atexit.register(server.close)
+        ENVIRONMENT.update(server.variables)
+        options.started = server.client
     options.keep.mkdir(parents=True, exist_ok=True)
     statuses = {}
     n_bad = 0

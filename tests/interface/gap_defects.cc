@@ -72,11 +72,11 @@ TEST(GapDefect, is_of_pairs_node_to_node_alone)
         scene.bodies[0].shape              = scene::Shape::ring;
         scene.bodies[0].inner_radius       = 8;
         scene.bodies[0].radius             = 10;
-        scene.bodies[0].cells              = {{n, 2}};
+        scene.bodies[0].cells              = std::array<unsigned int, 2>{{n, 2}};
         scene.bodies[1].shape              = scene::Shape::ring;
         scene.bodies[1].inner_radius       = 10.01;
         scene.bodies[1].radius             = 12;
-        scene.bodies[1].cells              = {{n, 2}};
+        scene.bodies[1].cells              = std::array<unsigned int, 2>{{n, 2}};
         scene.bodies[1].has_smooth_outline = is_round;
         touch(scene, {0, "outer"}, {1, "inner"}, {});
         scene.contacts[0].discretization = how;

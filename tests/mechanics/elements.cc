@@ -11,21 +11,6 @@ using scene::PlaneState;
 
 namespace
 {
-  const double pi = std::acos(-1.);
-
-  struct Kind
-  {
-    Cells        cells;
-    unsigned int degree;
-    ElementKind  element;
-  };
-
-  std::string name(const Kind &kind)
-  {
-    return std::string(kind.cells == Cells::triangles ? "triangles" : "quadrilaterals") + " of degree " +
-           std::to_string(kind.degree) + (kind.element == ElementKind::standard ? "" : ", nearly incompressible");
-  }
-
   const std::vector<Kind> standard  = {{Cells::quadrilaterals, 1, ElementKind::standard},
                                        {Cells::quadrilaterals, 2, ElementKind::standard},
                                        {Cells::triangles, 1, ElementKind::standard},
@@ -72,13 +57,6 @@ namespace
       const double bump = s * (1 - s) * t * (1 - t);
       return Point(s + 0.6 * bump * std::sin(17 * s + 29 * t), t + 1.2 * bump * std::cos(23 * s - 31 * t));
     };
-  }
-
-  scene::Field<2> number(const double value)
-  {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.17g", value);
-    return field(text);
   }
 
   /// xx, yy, xy, zz of a displacement gradient, from the three-dimensional law

@@ -13,6 +13,8 @@
 
 namespace slipstick::test
 {
+  inline const double pi = std::acos(-1.);
+
   enum class Cells
   {
     quadrilaterals,
@@ -28,6 +30,33 @@ namespace slipstick::test
     std::shared_ptr<dealii::Manifold<2>> manifold;    // of the boundary edges
     bool                                 fan = false; // triangles: diagonals alternate
   };
+
+  struct Kind
+  {
+    Cells              cells;
+    unsigned int       degree;
+    scene::ElementKind element;
+  };
+
+  inline std::string name(const Kind &kind)
+  {
+    return std::string(kind.cells == Cells::triangles ? "triangles" : "quadrilaterals") + " of degree " +
+           std::to_string(kind.degree) +
+           (kind.element == scene::ElementKind::standard ? "" : ", nearly incompressible");
+  }
+
+  /// All digits of @p value.
+  inline std::string digits(const double value)
+  {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return text;
+  }
+
+  inline scene::Field<2> number(const double value)
+  {
+    return field(digits(value));
+  }
 
   /// The whole boundary of the lattice: left, right (s = 0, 1), bottom, top (t = 0, 1).
   inline std::unique_ptr<mesh::SubdomainMesh<2>> strip_of(const Grid &grid, const unsigned int strip)

@@ -12,15 +12,6 @@ using scene::PlaneState;
 
 namespace
 {
-  const double pi = std::acos(-1.);
-
-  struct Kind
-  {
-    Cells        cells;
-    unsigned int degree;
-    ElementKind  element;
-  };
-
   const std::vector<Kind> kinds = {{Cells::quadrilaterals, 1, ElementKind::standard},
                                    {Cells::quadrilaterals, 2, ElementKind::standard},
                                    {Cells::triangles, 1, ElementKind::standard},
@@ -28,12 +19,6 @@ namespace
                                    {Cells::quadrilaterals, 1, ElementKind::nearly_incompressible},
                                    {Cells::quadrilaterals, 2, ElementKind::nearly_incompressible},
                                    {Cells::triangles, 2, ElementKind::nearly_incompressible}};
-
-  std::string name(const Kind &kind)
-  {
-    return std::string(kind.cells == Cells::triangles ? "triangles" : "quadrilaterals") + " of degree " +
-           std::to_string(kind.degree) + (kind.element == ElementKind::standard ? "" : ", nearly incompressible");
-  }
 
   Scene tube(const Kind &kind)
   {
@@ -62,13 +47,6 @@ namespace
                    t + 1.2 * bump * std::cos(23 * s - 31 * t));
     };
     return grid;
-  }
-
-  scene::Field<2> number(const double value)
-  {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.17g", value);
-    return field(text);
   }
 
   void load_uniformly(Scene &scene, const double radial, const double axial, const bool has_bore)

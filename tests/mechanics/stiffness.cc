@@ -1,3 +1,4 @@
+#include "grid.h"
 #include "mesh/piece.h"
 
 using namespace slipstick;
@@ -22,19 +23,12 @@ namespace
     return sigma;
   }
 
-  std::string number(const double value)
-  {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.17g", value);
-    return text;
-  }
-
   /// Tractions on all four edges of the box that belong to a uniform stress.
   void load_uniformly(Scene &scene, const Eigen::Matrix2d &sigma)
   {
     const auto pull = [&](const std::string &boundary, const Eigen::Vector2d &normal) {
       const Eigen::Vector2d t = sigma * normal;
-      load(scene, 0, boundary, number(t[0]), number(t[1]));
+      load(scene, 0, boundary, digits(t[0]), digits(t[1]));
     };
     pull("left", {-1, 0});
     pull("right", {1, 0});

@@ -187,12 +187,12 @@ TEST(CurvedSolid, nodes_of_second_order_are_where_the_programs_have_them)
       for (const auto &face : straight.piece.boundary_faces)
         EXPECT_FALSE(face.curve);
 
-      double     left_out = 0;
-      const auto polygon  = S::read(cell, S::bent, false);
+      double     neglected_sagitta = 0;
+      const auto polygon           = S::read(cell, S::bent, false);
       EXPECT_TRUE(polygon.piece.line_middles.empty());
       for (const auto &face : polygon.piece.boundary_faces)
-        left_out = std::max(left_out, face.curve.left_out);
-      EXPECT_GT(left_out, 0.01);
+        neglected_sagitta = std::max(neglected_sagitta, face.curve.neglected_sagitta);
+      EXPECT_GT(neglected_sagitta, 0.01);
     }
 }
 

@@ -162,7 +162,7 @@ TEST(SmoothOutline, polygon_on_demand_and_too_coarse_circles_note_what_they_leav
       for (const auto &face : mesh.piece.boundary_faces)
         {
           EXPECT_FALSE(face.curve);
-          EXPECT_NEAR(face.curve.left_out, 1 - std::cos(M_PI / n), 1e-6);
+          EXPECT_NEAR(face.curve.neglected_sagitta, 1 - std::cos(M_PI / n), 1e-6);
         }
     }
 }

@@ -4,14 +4,6 @@
 using namespace slipstick;
 using namespace slipstick::test;
 
-namespace
-{
-  void refused(const std::vector<std::string> &overrides, const std::vector<std::string> &parts)
-  {
-    expect_refused(prm("box_on_circle"), overrides, parts);
-  }
-} // namespace
-
 // misspelt
 
 TEST(bad_input, misspelt_parameter_names_file_line_and_nearest)
@@ -74,7 +66,9 @@ TEST(bad_input, unknown_words_are_refused_with_what_is_available)
   refused({"Contact search/Mode=on"}, {"'on'", "declared, automatic"});
   refused({"Solver/Tolerance=automatic"}, {"'automatic'", "auto, or a number in (0, 1)"});
   refused({"Body box/Shape=dics"},
-          {"'dics'", "available: rectangle, disc, half disc, quarter disc, ring, quarter ring, mesh", "did you mean 'disc'"});
+          {"'dics'",
+           "available: rectangle, disc, half disc, quarter disc, ring, quarter ring, mesh",
+           "did you mean 'disc'"});
   refused({"Obstacle disc/Shape=halfplane"}, {"'halfplane'", "circle, hole, half plane, polyline, function"});
 }
 

@@ -22,7 +22,7 @@ namespace
     return read_scene(directory.write("scene.prm", scene_of(body, boundary)));
   }
 
-  void refused(const std::string &body, const std::vector<std::string> &parts, const std::string &boundary = "*")
+  void body_refused(const std::string &body, const std::vector<std::string> &parts, const std::string &boundary = "*")
   {
     expect_parts(error_of([&] { read(body, boundary); }), parts);
   }
@@ -56,33 +56,35 @@ TEST(bodies, shapes_with_their_parameters)
 
 TEST(bodies, parameters_must_fit_the_shape)
 {
-  refused("set Size = 1, 1\nset Radius = 3\n",
-          {"Body part/Radius = '3'", "has no meaning for Shape = rectangle", "disc"});
-  refused("set Shape = disc\nset Radius = 3\nset Size = 2, 1\n", {"Body part/Size", "rectangle"});
-  refused("set Shape = disc\nset Radius = 3\nset Cells = 2, 1\n", {"Body part/Cells", "rectangle, ring, quarter ring"});
-  refused("set Size = 1, 1\nset File = a.msh\n", {"Body part/File", "it belongs to mesh"});
+  body_refused("set Size = 1, 1\nset Radius = 3\n",
+               {"Body part/Radius = '3'", "has no meaning for Shape = rectangle", "disc"});
+  body_refused("set Shape = disc\nset Radius = 3\nset Size = 2, 1\n", {"Body part/Size", "rectangle"});
+  body_refused("set Shape = disc\nset Radius = 3\nset Cells = 2, 1\n",
+               {"Body part/Cells", "rectangle, ring, quarter ring"});
+  body_refused("set Size = 1, 1\nset File = a.msh\n", {"Body part/File", "it belongs to mesh"});
 }
 
 TEST(bodies, required_parameters_are_named)
 {
-  refused("", {"Size is not set"});
-  refused("set Shape = disc\n", {"Radius is not set"});
-  refused("set Shape = ring\nset Radius = 2\n", {"Inner radius is not set"});
-  refused("set Shape = mesh\n", {"File is not set"});
+  body_refused("", {"Size is not set"});
+  body_refused("set Shape = disc\n", {"Radius is not set"});
+  body_refused("set Shape = ring\nset Radius = 2\n", {"Inner radius is not set"});
+  body_refused("set Shape = mesh\n", {"File is not set"});
 }
 
 TEST(bodies, values_must_make_sense)
 {
-  refused("set Shape = ring\nset Radius = 2\nset Inner radius = 2\n",
-          {"Body part/Inner radius = '2'", "not less than Radius = 2"});
-  refused("set Shape = ring\nset Radius = 2\nset Inner radius = 1\nset Cells = 2, 2\n", {"at least 3 cells along its circumference"});
-  refused("set Shape = disc\nset Radius = 2\nset Cells along arc = 30\n", {"multiple of 4"});
-  refused("set Shape = half disc\nset Radius = 2\nset Cells along arc = 5\n", {"even number"});
-  refused("set Size = 1, 1\nset Refine levels = 1\n", {"no boundary is named in Refine towards"});
-  refused("set Size = 1, 1\nset Refine towards = botom\n", {"has no boundary 'botom'", "did you mean 'bottom'"});
-  refused("set Size = 1, 1\nset Mirror = z\n", {"'z'", "none, x, y"});
-  refused("set Shape = disc\nset Radius = 2\n", {"has no boundary 'left'", "arc"}, "left");
-  refused("set Shape = mesh\nset File = nowhere.msh\n", {"Body part/File = 'nowhere.msh'", "no such file"});
+  body_refused("set Shape = ring\nset Radius = 2\nset Inner radius = 2\n",
+               {"Body part/Inner radius = '2'", "not less than Radius = 2"});
+  body_refused("set Shape = ring\nset Radius = 2\nset Inner radius = 1\nset Cells = 2, 2\n",
+               {"at least 3 cells along its circumference"});
+  body_refused("set Shape = disc\nset Radius = 2\nset Cells along arc = 30\n", {"multiple of 4"});
+  body_refused("set Shape = half disc\nset Radius = 2\nset Cells along arc = 5\n", {"even number"});
+  body_refused("set Size = 1, 1\nset Refine levels = 1\n", {"no boundary is named in Refine towards"});
+  body_refused("set Size = 1, 1\nset Refine towards = botom\n", {"has no boundary 'botom'", "did you mean 'bottom'"});
+  body_refused("set Size = 1, 1\nset Mirror = z\n", {"'z'", "none, x, y"});
+  body_refused("set Shape = disc\nset Radius = 2\n", {"has no boundary 'left'", "arc"}, "left");
+  body_refused("set Shape = mesh\nset File = nowhere.msh\n", {"Body part/File = 'nowhere.msh'", "no such file"});
 }
 
 TEST(bodies, names_of_a_mesh_are_left_for_later)
@@ -131,7 +133,7 @@ TEST(bodies, automatic_decomposition)
   EXPECT_EQ(read("set Size = 2, 1\nset Cells = 7, 3\n").decomposition.method, DecompositionMethod::metis);
   EXPECT_EQ(read("set Shape = disc\nset Radius = 3\n").decomposition.method, DecompositionMethod::metis);
   const std::string blocks = "end\nsubsection Decomposition\nset Method = blocks\n";
-  refused("set Shape = disc\nset Radius = 3\n" + blocks,
-          {"Decomposition/Method = 'blocks'", "'part' is not one", "METIS or auto"});
-  refused("set Size = 2, 1\nset Refine towards = top\nset Refine levels = 1\n" + blocks, {"equal cells only"});
+  body_refused("set Shape = disc\nset Radius = 3\n" + blocks,
+               {"Decomposition/Method = 'blocks'", "'part' is not one", "METIS or auto"});
+  body_refused("set Size = 2, 1\nset Refine towards = top\nset Refine levels = 1\n" + blocks, {"equal cells only"});
 }

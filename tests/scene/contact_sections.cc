@@ -5,16 +5,6 @@ using namespace slipstick::test;
 
 namespace
 {
-  scene::Scene<2> box(const std::vector<std::string> &overrides)
-  {
-    return scene::read_scene(prm("box_on_circle"), overrides);
-  }
-
-  void refused(const std::vector<std::string> &overrides, const std::vector<std::string> &parts)
-  {
-    expect_refused(prm("box_on_circle"), overrides, parts);
-  }
-
   const std::vector<std::string> two_bodies = {"Bodies=box, wedge",
                                                "Body wedge/Size=1, 2",
                                                "Body wedge/Material=elastic",

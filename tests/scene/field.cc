@@ -16,7 +16,7 @@ namespace
     return Field<2>(formula, "test").value(point, t);
   }
 
-  void refused(const std::string &formula, const std::vector<std::string> &parts = {})
+  void formula_refused(const std::string &formula, const std::vector<std::string> &parts = {})
   {
     const std::string message = error_of([&] { Field<2>(formula, "Traction a/Traction y"); });
     expect_parts(message, {"Traction a/Traction y", "'" + formula + "'"});
@@ -64,30 +64,30 @@ TEST(field, formula_is_kept_as_text)
 TEST(field, syntax_errors_are_refused)
 {
   for (const std::string text : {"x+", "sin(x", "x y", "2 mm", "3e", "x#", "\"a\""})
-    refused(text);
-  refused("", {"empty"});
+    formula_refused(text);
+  formula_refused("", {"empty"});
 }
 
 TEST(field, unknown_names_are_refused_with_the_nearest)
 {
-  refused("2*z", {"\"z\"", "x, y, t, pi"});
-  refused("sni(x)", {"\"sni\"", "nearest: sin"});
+  formula_refused("2*z", {"\"z\"", "x, y, t, pi"});
+  formula_refused("sni(x)", {"\"sni\"", "nearest: sin"});
 }
 
 TEST(field, numbers_that_are_not_finite_are_refused)
 {
   for (const std::string text : {"nan", "inf", "-inf", "1e999", "1/0", "log(-1)"})
-    refused(text);
+    formula_refused(text);
 }
 
 TEST(field, decimal_comma_is_refused)
 {
-  refused("1,5", {"comma"});
+  formula_refused("1,5", {"comma"});
 }
 
 TEST(field, assignment_is_refused)
 {
-  refused("x=3", {"=="});
+  formula_refused("x=3", {"=="});
   EXPECT_EQ(value_of("x==2"), 1);
   EXPECT_EQ(value_of("x>=2"), 1);
 }
@@ -103,6 +103,6 @@ TEST(field, prints_nothing_on_errors)
 {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
-  refused("2*z");
+  formula_refused("2*z");
   EXPECT_EQ(testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout(), "");
 }

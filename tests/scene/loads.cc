@@ -63,13 +63,13 @@ subsection Temperature warm
 end
 )";
 
-  scene::Scene<2> read(const std::vector<std::string> &overrides = {})
+  scene::Scene<2> loads_from(const std::vector<std::string> &overrides = {})
   {
     TemporaryDirectory directory;
     return scene::read_scene(directory.write("loads.prm", loads), overrides);
   }
 
-  void refused(const std::vector<std::string> &overrides, const std::vector<std::string> &parts)
+  void loads_refused(const std::vector<std::string> &overrides, const std::vector<std::string> &parts)
   {
     TemporaryDirectory directory;
     expect_refused(directory.write("loads.prm", loads), overrides, parts);
@@ -78,7 +78,7 @@ end
 
 TEST(loads, are_read)
 {
-  const auto              scene = read();
+  const auto             scene = loads_from();
   const dealii::Point<2> x(3, 4);
   EXPECT_EQ(scene.materials[0].density, 7.85e-9);
   EXPECT_EQ(scene.materials[0].expansion, 1.2e-5);
@@ -99,52 +99,55 @@ TEST(loads, are_read)
 
 TEST(loads, wrong_bodies)
 {
-  refused({"Body force wheel/Bodies=othre"}, {"Body force wheel/Bodies", "'othre'", "did you mean 'other'?"});
-  refused({"Body force wheel/Bodies=box, box"}, {"names body 'box' twice"});
-  refused({"Temperature warm/Bodies="}, {"Temperature warm/Bodies", "names no body"});
-  refused({"Point load pull/Body=bx"}, {"Point load pull/Body", "'bx'", "did you mean 'box'?"});
+  loads_refused({"Body force wheel/Bodies=othre"}, {"Body force wheel/Bodies", "'othre'", "did you mean 'other'?"});
+  loads_refused({"Body force wheel/Bodies=box, box"}, {"names body 'box' twice"});
+  loads_refused({"Temperature warm/Bodies="}, {"Temperature warm/Bodies", "names no body"});
+  loads_refused({"Point load pull/Body=bx"}, {"Point load pull/Body", "'bx'", "did you mean 'box'?"});
 }
 
 TEST(loads, wrong_points)
 {
-  refused({"Point load pull/Point=1"}, {"Point load pull/Point = '1'", "is no point", "2.5, 10"});
-  refused({"Point load pull/Point=1, 2, 3"}, {"is no point"});
-  refused({"Point load pull/Point=1, y"}, {"is no point"});
-  refused({"Point load pull/Point=tip"}, {"'tip'", "no named points", "give coordinates"});
+  loads_refused({"Point load pull/Point=1"}, {"Point load pull/Point = '1'", "is no point", "2.5, 10"});
+  loads_refused({"Point load pull/Point=1, 2, 3"}, {"is no point"});
+  loads_refused({"Point load pull/Point=1, y"}, {"is no point"});
+  loads_refused({"Point load pull/Point=tip"}, {"'tip'", "no named points", "give coordinates"});
 }
 
 TEST(loads, that_load_nothing)
 {
-  refused({"Point load pull/Force y=0"}, {"Point load pull", "is no load", "set Force x or Force y"});
-  refused({"Body force wheel/Angular velocity=0"}, {"Body force wheel", "is no load"});
+  loads_refused({"Point load pull/Force y=0"}, {"Point load pull", "is no load", "set Force x or Force y"});
+  loads_refused({"Body force wheel/Angular velocity=0"}, {"Body force wheel", "is no load"});
 }
 
 TEST(loads, of_bodies_without_density_or_expansion)
 {
-  refused({"Material steel/Density=0"}, {"Body force weight", "body 'box'", "Material steel/Density is 0", "7.85e-9"});
-  refused({"Material steel/Thermal expansion=0"}, {"Temperature warm", "Thermal expansion is 0"});
-  refused({"Material steel/Density=-1"}, {"Material steel/Density = '-1'", "a number in [0, 1e+20]"});
+  loads_refused({"Material steel/Density=0"},
+                {"Body force weight", "body 'box'", "Material steel/Density is 0", "7.85e-9"});
+  loads_refused({"Material steel/Thermal expansion=0"}, {"Temperature warm", "Thermal expansion is 0"});
+  loads_refused({"Material steel/Density=-1"}, {"Material steel/Density = '-1'", "a number in [0, 1e+20]"});
 }
 
 TEST(loads, section_of_two_words_that_no_list_declares)
 {
-  refused({"Body force gravity/Force x=1"}, {"'Body force gravity'", "set Body forces = weight, wheel, gravity"});
+  loads_refused({"Body force gravity/Force x=1"}, {"'Body force gravity'", "set Body forces = weight, wheel, gravity"});
 }
 
 TEST(element, nearly_incompressible_is_for_plane_strain)
 {
-  refused({"Discretization/Element=nearly incompressible"}, {"Discretization/Element", "plane strain"});
-  EXPECT_EQ(read({"Discretization/Element=nearly incompressible", "Plane state=plane strain"}).discretization.element,
-            scene::ElementKind::nearly_incompressible);
+  loads_refused({"Discretization/Element=nearly incompressible"}, {"Discretization/Element", "plane strain"});
+  EXPECT_EQ(
+    loads_from({"Discretization/Element=nearly incompressible", "Plane state=plane strain"}).discretization.element,
+    scene::ElementKind::nearly_incompressible);
 }
 
 TEST(element, that_locks_is_warned_of)
 {
   const std::vector<std::string> rubber = {"Material steel/Poisson ratio=0.4999", "Plane state=plane strain"};
-  const auto                     texts  = scene::warnings(read(rubber));
+  const auto                     texts  = scene::warnings(loads_from(rubber));
   ASSERT_EQ(texts.size(), 1u);
   expect_parts(texts[0], {"0.4999", "Material steel", "Discretization/Element = nearly incompressible"});
-  EXPECT_TRUE(scene::warnings(read()).empty());
-  EXPECT_TRUE(scene::warnings(read({rubber[0]})).empty());
-  EXPECT_TRUE(scene::warnings(read({rubber[0], rubber[1], "Discretization/Element=nearly incompressible"})).empty());
+  EXPECT_TRUE(scene::warnings(loads_from()).empty());
+  EXPECT_TRUE(scene::warnings(loads_from({rubber[0]})).empty());
+  EXPECT_TRUE(
+    scene::warnings(loads_from({rubber[0], rubber[1], "Discretization/Element=nearly incompressible"})).empty());
 }

@@ -9,26 +9,26 @@ using namespace slipstick::test;
 
 namespace
 {
-  std::vector<Setting> read(const std::string &text)
+  std::vector<Setting> read_file(const std::string &text)
   {
     TemporaryDirectory directory;
     return read_settings(directory.write("a.prm", text), {});
   }
 
-  void refused(const std::string &text, const std::vector<std::string> &parts)
+  void file_refused(const std::string &text, const std::vector<std::string> &parts)
   {
-    expect_parts(error_of([&] { read(text); }), parts);
+    expect_parts(error_of([&] { read_file(text); }), parts);
   }
 } // namespace
 
 TEST(prm_file, comments_blanks_continuation_and_line_ends)
 {
-  const auto settings = read("\xEF\xBB\xBF# head\r\n"
-                             "set  Slip   bound = 5 # MPa\r\n"
-                             "subsection Contact   circle\n"
-                             "\tset Law = Tres\\\n"
-                             "ca\n"
-                             "end\n");
+  const auto settings = read_file("\xEF\xBB\xBF# head\r\n"
+                                  "set  Slip   bound = 5 # MPa\r\n"
+                                  "subsection Contact   circle\n"
+                                  "\tset Law = Tres\\\n"
+                                  "ca\n"
+                                  "end\n");
   ASSERT_EQ(settings.size(), 3u);
   EXPECT_EQ(settings[0].path, "Slip bound");
   EXPECT_EQ(settings[0].value, "5");
@@ -40,7 +40,7 @@ TEST(prm_file, comments_blanks_continuation_and_line_ends)
 
 TEST(prm_file, value_may_hold_equals_and_slash)
 {
-  EXPECT_EQ(read("set Traction y = x == 2 ? 1/3 : 0\n")[0].value, "x == 2 ? 1/3 : 0");
+  EXPECT_EQ(read_file("set Traction y = x == 2 ? 1/3 : 0\n")[0].value, "x == 2 ? 1/3 : 0");
 }
 
 TEST(prm_file, include_is_relative_to_the_including_file)
@@ -63,23 +63,24 @@ TEST(prm_file, file_that_includes_itself_is_refused)
 
 TEST(prm_file, syntax_errors_name_the_line)
 {
-  refused("set Title = a\nste Plane state = b\n", {"a.prm:2", "ste Plane state = b", "did you mean 'set'?"});
-  refused("set Title\n", {"a.prm:1", "set Title", "NAME = VALUE"});
-  refused("set = 3\n", {"a.prm:1"});
-  refused("subsection Solver\nset A = 1\n", {"a.prm:1", "Solver", "no end"});
-  refused("set A = 1\nend\n", {"a.prm:2", "without an open subsection"});
-  refused("subsection Solver\nend Solver\n", {"a.prm:2", "Solver"});
-  refused("subsection\nend\n", {"a.prm:1"});
+  file_refused("set Title = a\nste Plane state = b\n", {"a.prm:2", "ste Plane state = b", "did you mean 'set'?"});
+  file_refused("set Title\n", {"a.prm:1", "set Title", "NAME = VALUE"});
+  file_refused("set = 3\n", {"a.prm:1"});
+  file_refused("subsection Solver\nset A = 1\n", {"a.prm:1", "Solver", "no end"});
+  file_refused("set A = 1\nend\n", {"a.prm:2", "without an open subsection"});
+  file_refused("subsection Solver\nend Solver\n", {"a.prm:2", "Solver"});
+  file_refused("subsection\nend\n", {"a.prm:1"});
 }
 
 TEST(prm_file, parameter_set_twice_is_refused_with_both_lines)
 {
-  refused("set Title = a\nset Title = b\n", {"a.prm:2", "'b'", "a.prm:1"});
+  file_refused("set Title = a\nset Title = b\n", {"a.prm:2", "'b'", "a.prm:1"});
 }
 
 TEST(prm_file, missing_file_gives_the_nearest)
 {
-  expect_parts(error_of([] { read_settings(prm("box_on_cirkle"), {}); }), {"box_on_cirkle", "did you mean 'box_on_circle.prm'?"});
+  expect_parts(error_of([] { read_settings(prm("box_on_cirkle"), {}); }),
+               {"box_on_cirkle", "did you mean 'box_on_circle.prm'?"});
   expect_parts(error_of([] { read_settings("/no/such/directory/a.prm", {}); }), {"/no/such/directory/a.prm"});
   expect_parts(error_of([] { read_settings(SLIPSTICK_SOURCE_DIR, {}); }), {"cannot be read"});
 }
@@ -93,7 +94,8 @@ TEST(prm_file, overrides_follow_the_file)
 
 TEST(prm_file, overrides_without_equals_or_with_comments_are_refused)
 {
-  expect_parts(error_of([] { read_settings(prm("box_linear"), {"Solver/Tolerance"}); }), {"--set Solver/Tolerance", "'='"});
+  expect_parts(error_of([] { read_settings(prm("box_linear"), {"Solver/Tolerance"}); }),
+               {"--set Solver/Tolerance", "'='"});
   expect_parts(error_of([] { read_settings(prm("box_linear"), {"=3"}); }), {"--set =3"});
   expect_parts(error_of([] { read_settings(prm("box_linear"), {"Title=a # b"}); }), {"Title=a # b", "'#'"});
 }

@@ -68,11 +68,6 @@ namespace
     return out.str();
   }
 
-  Scene<2> box(const std::vector<std::string> &overrides)
-  {
-    return read_scene(prm("box_on_circle"), overrides);
-  }
-
   std::string listing(const ListFormat format)
   {
     std::ostringstream text;
@@ -241,5 +236,7 @@ TEST(listing, every_format_names_every_kind_of_section)
 TEST(listing, text_gives_unit_range_and_default)
 {
   expect_parts(listing(ListFormat::text),
-               {"Material elastic/Young modulus = 210000 [MPa]", "allowed: a number in [1e-20, 1e+20]", "default: 210000"});
+               {"Material elastic/Young modulus = 210000 [MPa]",
+                "allowed: a number in [1e-20, 1e+20]",
+                "default: 210000"});
 }

@@ -85,10 +85,20 @@ namespace slipstick::test
     expect_parts(error_of([&] { scene::read_scene(file, overrides); }), parts);
   }
 
+  /// prm/box_on_circle.prm with @p overrides.
+  inline scene::Scene<2> box(const std::vector<std::string> &overrides)
+  {
+    return scene::read_scene(prm("box_on_circle"), overrides);
+  }
+
+  /// prm/box_on_circle.prm with @p overrides must be refused with a message that contains all @p parts.
+  inline void refused(const std::vector<std::string> &overrides, const std::vector<std::string> &parts)
+  {
+    expect_refused(prm("box_on_circle"), overrides, parts);
+  }
+
   /// prm/box_on_circle.prm with the first @p from replaced by @p to must be refused so.
-  inline void expect_box_refused(const std::string              &from,
-                                 const std::string              &to,
-                                 const std::vector<std::string> &parts)
+  inline void expect_box_refused(const std::string &from, const std::string &to, const std::vector<std::string> &parts)
   {
     TemporaryDirectory directory;
     std::string        text  = read_text(prm("box_on_circle"));

@@ -10,7 +10,7 @@
 namespace slipstick::app
 {
   /// Warnings with remedy, keyed by subject, for pairs of bodies whose edges or faces neglect a sagitta
-  /// (EdgeCurve::left_out) that is not small compared with the indentation or, for open contact, with the gap.
+  /// (EdgeCurve::neglected_sagitta) that is not small compared with the indentation or, for open contact, with the gap.
   /// Collective.
   /// @param nodes contact nodes of this rank; the first ones correspond to the points of Constraints.
   template <int dim>

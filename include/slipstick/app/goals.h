@@ -34,7 +34,7 @@ namespace slipstick::app
   template <int dim>
   std::vector<GoalError> goal_errors(StepSolver<dim>                &solver,
                                      const mechanics::Probes<dim>   &probes,
-                                     const StepAnswer               &answer,
+                                     const StepSolution             &answer,
                                      const double                    t,
                                      const std::vector<std::string> &quantities);
 } // namespace slipstick::app

@@ -83,14 +83,14 @@ namespace slipstick::app
     output::Summary load_step(const unsigned int step, const output::Summary &so_far);
 
     /// Prints the checks of a solution and adds warnings about it. @return whether no declared contact is violated.
-    bool warn_of_answer(const double t, const StepAnswer &answer);
+    bool warn_of_answer(const double t, const StepSolution &answer);
 
     /// Called after the last load step.
     void estimate_errors(const double t, output::Summary &summary);
 
     void write_tables(const output::Summary &summary) const;
 
-    void write_fields(const unsigned int step, const StepAnswer &answer) const;
+    void write_fields(const unsigned int step, const StepSolution &answer) const;
 
     /// Adds times, memory and warnings to @p summary.
     void describe_run(output::Summary &summary) const;
@@ -104,7 +104,7 @@ namespace slipstick::app
     StepSolver<dim>                         solver;
     const scene::Scene<dim>                &scene; // including the contact pairs found by the search
     mechanics::Probes<dim>                  probes;
-    std::unique_ptr<StepAnswer>             last;   // load step
+    std::unique_ptr<StepSolution>           last;   // load step
     std::vector<GoalError>                  errors; // of its figures
     std::vector<output::ContactStep>        contact_steps;
     TotalSlip                               total_slip;

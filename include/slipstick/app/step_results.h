@@ -20,7 +20,7 @@ namespace slipstick::app
   /// because nothing resists them.
   template <int dim>
   output::ForceSummary forces(const StepSolver<dim> &solver,
-                              const StepAnswer      &answer,
+                              const StepSolution    &answer,
                               const double           t,
                               Warnings              &warnings);
 

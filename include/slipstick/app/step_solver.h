@@ -16,7 +16,7 @@
 namespace slipstick::app
 {
   /// A recovered displacement with the results computed from it.
-  struct StepAnswer
+  struct StepSolution
   {
     tfeti::Recovery                        recovery;
     std::optional<contact::CheckedContact> contact;
@@ -28,7 +28,7 @@ namespace slipstick::app
   class StepSolver
   {
   public:
-    using Answer = StepAnswer;
+    using Answer = StepSolution;
 
     /// Generates the mesh, and finds the contact pairs if the scene requests an automatic search.
     /// @param solves_adjoints whether other problems will be solved with the same matrices afterwards.
@@ -142,9 +142,9 @@ namespace slipstick::app
 
     /// Continues from a solution whose checks fail, to smaller residuals: the tolerance is relative to |Pd|, which may
     /// be far above the corresponding part of the displacement (slender parts). Ends when this no longer helps.
-    std::unique_ptr<Answer> tighten(const unsigned int      step,
-                                    const std::uint64_t     multiplications_before,
-                                    std::unique_ptr<Answer> answer);
+    std::unique_ptr<Answer> continue_to_smaller_residual(const unsigned int      step,
+                                                         const std::uint64_t     multiplications_before,
+                                                         std::unique_ptr<Answer> answer);
 
     /// Corrects the displacement of a solution, with its active set, until its checks are within the limit or stop
     /// decreasing.

@@ -75,7 +75,7 @@ namespace slipstick::contact
   /// @param u displacements of this rank's subdomains [mm].
   /// @param multipliers [N], in equilibrium with u, as returned by tfeti::recover.
   /// @param slip_bound of every owned row [N].
-  /// @param energies_beside of this rank's bodies: contribution of initial strains that is added to u'K u to give twice
+  /// @param initial_strain_energies of this rank's bodies: contribution of initial strains that is added to u'K u to give twice
   /// the strain energy [N mm]; empty: none.
   /// @param free owned rows whose multiplier is strictly inside its bounds; this distinguishes closed from open and
   /// stick from slip.
@@ -86,6 +86,6 @@ namespace slipstick::contact
                        const std::vector<double>          &slip_bound,
                        const std::vector<bool>            &free,
                        const unsigned int                  n_bodies,
-                       const History                      &before          = {},
-                       const std::vector<double>          &energies_beside = {});
+                       const History                      &before                  = {},
+                       const std::vector<double>          &initial_strain_energies = {});
 } // namespace slipstick::contact

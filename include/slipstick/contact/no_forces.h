@@ -11,8 +11,8 @@ namespace slipstick::contact
   /// touch nothing in their initial position or, where no slip bound acts, can be moved apart. Collective.
   /// @param feasible forces that balance the loads [N]. @param box bounds of the forces [N]. @param slip_bound of the
   /// owned rows [N].
-  bool bears_nothing(const tfeti::DualProblem       &dual,
-                     const tfeti::DistributedVector &feasible,
-                     const Box                      &box,
-                     const std::vector<double>      &slip_bound);
+  bool all_forces_vanish(const tfeti::DualProblem       &dual,
+                         const tfeti::DistributedVector &feasible,
+                         const Box                      &box,
+                         const std::vector<double>      &slip_bound);
 } // namespace slipstick::contact

@@ -18,16 +18,16 @@ namespace slipstick::interface
   struct MortarRow
   {
     mechanics::NodeKey     slave{};
-    unsigned int           side = 0;         // a node at a corner of the slave boundary has one row for each side
-    dealii::Point<dim>     position;         // of the slave node [mm]
-    dealii::Tensor<1, dim> normal;           // outward, mean of both sides (CurvePairing)
-    Weights                slave_weights;    // d_ik
-    Weights                master_weights;   // m_ij
-    dealii::Point<dim>     master_position;  // sum_j m_ij y_j [mm]
-    double                 gap          = 0; // along n_i [mm], negative when overlapping
-    double                 measure      = 0; // D_i [mm], for bodies of revolution [mm^2]
-    double                 length       = 0; // the same in the plane [mm]
-    double                 left_out     = 0; // sagitta neglected by the edges, both sides [mm]
+    unsigned int           side = 0;              // a node at a corner of the slave boundary has one row for each side
+    dealii::Point<dim>     position;              // of the slave node [mm]
+    dealii::Tensor<1, dim> normal;                // outward, mean of both sides (CurvePairing)
+    Weights                slave_weights;         // d_ik
+    Weights                master_weights;        // m_ij
+    dealii::Point<dim>     master_position;       // sum_j m_ij y_j [mm]
+    double                 gap               = 0; // along n_i [mm], negative when overlapping
+    double                 measure           = 0; // D_i [mm], for bodies of revolution [mm^2]
+    double                 length            = 0; // the same in the plane [mm]
+    double                 neglected_sagitta = 0; // sagitta neglected by the edges, both sides [mm]
     double                 full_measure = 0, full_length = 0; // if the edges of this side were fully covered
   };
 } // namespace slipstick::interface

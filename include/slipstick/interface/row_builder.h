@@ -73,16 +73,16 @@ namespace slipstick::interface
     void add_contact(const unsigned int node);
     void find_bonds();
     /// Row of a bond along the normal (0) or the tangent (1).
-    Vector bond(const Touch<dim> &touch, const unsigned int direction) const;
-    bool   is_pruned(const Touch<dim> &touch) const;
+    Vector bond(const ContactCandidate<dim> &touch, const unsigned int direction) const;
+    bool   is_pruned(const ContactCandidate<dim> &touch) const;
     /// Rows along the tangents that are not held by supports, bonds or @p left, the free part of the normal row.
-    std::vector<Vector> free_tangents(Touch<dim> &touch, const Vector &left) const;
+    std::vector<Vector> free_tangents(ContactCandidate<dim> &touch, const Vector &left) const;
     /// Whether supports hold the point open although its law acts only on closed contact.
     bool is_held_open(const tfeti::HeldContacts::Point &point) const;
     /// Appends the entries @p coefficients of row @p row to @p to.
     void fill(const unsigned int row, const Vector &coefficients, std::vector<RowEntry> &to) const;
-    void add_pruned(const Touch<dim> &touch, const Vector &coefficients);
-    void add_held(const unsigned int node, const Touch<dim> &touch, const Vector &coefficients);
+    void add_pruned(const ContactCandidate<dim> &touch, const Vector &coefficients);
+    void add_held(const unsigned int node, const ContactCandidate<dim> &touch, const Vector &coefficients);
     void add_bonds_to_obstacles(const unsigned int node);
     void add_held_rows(const unsigned int node);
     void add_reaction(const unsigned int               node,
@@ -91,7 +91,7 @@ namespace slipstick::interface
                       const std::vector<unsigned int> &holders);
 
     /// Jump of the displacement along @p direction: slave minus master.
-    Vector jump(const Touch<dim> &touch, const Tensor &direction) const;
+    Vector jump(const ContactCandidate<dim> &touch, const Tensor &direction) const;
 
     /// The part of a row that supports do not prescribe.
     Vector free_part(const Vector &row) const;

@@ -10,7 +10,7 @@ namespace slipstick::interface
 {
   /// One opposite side that a slave node may touch.
   template <int dim>
-  struct Touch
+  struct ContactCandidate
   {
     unsigned int                                 pair = 0, side = 0;
     dealii::Tensor<1, dim>                       normal;
@@ -41,25 +41,28 @@ namespace slipstick::interface
 
     /// Candidates of the node, including bonds between bodies but not bonds to obstacles. Of those with the same nodes,
     /// only the nearest has a tangent (e.g. at a corner of the slave boundary with the same master node on both sides).
-    std::vector<Touch<dim>> of(unsigned int node) const;
+    std::vector<ContactCandidate<dim>> of(unsigned int node) const;
 
     /// Bonds of the node to obstacles.
-    std::vector<Touch<dim>> bonds_to_obstacles(unsigned int node) const;
+    std::vector<ContactCandidate<dim>> bonds_to_obstacles(unsigned int node) const;
 
     /// Bonds between bodies: node and touch, by pair in the order of the scene, so that the result does not depend on
     /// the numbering of the nodes. The properties of the node itself are not set.
-    std::vector<std::vector<std::pair<unsigned int, Touch<dim>>>> bonds_between_bodies() const;
+    std::vector<std::vector<std::pair<unsigned int, ContactCandidate<dim>>>> bonds_between_bodies() const;
 
     /// Extent of every pair, from the slave nodes owned by this rank.
     std::vector<PairExtent> extents() const;
 
   private:
-    std::vector<Touch<dim>> nearest_of(unsigned int node) const;
+    std::vector<ContactCandidate<dim>> nearest_of(unsigned int node) const;
     /// Sets gap, normal and area; false beyond the Reach, and for nodes without area on the axis of revolution.
-    bool       place_on_obstacle(unsigned int node, unsigned int pair, const Tributary &area, Touch<dim> &touch) const;
-    Touch<dim> touch_body(unsigned int node, unsigned int pair, const MortarRow<dim> &row) const;
+    bool                  place_on_obstacle(unsigned int           node,
+                                            unsigned int           pair,
+                                            const Tributary       &area,
+                                            ContactCandidate<dim> &touch) const;
+    ContactCandidate<dim> touch_body(unsigned int node, unsigned int pair, const MortarRow<dim> &row) const;
     /// Sets the properties of the node itself, the same for each of its contacts.
-    void complete(unsigned int node, Touch<dim> &touch) const;
+    void complete(unsigned int node, ContactCandidate<dim> &touch) const;
 
     const scene::Scene<dim>                   &scene;
     const std::vector<InterfaceNode<dim>>     &nodes;

@@ -47,9 +47,9 @@ namespace slipstick::mechanics
                                  const std::vector<Eigen::VectorXd> &thermal) const;
 
     /// Twice the strain energy of every body minus u'K u [N mm], from this rank's subdomains.
-    std::vector<double> energies_beside(const std::vector<Eigen::VectorXd> &u,
-                                        const std::vector<double>          &shortening,
-                                        const unsigned int                  n_bodies) const;
+    std::vector<double> initial_strain_energies(const std::vector<Eigen::VectorXd> &u,
+                                                const std::vector<double>          &shortening,
+                                                const unsigned int                  n_bodies) const;
 
   private:
     struct Part

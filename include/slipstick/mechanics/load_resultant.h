@@ -30,7 +30,7 @@ namespace slipstick::mechanics
   }
 
   /// Difference between two quadratures of a load.
-  struct Misfit
+  struct QuadratureDifference
   {
     double                size = 0, difference = 0; // sums of magnitudes over cells or faces [N]
     double                largest = -1;             // difference in one cell or face
@@ -41,7 +41,7 @@ namespace slipstick::mechanics
       add({size_, difference_, difference_, place});
     }
 
-    void add(const Misfit &other)
+    void add(const QuadratureDifference &other)
     {
       size += other.size;
       difference += other.difference;

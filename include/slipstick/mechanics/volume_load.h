@@ -28,7 +28,7 @@ namespace slipstick::mechanics
     void add_to(Eigen::VectorXd &load, std::vector<LoadResultant> &sums) const;
 
     /// For body forces given by formulas: difference from a finer quadrature.
-    std::vector<Misfit> misfits() const;
+    std::vector<QuadratureDifference> differences() const;
 
   private:
     using Vector = dealii::Tensor<1, dim>;

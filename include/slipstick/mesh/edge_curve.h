@@ -29,7 +29,7 @@ namespace slipstick::mesh
     std::array<Point, 4> points;
 
     /// Sagitta of a curve that the edge probably represents but does not follow [mm].
-    double left_out = 0;
+    double neglected_sagitta = 0;
 
     static EdgeCurve arc(const Point &start, const Point &end, const Point &center);
 
@@ -67,7 +67,7 @@ namespace slipstick::mesh
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &kind &points &left_out;
+      archive &kind &points &neglected_sagitta;
     }
   };
 

@@ -33,7 +33,7 @@ namespace slipstick::mesh
     std::array<Point, FacetShapes::max_nodes> points;
 
     /// Sagitta of a surface that the face probably represents but does not follow [mm].
-    double left_out = 0;
+    double neglected_sagitta = 0;
 
     static FaceSurface ball(const Point &center, const double radius);
     static FaceSurface cylinder(const Point &on_axis, const Tensor &axis, const double radius);
@@ -80,7 +80,7 @@ namespace slipstick::mesh
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &kind &n_nodes &radius &points &left_out;
+      archive &kind &n_nodes &radius &points &neglected_sagitta;
     }
 
   private:

@@ -16,7 +16,7 @@ namespace slipstick::mesh
   /// an adjoining curve; edges with neither end inside a curve stay straight, too.
   ///
   /// If Body::has_smooth_outline is off, and on circles too coarse to be distinguished from a polygon, edges get no
-  /// curve; only the neglected sagitta is stored (EdgeCurve::left_out).
+  /// curve; only the neglected sagitta is stored (EdgeCurve::neglected_sagitta).
   template <int dim>
   void smooth_outline(const scene::Body<dim> &body, BodyMesh<dim> &mesh);
 

@@ -13,12 +13,12 @@ namespace slipstick::qp::detail
   /// s times the norm of F, for an entry of weight 1: from the stiffness of single points if the problem provides it,
   /// but never less than the value for whole bodies.
   template <typename Problem>
-  auto step_of_points(const Problem &problem, const double least, int) -> decltype(problem.point_stiffness())
+  auto natural_map_scale(const Problem &problem, const double least, int) -> decltype(problem.point_stiffness())
   {
     return std::max(least, yielding_neighbours * problem.point_stiffness());
   }
   template <typename Problem>
-  double step_of_points(const Problem &, const double least, long)
+  double natural_map_scale(const Problem &, const double least, long)
   {
     return least;
   }
@@ -44,12 +44,12 @@ namespace slipstick::qp::detail
                       long)
   {}
   template <typename Problem>
-  auto bodies_tell_sets(const Problem &problem, int) -> decltype(problem.loose_bodies().tell_sets())
+  auto bodies_predict_active_sets(const Problem &problem, int) -> decltype(problem.loose_bodies().predict_active_sets())
   {
-    return problem.loose_bodies().tell_sets();
+    return problem.loose_bodies().predict_active_sets();
   }
   template <typename Problem>
-  bool bodies_tell_sets(const Problem &, long)
+  bool bodies_predict_active_sets(const Problem &, long)
   {
     return false;
   }

@@ -21,7 +21,7 @@
 //       `hold(free, gaps, well, turns)`   the free entries and as many others, with small gaps, as make the face regular if
 //           that can be; or, if that is asked for, far from singular
 //       and, if there are bodies that nothing but entries with bounds holds,
-//       `tell_sets()`   is it worth while to move them?
+//       `predict_active_sets()` is it worth while to move them?
 //       `balance(stiffness, set, tolerated, moved)`   moves them, moved -= stiffness times their jumps, so that proj(moved)
 //           balances their loads, up to the part `tolerated` of all forces: the least of the potential of the projected
 //           forces. So sets are predicted that can bear the loads.
@@ -201,7 +201,7 @@ namespace slipstick::qp
                 has_met_goal = true;
                 tolerance    = options.tightening * left;
               }
-            tell_sets(residual + violation / goal.reference);
+            check_start_of_face(residual + violation / goal.reference);
             if (!step())
               return ended(Status::stagnated);
           }
@@ -217,7 +217,7 @@ namespace slipstick::qp
 
       // A face that is solved to the goal, but on a set whose bounds are violated by far more than before. Where that happens again, sets
       // are told by gradients below the goal (compliances that are far apart), and faces are solved to less.
-      void tell_sets(const double natural_residual)
+      void check_start_of_face(const double natural_residual)
       {
         if (residual <= goal.tolerance &&
             natural_residual > options.astray * std::max(goal.tolerance, last_natural_residual) && ++n_astray > 1)

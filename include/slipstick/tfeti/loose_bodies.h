@@ -45,7 +45,7 @@ namespace slipstick::tfeti
 
     /// Whether there are bodies held by contact alone whose motion is used to predict the active set. Only in the
     /// plane: in space the prediction is better without it (doc/decisions/0089).
-    bool tell_sets() const;
+    bool predict_active_sets() const;
 
     /// moved -= stiffness * (jumps of the motion of bodies held by contact alone), such that the forces `moved`,
     /// clipped to their bounds, balance the loads of these bodies, up to the part `tolerated` of all forces.

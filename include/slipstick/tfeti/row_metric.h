@@ -1,6 +1,7 @@
 // Stiffnesses of the rows of B, used as weights in projections and norms of the dual problem.
 #pragma once
 
+#include <slipstick/base/exceptions.h>
 #include <slipstick/tfeti/constraints.h>
 
 #include <mpi.h>
@@ -35,7 +36,7 @@ namespace slipstick::tfeti
 
     /// Of the owned rows: square root of the ratio of the stiffness with the row's compliance to that without. Empty:
     /// 1.
-    const std::vector<double> &yielding() const
+    const std::vector<double> &compliance_factors() const
     {
       return roots;
     }
@@ -52,4 +53,7 @@ namespace slipstick::tfeti
     double              smallest     = 1;
     bool                differs_much = false;
   };
+
+  /// The error of scenes whose projections with these weights are singular in double precision.
+  InputError stiffnesses_too_far_apart();
 } // namespace slipstick::tfeti

@@ -1,7 +1,7 @@
 // What answers are warned of: each warning where it is due, none where it is not.
 #include "solved.h"
 
-#include <slipstick/app/answer_warnings.h>
+#include <slipstick/app/solution_warnings.h>
 
 using namespace slipstick;
 using namespace slipstick::test;
@@ -19,13 +19,13 @@ namespace
                                         solved.solution.slip_bound,
                                         solved.solution.free,
                                         scene.bodies.size());
-    return app::answer_warnings(scene,
-                                solved.torn.mesh,
-                                solved.torn.spaces,
-                                *solved.dual,
-                                solved.solution.free,
-                                checked.nodes,
-                                recovery.u);
+    return app::solution_warnings(scene,
+                                  solved.torn.mesh,
+                                  solved.torn.spaces,
+                                  *solved.dual,
+                                  solved.solution.free,
+                                  checked.nodes,
+                                  recovery.u);
   }
 
   Scene pressed_box(const double modulus)

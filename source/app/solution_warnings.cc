@@ -1,5 +1,5 @@
-#include <slipstick/app/answer_warnings.h>
 #include <slipstick/app/curve_warnings.h>
+#include <slipstick/app/solution_warnings.h>
 #include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
 #include <slipstick/mechanics/deformation.h>
@@ -166,13 +166,13 @@ namespace slipstick::app
   } // namespace
 
   template <int dim>
-  std::map<std::string, std::string> answer_warnings(const scene::Scene<dim>                 &scene,
-                                                     const mesh::Mesh<dim>                   &mesh,
-                                                     const mechanics::Spaces<dim>            &spaces,
-                                                     const tfeti::DualProblem                &dual,
-                                                     const std::vector<bool>                 &free,
-                                                     const std::vector<contact::ContactNode> &nodes,
-                                                     const std::vector<Eigen::VectorXd>      &u)
+  std::map<std::string, std::string> solution_warnings(const scene::Scene<dim>                 &scene,
+                                                       const mesh::Mesh<dim>                   &mesh,
+                                                       const mechanics::Spaces<dim>            &spaces,
+                                                       const tfeti::DualProblem                &dual,
+                                                       const std::vector<bool>                 &free,
+                                                       const std::vector<contact::ContactNode> &nodes,
+                                                       const std::vector<Eigen::VectorXd>      &u)
   {
     std::map<std::string, std::string> texts;
     const auto                         pairs = peaks_of_pairs(scene, dual.constraints(), nodes, mesh.comm);
@@ -235,18 +235,18 @@ namespace slipstick::app
     return texts;
   }
 
-  template std::map<std::string, std::string> answer_warnings(const scene::Scene<2> &,
-                                                              const mesh::Mesh<2> &,
-                                                              const mechanics::Spaces<2> &,
-                                                              const tfeti::DualProblem &,
-                                                              const std::vector<bool> &,
-                                                              const std::vector<contact::ContactNode> &,
-                                                              const std::vector<Eigen::VectorXd> &);
-  template std::map<std::string, std::string> answer_warnings(const scene::Scene<3> &,
-                                                              const mesh::Mesh<3> &,
-                                                              const mechanics::Spaces<3> &,
-                                                              const tfeti::DualProblem &,
-                                                              const std::vector<bool> &,
-                                                              const std::vector<contact::ContactNode> &,
-                                                              const std::vector<Eigen::VectorXd> &);
+  template std::map<std::string, std::string> solution_warnings(const scene::Scene<2> &,
+                                                                const mesh::Mesh<2> &,
+                                                                const mechanics::Spaces<2> &,
+                                                                const tfeti::DualProblem &,
+                                                                const std::vector<bool> &,
+                                                                const std::vector<contact::ContactNode> &,
+                                                                const std::vector<Eigen::VectorXd> &);
+  template std::map<std::string, std::string> solution_warnings(const scene::Scene<3> &,
+                                                                const mesh::Mesh<3> &,
+                                                                const mechanics::Spaces<3> &,
+                                                                const tfeti::DualProblem &,
+                                                                const std::vector<bool> &,
+                                                                const std::vector<contact::ContactNode> &,
+                                                                const std::vector<Eigen::VectorXd> &);
 } // namespace slipstick::app

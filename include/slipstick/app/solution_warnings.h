@@ -15,11 +15,11 @@ namespace slipstick::app
   /// @param free owned rows whose multiplier is strictly inside its bounds.
   /// @param nodes contact nodes of this rank; the first ones correspond to the points of Constraints.
   template <int dim>
-  std::map<std::string, std::string> answer_warnings(const scene::Scene<dim>                 &scene,
-                                                     const mesh::Mesh<dim>                   &mesh,
-                                                     const mechanics::Spaces<dim>            &spaces,
-                                                     const tfeti::DualProblem                &dual,
-                                                     const std::vector<bool>                 &free,
-                                                     const std::vector<contact::ContactNode> &nodes,
-                                                     const std::vector<Eigen::VectorXd>      &u);
+  std::map<std::string, std::string> solution_warnings(const scene::Scene<dim>                 &scene,
+                                                       const mesh::Mesh<dim>                   &mesh,
+                                                       const mechanics::Spaces<dim>            &spaces,
+                                                       const tfeti::DualProblem                &dual,
+                                                       const std::vector<bool>                 &free,
+                                                       const std::vector<contact::ContactNode> &nodes,
+                                                       const std::vector<Eigen::VectorXd>      &u);
 } // namespace slipstick::app

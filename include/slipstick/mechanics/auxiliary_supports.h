@@ -12,8 +12,8 @@ namespace slipstick::mechanics
   /// motion. The same on all ranks. Collective.
   /// @param motions orthonormal: amplitudes of translation x, y and rotation of every body about its frame.
   template <int dim>
-  std::vector<scene::PrescribedDisplacement<dim>> still_points(const mesh::Mesh<dim>               &mesh,
-                                                               const Spaces<dim>                   &spaces,
-                                                               const std::vector<Eigen::VectorXd>  &motions,
-                                                               const std::vector<tfeti::BodyFrame> &frames);
+  std::vector<scene::PrescribedDisplacement<dim>> auxiliary_supports(const mesh::Mesh<dim>               &mesh,
+                                                                     const Spaces<dim>                   &spaces,
+                                                                     const std::vector<Eigen::VectorXd>  &motions,
+                                                                     const std::vector<tfeti::BodyFrame> &frames);
 } // namespace slipstick::mechanics

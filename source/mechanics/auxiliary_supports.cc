@@ -1,4 +1,4 @@
-#include <slipstick/mechanics/still_points.h>
+#include <slipstick/mechanics/auxiliary_supports.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -102,10 +102,10 @@ namespace slipstick::mechanics
   } // namespace
 
   template <int dim>
-  std::vector<scene::PrescribedDisplacement<dim>> still_points(const mesh::Mesh<dim>               &mesh,
-                                                               const Spaces<dim>                   &spaces,
-                                                               const std::vector<Eigen::VectorXd>  &motions,
-                                                               const std::vector<tfeti::BodyFrame> &frames)
+  std::vector<scene::PrescribedDisplacement<dim>> auxiliary_supports(const mesh::Mesh<dim>               &mesh,
+                                                                     const Spaces<dim>                   &spaces,
+                                                                     const std::vector<Eigen::VectorXd>  &motions,
+                                                                     const std::vector<tfeti::BodyFrame> &frames)
   {
     auto                                            nodes = nodes_of(mesh, spaces);
     Eigen::MatrixXd                                 left  = Eigen::MatrixXd::Identity(motions.size(), motions.size());
@@ -145,12 +145,12 @@ namespace slipstick::mechanics
     return supports;
   }
 
-  template std::vector<scene::PrescribedDisplacement<2>> still_points(const mesh::Mesh<2> &,
-                                                                      const Spaces<2> &,
-                                                                      const std::vector<Eigen::VectorXd> &,
-                                                                      const std::vector<tfeti::BodyFrame> &);
-  template std::vector<scene::PrescribedDisplacement<3>> still_points(const mesh::Mesh<3> &,
-                                                                      const Spaces<3> &,
-                                                                      const std::vector<Eigen::VectorXd> &,
-                                                                      const std::vector<tfeti::BodyFrame> &);
+  template std::vector<scene::PrescribedDisplacement<2>> auxiliary_supports(const mesh::Mesh<2> &,
+                                                                            const Spaces<2> &,
+                                                                            const std::vector<Eigen::VectorXd> &,
+                                                                            const std::vector<tfeti::BodyFrame> &);
+  template std::vector<scene::PrescribedDisplacement<3>> auxiliary_supports(const mesh::Mesh<3> &,
+                                                                            const Spaces<3> &,
+                                                                            const std::vector<Eigen::VectorXd> &,
+                                                                            const std::vector<tfeti::BodyFrame> &);
 } // namespace slipstick::mechanics
