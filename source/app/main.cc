@@ -1,4 +1,5 @@
 #include <slipstick/app/command_line.h>
+#include <slipstick/app/interruption.h>
 #include <slipstick/app/new_scene.h>
 #include <slipstick/app/simulation.h>
 #include <slipstick/base/collective.h>
@@ -116,6 +117,7 @@ namespace
   {
     const bool prints = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
     const auto report = [prints](const std::exception &error, const ExitStatus status) {
+      app::do_not_tell_when_interrupted(); // mpirun may end this rank by a signal when another one has ended
       if (prints)
         std::cerr << "error: " << for_terminal(error.what()) << std::endl;
       return static_cast<int>(status);

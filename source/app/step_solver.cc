@@ -187,7 +187,11 @@ namespace slipstick::app
     the_solution.directions =
       std::make_shared<qp::DirectionStore<tfeti::DistributedVector>>(options.newton.n_directions);
     for (const auto &[p, Fp, error] : state.directions)
-      the_solution.directions->push(vector_of(p, dual()), vector_of(Fp, dual()), error, dual().reduction());
+      the_solution.directions->push(vector_of(p, dual()),
+                                    vector_of(Fp, dual()),
+                                    error,
+                                    qp::dependent_compliances(dual(), 0),
+                                    dual().reduction());
   }
 
   template <int dim>

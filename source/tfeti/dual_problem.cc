@@ -4,6 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
+
 namespace slipstick::tfeti
 {
   namespace
@@ -75,8 +77,23 @@ namespace slipstick::tfeti
 
     is_single = explicit_blocks && options.operator_precision == Precision::single_precision;
     set_dual_load();
+    set_dependent_compliances();
     norm_PFP             = lanczos(options);
     cost.multiplications = F->n_applications();
+  }
+
+  void DualProblem::set_dependent_compliances()
+  {
+    if (!M)
+      return;
+    std::vector<bool> rigid(rows.kind.size(), true); // others are determined by their own compliance
+    for (unsigned int r = 0; r < rows.compliance.size(); ++r)
+      rigid[r] = rows.compliance[r] == 0;
+    const auto is_dependent = M->weights().ambiguous(rigid);
+    for (unsigned int r = 0; r < is_dependent.size(); ++r)
+      of_dependent_rows.push_back(is_dependent[r] ? 1 / row_metric.weights()[r] : 0.);
+    const bool is_here = std::find(is_dependent.begin(), is_dependent.end(), true) != is_dependent.end();
+    has_dependent_rows = dealii::Utilities::MPI::max(is_here ? 1 : 0, comm) > 0;
   }
 
   void DualProblem::set_step(std::vector<Eigen::VectorXd> loads, std::vector<double> c)

@@ -94,6 +94,11 @@ namespace slipstick::tfeti
     return problem.residual_weights();
   }
 
+  const std::vector<double> *Face::dependent_compliances() const
+  {
+    return problem.dependent_compliances();
+  }
+
   const MpiReduction &Face::reduction() const
   {
     return problem.reduction();

@@ -18,10 +18,10 @@ namespace slipstick::tfeti
     constexpr double least_gap = 1e-6;
     // Rows with one bound resist by this factor times the sum of all two-sided bounds and the loads.
     constexpr double barrier = 10;
-    // |t| is smoothed to sqrt(t^2 + eps^2), eps from the largest |g| down by this factor ...
+    // |t| is smoothed to sqrt(t^2 + eps^2), eps from the largest jump at the start down by this factor ...
     constexpr double smoothing_reduction = 0.1;
     // ... to this part of it, ...
-    constexpr double least_smoothing = 1e-6;
+    constexpr double least_smoothing = 1e-10;
     // ... each minimised by at most this number of Newton steps.
     constexpr unsigned int max_newton_steps = 30;
     // A step must reduce the sum by this part of its slope; otherwise it is halved, down to the shortest; ...
@@ -35,7 +35,7 @@ namespace slipstick::tfeti
     /// A row of a loose body, or in space both tangential rows of a node, whose resultant is bounded by the capacity.
     struct LooseRow
     {
-      double          g, capacity; // capacity infinite: one-sided
+      double          capacity; // infinite: one-sided
       Eigen::VectorXd share, second;
 
       double jump(const Eigen::VectorXd &a) const
@@ -44,30 +44,24 @@ namespace slipstick::tfeti
       }
     };
 
-    /// The motion a at which sum r |g + S a| + e'a is least.
+    /// The motion of which the rows bear the least part of the loads: sum r |S a| is least among all a with e'a = -1.
     class WeakestMotion
     {
     public:
+      /// @param loads_ e, not 0.
       WeakestMotion(std::vector<LooseRow> rows_, Eigen::VectorXd loads_)
         : rows(std::move(rows_))
         , loads(std::move(loads_))
       {
         double all = loads.norm();
         for (const LooseRow &row : rows)
-          {
-            largest = std::max(largest, std::abs(row.g));
-            all += std::isfinite(row.capacity) ? row.capacity : 0.;
-          }
-        if (largest == 0)
-          largest = 1; // any positive value
+          all += std::isfinite(row.capacity) ? row.capacity : 0.;
         for (LooseRow &row : rows)
-          if (!std::isfinite(row.capacity))
-            {
+          {
+            one_sided.push_back(!std::isfinite(row.capacity));
+            if (one_sided.back())
               row.capacity = barrier * all;
-              one_sided.push_back(true);
-            }
-          else
-            one_sided.push_back(false);
+          }
       }
 
       /// Lower bound of the part of the loads along a that the rows bear; one-sided rows must not be moved against.
@@ -82,16 +76,19 @@ namespace slipstick::tfeti
 
       Eigen::VectorXd motion() const
       {
-        Eigen::VectorXd a = Eigen::VectorXd::Zero(loads.size());
+        Eigen::VectorXd a       = -loads / loads.squaredNorm();
+        double          largest = 0;
+        for (const LooseRow &row : rows)
+          largest = std::max(largest, row.jump(a));
         for (double eps = largest; std::isfinite(largest) && eps > least_smoothing * largest;
              eps *= smoothing_reduction)
           for (unsigned int k = 0; k < max_newton_steps; ++k)
             {
-              Eigen::VectorXd       slope;
-              Eigen::MatrixXd       curvature;
-              const double          value = evaluate(a, eps, &slope, &curvature);
-              const Eigen::VectorXd step  = -shortest_solution(curvature, slope);
-              const double          along = slope.dot(step);
+              Eigen::VectorXd slope;
+              Eigen::MatrixXd curvature;
+              const double    value = evaluate(a, eps, &slope, &curvature);
+              Eigen::VectorXd step  = across_loads(-shortest_solution(curvature, slope));
+              const double    along = slope.dot(step);
               if (!(along < 0))
                 break;
               double t = 1;
@@ -105,20 +102,27 @@ namespace slipstick::tfeti
       }
 
     private:
+      /// The part of v without work of the loads.
+      Eigen::VectorXd across_loads(const Eigen::VectorXd &v) const
+      {
+        return v - loads * (loads.dot(v) / loads.squaredNorm());
+      }
+
+      /// Slope and curvature across the loads.
       double evaluate(const Eigen::VectorXd &a,
                       const double           eps,
                       Eigen::VectorXd       *slope     = nullptr,
                       Eigen::MatrixXd       *curvature = nullptr) const
       {
-        double value = loads.dot(a);
+        double value = 0;
         if (slope)
           {
-            *slope     = loads;
+            *slope     = Eigen::VectorXd::Zero(loads.size());
             *curvature = Eigen::MatrixXd::Zero(loads.size(), loads.size());
           }
         for (std::size_t i = 0; i < rows.size(); ++i)
           {
-            const double          t = rows[i].g + rows[i].share.dot(a), across = rows[i].second.dot(a);
+            const double          t = rows[i].share.dot(a), across = rows[i].second.dot(a);
             const double          smooth = std::hypot(t, across, eps);
             const double          factor = one_sided[i] ? rows[i].capacity / 2 : rows[i].capacity;
             const Eigen::VectorXd along  = t * rows[i].share + across * rows[i].second;
@@ -131,13 +135,22 @@ namespace slipstick::tfeti
                                along * along.transpose() / (smooth * smooth));
               }
           }
+        if (slope)
+          {
+            *slope = across_loads(*slope);
+            for (int side = 0; side < 2; ++side)
+              {
+                for (Eigen::Index column = 0; column < curvature->cols(); ++column)
+                  curvature->col(column) = across_loads(curvature->col(column));
+                curvature->transposeInPlace();
+              }
+          }
         return value;
       }
 
       std::vector<LooseRow> rows;
       std::vector<bool>     one_sided;
       Eigen::VectorXd       loads;
-      double                largest = 0;
     };
   } // namespace
 
@@ -320,8 +333,7 @@ namespace slipstick::tfeti
         if (free[r] || is_second[r] || capacity[r] < 0 ||
             (own.row(r).isZero(0.) && !(is_pair && !own.row(second[r]).isZero(0.))))
           continue;
-        const double unit = 1; // any gap: only the growth of the sum far away matters
-        numbers.push_back({std::isfinite(capacity[r]) ? 0. : unit, capacity[r]});
+        numbers.push_back({capacity[r]});
         for (std::size_t m = 0; m < loose.size(); ++m)
           numbers.back().push_back(own(r, m));
         for (std::size_t m = 0; m < loose.size(); ++m)
@@ -329,12 +341,12 @@ namespace slipstick::tfeti
         labels.push_back(rows.label[r]);
       }
     std::vector<LooseRow> all;
-    for (const auto &[label, row] : gathered_by_label(labels, numbers, comm)) // g, capacity, shares
+    for (const auto &[label, row] : gathered_by_label(labels, numbers, comm)) // capacity, shares
       {
-        const Eigen::Map<const Eigen::MatrixXd> shares(row.data() + 2, loose.size(), 2);
-        all.push_back({row[0], row[1], shares.col(0), shares.col(1)});
+        const Eigen::Map<const Eigen::MatrixXd> shares(row.data() + 1, loose.size(), 2);
+        all.push_back({row[0], shares.col(0), shares.col(1)});
       }
-    if (all.empty())
+    if (all.empty() || loads.isZero(0.))
       return {};
     const WeakestMotion   weakest(std::move(all), loads);
     const Eigen::VectorXd a = weakest.motion();

@@ -168,9 +168,7 @@ namespace slipstick::tfeti
         if (part.rows.empty())
           continue;
         const SemidefiniteFactor factor(part.matrix);
-        if (factor.n_left_out() == 0)
-          continue;
-        for (unsigned int k = 0; k < part.rows.size(); ++k)
+        for (const unsigned int k : factor.left_out()) // each belongs to one null vector, and these are all
           {
             Eigen::VectorXd share = -factor.solve(part.matrix.col(k));
             share[k] += 1;
@@ -210,7 +208,7 @@ namespace slipstick::tfeti
         return true;
       }
     SemidefiniteFactor factor(matrix);
-    const bool         is_regular = factor.n_left_out() == 0;
+    const bool         is_regular = factor.left_out().empty();
     if (n > largest_dense_block)
       {
         sparse.push_back({rows, std::move(factor)});

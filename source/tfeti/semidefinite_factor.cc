@@ -83,7 +83,8 @@ namespace slipstick::tfeti
           }
         const bool is_kept = pivot > least_kept_pivot * diagonal;
         inverse_pivot[k]   = is_kept ? 1 / pivot : 0.;
-        left_out += !is_kept;
+        if (!is_kept)
+          skipped.push_back(order[k]);
       }
   }
 

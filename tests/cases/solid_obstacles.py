@@ -1,6 +1,7 @@
 """Obstacles in space from .stl files: against the ball that they approximate, ASCII and binary, placed, damaged."""
 
 import math
+import os
 import pathlib
 import struct
 import unittest
@@ -34,10 +35,8 @@ def sphere(n, radius=100., center=(5, -100, 5)):
 
 
 def binary(triangles, name='solid of a program that begins so'):
-    content = name.encode().ljust(80) + struct.pack('<I', len(triangles))
-    for triangle in triangles:
-        content += struct.pack('<12fH', 0, 0, 0, *(x for corner in triangle for x in corner), 0)
-    return content
+    facets = (struct.pack('<12fH', 0, 0, 0, *(x for corner in triangle for x in corner), 0) for triangle in triangles)
+    return name.encode().ljust(80) + struct.pack('<I', len(triangles)) + b''.join(facets)
 
 
 def ascii(triangles):
@@ -130,14 +129,12 @@ class Surfaces(Solids):
         good = binary(triangles)
         hole = triangles[:20] + triangles[21:]
         twisted = triangles[:20] + [triangles[20][::-1]] + triangles[21:]
-        big = good[:80] + struct.pack('<I', 3000000) + bytes(50) * 3000000
         lines = ascii(triangles).decode().split('\n')
         for content, *words in (
                 (binary(hole), 'is not closed', 'belongs to 1 triangle', 'and 2 other edges', 'close its holes'),
                 (binary(twisted), 'is not oriented', 'normals consistent'),
                 (good[:-7], 'truncated', 'export it again'), (b'', 'is no STL file'), (b'PK\x03\x04', 'is no STL file'),
                 (binary([]), 'has 0 triangles'), (binary([triangles[0]] * 5), 'is not closed', '5 triangles'),
-                (big, '3000000 triangles', 'coarser'),
                 (good[:100] + struct.pack('<f', math.inf) + good[104:], 'not a finite number'),
                 ('\n'.join(lines[:3] + ['      vertex 1 zwei 3'] + lines[4:]).encode(), 'line 4', 'three numbers'),
                 ('\n'.join(lines[:4] + lines[5:]).encode(), 'line 7', '2 corners'),
@@ -145,6 +142,9 @@ class Surfaces(Solids):
                 ('\n'.join(lines[:10]).encode(), 'within a facet')):
             with self.subTest(words):
                 self.refused(against(stl(content)), COARSE, 'obstacle.stl', *words)
+        big = stl(good[:80] + struct.pack('<I', 2000001))
+        os.truncate(big, 84 + 50 * 2000001)
+        self.refused(against(big), COARSE, 'obstacle.stl', '2000001 triangles', 'coarser')
         path = stl(good)
         self.refused(against('nowhere.stl'), COARSE, "File = 'nowhere.stl'", 'there is no such file')
         self.refused(against(path, Radius=2), COARSE, 'Radius', 'has no meaning for this shape')

@@ -18,12 +18,24 @@ namespace
       , d(random.vector(n))
     {}
 
+    /// F of a lower rank; d in its range.
+    static Held singular(const unsigned int seed, const std::size_t n, const std::size_t m, const std::size_t rank)
+    {
+      Held result(seed, n, m);
+      result.problem.F = result.random.semidefinite(n, rank, 0.);
+      result.d         = result.problem.F * result.random.vector(n);
+      for (std::size_t i = 0; i < n; ++i)
+        result.problem.compliances.push_back(1. + 0.1 * static_cast<double>(i));
+      return result;
+    }
+
     /// x0 with its product, G x0 = e, held and tied entries as they are
     FaceSolution<Vector> solve(const std::vector<std::size_t> &at_bounds,
                                const std::vector<Tie>         &ties,
                                DirectionStore<Vector>         &store,
-                               const double                    target = 1e-10,
-                               const std::vector<Turn>        &turns  = {}) const
+                               const double                    target         = 1e-10,
+                               const std::vector<Turn>        &turns          = {},
+                               const double                    regularization = 0) const
     {
       std::vector<bool> free(d.size(), true);
       for (const std::size_t i : at_bounds)
@@ -44,8 +56,8 @@ namespace
       };
       const FaceSolverOptions                options;
       const Vector                           x = start(free, ties, turns);
-      FaceSolver<Vector, FacedProblem::Face> solver(face, d, store, conditions, options, turns);
-      solver.start(x, problem.F * x);
+      FaceSolver<Vector, FacedProblem::Face> solver(face, d, store, conditions, options, turns, regularization);
+      solver.start(x, problem.F * x, 0, center());
       return ties.empty() ? solver.solve_symmetric(target) : solver.solve_unsymmetric(target);
     }
 
@@ -58,8 +70,20 @@ namespace
       return x;
     }
 
-    /// The same by elimination: held and tied rows say how entries are bound, the others F x + G'a = d; then G x = e.
-    Vector exact(const std::vector<std::size_t> &at_bounds, const std::vector<Tie> &ties) const
+    /// The force that does not strain the regularisation.
+    Vector center() const
+    {
+      Vector x(d.size());
+      for (std::size_t i = 0; i < x.size(); ++i)
+        x[i] = std::cos(static_cast<double>(i));
+      return x;
+    }
+
+    /// The same by elimination: held and tied rows say how entries are bound, the others F x + G'a = d, with the regularisation; then
+    /// G x = e.
+    Vector exact(const std::vector<std::size_t> &at_bounds,
+                 const std::vector<Tie>         &ties,
+                 const double                    regularization = 0) const
     {
       const std::size_t n = d.size(), m = problem.G.m;
       Matrix            A(n + m, n + m);
@@ -85,7 +109,9 @@ namespace
               A(i, j) = problem.F(i, j);
             for (std::size_t k = 0; k < m; ++k)
               A(i, n + k) = problem.G(k, i);
-            b[i] = d[i];
+            const double compliance = regularization > 0 ? regularization * problem.compliances[i] : 0.;
+            A(i, i) += compliance;
+            b[i] = d[i] + compliance * center()[i];
           }
       for (std::size_t k = 0; k < m; ++k)
         {
@@ -144,7 +170,7 @@ TEST(DirectionStore, energies_are_those_of_the_directions_left)
   for (unsigned int k = 0; k < 7; ++k)
     {
       all.push_back(random.vector(6));
-      store.push(all.back(), F * all.back(), 0, SerialReduction());
+      store.push(all.back(), F * all.back(), 0, nullptr, SerialReduction());
     }
   ASSERT_EQ(store.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i)
@@ -163,7 +189,7 @@ TEST(DirectionStore, as_many_combinations_as_the_rank_allows_vanish_on_the_condi
         for (std::size_t k = 0; k < n; ++k)
           {
             const Vector p = random.vector(12);
-            store.push(p, p, 0, SerialReduction());
+            store.push(p, p, 0, nullptr, SerialReduction());
           }
         const auto conditions = [n_conditions](const Vector &p) { return Vector(p.begin(), p.begin() + n_conditions); };
         const auto found      = admissible_combinations(store, conditions, SerialReduction());
@@ -193,6 +219,24 @@ TEST(FaceSolver, agrees_with_a_dense_solve)
         EXPECT_EQ(found.status, Status::converged) << seed;
         EXPECT_LT(distance(found.x, p.exact({0, 7}, ties)), 1e-8) << seed << ", ties " << ties.size();
         EXPECT_LT(distance(found.product, p.problem.F * found.x), 1e-11) << seed;
+      }
+}
+
+TEST(FaceSolver, a_regularised_singular_face_has_one_solution)
+{
+  for (unsigned int seed = 0; seed < 20; ++seed)
+    for (const auto &ties : {std::vector<Tie>(), tied})
+      {
+        const Held             p = Held::singular(seed, 12, seed % 3, 6);
+        DirectionStore<Vector> store(100);
+        for (const double regularization : {1e-1, 1e-2}) // the second face starts with the directions of the first
+          {
+            const auto found = p.solve({0, 7}, ties, store, 1e-11, {}, regularization);
+            EXPECT_EQ(found.status, Status::converged) << seed;
+            EXPECT_LT(distance(found.x, p.exact({0, 7}, ties, regularization)), 1e-8)
+              << seed << ", ties " << ties.size();
+            EXPECT_LT(distance(found.product, p.problem.F * found.x), 1e-10) << seed;
+          }
       }
 }
 
@@ -292,7 +336,7 @@ TEST(FaceSolver, combinations_that_cancel_do_no_harm)
             for (double &entry : part)
               entry *= k % 2 == 0 ? 0.5 : 0.3;
             const Vector product = p.problem.F * part;
-            store.push(part, product, 0, SerialReduction());
+            store.push(part, product, 0, nullptr, SerialReduction());
           }
         for (const std::size_t other : {8, 9, 10})
           {

@@ -49,6 +49,11 @@ namespace slipstick::qp::test
         return problem.reduction();
       }
 
+      const std::vector<double> *dependent_compliances() const
+      {
+        return problem.dependent_compliances();
+      }
+
       void project_range(const Vector &x, Vector &y) const
       {
         Vector at = x;
@@ -179,6 +184,11 @@ namespace slipstick::qp::test
       return Face(*this, free, ties, turns);
     }
 
+    const std::vector<double> *dependent_compliances() const
+    {
+      return compliances.empty() ? nullptr : &compliances;
+    }
+
     const FacedProblem &loose_bodies() const
     {
       return *this;
@@ -204,5 +214,6 @@ namespace slipstick::qp::test
     }
 
     Vector e;
+    Vector compliances; // of dependent entries
   };
 } // namespace slipstick::qp::test

@@ -44,7 +44,7 @@ namespace slipstick::qp
     return local_dot(p, p) + local_weighted_dot(weights, Fp, Fp);
   }
 
-  /// Directions p, G p = 0, with F p, the latest ones; and p'F p of all pairs.
+  /// Directions p, G p = 0, with F p, the latest ones; and of all pairs p'F p, and p'D p where there is a D.
   template <typename Vector>
   class DirectionStore
   {
@@ -52,8 +52,8 @@ namespace slipstick::qp
     struct Direction
     {
       Vector              p, Fp;
-      std::vector<double> pFp;   // with all directions that were there when this one came, itself the last
-      double              error; // of Fp by rounding, an estimate in the norm of residuals
+      std::vector<double> pFp, pDp; // with all directions that were there when this one came, itself the last
+      double              error;    // of Fp by rounding, an estimate in the norm of residuals
     };
 
     /// @param capacity the oldest directions go when there are more.
@@ -69,24 +69,33 @@ namespace slipstick::qp
     {
       return directions[j];
     }
-    /// p_i'F p_j
-    double energy(const std::size_t i, const std::size_t j) const
+    /// p_i'(F + factor D) p_j
+    double energy(const std::size_t i, const std::size_t j, const double factor = 0) const
     {
-      const auto &later = directions[std::max(i, j)].pFp;
-      return later[later.size() - 1 - (std::max(i, j) - std::min(i, j))];
+      const Direction  &later = directions[std::max(i, j)];
+      const std::size_t place = later.pFp.size() - 1 - (std::max(i, j) - std::min(i, j));
+      return later.pFp[place] + (factor > 0 ? factor * later.pDp[place] : 0.);
     }
 
+    /// @param D dependent_compliances() of the problem.
     template <typename Reduction>
-    void push(Vector p, Vector Fp, const double error, const Reduction &reduction)
+    void push(Vector p, Vector Fp, const double error, const std::vector<double> *D, const Reduction &reduction)
     {
       if (directions.size() == capacity)
         directions.pop_front();
-      std::vector<double> pFp;
+      std::vector<double> pFp, pDp;
       for (const Direction &other : directions)
         pFp.push_back(local_dot(other.p, Fp));
       pFp.push_back(local_dot(p, Fp));
       sum_all(pFp, reduction);
-      directions.push_back({std::move(p), std::move(Fp), std::move(pFp), error});
+      if (D)
+        {
+          for (const Direction &other : directions)
+            pDp.push_back(local_diagonal_dot(*D, other.p, p));
+          pDp.push_back(local_diagonal_dot(*D, p, p));
+          sum_all(pDp, reduction);
+        }
+      directions.push_back({std::move(p), std::move(Fp), std::move(pFp), std::move(pDp), error});
     }
 
   private:

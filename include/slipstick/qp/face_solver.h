@@ -1,6 +1,9 @@
 // The linear problem of a face: P(d - F x) = 0 on the free entries, bounds, ties and G x as in the start. Directions of
 // all earlier faces are used as far as this one admits them (direction_store.h).
 //
+// A face may be regularised: a compliance eps D of dependent entries is added to F, which a given force does not strain. So
+// a singular F has one solution, the nearest to that force (proximal point).
+//
 // Without ties conjugate gradients (Farhat, Crivelli, Roux 1994, with full orthogonalisation); ties make the operator
 // unsymmetric, and generalised conjugate residuals take their place (Eisenstat, Elman, Schultz 1983).
 #pragma once
@@ -26,7 +29,7 @@ namespace slipstick::qp
   {
     Status status;
     Vector x, product; // F x
-    double residual;   // weighted |P(d - F x)|
+    double residual;   // weighted |P(d - F x)|, of the regularised problem
     double error;      // of the product, by rounding: an estimate in the norm of the residual
     Counts counts;
   };
@@ -38,23 +41,29 @@ namespace slipstick::qp
   public:
     /// @param face, d, store, options are referred to. @param conditions as in admissible_combinations().
     /// @param turns_ those of the face, whose compliances C count as part of F.
+    /// @param regularization_ eps >= 0; > 0 only with dependent_compliances() of the face
     template <typename Conditions>
     FaceSolver(const Face              &face_,
                const Vector            &d_,
                DirectionStore<Vector>  &store_,
                const Conditions        &conditions,
                const FaceSolverOptions &options_,
-               std::vector<Turn>        turns_ = {})
+               std::vector<Turn>        turns_          = {},
+               const double             regularization_ = 0)
       : face(face_)
-      , d(d_)
+      , given(d_)
       , store(store_)
       , options(options_)
       , turns(std::move(turns_))
       , reduction(face_.reduction())
+      , regularization(regularization_)
       , is_turned(reduction.min(turns.empty() ? 1. : 0.) < 1)
+      , has_compliance(is_turned || regularization > 0)
       , weights(residual_weights(face_, 0))
+      , D(dependent_compliances(face_, 0))
       , recycled(store_, admissible_combinations(store_, conditions, reduction))
       , n_recycled(store_.size())
+      , d(d_)
       , x(d_)
       , Fx(d_)
       , r(d_)
@@ -65,14 +74,24 @@ namespace slipstick::qp
           violations.push_back(conditions(store[j].p));
     }
 
-    /// @param product F x. @param error_of_product by rounding, weighted. @return the weighted residual |P(d - F x)|.
-    double start(Vector x_, Vector product, const double error_of_product = 0)
+    /// @param product F x. @param error_of_product by rounding, weighted. @param center force that does not strain eps D.
+    /// @return the weighted residual |P(d - F x - eps D (x - center))|.
+    double start(Vector x_, Vector product, const double error_of_product, const Vector &center)
     {
-      x     = std::move(x_);
-      Fx    = std::move(product);
+      x  = std::move(x_);
+      Fx = std::move(product);
+      d  = given;
+      if (regularization > 0)
+        add_diagonal(regularization, *D, center, d);
       error = error_of_product;
       update_residual();
       return norm_r;
+    }
+
+    /// Without regularisation.
+    double start(Vector x_, Vector product, const double error_of_product = 0)
+    {
+      return start(std::move(x_), std::move(product), error_of_product, given);
     }
 
     /// By conjugate gradients from the start until the weighted residual is at most @p target. For faces without ties.
@@ -84,8 +103,8 @@ namespace slipstick::qp
           if (is_turned)
             known.emplace(recycled.factor(energies_with_compliance()));
           else
-            known.emplace(
-              recycled.factor([this](const std::size_t i, const std::size_t j) { return store.energy(i, j); }));
+            known.emplace(recycled.factor(
+              [this](const std::size_t i, const std::size_t j) { return store.energy(i, j, regularization); }));
           for (unsigned int pass = 0; pass < 2 && norm_r > target; ++pass)
             move(recycled.coefficients(known->solve(recycled.combined(dots(r, &Direction::p)))));
         }
@@ -115,7 +134,7 @@ namespace slipstick::qp
           Vector Fp(p);
           multiply(p, Fp);
           Vector Ap(Fp); // (F + C) p
-          add_compliance(turns, p, Ap);
+          add_compliances(p, Ap);
           const auto [pr, pFp, pp, squares] = reduction.sum(
             std::array<double, 4>{{local_dot(p, r), local_dot(p, Ap), local_dot(p, p), local_squares(weights, p, Fp)}});
           if (!std::isfinite(pr) || !std::isfinite(pFp) || !(pr > 0))
@@ -239,7 +258,7 @@ namespace slipstick::qp
     FaceSolution<Vector> ended(const Status status)
     {
       for (auto &[p, Fp, error_of_Fp] : made)
-        store.push(std::move(p), std::move(Fp), error_of_Fp, reduction);
+        store.push(std::move(p), std::move(Fp), error_of_Fp, D, reduction);
       return {status, std::move(x), std::move(Fx), norm_r, error, counts};
     }
 
@@ -305,15 +324,23 @@ namespace slipstick::qp
       ++counts.hessian_multiplications;
     }
 
-    // r = P(d - F x - C x)
+    // y += (C + eps D) v
+    void add_compliances(const Vector &v, Vector &y) const
+    {
+      add_compliance(turns, v, y);
+      if (regularization > 0)
+        add_diagonal(regularization, *D, v, y);
+    }
+
+    // r = P(d - (F + C + eps D) x), where d contains what the start adds
     void update_residual()
     {
       std::copy(d.begin(), d.end(), r.begin());
       add(-1.0, Fx, r);
-      if (is_turned)
+      if (has_compliance)
         {
           set_zero(w);
-          add_compliance(turns, x, w);
+          add_compliances(x, w);
           add(-1.0, w, r);
         }
       face.project_range(r, w);
@@ -373,11 +400,11 @@ namespace slipstick::qp
       return result;
     }
 
-    // weighted P (F + C) p
+    // weighted P (F + C + eps D) p
     Vector image(const Vector &p, const Vector &Fp)
     {
       Vector q(Fp);
-      add_compliance(turns, p, q);
+      add_compliances(p, q);
       face.project_range(static_cast<const Vector &>(q), w);
       add(-1.0, w, q);
       return weighted(q);
@@ -392,13 +419,13 @@ namespace slipstick::qp
       return result;
     }
 
-    // v'(F + C) p_j
+    // v'(F + C + eps D) p_j
     std::vector<double> dots_with_products(const Vector &v) const
     {
-      if (!is_turned)
+      if (!has_compliance)
         return dots(v, &Direction::Fp);
       Vector Cv = zero_like(v);
-      add_compliance(turns, v, Cv);
+      add_compliances(v, Cv);
       std::vector<double> result;
       for (std::size_t j = 0; j < n_recycled; ++j)
         result.push_back(local_dot(v, store[j].Fp) + local_dot(Cv, store[j].p));
@@ -406,7 +433,7 @@ namespace slipstick::qp
       return result;
     }
 
-    // p_i'(F + C) p_j of the directions of the store
+    // p_i'(F + C + eps D) p_j of the directions of the store
     auto energies_with_compliance() const
     {
       std::vector<double> products;
@@ -422,7 +449,7 @@ namespace slipstick::qp
       std::size_t    next = 0;
       for (std::size_t i = 0; i < n_recycled; ++i)
         for (std::size_t j = 0; j <= i; ++j)
-          result(i, j) = result(j, i) = store.energy(i, j) + products[next++];
+          result(i, j) = result(j, i) = store.energy(i, j, regularization) + products[next++];
       return [result](const std::size_t i, const std::size_t j) { return result(i, j); };
     }
 
@@ -454,18 +481,21 @@ namespace slipstick::qp
 
     using ReductionType = std::decay_t<decltype(std::declval<Face>().reduction())>;
 
-    const Face              &face;
-    const Vector            &d;
-    DirectionStore<Vector>  &store;
-    const FaceSolverOptions &options;
-    const std::vector<Turn>  turns;
-    const ReductionType     &reduction;
-    const bool               is_turned; // on any process
-    const double            *weights;
-    detail::Recycled<Vector> recycled;
-    const std::size_t        n_recycled;
+    const Face                      &face;
+    const Vector                    &given;
+    DirectionStore<Vector>          &store;
+    const FaceSolverOptions         &options;
+    const std::vector<Turn>          turns;
+    const ReductionType             &reduction;
+    const double                     regularization;
+    const bool                       is_turned; // on any process
+    const bool                       has_compliance;
+    const double                    *weights;
+    const std::vector<double> *const D; // null: none
+    detail::Recycled<Vector>         recycled;
+    const std::size_t                n_recycled;
 
-    Vector            x, Fx, r, w;
+    Vector            d, x, Fx, r, w;
     double            norm_r      = 0;
     double            error       = 0; // of Fx
     bool              is_replaced = false;

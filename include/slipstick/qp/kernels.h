@@ -89,6 +89,42 @@ namespace slipstick::qp
     return sum;
   }
 
+  /// A compliance D of the entries that F does not determine, for the owned ones: `dependent_compliances()` of the problem, near
+  /// the diagonal of F, and 0 where entries are determined; null if the problem has none on any process.
+  template <typename Problem>
+  auto dependent_compliances(const Problem &problem, int)
+    -> decltype(problem.dependent_compliances(), (const std::vector<double> *)nullptr)
+  {
+    return problem.dependent_compliances();
+  }
+  template <typename Problem>
+  const std::vector<double> *dependent_compliances(const Problem &, long)
+  {
+    return nullptr;
+  }
+
+  /// y += factor D x
+  template <typename Vector>
+  void add_diagonal(const double factor, const std::vector<double> &D, const Vector &x, Vector &y)
+  {
+    const auto xi = x.begin();
+    const auto yi = y.begin();
+    for (std::size_t i = 0; i < D.size(); ++i)
+      yi[i] += factor * D[i] * xi[i];
+  }
+
+  /// This process' part of x'D y.
+  template <typename Vector>
+  double local_diagonal_dot(const std::vector<double> &D, const Vector &x, const Vector &y)
+  {
+    const auto xi  = x.begin();
+    const auto yi  = y.begin();
+    double     sum = 0;
+    for (std::size_t i = 0; i < D.size(); ++i)
+      sum += D[i] * xi[i] * yi[i];
+    return sum;
+  }
+
   /// p := the nearest point with G p = 0, by `project_kernel(p)` if the problem has it, otherwise p - Q p. w: work
   /// vector.
   template <typename Problem, typename Vector>

@@ -25,7 +25,8 @@
 //       `balance(stiffness, set, tolerated, moved)`   moves them, moved -= stiffness times their jumps, so that proj(moved)
 //           balances their loads, up to the part `tolerated` of all forces: the least of the potential of the projected
 //           forces. So sets are predicted that can bear the loads.
-// It may have `point_stiffness() const`, |PFP| times the stiffness of an entry of weight 1 whose neighbours are held (active_set.h).
+// It may have `point_stiffness() const`, |PFP| times the stiffness of an entry of weight 1 whose neighbours are held (active_set.h),
+// and, as its faces, `dependent_compliances() const` (kernels.h).
 #pragma once
 
 #include <slipstick/qp/active_set.h>
@@ -105,6 +106,7 @@ namespace slipstick::qp
         , accepts(accepts_)
         , is_right(is_right_)
         , has_wide_stiffnesses(ratio_of_weights(problem_, d_) > options_.wide_stiffnesses)
+        , is_singular(dependent_compliances(problem_, 0) != nullptr)
         , tolerance(goal_.tolerance)
         , set(problem_, norm_, std::move(admissible), options.set_step, noise_of(problem_, d_))
         , directions(start.directions ? std::move(start.directions)
@@ -337,12 +339,21 @@ namespace slipstick::qp
         add(-1.0, shift, gradient);
       }
 
+      // Of the next face, falling with the residual (Levenberg, Marquardt): where forces are not unique the method converges to
+      // the nearest ones, as fast as elsewhere (Fan, Yuan 2005). What a face leaves of the residual, over this, is how far forces
+      // wander that F does not determine.
+      double regularization() const
+      {
+        return is_singular ? std::min(options.largest_regularization, merits.back() / goal.reference) : 0.;
+      }
+
       // y, F y, and gradient of y: the solution on the face, up to a part of the present residual.
       void solve(const Face &face)
       {
         y = x;
         set.put_on_bounds(y);
         face.balance(y);
+        const Vector center(y);
         step_to_start(face);
         FaceSolver<Vector, Face> solver(
           face,
@@ -350,13 +361,15 @@ namespace slipstick::qp
           store,
           [this](const Vector &p) { return set.conditions(p, ties); },
           options.face,
-          set.turns());
-        const double first  = solver.start(std::move(y), std::move(Fy), error_of_Fx);
+          set.turns(),
+          regularization());
+        const double first  = solver.start(std::move(y), std::move(Fy), error_of_Fx, center);
         const double target = std::min(std::max(options.last_forcing * tolerance * goal.reference,
-                                                options.forcing * std::min(first, merits.back())),
+                                                (is_singular ? options.singular_forcing : options.forcing) *
+                                                  std::min(first, merits.back())),
                                        options.sharpening * residual_of_earlier_solution());
         auto         result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
-        if (has_wide_stiffnesses)
+        if (is_singular || has_wide_stiffnesses)
           remember({set.sides(), result.residual});
         counts += result.counts;
         y           = std::move(result.x);
@@ -414,7 +427,11 @@ namespace slipstick::qp
           {
             const double squares = problem.reduction().sum(
               std::array<double, 1>{{local_squares(residual_weights(problem, 0), step, product)}})[0];
-            store.push(std::move(step), std::move(product), rounding_of_product(squares), problem.reduction());
+            store.push(std::move(step),
+                       std::move(product),
+                       rounding_of_product(squares),
+                       dependent_compliances(problem, 0),
+                       problem.reduction());
           }
       }
 
@@ -550,6 +567,7 @@ namespace slipstick::qp
       const Acceptance<Vector> &accepts;
       const ErrorTest<Vector>  &is_right;
       const bool                has_wide_stiffnesses; // gradients may tell sets that are below the tolerance
+      const bool                is_singular;          // F, on some faces
       double                    tolerance; // that faces are solved to: of the goal, or below it until x is right
       bool                      has_met_goal = false;
 

@@ -108,6 +108,13 @@ namespace slipstick::tfeti
       return row_metric.weights();
     }
 
+    /// Of the owned rows: 1 over the weight of those that depend linearly on others (redundant supports, corners where several pairs
+    /// meet), 0 for others; null if there are none on any rank, and without a preconditioner.
+    const std::vector<double> *dependent_compliances() const
+    {
+      return has_dependent_rows ? &of_dependent_rows : nullptr;
+    }
+
     /// |P F P| times the stiffness of the row of weight 1 with its neighbours held. 0 if unknown (without a
     /// preconditioner) or if it does not improve the prediction of the active set (solids; doc/decisions/0090).
     double point_stiffness() const
@@ -194,7 +201,8 @@ namespace slipstick::tfeti
   private:
     double lanczos(const DualOptions &options) const;
     void   apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
-    void   set_dual_load();                                                 // e too
+    void   set_dependent_compliances();
+    void   set_dual_load(); // e too
 
     MPI_Comm                                             comm;
     MpiReduction                                         reduce;
@@ -208,6 +216,8 @@ namespace slipstick::tfeti
     std::unique_ptr<Projector>                           Q;
     std::unique_ptr<RowPreconditioner>                   M;
     RowMetric                                            row_metric;
+    std::vector<double>                                  of_dependent_rows; // compliances
+    bool                                                 has_dependent_rows = false;
     DistributedVector                                    dual_load;
     Eigen::VectorXd                                      resultants;
     DistributedVector                                    correction; // (F - F~) x, subtracted from d

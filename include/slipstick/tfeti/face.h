@@ -24,6 +24,7 @@ namespace slipstick::tfeti
     void                       multiply(const DistributedVector &x, DistributedVector &y) const; // y = F x / |P F P|
     const MpiReduction        &reduction() const;
     const std::vector<double> &residual_weights() const;
+    const std::vector<double> *dependent_compliances() const;
 
     /// y = Q_f x on the free rows, y = x on the others.
     void project_range(const DistributedVector &x, DistributedVector &y) const;

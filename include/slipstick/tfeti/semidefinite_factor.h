@@ -15,7 +15,7 @@ namespace slipstick::tfeti
   /// spring << 2, -2, -2, 2;
   /// const SemidefiniteFactor factor(spring.sparseView());
   /// const Eigen::VectorXd    u = factor.solve(Eigen::Vector2d(-6, 6));
-  /// assert(factor.n_left_out() == 1);
+  /// assert(factor.left_out().size() == 1);
   /// assert(std::abs(u[1] - u[0] - 3) < 1e-12);
   /// @endcode
   class SemidefiniteFactor
@@ -26,15 +26,16 @@ namespace slipstick::tfeti
 
     Eigen::VectorXd solve(const Eigen::VectorXd &b) const;
 
-    unsigned int n_left_out() const
+    /// The rows that were skipped.
+    const std::vector<unsigned int> &left_out() const
     {
-      return left_out;
+      return skipped;
     }
 
   private:
-    std::vector<int>    order;      // of the rows: order[k] is eliminated as the k-th
-    std::vector<int>    first, row; // columns of L below the diagonal
-    std::vector<double> value, inverse_pivot;
-    unsigned int        left_out = 0;
+    std::vector<int>          order;      // of the rows: order[k] is eliminated as the k-th
+    std::vector<int>          first, row; // columns of L below the diagonal
+    std::vector<double>       value, inverse_pivot;
+    std::vector<unsigned int> skipped;
   };
 } // namespace slipstick::tfeti
