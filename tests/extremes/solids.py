@@ -99,8 +99,10 @@ class Solids(Extremes):
         for mu in (0.15, 1, 10):
             result = self.converges(table, mu, blocks(contact={'Friction coefficient': repr(mu)}), most=250)
             self.balanced(result)
-        for mu in (0, 1e-6):  # 0.05: see doc/status.md
+        for mu in (0, 1e-6):
             self.ends(4, table, mu, blocks(contact={'Friction coefficient': repr(mu)}), 'body high: translation along (0.8, 0')
+        for mu in (0.05, 0.09, 0.099):  # it turns while it slides
+            self.ends(4, table, mu, blocks(contact={'Friction coefficient': repr(mu)}), 'body high: rotation about')
 
     def test_poisson_ratio(self):
         table = Table('Poisson ratio')
