@@ -131,7 +131,7 @@ class Solids(Extremes):
         self.near(contact['normal_force'], volume, 1e-6)
 
     def test_forces_that_are_not_unique(self):
-        """Stones that stand on the seat and against each other by one edge: 72 of 648 rows depend on others. """
+        """Stones that stand on the seat and against each other by one edge: 72 of 648 rows depend on others."""
         table = Table('dome at other tolerances')
         for tolerance in (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9):
             self.converges(table, tolerance, shipped('dome'), {'Solver/Tolerance': tolerance}, most=1000)
