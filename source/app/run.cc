@@ -14,6 +14,7 @@
 #include <slipstick/output/history.h>
 #include <slipstick/output/probes.h>
 #include <slipstick/scene/adaptivity.h>
+#include <slipstick/tfeti/diagnosis.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -113,10 +114,11 @@ namespace slipstick::app
         keep(step, summary);
       }
     clock.enter("output");
-    write_tables(summary);
+    describe_run(summary);
+    write(summary);
     clock.leave();
     describe_run(summary);
-    output::write_summary(directory, summary);
+    output::write_summary(directory, summary); // with the time of writing
     if (summary.status == output::RunStatus::converged)
       remove_restart(directory, comm);
     finished_steps = std::move(summary);
@@ -175,10 +177,9 @@ namespace slipstick::app
         output::write_summary(directory, summary_without_equilibrium(scene, comm));
         return;
       }
-    write_tables(*finished_steps);
     finished_steps->status = output::RunStatus::no_equilibrium;
     describe_run(*finished_steps);
-    output::write_summary(directory, *finished_steps);
+    write(*finished_steps);
     log.line(format("finished load steps whose results are kept: %zu", contact_steps.size()));
   }
 
@@ -238,9 +239,8 @@ namespace slipstick::app
     summary.status     = output::RunStatus::unfinished;
     describe_run(summary);
     write_restart(directory, scene, {solver.state(), summary, contact_steps, total_slip, warnings, warned_about}, comm);
-    write_tables(summary); // written last and together, so that they agree unless a signal arrives between them
+    write(summary);
     kept_steps = step + 1;
-    output::write_summary(directory, summary);
     announce(step + 1);
     kept_at      = clock.total();
     writing_time = kept_at - begin;
@@ -277,6 +277,8 @@ namespace slipstick::app
       make_summary(scene, solver.mesh(), solver.spaces(), solver.dual(), solver.solution(), contact.checks, stress);
     if (!is_right)
       summary.status = output::RunStatus::not_converged;
+    if (summary.status == output::RunStatus::not_converged)
+      tfeti::refuse_stiffnesses_too_far_apart(solver.dual());
     summary.results.forces = forces(solver, *answer, t, about_forces);
     warn(about_forces);
     add_places(solver, stress, summary);
@@ -372,14 +374,17 @@ namespace slipstick::app
   }
 
   template <int dim>
-  void Run<dim>::write_tables(const output::Summary &summary) const
+  void Run<dim>::write(const output::Summary &summary) const
   {
-    output::write_history(directory, summary.steps, dim);
-    output::write_probes(directory, summary.steps, dim);
-    output::write_convergence(directory, solver.convergence());
-    directory.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
-    if (scene.has_contact())
-      output::write_contact_csv(directory, contact_names(scene), contact_steps);
+    directory.write_together([&](const output::OutputDirectory &to) {
+      output::write_history(to, summary.steps, dim);
+      output::write_probes(to, summary.steps, dim);
+      output::write_convergence(to, solver.convergence());
+      to.write_from_root("parameters.prm", [&](std::ostream &out) { out << scene.parameters; });
+      if (scene.has_contact())
+        output::write_contact_csv(to, contact_names(scene), contact_steps);
+      output::write_summary(to, summary);
+    });
   }
 
   template <int dim>

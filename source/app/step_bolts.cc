@@ -3,8 +3,12 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/mechanics/loads.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
 
 namespace slipstick::app
 {
@@ -21,6 +25,39 @@ namespace slipstick::app
     constexpr double near_the_end = 100, much_nearer = 0.5;
     // Factor by which the tolerance of the solver is then reduced, and its lower limit.
     constexpr double sharper = 0.1, sharpest = 1e-13;
+
+    // Loads and gaps are multiples of others up to this relative difference.
+    constexpr double difference_of_multiples = 1e-8;
+
+    /// Loads, gaps and supports, as they enter the dual problem.
+    struct DualData
+    {
+      explicit DualData(const tfeti::DualProblem &dual)
+        : d(dual.d())
+        , e(dual.e())
+      {}
+      tfeti::DistributedVector d; // [mm]
+      Eigen::VectorXd          e; // [N], [N mm], of this rank's subdomains
+    };
+
+    /// The factor that makes @p before the data of @p dual, if there is one. Collective.
+    std::optional<double> multiple(const DualData &before, const tfeti::DualProblem &dual)
+    {
+      const auto   sum = [&dual](const double part) { return dealii::Utilities::MPI::sum(part, dual.communicator()); };
+      const double squares = before.d.norm_sqr();
+      if (squares == 0)
+        return {};
+      const double factor = dual.d() * before.d / squares;
+      auto         rest   = before.d;
+      rest.sadd(-factor, 1., dual.d());
+      double total = 0; // what the loads would add up to if they did not balance each other
+      for (const auto &system : dual.subdomains())
+        total += (system->kernel().cwiseAbs().transpose() * system->load().cwiseAbs()).squaredNorm();
+      const bool fits =
+        rest.l2_norm() <= difference_of_multiples * dual.d().l2_norm() &&
+        sum((dual.e() - factor * before.e).squaredNorm()) <= std::pow(difference_of_multiples, 2) * sum(total);
+      return fits ? std::optional<double>(factor) : std::nullopt;
+    }
   } // namespace
 
   template <int dim>
@@ -75,10 +112,17 @@ namespace slipstick::app
             "let supports or contact hold both ends of the bolt against the clamped parts");
         if (so_far.are_vague())
           of_solver = std::max(sharpest, sharper * of_solver);
+        const DualData before(dual());
         problem.reload(t);
         options.tolerance        = of_solver;
         the_solution.multipliers = answer->recovery.multipliers;
-        answer                   = continue_to_smaller_residual(step,
+        if (const auto factor = multiple(before, dual())) // only bolts load the bodies: the solution is a multiple, too
+          {
+            the_solution.multipliers *= *factor;
+            if (the_solution.gradient)
+              *the_solution.gradient *= *factor;
+          }
+        answer = continue_to_smaller_residual(step,
                                               multiplications_before,
                                               checked(solve_step(step, multiplications_before, true), t));
       }

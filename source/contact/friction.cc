@@ -118,9 +118,10 @@ namespace slipstick::contact
               return finished();
             refuse_overload();
             ++solution.fallbacks;
-            set_bounds(law.bounds(feasible));
+            follow_bounds(fallback_start(from, feasible));
           }
-        follow_bounds(feasible);
+        else
+          follow_bounds(feasible);
         const bool follows =
           law.depends_on_pressure() && solution.friction_iterations > 0; // not a limit of SMALBE alone
         if (solution.status == qp::Status::stagnated || (solution.status == qp::Status::iteration_limit && follows))
@@ -233,6 +234,22 @@ namespace slipstick::contact
         solution.counts.outer_iterations = 0;
         set_bounds(law.bounds(from));
         return from;
+      }
+
+      /// The forces nearest to those from which Newton's method began that balance the loads within the bounds there, which
+      /// become the present ones; where none do, the feasible ones.
+      Vector fallback_start(const Vector &from, const Vector &feasible)
+      {
+        auto bounds = law.bounds(from);
+        auto near   = nearest_feasible(dual, law, bounds, from);
+        if (!near)
+          {
+            set_bounds(law.bounds(feasible));
+            return feasible;
+          }
+        set_bounds(std::move(bounds));
+        qp::project(box, *near); // to the last bit
+        return *std::move(near);
       }
 
       /// Asks whether x, moved to its bounds, is accurate enough. @p g: gradient F x - d + G'a (scaled).

@@ -103,6 +103,14 @@ namespace slipstick::output
       bool                           is_renamed = false;
     };
 
+    /// @throws InputError unless @p reason is empty
+    void check_written(const std::string &reason, const std::string &final_name)
+    {
+      if (!reason.empty())
+        throw InputError("Could not write '" + final_name + "': " + reason + "; what was written before it is complete",
+                         "free space there or " + other_directory);
+    }
+
     // Permission bits are not sufficient (root ignores them; read-only or full disks do not show in them): write a
     // file.
     void try_a_file(const std::filesystem::path &directory)
@@ -197,14 +205,13 @@ namespace slipstick::output
   void OutputDirectory::write(const std::string &name, const std::function<void(std::ostream &)> &content) const
   {
     const std::string final_name = path(name);
-    const auto        check      = [&](const std::string &reason) {
-      if (!reason.empty())
-        throw InputError("Could not write '" + final_name + "': " + reason + "; what was written before it is complete",
-                         "free space there or " + other_directory);
-    };
-    NewFile file(temporary_name(final_name));
-    check(file.fill(content));
-    check(file.take_name(final_name));
+    const auto        file       = std::make_shared<NewFile>(temporary_name(final_name));
+    check_written(file->fill(content), final_name);
+    const auto appear = [file, final_name] { check_written(file->take_name(final_name), final_name); };
+    if (waiting)
+      waiting->emplace_back(appear);
+    else
+      appear();
   }
 
   void OutputDirectory::write_from_root(const std::string                         &name,
@@ -213,6 +220,17 @@ namespace slipstick::output
     collectively(communicator, [&] {
       if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
         write(name, content);
+    });
+  }
+
+  void OutputDirectory::write_together(const std::function<void(const OutputDirectory &)> &write_files) const
+  {
+    OutputDirectory together = *this;
+    together.waiting         = std::make_shared<std::vector<std::function<void()>>>();
+    write_files(together);
+    collectively(communicator, [&] {
+      for (const auto &appear : *together.waiting)
+        appear();
     });
   }
 } // namespace slipstick::output

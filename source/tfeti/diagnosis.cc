@@ -1,9 +1,21 @@
 #include <slipstick/tfeti/diagnosis.h>
 
+#include <slipstick/tfeti/row_metric.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <limits>
 #include <optional>
 
 namespace slipstick::tfeti
 {
+  namespace
+  {
+    // Beyond it the rounding of the stiffest subdomain (1e-16) is more than 1e-4 of the softest, and checks may fail.
+    constexpr double largest_stiffness_ratio = 1e12;
+  } // namespace
+
   JumpEnergies jump_energies(const DualProblem &dual, const DistributedVector &r, const std::vector<bool> &held)
   {
     const auto                      &systems = dual.subdomains();
@@ -38,6 +50,21 @@ namespace slipstick::tfeti
       return dual.preconditioner()->weights().ambiguous(rigid);
     return RowWeights(dual.subdomains(), dual.dual_operator().gluing(), dual.constraints().rows, dual.communicator())
       .ambiguous(rigid);
+  }
+
+  void refuse_stiffnesses_too_far_apart(const DualProblem &dual)
+  {
+    double largest = 0, smallest = std::numeric_limits<double>::infinity();
+    for (const auto &system : dual.subdomains())
+      {
+        const double stiffness = system->stiffness_diagonal().maxCoeff();
+        largest                = std::max(largest, stiffness);
+        smallest               = std::min(smallest, stiffness);
+      }
+    largest  = dealii::Utilities::MPI::max(largest, dual.communicator());
+    smallest = dealii::Utilities::MPI::min(smallest, dual.communicator());
+    if (largest > largest_stiffness_ratio * smallest)
+      throw stiffnesses_too_far_apart();
   }
 
   RigidMotion motion_behind(const DualProblem &dual, const DistributedVector &r)

@@ -45,7 +45,7 @@ class Interrupted(unittest.TestCase):
         with open(directory / 'contact.csv', newline='') as text:
             steps = {row['step'] for row in csv.DictReader(text)}
         for found in (history, steps):
-            self.assertLessEqual(abs(len(found) - len(summary['steps'])), 1)  # files are written one after the other
+            self.assertEqual(len(found), len(summary['steps']))
         return len(summary['steps'])
 
     def test_message_and_tables(self):
@@ -55,7 +55,7 @@ class Interrupted(unittest.TestCase):
             self.assertIn('error: interrupted in load step ', message)
             self.assertIn(' of {}; summary.json, history.csv and contact.csv in {}'.format(STEPS, directory), message)
             said = int(re.search(r'the first (\d+), from which --resume continues$', message.rstrip()).group(1))
-            self.assertLessEqual(abs(self.kept(directory) - said), 1)
+            self.assertGreaterEqual(self.kept(directory), said)  # the message changes after the tables
 
     def test_several_ranks(self):
         status, message, directory = self.interrupt(signal.SIGTERM, 2)

@@ -119,6 +119,30 @@ TEST_F(Directory, failing_content_leaves_the_file_from_before)
   EXPECT_EQ(n_files(root), 1);
 }
 
+TEST_F(Directory, files_written_together_appear_when_all_are_complete)
+{
+  const OutputDirectory directory(root, MPI_COMM_WORLD);
+  const auto            write = [&](const OutputDirectory &to, const std::string &text) {
+    for (const char *name : {"x", "y"})
+      to.write_from_root(name, [&](std::ostream &out) {
+        if (text == "none" && name == std::string("y"))
+          throw std::runtime_error("stop");
+        out << text;
+      });
+  };
+  write(directory, "before");
+  directory.write_together([&](const OutputDirectory &to) {
+    write(to, "after");
+    if (is_root())
+      EXPECT_EQ(content(directory.path("x")), "before");
+  });
+  for (const char *name : {"x", "y"})
+    EXPECT_EQ(content(directory.path(name)), "after");
+  EXPECT_THROW(directory.write_together([&](const OutputDirectory &to) { write(to, "none"); }), std::runtime_error);
+  EXPECT_EQ(content(directory.path("x")), "after");
+  EXPECT_EQ(n_files(root), 2);
+}
+
 TEST_F(Directory, full_disk_is_bad_input_on_all_ranks_and_leaves_nothing)
 {
   const OutputDirectory directory(root, MPI_COMM_WORLD);

@@ -88,7 +88,8 @@ namespace slipstick::app
     /// Called after the last load step.
     void estimate_errors(const double t, output::Summary &summary);
 
-    void write_tables(const output::Summary &summary) const;
+    /// Tables and summary.json, which agree whenever the run is interrupted.
+    void write(const output::Summary &summary) const;
 
     void write_fields(const unsigned int step, const StepSolution &answer) const;
 

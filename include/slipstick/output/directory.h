@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <iosfwd>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,11 @@ namespace slipstick::output
     /// Collective.
     void write_from_root(const std::string &name, const std::function<void(std::ostream &)> &content) const;
 
+    /// Files that agree with each other: those that @p write_files writes with write_from_root() of the directory it is
+    /// given appear together, when all are complete, even if the run is killed meanwhile. On failure none appears.
+    /// Collective.
+    void write_together(const std::function<void(const OutputDirectory &)> &write_files) const;
+
     /// Removes the directories created by the constructor if they are empty, so that a rejected scene leaves nothing
     /// behind. Rank 0 does the work; no communication.
     void remove_if_new() const;
@@ -43,5 +49,8 @@ namespace slipstick::output
     std::string              directory;
     MPI_Comm                 communicator;
     std::vector<std::string> created; // by the constructor, outermost first; rank 0
+
+    /// Each gives a complete file its final name; null: files get it at once.
+    std::shared_ptr<std::vector<std::function<void()>>> waiting;
   };
 } // namespace slipstick::output

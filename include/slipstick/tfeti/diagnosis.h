@@ -30,6 +30,11 @@ namespace slipstick::tfeti
   /// (redundant constraints between bodies). This does not affect u. Collective.
   std::vector<bool> ambiguous(const DualProblem &dual, const std::vector<bool> &free);
 
+  /// To be called where a solution failed: were the stiffnesses of the subdomains so different that the rounding of the
+  /// stiffest (1e-16) is no longer small beside the softest? Collective.
+  /// @throws InputError stiffnesses_too_far_apart() in that case, on all ranks.
+  void refuse_stiffnesses_too_far_apart(const DualProblem &dual);
+
   /// The rigid motion a of the bodies for a dual vector r = G'a. Collective.
   RigidMotion motion_behind(const DualProblem &dual, const DistributedVector &r);
 } // namespace slipstick::tfeti
