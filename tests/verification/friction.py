@@ -10,7 +10,7 @@ import measured
 class CattaneoMindlin(unittest.TestCase):
 
     def test_traction_and_stick_zone(self):
-        for share in (0.25, 0.5, 0.75):
+        for share in (0.25, 0.75):  # scripts/verification: 0.5, too
             with self.subTest(share=share):
                 found = measured.cattaneo_mindlin(degree=2, share=share)
                 self.assertLess(found['stick_error_elements'], 1, (found['stick'], found['c']))
