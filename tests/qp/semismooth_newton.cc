@@ -300,7 +300,7 @@ TEST(SemismoothNewton, the_gradient_of_the_solution_saves_the_search_for_its_set
   add(-1., w, g);
   const auto again = semismooth_newton(p.problem, 1., p.d, p.set, NewtonStart<Vector>{found.x, g}, Goal(1e-9, 1.));
   EXPECT_EQ(again.status, Status::converged);
-  EXPECT_EQ(again.counts.outer_iterations, 1u);
+  EXPECT_EQ(again.counts.outer_iterations, 0u);
   EXPECT_LT(distance(again.x, found.x), 1e-8);
 }
 

@@ -177,6 +177,8 @@ namespace slipstick::qp
       {
         if (!begin())
           return Status::infeasible;
+        if (!is_rough && starts_at_solution())
+          return converged_at_y();
         while (counts.outer_iterations < options.max_outer_iterations)
           {
             const auto face = regular_face();
@@ -184,30 +186,59 @@ namespace slipstick::qp
               return Status::infeasible;
             solve(*face);
             ++counts.outer_iterations;
-            const auto [gradient, violation] = set.residuals(y, gy);
-            residual                         = gradient / goal.reference;
+            const double left = measure();
             report();
             if (!std::isfinite(residual))
               return Status::stagnated;
-            double left = residual + violation / goal.reference;
-            if (left <= goal.tolerance)
-              left += imbalance(*face);
-            if (is_accepted())
+            if (is_accepted() || is_solution(*face, left))
               return converged_at_y();
-            if (left <= goal.tolerance)
-              {
-                best = Found{y, gy, residual};
-                if (left <= options.least_part * goal.tolerance ||
-                    (tells_forces(left) && (!is_right || is_right(y, error_on(*face)))))
-                  return converged_at_y();
-                has_met_goal = true;
-                tolerance    = options.tightening * left;
-              }
-            check_start_of_face(residual + violation / goal.reference);
+            check_start_of_face(left);
             if (!step())
               return ended(Status::stagnated);
           }
         return ended(Status::iteration_limit);
+      }
+
+      // Fills the residual of y. @return it with the violation of the bounds, over the reference.
+      double measure()
+      {
+        const auto [gradient, violation] = set.residuals(y, gy);
+        residual                         = gradient / goal.reference;
+        return residual + violation / goal.reference;
+      }
+
+      // The start may be the solution, as that of loads which hardly differ from those before; a step on a face whose matrix is
+      // nearly singular could lead far away from it.
+      bool starts_at_solution()
+      {
+        const auto face = regular_face();
+        if (!face)
+          return false;
+        y  = x;
+        Fy = Fx;
+        gradient_on(*face, y, Fy, gy);
+        const double left = measure();
+        if (!(left <= goal.tolerance))
+          return false;
+        report();
+        return is_solution(*face, left);
+      }
+
+      // y with this residual, of the start or on the face. If it meets the goal, but is not right, it is kept as the best, and faces
+      // are solved to less from now on.
+      bool is_solution(const Face &face, double left)
+      {
+        if (left <= goal.tolerance)
+          left += imbalance(face);
+        if (!(left <= goal.tolerance))
+          return false;
+        best = Found{y, gy, residual};
+        if (left <= options.least_part * goal.tolerance ||
+            (tells_forces(left) && (!is_right || is_right(y, error_on(face)))))
+          return true;
+        has_met_goal = true;
+        tolerance    = options.tightening * left;
+        return false;
       }
 
       Status converged_at_y()
