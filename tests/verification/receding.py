@@ -1,7 +1,8 @@
 """Receding contact of a layer: observed rates in energy, displacement and pressure; degree 1 and 2; on a rigid plane and
-through mortar (scripts/verification: through meshes that match, too). Energy norm at least 0.95 and 1.4. Where the contact ends between two nodes
-changes from mesh to mesh, and with it the error: rates are those of the whole ladder. The displacement of the end that
-lifts off hangs on that alone, and so does the pressure, whose error sits in the last element in contact."""
+through mortar (scripts/verification: through meshes that match, too). Energy norm at least 0.95 and 1.4. Where the
+contact ends between two nodes changes from mesh to mesh, and with it the error: rates are those of the whole ladder. The
+displacement of the end that lifts off hangs on that alone, and so does the pressure, whose error sits in the last
+element in contact."""
 
 import unittest
 

@@ -37,8 +37,8 @@ namespace slipstick::output
     void write_from_root(const std::string &name, const std::function<void(std::ostream &)> &content) const;
 
     /// Files that agree with each other: those that @p write_files writes with write_from_root() of the directory it is
-    /// given appear together, when all are complete, even if the run is killed meanwhile. On failure none appears.
-    /// Collective.
+    /// given get their names together, when all are complete; a run that is killed before leaves the former ones. If one
+    /// cannot be completed, none is replaced. Collective.
     void write_together(const std::function<void(const OutputDirectory &)> &write_files) const;
 
     /// Removes the directories created by the constructor if they are empty, so that a rejected scene leaves nothing
