@@ -82,6 +82,11 @@ namespace slipstick::qp
   {
     // Of a step along M r: eigenvalues of F M are 1 to some 5 (first steps of conjugate gradients there: 0.15 to 0.5).
     constexpr double descent_step = 0.3;
+    // Steps on nearly singular faces are far too long: they are cut down to this part. ...
+    constexpr double least_part_of_step = 1e-10;
+    // ... One cut to less than this ends next to a kink of the natural residual, where entries come to their bounds or leave them: the
+    // next set is that beyond the kink, as the derivative along the step has it (Pang 1990).
+    constexpr double short_step = 0.3;
 
     template <typename Vector, typename Problem>
     class SemismoothNewton
@@ -145,6 +150,11 @@ namespace slipstick::qp
         double residual;
       };
 
+      struct Point
+      {
+        Vector x, gradient;
+      };
+
       struct Found
       {
         Vector x, gradient;
@@ -177,13 +187,14 @@ namespace slipstick::qp
       {
         if (!begin())
           return Status::infeasible;
-        if (!is_rough && starts_at_solution())
-          return converged_at_y();
+        bool is_unjudged = !is_rough; // x: may it be the solution?
         while (counts.outer_iterations < options.max_outer_iterations)
           {
             const auto face = regular_face();
             if (!face)
               return Status::infeasible;
+            if (is_unjudged && solves_already(*face))
+              return converged_at_y();
             solve(*face);
             ++counts.outer_iterations;
             const double left = measure();
@@ -193,8 +204,10 @@ namespace slipstick::qp
             if (is_accepted() || is_solution(*face, left))
               return converged_at_y();
             check_start_of_face(left);
-            if (!step())
+            const double t = step();
+            if (t == 0 && (has_met_goal || !(restart() || leap()))) // once more with the set of x itself
               return ended(Status::stagnated);
+            is_unjudged = 0 < t && t < 1;
           }
         return ended(Status::iteration_limit);
       }
@@ -207,24 +220,23 @@ namespace slipstick::qp
         return residual + violation / goal.reference;
       }
 
-      // The start may be the solution, as that of loads which hardly differ from those before; a step on a face whose matrix is
-      // nearly singular could lead far away from it.
-      bool starts_at_solution()
+      // x, where it was not found on a face, may be the solution: the start, as that of loads which hardly differ from those before, or
+      // the end of a step that was cut. A step on a face whose matrix is nearly singular could lead far away from it.
+      bool solves_already(const Face &face)
       {
-        const auto face = regular_face();
-        if (!face)
+        if (!(merits.back() <= goal.tolerance * goal.reference))
           return false;
         y  = x;
         Fy = Fx;
-        gradient_on(*face, y, Fy, gy);
+        gradient_on(face, y, Fy, gy);
         const double left = measure();
         if (!(left <= goal.tolerance))
           return false;
         report();
-        return is_solution(*face, left);
+        return is_solution(face, left);
       }
 
-      // y with this residual, of the start or on the face. If it meets the goal, but is not right, it is kept as the best, and faces
+      // y with this residual, x or on the face. If it meets the goal, but is not right, it is kept as the best, and faces
       // are solved to less from now on.
       bool is_solution(const Face &face, double left)
       {
@@ -342,16 +354,16 @@ namespace slipstick::qp
         ++counts.hessian_multiplications;
         gradient_on(*face, x, Fx, g);
         merits.push_back(set.natural_residual(x, g));
-        predict(g);
+        predict(x, g);
         return true;
       }
 
-      // The set that x and the gradient tell. Natural residuals with different s cannot be compared: those of the last steps
+      // The set that a point and its gradient tell. Natural residuals with different s cannot be compared: those of the last steps
       // are taken for as much larger or smaller with the new one as that of x is.
-      void predict(const Vector &gradient)
+      void predict(const Vector &at, const Vector &gradient)
       {
         const double before = set.step_length();
-        set.predict(x, gradient);
+        set.predict(at, gradient);
         if (set.step_length() == before || !(merits.back() > 0))
           return;
         const double factor = set.natural_residual(x, g) / merits.back();
@@ -441,7 +453,7 @@ namespace slipstick::qp
       // F y by the product with the step from x, which is a direction as all others; steps of rounding are none.
       void step_to_start(const Face &face)
       {
-        constexpr double rounding = 1e-13, short_step = 1e-6; // over |y|
+        constexpr double rounding = 1e-13, no_direction = 1e-6; // over |y|
         Vector           step(y), product(y);
         add(-1., x, step);
         const auto s = problem.reduction().sum(std::array<double, 2>{{local_dot(step, step), local_dot(y, y)}});
@@ -454,7 +466,7 @@ namespace slipstick::qp
         problem.multiply(step, product);
         ++counts.hessian_multiplications;
         add(1., product, Fy);
-        if (s[0] > short_step * short_step * s[1]) // else G step = 0 holds to few digits
+        if (s[0] > no_direction * no_direction * s[1]) // else G step = 0 holds to few digits
           {
             const double squares = problem.reduction().sum(
               std::array<double, 1>{{local_squares(residual_weights(problem, 0), step, product)}})[0];
@@ -480,18 +492,23 @@ namespace slipstick::qp
         add(descent_step, p, step);
       }
 
-      // Along the step to the next point and set. @return whether the residual falls along it.
-      bool step()
+      // Along the step to the next point and set. @return how far; 0: the residual does not fall along it.
+      double step()
       {
         const double t = line_search();
-        if (t == 0) // once more with the set of x itself
-          return !has_met_goal && (restart() || leap());
+        if (t == 0)
+          return t;
         is_stuck = false;
+        if (t < short_step)
+          {
+            predict(refused->x, refused->gradient);
+            return t;
+          }
         Vector known(g);
         if (t == 1)
           set.clear_solved(x, known);
-        predict(known);
-        return true;
+        predict(x, known);
+        return t;
       }
 
       // From the set of x itself, with bodies balanced finely, then also on softer points, where that is possible. @return whether it
@@ -502,7 +519,7 @@ namespace slipstick::qp
         is_stuck = true;
         if (is_changed)
           merits = {set.natural_residual(x, g)};
-        predict(g);
+        predict(x, g);
         return is_changed || is_first;
       }
 
@@ -518,12 +535,12 @@ namespace slipstick::qp
         is_stuck = false;
         Vector known(g);
         set.clear_solved(x, known);
-        predict(known);
+        predict(x, known);
         return true;
       }
 
       // x moves towards y as far as the natural residual falls below the largest of the last steps. @return how
-      // far; 0: not at all.
+      // far; 0: not at all, or too little to be worth while once the goal is met. The shortest step that was refused is kept.
       double line_search()
       {
         double            merit     = set.natural_residual(y, gy);
@@ -533,8 +550,9 @@ namespace slipstick::qp
         Vector            xt(y), gt(gy);
         while (!(merit <= (1 - options.sufficient_decrease * t) * reference))
           {
+            refused = Point{xt, gt};
             t *= options.backtracking;
-            if (t < options.shortest_step)
+            if (t < least_part_of_step)
               return 0;
             combine(t, y, 0., xt);
             add(1 - t, x, xt);
@@ -542,6 +560,8 @@ namespace slipstick::qp
             add(1 - t, g, gt);
             merit = set.natural_residual(xt, gt);
           }
+        if (has_met_goal && t < options.shortest_step)
+          return 0;
         if (t < 1)
           {
             std::swap(y, xt);
@@ -611,6 +631,7 @@ namespace slipstick::qp
       Vector               x, Fx, g;  // where the method is
       Vector               y, Fy, gy; // where the present step leads
       std::vector<double>  merits;    // natural residuals of all x so far
+      std::optional<Point> refused;   // of the last step, the nearest one at which the residual does not fall
       std::optional<Found> best;      // where the natural residual is least, or where the goal was met last
       double               residual              = HUGE_VAL;
       double               last_natural_residual = std::numeric_limits<double>::infinity(); // over the reference
