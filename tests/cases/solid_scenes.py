@@ -119,7 +119,8 @@ class Assemblies(Solids):
         wetted = 8 * 57 ** 2 / 2 * math.sin(math.pi / 64)  # within the gasket, a polygon
         preload, gaskets = 2e4, []
         result = converged(shipped('flange'), {'Output/VTU': 'false'})
-        self.assertLess(result.summary['solver']['hessian_multiplications'], 900)  # 790; 1000 with an unlimited start by SMALBE-M
+        self.assertEqual(result.summary['solver']['fallbacks'], 0)
+        self.assertLess(result.summary['solver']['hessian_multiplications'], 1200)  # 626 to 886 with solvers that hardly differ; 3045 with a fallback
         for pressure, tension, step, row in zip((0, 8, 16), (40.00e3, 37.36e3, 35.20e3), result.summary['steps'], result.rows('history.csv')):
             bolt, pairs = step['pretensions'][0]['force'], {pair['pair']: pair for pair in step['contact']}
             self.assertAlmostEqual(bolt / (tension / 2), 1, delta=2e-3)
@@ -131,7 +132,7 @@ class Assemblies(Solids):
         for before, after in zip(gaskets, gaskets[1:]):
             self.assertGreater(after[0], before[0])
             self.assertGreater(before[1] - after[1], 8 * wetted)
-        # at the default tolerance: with that of the scene, 1e-6, these flanges end with status 3 (doc/status.md)
+        # at the default tolerance; at 1e-8 some machines end with status 3 (doc/status.md)
         stiff = {'Material flanges/Young modulus': '2.1e7', 'Material fibre/Poisson ratio': '0', 'Load steps/Factors': '1, 2', 'Output/VTU': 'false',
                  'Solver/Tolerance': '1e-4'}
         first, second = (step['pretensions'][0] for step in converged(shipped('flange'), stiff).summary['steps'])
