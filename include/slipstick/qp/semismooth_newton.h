@@ -230,10 +230,10 @@ namespace slipstick::qp
         Fy = Fx;
         gradient_on(face, y, Fy, gy);
         const double left = measure();
-        if (!(left <= goal.tolerance))
+        if (!is_solution(face, left))
           return false;
         report();
-        return is_solution(face, left);
+        return true;
       }
 
       // y with this residual, x or on the face. If it meets the goal, but is not right, it is kept as the best, and faces
