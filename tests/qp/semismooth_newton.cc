@@ -482,11 +482,11 @@ namespace
   }
 } // namespace
 
-// Steps on nearly singular faces are far too long, and are cut where single entries come to their bounds. With steps of at least
-// 1e-3, and the set of x after each, 7, 4, 14 and 14 of the 20 problems with 1e-6 are solved.
+// Steps on nearly singular faces are far too long, and are cut where single entries come to their bounds. Without sets beyond
+// kinks and without short steps 7, 4, 14 and 14 of the 20 problems with 1e-6 are solved, and 2, 0, 4 and 2 of those with 1e-8.
 TEST(SemismoothNewton, nearly_singular_faces_lead_to_the_solution)
 {
-  for (const auto &[least, most_unsolved] : {std::pair(1e-6, 2u), std::pair(1e-8, 6u)})
+  for (const auto &[least, most_unsolved] : {std::pair(1e-6, 3u), std::pair(1e-8, 11u)})
     {
       EXPECT_GE(n_solved_of_nearly_singular<Contact>(least, {0.1, 0.}) + most_unsolved, 20u) << least;
       EXPECT_GE(n_solved_of_nearly_singular<Contact>(least, {0.1, 0.2}) + most_unsolved, 20u) << least;

@@ -82,11 +82,10 @@ namespace slipstick::qp
   {
     // Of a step along M r: eigenvalues of F M are 1 to some 5 (first steps of conjugate gradients there: 0.15 to 0.5).
     constexpr double descent_step = 0.3;
-    // Steps on nearly singular faces are far too long: they are cut down to this part. ...
+    // Steps on nearly singular faces may be far too long. Where no other set helps, they are cut down to this part; ...
     constexpr double least_part_of_step = 1e-10;
-    // ... One cut to less than this ends next to a kink of the natural residual, where entries come to their bounds or leave them: the
-    // next set is that beyond the kink, as the derivative along the step has it (Pang 1990).
-    constexpr double short_step = 0.3;
+    // ... before that so many kinks of the natural residual are crossed from one point.
+    constexpr std::size_t most_kinks = 10;
 
     template <typename Vector, typename Problem>
     class SemismoothNewton
@@ -187,7 +186,7 @@ namespace slipstick::qp
       {
         if (!begin())
           return Status::infeasible;
-        bool is_unjudged = !is_rough; // x: may it be the solution?
+        is_unjudged = !is_rough;
         while (counts.outer_iterations < options.max_outer_iterations)
           {
             const auto face = regular_face();
@@ -204,10 +203,8 @@ namespace slipstick::qp
             if (is_accepted() || is_solution(*face, left))
               return converged_at_y();
             check_start_of_face(left);
-            const double t = step();
-            if (t == 0 && (has_met_goal || !(restart() || leap()))) // once more with the set of x itself
+            if (!step())
               return ended(Status::stagnated);
-            is_unjudged = 0 < t && t < 1;
           }
         return ended(Status::iteration_limit);
       }
@@ -492,23 +489,47 @@ namespace slipstick::qp
         add(descent_step, p, step);
       }
 
-      // Along the step to the next point and set. @return how far; 0: the residual does not fall along it.
-      double step()
+      // Along the step to the next point and set. @return is there one?
+      bool step()
       {
         const double t = line_search();
-        if (t == 0)
-          return t;
-        is_stuck = false;
-        if (t < short_step)
+        is_unjudged    = false;
+        if (t < options.shortest_step)
           {
-            predict(refused->x, refused->gradient);
-            return t;
+            if (has_met_goal)
+              return false;
+            if (cross_kink() || restart() || leap())
+              return true;
+            if (t == 0)
+              return false;
           }
+        go(t);
+        is_unjudged = t < 1;
+        is_stuck    = false;
+        refused_sets.clear();
         Vector known(g);
         if (t == 1)
           set.clear_solved(x, known);
-        predict(x, known);
-        return t;
+        if (t < options.shortest_step)
+          predict(refused->x, refused->gradient);
+        else
+          predict(x, known);
+        return true;
+      }
+
+      // Next to x the natural residual has a kink, where entries come to their bounds or leave them. The set beyond it is that of the
+      // derivative along the step (Pang 1990); its own step may lead across others. @return was it not tried yet from x?
+      bool cross_kink()
+      {
+        refused_sets.push_back(set.sides());
+        if (refused_sets.size() > most_kinks)
+          return false;
+        predict(refused->x, refused->gradient);
+        std::vector<double> differs; // on how many processes
+        for (const Sides &refused_set : refused_sets)
+          differs.push_back(refused_set == set.sides() ? 0. : 1.);
+        sum_all(differs, problem.reduction());
+        return std::find(differs.begin(), differs.end(), 0.) == differs.end();
       }
 
       // From the set of x itself, with bodies balanced finely, then also on softer points, where that is possible. @return whether it
@@ -539,42 +560,42 @@ namespace slipstick::qp
         return true;
       }
 
-      // x moves towards y as far as the natural residual falls below the largest of the last steps. @return how
-      // far; 0: not at all, or too little to be worth while once the goal is met. The shortest step that was refused is kept.
+      // How far towards y the natural residual falls below the largest of the last steps; 0: not at all. The end of that step, if it is
+      // less than the whole, and the shortest one that was refused are kept.
       double line_search()
       {
-        double            merit     = set.natural_residual(y, gy);
+        merit_of_step               = set.natural_residual(y, gy);
         const std::size_t n         = std::min<std::size_t>(merits.size(), options.memory);
         const double      reference = *std::max_element(merits.end() - n, merits.end());
         double            t         = 1;
-        Vector            xt(y), gt(gy);
-        while (!(merit <= (1 - options.sufficient_decrease * t) * reference))
+        while (!(merit_of_step <= (1 - options.sufficient_decrease * t) * reference))
           {
-            refused = Point{xt, gt};
+            refused = t < 1 ? std::move(end_of_step) : Point{y, gy};
             t *= options.backtracking;
             if (t < least_part_of_step)
               return 0;
-            combine(t, y, 0., xt);
-            add(1 - t, x, xt);
-            combine(t, gy, 0., gt);
-            add(1 - t, g, gt);
-            merit = set.natural_residual(xt, gt);
+            end_of_step = Point{y, gy};
+            combine(1 - t, x, t, end_of_step->x);
+            combine(1 - t, g, t, end_of_step->gradient);
+            merit_of_step = set.natural_residual(end_of_step->x, end_of_step->gradient);
           }
-        if (has_met_goal && t < options.shortest_step)
-          return 0;
+        return t;
+      }
+
+      void go(const double t)
+      {
         if (t < 1)
           {
-            std::swap(y, xt);
-            std::swap(gy, gt);
+            std::swap(y, end_of_step->x);
+            std::swap(gy, end_of_step->gradient);
             combine(1 - t, Fx, t, Fy);
             error_of_Fy = std::max(error_of_Fx, error_of_Fy);
           }
-        if (!has_met_goal && merit < *std::min_element(merits.begin(), merits.end()))
-          best = Found{y, gy, merit / goal.reference};
-        if (!(merit < merits.back()) && (t == 1 || !set.balance_finely()))
+        if (!has_met_goal && merit_of_step < *std::min_element(merits.begin(), merits.end()))
+          best = Found{y, gy, merit_of_step / goal.reference};
+        if (!(merit_of_step < merits.back()) && (t == 1 || !set.balance_finely()))
           set.soften();
-        go_to_y(merit);
-        return t;
+        go_to_y(merit_of_step);
       }
 
       void go_to_y(const double merit)
@@ -628,11 +649,15 @@ namespace slipstick::qp
       std::vector<Tie>                              ties;   // of the present face
       std::deque<Solved>                            solved; // the last sets and what their faces were solved to
 
-      Vector               x, Fx, g;  // where the method is
-      Vector               y, Fy, gy; // where the present step leads
-      std::vector<double>  merits;    // natural residuals of all x so far
-      std::optional<Point> refused;   // of the last step, the nearest one at which the residual does not fall
-      std::optional<Found> best;      // where the natural residual is least, or where the goal was met last
+      Vector               x, Fx, g;            // where the method is
+      Vector               y, Fy, gy;           // where the present step leads
+      std::vector<double>  merits;              // natural residuals of all x so far
+      bool                 is_unjudged = false; // x: may it be the solution?
+      std::optional<Point> end_of_step;         // if that is not y
+      double               merit_of_step = 0;   // natural residual there
+      std::vector<Sides>   refused_sets;        // those whose steps do not lower the residual of x
+      std::optional<Point> refused;             // of the last step, the nearest one at which the residual does not fall
+      std::optional<Found> best;                // where the natural residual is least, or where the goal was met last
       double               residual              = HUGE_VAL;
       double               last_natural_residual = std::numeric_limits<double>::infinity(); // over the reference
       unsigned int         n_astray              = 0;
