@@ -503,17 +503,19 @@ namespace slipstick::qp
             if (t == 0)
               return false;
           }
-        go(t);
+        move_by_part(t);
         is_unjudged = t < 1;
         is_stuck    = false;
         refused_sets.clear();
+        if (t < options.shortest_step)
+          {
+            predict(refused->x, refused->gradient);
+            return true;
+          }
         Vector known(g);
         if (t == 1)
           set.clear_solved(x, known);
-        if (t < options.shortest_step)
-          predict(refused->x, refused->gradient);
-        else
-          predict(x, known);
+        predict(x, known);
         return true;
       }
 
@@ -582,7 +584,8 @@ namespace slipstick::qp
         return t;
       }
 
-      void go(const double t)
+      // x to the end of the step that the line search found.
+      void move_by_part(const double t)
       {
         if (t < 1)
           {
