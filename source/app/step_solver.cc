@@ -398,12 +398,13 @@ namespace slipstick::app
   template <int dim>
   bool StepSolver<dim>::close_gaps(Answer &answer, const unsigned int step, const double limit)
   {
-    double worst = answer.contact->checks.worst().second;
+    const contact::SlipLaw law(discrete_scene(), dual(), discrete_scene().load_factors[step]);
+    double                 worst = answer.contact->checks.worst().second;
     for (unsigned int n = 0; n < max_closings && worst > limit; ++n)
       {
         Answer next;
         next.recovery = answer.recovery;
-        the_solution.counts += contact::close_gaps(problem.dual(), the_solution.free, options.pcpg, next.recovery);
+        the_solution.counts += contact::close_gaps(problem.dual(), law, the_solution.free, options.pcpg, next.recovery);
         evaluate(next, the_solution, discrete_scene().load_factors[step]);
         const double left = next.contact->checks.worst().second;
         log.line(

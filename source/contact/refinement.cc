@@ -1,6 +1,9 @@
 #include <slipstick/contact/refinement.h>
+#include <slipstick/qp/face_solver.h>
 #include <slipstick/qp/pcpg.h>
 #include <slipstick/tfeti/face.h>
+
+#include <cmath>
 
 namespace slipstick::contact
 {
@@ -12,6 +15,67 @@ namespace slipstick::contact
     constexpr unsigned int multiplications_per_check = 2;
     // Tolerance for closing the gaps, relative to the gaps; rounding of F prevents less in slender subdomains.
     constexpr double closing_tolerance = 1e-4;
+
+    using Vector = tfeti::DistributedVector;
+
+    /// Slipping rows whose bounds follow normal forces that may change.
+    struct SlippingRows
+    {
+      std::vector<qp::Tie>  ties;
+      std::vector<qp::Turn> turns; // in space, where the direction of slip is kept
+    };
+
+    /// @param x is put on the bounds of these rows.
+    SlippingRows slipping_rows(const SlipLaw &law, const std::vector<bool> &free, Vector &x)
+    {
+      SlippingRows result;
+      for (const qp::PressureBound &bound : law.pressure_bounds())
+        {
+          double       along = x.local_element(bound.tangential), across = 0;
+          const double radius = bound.forces.radius(x.local_element(bound.normal)), slope = bound.forces.slope(radius);
+          const bool   is_free = free[bound.tangential] || (bound.is_disc() && free[bound.second]);
+          if (bound.is_disc())
+            across = x.local_element(bound.second);
+          const double size = std::hypot(along, across);
+          if (is_free || !free[bound.normal] || slope == 0 || size == 0)
+            continue;
+          along /= size;
+          across /= size;
+          x.local_element(bound.tangential) = along * radius;
+          if (bound.is_disc())
+            {
+              x.local_element(bound.second) = across * radius;
+              result.turns.push_back({bound.tangential, bound.second, along, across});
+            }
+          result.ties.push_back({bound.tangential, bound.normal, bound.is_disc() ? slope : along * slope});
+        }
+      return result;
+    }
+
+    /// A step that closes gaps, and what it took.
+    struct Closing
+    {
+      Vector     step;
+      qp::Counts counts;
+    };
+
+    Closing without_ties(const tfeti::Face &face, const Vector &b, const double size, const qp::PcpgOptions &options)
+    {
+      const auto M = [&face](const auto &r, auto &z) { face.precondition(r, z); };
+      auto result  = qp::pcpg(face, b, qp::PcpgStart<Vector>{qp::zero_like(b)}, {closing_tolerance, size}, options, M);
+      return {std::move(result.x), result.counts};
+    }
+
+    Closing with_ties(const tfeti::Face &face, const Vector &b, const double size, const std::vector<qp::Turn> &turns)
+    {
+      const qp::FaceSolverOptions         options;
+      qp::DirectionStore<Vector>          store(options.max_iterations);
+      const auto                          no_conditions = [](const Vector &) { return std::vector<double>(); };
+      qp::FaceSolver<Vector, tfeti::Face> solver(face, b, store, no_conditions, options, turns);
+      solver.start(qp::zero_like(b), qp::zero_like(b));
+      auto result = solver.solve_unsymmetric(closing_tolerance * size);
+      return {std::move(result.x), result.counts};
+    }
   } // namespace
 
   DualSolution solve_refined(tfeti::DualProblem           &dual,
@@ -69,22 +133,28 @@ namespace slipstick::contact
   }
 
   qp::Counts close_gaps(const tfeti::DualProblem &dual,
+                        const SlipLaw            &law,
                         const std::vector<bool>  &free,
                         const qp::PcpgOptions    &options,
                         tfeti::Recovery          &recovery)
   {
-    const auto face = dual.face(free);
+    Vector             x        = recovery.multipliers;
+    const SlippingRows slipping = slipping_rows(law, free, x);
+    const auto         face     = dual.face(free, slipping.ties, slipping.turns);
     if (!face.is_regular())
       return {};
+    const bool has_ties = dual.reduction().min(slipping.ties.empty() ? 1. : 0.) < 1;
+    if (has_ties)
+      {
+        face.balance(x);
+        x -= recovery.multipliers;
+        tfeti::correct(dual, recovery, x, free);
+      }
     auto b = tfeti::misfit(dual, recovery, free);
     b /= -dual.norm(); // F step = B u - c
-    const auto result = qp::pcpg(face,
-                                 b,
-                                 qp::PcpgStart<tfeti::DistributedVector>{dual.zero()},
-                                 qp::Goal(closing_tolerance, tfeti::residual_norm(dual, b)),
-                                 options,
-                                 [&face](const auto &r, auto &z) { face.precondition(r, z); });
-    tfeti::correct(dual, recovery, result.x, free);
-    return result.counts;
+    const double  size    = tfeti::residual_norm(dual, b);
+    const Closing closing = has_ties ? with_ties(face, b, size, slipping.turns) : without_ties(face, b, size, options);
+    tfeti::correct(dual, recovery, closing.step, free);
+    return closing.counts;
   }
 } // namespace slipstick::contact

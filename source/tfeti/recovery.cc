@@ -1,4 +1,5 @@
 #include <slipstick/tfeti/dense.h>
+#include <slipstick/tfeti/least_violation.h>
 #include <slipstick/tfeti/recovery.h>
 
 #include <deal.II/base/mpi.h>
@@ -9,46 +10,8 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // Newton's method for the amounts by which loose bodies slide: maximum number of steps, and the change at which it
-    // ends.
-    constexpr unsigned int max_slide_steps = 100;
-    constexpr double       slide_tolerance = 1e-14;
     // Jumps of a row per unit motion below this are rounding.
     constexpr double least_jump = 1e-8;
-
-    /// Amounts that minimise the sum of squares of the violated conditions, by Newton's method from 0, with the
-    /// shortest possible steps where they are not unique. A condition is a value followed by its n derivatives: value +
-    /// derivatives * amounts >= 0.
-    Eigen::VectorXd least_violation(const std::vector<std::vector<double>> &conditions, const unsigned int n)
-    {
-      Eigen::VectorXd amount = Eigen::VectorXd::Zero(n);
-      for (unsigned int step = 0; step < max_slide_steps; ++step)
-        {
-          std::vector<Eigen::VectorXd> violated;
-          std::vector<double>          by;
-          for (const auto &condition : conditions)
-            {
-              const Eigen::Map<const Eigen::VectorXd> slope(condition.data() + 1, n);
-              const double                            value = condition[0] + slope.dot(amount);
-              if (value < 0)
-                {
-                  violated.push_back(slope);
-                  by.push_back(-value);
-                }
-            }
-          if (violated.empty())
-            break;
-          Eigen::MatrixXd slopes(violated.size(), n);
-          for (unsigned int i = 0; i < violated.size(); ++i)
-            slopes.row(i) = violated[i];
-          const Eigen::VectorXd change =
-            shortest_solution(slopes, Eigen::Map<const Eigen::VectorXd>(by.data(), by.size()));
-          amount += change;
-          if (change.norm() <= slide_tolerance * amount.norm())
-            break;
-        }
-      return amount;
-    }
 
     /// Adds to the free rows those rows with friction forces that hold the loose motions. @return whether all are held.
     bool add_rows_with_friction(const DualProblem              &dual,
@@ -117,7 +80,7 @@ namespace slipstick::tfeti
             add_row(r);
       }
 
-      /// Of the owned rows, as least_violation() takes them.
+      /// Of the owned rows: a value, then its derivatives with respect to the amounts of the loose motions.
       std::vector<std::vector<double>> conditions;
 
     private:
@@ -172,7 +135,14 @@ namespace slipstick::tfeti
       std::vector<std::vector<double>> all;
       for (const auto &part : dealii::Utilities::MPI::all_gather(dual.communicator(), conditions))
         all.insert(all.end(), part.begin(), part.end());
-      const Eigen::VectorXd amount     = least_violation(all, loose.size());
+      Eigen::VectorXd values(all.size());
+      Eigen::MatrixXd rates(all.size(), loose.size());
+      for (std::size_t i = 0; i < all.size(); ++i)
+        {
+          values[i]    = all[i][0];
+          rates.row(i) = Eigen::Map<const Eigen::RowVectorXd>(all[i].data() + 1, loose.size());
+        }
+      const Eigen::VectorXd amount     = least_violation(values, rates);
       Eigen::VectorXd       amplitudes = Eigen::VectorXd::Zero(loose[0].amplitudes.size());
       for (unsigned int m = 0; m < loose.size(); ++m)
         amplitudes += amount[m] * loose[m].amplitudes;

@@ -1,5 +1,6 @@
 // Solids on obstacles: friction within discs, against GetFEM, a prototype in numpy and the plane.
 #include "solids.h"
+#include "closing.h"
 
 using namespace slipstick;
 using namespace slipstick::test;
@@ -58,6 +59,15 @@ TEST(Solids, cube_on_sphere_agrees_with_getfem)
             EXPECT_NEAR(product / (node.slip * node.slip_bound), -1, 1e-4);
           }
     }
+}
+
+TEST(Solids, slip_forces_follow_the_pressures_where_gaps_are_closed)
+{
+  scene::Scene<3> scene  = cube_on_sphere("Coulomb", "0.3", 8);
+  scene.solver.tolerance = 1e-11;
+  const Solved<3> solved(scene);
+  ASSERT_EQ(solved.solution.status, qp::Status::converged);
+  EXPECT_GT(expect_closing_leads_to(solved.solution, solved.dual, contact::SlipLaw(scene, solved.dual, 1.)), 5u);
 }
 
 TEST(Solids, turning_the_scene_and_cutting_it_otherwise_change_nothing)
