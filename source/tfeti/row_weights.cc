@@ -17,6 +17,8 @@ namespace slipstick::tfeti
     constexpr unsigned int largest_dense_block = 32;
     // Entries of null vectors below this are rounding.
     constexpr double smallest_share = 1e-6;
+    // Added to the diagonal entries of dependent rows before W is inverted, relative to these entries.
+    constexpr double regularization = 1e-4;
 
     /// One summand of an entry of W.
     struct Weight
@@ -131,7 +133,10 @@ namespace slipstick::tfeti
       {
         blocks[b].matrix.resize(blocks[b].rows.size(), blocks[b].rows.size());
         blocks[b].matrix.setFromTriplets(triplets[b].begin(), triplets[b].end());
-        blocks[b].is_regular = inverse.add(blocks[b].rows, blocks[b].matrix);
+        if (inverse.add(blocks[b].rows, blocks[b].matrix))
+          continue;
+        blocks[b].dependent = dependent_rows(blocks[b].matrix);
+        inverse.add(blocks[b].rows, regularized(blocks[b]).matrix);
       }
   }
 
@@ -157,24 +162,40 @@ namespace slipstick::tfeti
   }
 
   // Null vectors of W: e_k - W^- W e_k, which is 0 unless the factorisation skipped row k.
+  std::vector<bool> RowWeights::dependent_rows(const Eigen::SparseMatrix<double> &matrix)
+  {
+    std::vector<bool>        result(matrix.rows(), false);
+    const SemidefiniteFactor factor(matrix);
+    for (const unsigned int k : factor.left_out()) // each belongs to one null vector, and these are all
+      {
+        Eigen::VectorXd share = -factor.solve(matrix.col(k));
+        share[k] += 1;
+        for (unsigned int r = 0; r < result.size(); ++r)
+          result[r] = result[r] || std::abs(share[r]) > smallest_share;
+      }
+    return result;
+  }
+
+  RowWeights::Block RowWeights::regularized(const Block &block)
+  {
+    Block result = block;
+    for (unsigned int r = 0; r < block.dependent.size(); ++r)
+      if (block.dependent[r])
+        result.matrix.coeffRef(r, r) *= 1 + regularization;
+    return result;
+  }
+
   std::vector<bool> RowWeights::ambiguous(const std::vector<bool> &active) const
   {
     std::vector<bool> result(active.size(), false);
     for (const auto &full : blocks)
       {
-        if (full.is_regular) // then every principal submatrix is regular
+        if (full.dependent.empty()) // then every principal submatrix is regular
           continue;
-        const Block part = restricted(full, [&active](const unsigned int row) { return active[row]; });
-        if (part.rows.empty())
-          continue;
-        const SemidefiniteFactor factor(part.matrix);
-        for (const unsigned int k : factor.left_out()) // each belongs to one null vector, and these are all
-          {
-            Eigen::VectorXd share = -factor.solve(part.matrix.col(k));
-            share[k] += 1;
-            for (unsigned int r = 0; r < part.rows.size(); ++r)
-              result[part.rows[r]] = result[part.rows[r]] || std::abs(share[r]) > smallest_share;
-          }
+        const Block part      = restricted(full, [&active](const unsigned int row) { return active[row]; });
+        const auto  dependent = dependent_rows(part.matrix);
+        for (unsigned int r = 0; r < dependent.size(); ++r)
+          result[part.rows[r]] = dependent[r];
       }
     return result;
   }
@@ -208,22 +229,18 @@ namespace slipstick::tfeti
         return true;
       }
     SemidefiniteFactor factor(matrix);
-    const bool         is_regular = factor.left_out().empty();
+    if (!factor.left_out().empty())
+      return false;
     if (n > largest_dense_block)
       {
         sparse.push_back({rows, std::move(factor)});
-        return is_regular;
+        return true;
       }
-    Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(n, n);
-    if (is_regular)
-      inverse = Eigen::MatrixXd(matrix).llt().solve(inverse).eval();
-    else
-      for (unsigned int k = 0; k < n; ++k)
-        inverse.col(k) = factor.solve(inverse.col(k).eval());
+    const Eigen::MatrixXd inverse = Eigen::MatrixXd(matrix).llt().solve(Eigen::MatrixXd::Identity(n, n));
     sizes.push_back(n);
     dense_rows.insert(dense_rows.end(), rows.begin(), rows.end());
     values.insert(values.end(), inverse.data(), inverse.data() + n * n);
-    return is_regular;
+    return true;
   }
 
   void RowWeights::InverseBlocks::apply(const double *x, double *y) const
@@ -282,7 +299,7 @@ namespace slipstick::tfeti
             return rows.count(row) > 0;
           }))
         {
-          add(blocks[b]);
+          add(regularized(blocks[b]));
           taken.insert(b);
         }
     for (unsigned int k = 0; k < single_rows.size(); ++k)
@@ -363,7 +380,7 @@ namespace slipstick::tfeti
     for (unsigned int b = 0; b < weights.blocks.size(); ++b)
       if (turned_blocks.count(b) == 0 &&
           !std::all_of(weights.blocks[b].rows.begin(), weights.blocks[b].rows.end(), is_active))
-        change(weights.blocks[b]);
+        change(regularized(weights.blocks[b]));
   }
 
   void RowWeights::Inverse::apply(const DistributedVector &x, DistributedVector &y) const

@@ -12,14 +12,15 @@
 namespace slipstick::tfeti
 {
   /// W = B D^-1 B', D = diag K. It couples rows that share nodes and therefore consists of blocks, each on one rank:
-  /// small ones of single nodes, large sparse ones where mortar rows are connected. Rows may be linearly dependent.
+  /// small ones of single nodes, large sparse ones where mortar rows are connected. Rows may be linearly dependent;
+  /// a small compliance is added to these before W is inverted.
   class RowWeights
   {
     /// Inverses of blocks of W.
     class InverseBlocks
     {
     public:
-      /// @param matrix W of these rows. @return whether the rows are linearly independent.
+      /// @param matrix W of these rows. @return whether it is regular; if not, nothing is added.
       bool add(const std::vector<unsigned int> &rows, const Eigen::SparseMatrix<double> &matrix);
 
       /// A row that shares no unknown with others.
@@ -56,7 +57,7 @@ namespace slipstick::tfeti
     /// nonzero entry in this row. The result does not depend on the partition.
     std::vector<bool> ambiguous(const std::vector<bool> &active) const;
 
-    /// Inverse of W restricted to the active rows; a generalised inverse where rows are linearly dependent.
+    /// Inverse of W restricted to the active rows.
     class Inverse
     {
     public:
@@ -79,8 +80,14 @@ namespace slipstick::tfeti
     {
       std::vector<unsigned int>   rows; // owned
       Eigen::SparseMatrix<double> matrix;
-      bool                        is_regular = true; // its rows are linearly independent
+      std::vector<bool>           dependent; // rows that depend on others; empty: none does
     };
+
+    /// Rows with a share in null vectors of a block of W.
+    static std::vector<bool> dependent_rows(const Eigen::SparseMatrix<double> &matrix);
+
+    /// The block with a small compliance added to dependent rows: the inverse does not resolve forces that do nothing.
+    static Block regularized(const Block &block);
 
     /// W on the active rows of a block, and these rows.
     static Block restricted(const Block &full, const std::function<bool(unsigned int)> &is_active);
