@@ -134,7 +134,7 @@ class Solids(Extremes):
         """Stones that stand on the seat and against each other by one edge: 72 of 648 rows depend on others."""
         table = Table('dome at other tolerances')
         for tolerance in (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9):
-            self.converges(table, tolerance, shipped('dome'), {'Solver/Tolerance': tolerance}, most=1000)
+            self.converges(table, tolerance, shipped('dome'), {'Solver/Tolerance': tolerance}, most=300)
 
     def test_one_node(self):
         """A ball without friction that touches in one node."""
