@@ -131,29 +131,30 @@ namespace slipstick::tfeti
       }
     for (unsigned int b = 0; b < blocks.size(); ++b)
       {
-        blocks[b].matrix.resize(blocks[b].rows.size(), blocks[b].rows.size());
-        blocks[b].matrix.setFromTriplets(triplets[b].begin(), triplets[b].end());
-        if (inverse.add(blocks[b].rows, blocks[b].matrix))
-          continue;
-        blocks[b].dependent = dependent_rows(blocks[b].matrix);
-        inverse.add(blocks[b].rows, regularized(blocks[b]).matrix);
+        Eigen::SparseMatrix<double> W(blocks[b].rows.size(), blocks[b].rows.size());
+        W.setFromTriplets(triplets[b].begin(), triplets[b].end());
+        blocks[b].matrix = W;
+        if (!inverse.add(blocks[b].rows, blocks[b].matrix))
+          blocks[b].singular = W;
       }
   }
 
-  RowWeights::Block RowWeights::restricted(const Block &full, const std::function<bool(unsigned int)> &is_active)
+  RowWeights::Block RowWeights::restricted(const std::vector<unsigned int>         &rows,
+                                           const Eigen::SparseMatrix<double>       &matrix,
+                                           const std::function<bool(unsigned int)> &is_active)
   {
     Block            part;
-    std::vector<int> place(full.rows.size(), -1); // positions among the active rows
-    for (unsigned int k = 0; k < full.rows.size(); ++k)
-      if (is_active(full.rows[k]))
+    std::vector<int> place(rows.size(), -1); // positions among the active rows
+    for (unsigned int k = 0; k < rows.size(); ++k)
+      if (is_active(rows[k]))
         {
           place[k] = part.rows.size();
-          part.rows.push_back(full.rows[k]);
+          part.rows.push_back(rows[k]);
         }
     std::vector<Eigen::Triplet<double>> entries;
-    for (unsigned int k = 0; k < full.rows.size(); ++k)
+    for (unsigned int k = 0; k < rows.size(); ++k)
       if (place[k] >= 0)
-        for (Eigen::SparseMatrix<double>::InnerIterator entry(full.matrix, k); entry; ++entry)
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, k); entry; ++entry)
           if (place[entry.row()] >= 0)
             entries.emplace_back(place[entry.row()], place[k], entry.value());
     part.matrix.resize(part.rows.size(), part.rows.size());
@@ -176,13 +177,12 @@ namespace slipstick::tfeti
     return result;
   }
 
-  RowWeights::Block RowWeights::regularized(const Block &block)
+  void RowWeights::regularize(Eigen::SparseMatrix<double> &matrix)
   {
-    Block result = block;
-    for (unsigned int r = 0; r < block.dependent.size(); ++r)
-      if (block.dependent[r])
-        result.matrix.coeffRef(r, r) *= 1 + regularization;
-    return result;
+    const auto dependent = dependent_rows(matrix);
+    for (unsigned int r = 0; r < dependent.size(); ++r)
+      if (dependent[r])
+        matrix.coeffRef(r, r) *= 1 + regularization;
   }
 
   std::vector<bool> RowWeights::ambiguous(const std::vector<bool> &active) const
@@ -190,10 +190,11 @@ namespace slipstick::tfeti
     std::vector<bool> result(active.size(), false);
     for (const auto &full : blocks)
       {
-        if (full.dependent.empty()) // then every principal submatrix is regular
+        if (full.singular.size() == 0) // then every principal submatrix is regular
           continue;
-        const Block part      = restricted(full, [&active](const unsigned int row) { return active[row]; });
-        const auto  dependent = dependent_rows(part.matrix);
+        const Block part =
+          restricted(full.rows, full.singular, [&active](const unsigned int row) { return active[row]; });
+        const auto dependent = dependent_rows(part.matrix);
         for (unsigned int r = 0; r < dependent.size(); ++r)
           result[part.rows[r]] = dependent[r];
       }
@@ -210,7 +211,7 @@ namespace slipstick::tfeti
       result[single_rows[k]] = 1 / single_weights[k];
     for (const auto &block : blocks)
       for (unsigned int k = 0; k < block.rows.size(); ++k)
-        result[block.rows[k]] = 1 / block.matrix.coeff(k, k);
+        result[block.rows[k]] = 1 / (block.singular.size() == 0 ? block.matrix : block.singular).coeff(k, k);
     return result;
   }
 
@@ -220,7 +221,7 @@ namespace slipstick::tfeti
     single_values.push_back(1 / weight);
   }
 
-  bool RowWeights::InverseBlocks::add(const std::vector<unsigned int> &rows, const Eigen::SparseMatrix<double> &matrix)
+  bool RowWeights::InverseBlocks::add(const std::vector<unsigned int> &rows, Eigen::SparseMatrix<double> &matrix)
   {
     const unsigned int n = rows.size();
     if (n == 1)
@@ -229,18 +230,27 @@ namespace slipstick::tfeti
         return true;
       }
     SemidefiniteFactor factor(matrix);
-    if (!factor.left_out().empty())
-      return false;
+    const bool         is_regular = factor.left_out().empty();
+    if (!is_regular)
+      {
+        regularize(matrix);
+        factor = SemidefiniteFactor(matrix);
+      }
     if (n > largest_dense_block)
       {
         sparse.push_back({rows, std::move(factor)});
-        return true;
+        return is_regular;
       }
-    const Eigen::MatrixXd inverse = Eigen::MatrixXd(matrix).llt().solve(Eigen::MatrixXd::Identity(n, n));
+    Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(n, n);
+    if (is_regular)
+      inverse = Eigen::MatrixXd(matrix).llt().solve(inverse).eval();
+    else
+      for (unsigned int k = 0; k < n; ++k)
+        inverse.col(k) = factor.solve(inverse.col(k).eval());
     sizes.push_back(n);
     dense_rows.insert(dense_rows.end(), rows.begin(), rows.end());
     values.insert(values.end(), inverse.data(), inverse.data() + n * n);
-    return true;
+    return is_regular;
   }
 
   void RowWeights::InverseBlocks::apply(const double *x, double *y) const
@@ -299,7 +309,7 @@ namespace slipstick::tfeti
             return rows.count(row) > 0;
           }))
         {
-          add(regularized(blocks[b]));
+          add(blocks[b]);
           taken.insert(b);
         }
     for (unsigned int k = 0; k < single_rows.size(); ++k)
@@ -366,7 +376,7 @@ namespace slipstick::tfeti
       for (const unsigned int row : full.rows)
         if (!is_active(row))
           inactive.push_back(row);
-      const Block part = restricted(full, is_active);
+      Block part = restricted(full.rows, full.matrix, is_active);
       if (!part.rows.empty())
         changed.add(part.rows, part.matrix);
     };
@@ -380,7 +390,7 @@ namespace slipstick::tfeti
     for (unsigned int b = 0; b < weights.blocks.size(); ++b)
       if (turned_blocks.count(b) == 0 &&
           !std::all_of(weights.blocks[b].rows.begin(), weights.blocks[b].rows.end(), is_active))
-        change(regularized(weights.blocks[b]));
+        change(weights.blocks[b]);
   }
 
   void RowWeights::Inverse::apply(const DistributedVector &x, DistributedVector &y) const

@@ -20,8 +20,8 @@ namespace slipstick::tfeti
     class InverseBlocks
     {
     public:
-      /// @param matrix W of these rows. @return whether it is regular; if not, nothing is added.
-      bool add(const std::vector<unsigned int> &rows, const Eigen::SparseMatrix<double> &matrix);
+      /// @param matrix W of these rows; regularised if it is singular. @return whether it was regular.
+      bool add(const std::vector<unsigned int> &rows, Eigen::SparseMatrix<double> &matrix);
 
       /// A row that shares no unknown with others.
       void add(const unsigned int row, const double weight);
@@ -78,19 +78,21 @@ namespace slipstick::tfeti
   private:
     struct Block
     {
-      std::vector<unsigned int>   rows; // owned
-      Eigen::SparseMatrix<double> matrix;
-      std::vector<bool>           dependent; // rows that depend on others; empty: none does
+      std::vector<unsigned int>   rows;     // owned
+      Eigen::SparseMatrix<double> matrix;   // W, regularised where rows are linearly dependent
+      Eigen::SparseMatrix<double> singular; // W without that; empty if the rows are independent
     };
 
     /// Rows with a share in null vectors of a block of W.
     static std::vector<bool> dependent_rows(const Eigen::SparseMatrix<double> &matrix);
 
-    /// The block with a small compliance added to dependent rows: the inverse does not resolve forces that do nothing.
-    static Block regularized(const Block &block);
+    /// Adds a small compliance to dependent rows, so that the inverse does not resolve forces that do nothing.
+    static void regularize(Eigen::SparseMatrix<double> &matrix);
 
-    /// W on the active rows of a block, and these rows.
-    static Block restricted(const Block &full, const std::function<bool(unsigned int)> &is_active);
+    /// A matrix on the active ones of its rows, and these rows.
+    static Block restricted(const std::vector<unsigned int>         &rows,
+                            const Eigen::SparseMatrix<double>       &matrix,
+                            const std::function<bool(unsigned int)> &is_active);
 
     /// The blocks with turned rows, in turned form; blocks coupled by turns are merged.
     /// @param singles, taken return the numbers of the single rows and of the blocks that were used.
