@@ -194,6 +194,8 @@ namespace slipstick::tfeti
           continue;
         const Block part =
           restricted(full.rows, full.singular, [&active](const unsigned int row) { return active[row]; });
+        if (part.rows.empty())
+          continue;
         const auto dependent = dependent_rows(part.matrix);
         for (unsigned int r = 0; r < dependent.size(); ++r)
           result[part.rows[r]] = dependent[r];
