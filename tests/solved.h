@@ -12,7 +12,7 @@ namespace slipstick::test
   {
     explicit Solved(const Scene &scene, const MPI_Comm comm = MPI_COMM_WORLD)
       : torn(scene, comm)
-      , dual(torn.dual())
+      , dual(torn.dual(contact::resolved_options(scene).dual))
       , solution(contact::solve(*dual, contact::slip_bounds(scene, *dual, 1.), contact::resolved_options(scene), {}))
       , u(tfeti::recover(*dual, solution.multipliers, solution.free).u)
     {}

@@ -119,7 +119,8 @@ namespace
     const auto report = [prints](const std::exception &error, const ExitStatus status) {
       app::do_not_tell_when_interrupted(); // mpirun may end this rank by a signal when another one has ended
       if (prints)
-        std::cerr << "error: " << for_terminal(error.what()) << std::endl;
+        std::cerr << "error: " + for_terminal(error.what()) + '\n'
+                  << std::flush; // in one piece: mpirun forwards pieces
       return static_cast<int>(status);
     };
     // these errors are thrown on all ranks, see base/collective.h

@@ -35,7 +35,7 @@ namespace slipstick
   void Log::warning(const std::string &text) const
   {
     if (prints)
-      std::cerr << "warning: " << text << std::endl;
+      std::cerr << "warning: " + text + '\n' << std::flush; // in one piece: mpirun forwards pieces
   }
 
   std::string format(const char *pattern, ...)
