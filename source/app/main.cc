@@ -119,8 +119,7 @@ namespace
     const auto report = [prints](const std::exception &error, const ExitStatus status) {
       app::do_not_tell_when_interrupted(); // mpirun may end this rank by a signal when another one has ended
       if (prints)
-        std::cerr << "error: " + for_terminal(error.what()) + '\n'
-                  << std::flush; // in one piece: mpirun forwards pieces
+        std::cerr << "error: " + for_terminal(error.what()) + '\n' << std::flush; // in one piece for mpirun
       return static_cast<int>(status);
     };
     // these errors are thrown on all ranks, see base/collective.h
@@ -179,7 +178,7 @@ int main(int argc, char **argv)
     }
   catch (const std::bad_alloc &)
     {
-      std::cerr << "error: " << out_of_memory().what() << std::endl;
+      std::cerr << std::string("error: ") + out_of_memory().what() + '\n' << std::flush;
       if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1) // the error may be on this rank only
         MPI_Abort(MPI_COMM_WORLD, static_cast<int>(ExitStatus::bad_input));
       return static_cast<int>(ExitStatus::bad_input);
@@ -187,8 +186,9 @@ int main(int argc, char **argv)
   catch (const std::exception &error)
     {
       // the error may be on this rank only; the others must not be left waiting
-      std::cerr << "internal error: " << for_terminal(error.what())
-                << "\n  remedy: this is a bug of slipstick, please report it with the .prm" << std::endl;
+      std::cerr << "internal error: " + for_terminal(error.what()) +
+                     "\n  remedy: this is a bug of slipstick, please report it with the .prm\n"
+                << std::flush;
       MPI_Abort(MPI_COMM_WORLD, static_cast<int>(ExitStatus::internal_error));
     }
   return static_cast<int>(ExitStatus::internal_error);

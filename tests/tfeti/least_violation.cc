@@ -7,7 +7,7 @@ using namespace slipstick::tfeti;
 
 namespace
 {
-  /// y >= 0 and y <= -floor_of_roof - slope x: the room of a body under a roof that falls towards it.
+  /// Of y >= 0 and y <= -slope x, but for constants: the room of a body under a roof that falls towards x.
   Eigen::MatrixXd wedge(const double slope)
   {
     Eigen::MatrixXd rates(2, 2);
@@ -30,7 +30,7 @@ TEST(LeastViolation, IsNoneInNarrowWedges)
 
 TEST(LeastViolation, IsNoneInCones)
 {
-  // a' n_i >= 1 with n_i within a narrow cone around the last axis: random, the same everywhere
+  // the cone of all a with n_i'(a - inside) >= 0, n_i random, the same on every machine
   for (const unsigned int n : {3u, 6u, 20u})
     {
       std::uint64_t   state = n;
