@@ -21,9 +21,13 @@ namespace slipstick::contact
   {
     Vector b = dual.zero(), q = dual.zero();
     dual.multiply(start, b);
+    const double of_forces = tfeti::weighted_norm(dual, b);
     b.sadd(-1., 1. / dual.norm(), dual.d());
+    const double all = std::hypot(of_forces, tfeti::weighted_norm(dual, b));
     dual.project_range(b, q);
     b -= q;
+    if (tfeti::weighted_norm(dual, b) <= tfeti::rounding_of_projection * all)
+      b = 0.;
     return b;
   }
 

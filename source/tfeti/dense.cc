@@ -14,9 +14,12 @@ namespace slipstick::tfeti
     return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
   }
 
-  Eigen::VectorXd shortest_solution(const Eigen::MatrixXd &A, const Eigen::VectorXd &b)
+  Eigen::VectorXd shortest_solution(const Eigen::MatrixXd &A, const Eigen::VectorXd &b, const double rounding)
   {
-    return A.completeOrthogonalDecomposition().solve(b);
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposed;
+    decomposed.setThreshold(rounding);
+    decomposed.compute(A);
+    return decomposed.solve(b);
   }
 
   Eigen::VectorXd basic_solution(const Eigen::MatrixXd &A, const Eigen::VectorXd &b)

@@ -9,13 +9,6 @@
 
 namespace slipstick::tfeti
 {
-  namespace
-  {
-    // A projected residual below this part of the residual is rounding, as when supports move bodies without
-    // deforming them.
-    constexpr double rounding_of_projection = 1e-14;
-  } // namespace
-
   Face DualProblem::face(const std::vector<bool>     &free,
                          const std::vector<qp::Tie>  &ties,
                          const std::vector<qp::Turn> &turns) const
@@ -214,6 +207,12 @@ namespace slipstick::tfeti
     qp::turn_back(turns, x);
   }
 
+  double weighted_norm(const DualProblem &problem, const DistributedVector &r)
+  {
+    const double square = qp::local_weighted_dot(qp::residual_weights(problem, 0), r, r);
+    return std::sqrt(problem.reduction().sum(std::array<double, 1>{{square}})[0]);
+  }
+
   double residual_norm(const DualProblem &problem, const DistributedVector &r)
   {
     const Face all(problem, std::vector<bool>(r.locally_owned_size(), true));
@@ -222,10 +221,7 @@ namespace slipstick::tfeti
     DistributedVector part(r), range = problem.zero();
     all.project_range(r, range);
     part -= range;
-    const auto weights = qp::residual_weights(problem, 0);
-    const auto squares = problem.reduction().sum(
-      std::array<double, 2>{{qp::local_weighted_dot(weights, part, part), qp::local_weighted_dot(weights, r, r)}});
-    const double norm = std::sqrt(squares[0]);
-    return norm <= rounding_of_projection * std::sqrt(squares[1]) ? 0. : norm;
+    const double norm = weighted_norm(problem, part);
+    return norm <= rounding_of_projection * weighted_norm(problem, r) ? 0. : norm;
   }
 } // namespace slipstick::tfeti

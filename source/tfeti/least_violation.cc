@@ -11,6 +11,9 @@ namespace slipstick::tfeti
     // The maximum number of steps, and the part of a at which a change ends the search.
     constexpr unsigned int max_steps         = 100;
     constexpr double       negligible_change = 1e-14;
+    // Conditions whose rates differ by less than this part of them differ by rounding: no motion can meet one of them
+    // without the other.
+    constexpr double rounding_of_rates = 1e-10;
 
     /// The t > 0 that minimises the sum of squares of the negative entries of values + t rates. Its slope is negative at
     /// t = 0.
@@ -50,7 +53,7 @@ namespace slipstick::tfeti
             their_rates.row(i) = rates.row(violated[i]);
             by[i]              = -reached[violated[i]];
           }
-        const Eigen::VectorXd towards = shortest_solution(their_rates, by);
+        const Eigen::VectorXd towards = shortest_solution(their_rates, by, rounding_of_rates);
         const Eigen::VectorXd change  = least_violation_along(reached, rates * towards) * towards;
         a += change;
         if (change.norm() <= negligible_change * a.norm())

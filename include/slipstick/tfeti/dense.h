@@ -19,7 +19,8 @@ namespace slipstick::tfeti
   Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd &matrix);
 
   /// The x that minimises |A x - b|; the shortest one if there are several.
-  Eigen::VectorXd shortest_solution(const Eigen::MatrixXd &A, const Eigen::VectorXd &b);
+  /// @param rounding pivots of A below this part of the largest are zero.
+  Eigen::VectorXd shortest_solution(const Eigen::MatrixXd &A, const Eigen::VectorXd &b, double rounding = 1e-14);
 
   /// An x that minimises |A x - b| with at most rank(A) nonzero entries (pivoted QR).
   Eigen::VectorXd basic_solution(const Eigen::MatrixXd &A, const Eigen::VectorXd &b);

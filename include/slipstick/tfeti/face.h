@@ -75,6 +75,12 @@ namespace slipstick::tfeti
     std::unique_ptr<RowWeights::Inverse> weights;
   };
 
+  /// A projected residual below this part of the residual is rounding, as when supports move bodies without deforming them.
+  constexpr double rounding_of_projection = 1e-14;
+
+  /// Norm with the weights of residuals. Collective.
+  double weighted_norm(const DualProblem &problem, const DistributedVector &r);
+
   /// Weighted norm of the part of a residual (such as d - F x over norm()) that multipliers can change; 0 if that part
   /// is only rounding. Collective.
   double residual_norm(const DualProblem &problem, const DistributedVector &r);
