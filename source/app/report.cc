@@ -19,6 +19,8 @@ namespace slipstick::app
     constexpr double residual_rounding = 1e-11;
     // Rounding errors of different ways of computing the same quantity differ by about this factor.
     constexpr double margin_of_rounding = 2;
+    // Changes of gaps below this part of the size of bodies are not worth a line.
+    constexpr double shown_change_of_gaps = 1e-12;
 
     std::string line(const char *stage, const std::string &text)
     {
@@ -137,6 +139,13 @@ namespace slipstick::app
                          dual.projector().dimension(),
                          dual.norm(),
                          dual.set_up().multiplications)));
+    if (const double changed = dual.contradiction_of_gaps();
+        changed > shown_change_of_gaps * dual.body_motions().largest_length())
+      log.line(
+        line("",
+             format("gaps around points where bodies form a loop contradict each other, as rounded node positions do: "
+                    "changed by up to %.1e mm",
+                    changed)));
   }
 
   void print_checks(const Log &log, const contact::Checks &checks, const double tolerance)

@@ -31,6 +31,13 @@ namespace slipstick::interface
       const double without_rounding = std::abs(of_geometry) <= rounding_of_gaps * largest ? 0. : of_geometry;
       return (pair.gap ? pair.gap->value(x, t) : without_rounding) + pair.offset.value(x, t);
     }
+
+    /// Whether the gap is neither prescribed nor changed by an offset.
+    template <int dim>
+    bool is_measured(const scene::ContactPair<dim> &pair, const dealii::Point<dim> &x, const double t)
+    {
+      return !pair.gap && pair.offset.value(x, t) == 0;
+    }
   } // namespace
 
   template <int dim>
@@ -98,10 +105,11 @@ namespace slipstick::interface
                                        const Tributary       &area,
                                        ContactCandidate<dim> &touch) const
   {
-    const auto &node    = nodes[i];
-    const auto &where   = scene.contacts[pair];
-    const auto  contact = contact_with(scene.obstacles[where.obstacle], node.point(), t);
-    touch.point.gap     = gap_of(where, node.point(), contact.gap, t);
+    const auto &node        = nodes[i];
+    const auto &where       = scene.contacts[pair];
+    const auto  contact     = contact_with(scene.obstacles[where.obstacle], node.point(), t);
+    touch.point.gap         = gap_of(where, node.point(), contact.gap, t);
+    touch.point.is_measured = is_measured(where, node.point(), t);
     if (where.reach && touch.point.gap > *where.reach)
       return false;
     touch.pair                  = pair;
@@ -133,8 +141,9 @@ namespace slipstick::interface
     point.master_body = where.master->body;
     for (unsigned int d = 0; d < dim; ++d)
       point.master_position[d] = row.master_position[d];
-    point.gap    = gap_of(where, nodes[i].point(), row.gap, t);
-    point.length = row.length;
+    point.gap         = gap_of(where, nodes[i].point(), row.gap, t);
+    point.is_measured = is_measured(where, nodes[i].point(), t);
+    point.length      = row.length;
     const double thickness =
       std::min(scene.bodies[where.slave.body].thickness, scene.bodies[where.master->body].thickness);
     point.area            = row.measure * thickness;

@@ -10,6 +10,9 @@ namespace slipstick::tfeti
 {
   namespace
   {
+    // Positions of nodes in files are rounded by up to this part of the size of bodies (seven digits).
+    constexpr double rounding_of_positions = 1e-7;
+
     /// A number in (-1, 1) from a label, so that the start vector of Lanczos' method does not depend on the number of
     /// ranks.
     double random_number(std::uint64_t label)
@@ -76,20 +79,56 @@ namespace slipstick::tfeti
     Q = std::make_unique<Projector>(systems, gluing, *F, rows.rows, has_no_bounds, comm);
 
     is_single = explicit_blocks && options.operator_precision == Precision::single_precision;
-    set_dual_load();
     set_dependent_compliances();
+    make_gaps_consistent();
+    set_dual_load();
     norm_PFP             = lanczos(options);
     cost.multiplications = F->n_applications();
+  }
+
+  // Rows without a compliance of their own: that of others determines their forces.
+  std::vector<bool> DualProblem::rigid_rows() const
+  {
+    std::vector<bool> result(rows.kind.size(), true);
+    for (unsigned int r = 0; r < rows.compliance.size(); ++r)
+      result[r] = rows.compliance[r] == 0;
+    return result;
+  }
+
+  // Node positions that were rounded leave gaps that contradict each other where bodies form a loop around a point: no
+  // displacements close all of them, and forces without effect would grow without limit. The least change of these gaps that
+  // makes them consistent is within that rounding.
+  void DualProblem::make_gaps_consistent()
+  {
+    contradiction = 0;
+    if (!has_dependent_rows)
+      return;
+    std::vector<RowChange> change;
+    for (const RowKind kind : rows.kind)
+      change.push_back(kind == RowKind::gluing ? RowChange::stays : RowChange::forbidden);
+    for (const ContactPoint &point : rows.contact_points)
+      for (const unsigned int row : {point.normal_row, point.tangential_row, point.second_row})
+        if (row != invalid_row && point.is_measured)
+          change[row] = RowChange::may_change;
+    const auto is_rigid = rigid_rows();
+    for (unsigned int r = 0; r < change.size(); ++r)
+      if (!is_rigid[r])
+        change[r] = RowChange::ignored;
+    const auto correction_of_c =
+      M->weights().least_correction(rows.c, change, rounding_of_positions * bodies->largest_length());
+    for (unsigned int r = 0; r < rows.c.size(); ++r)
+      {
+        contradiction = std::max(contradiction, std::abs(correction_of_c[r]));
+        rows.c[r] += correction_of_c[r];
+      }
+    contradiction = dealii::Utilities::MPI::max(contradiction, comm);
   }
 
   void DualProblem::set_dependent_compliances()
   {
     if (!M)
       return;
-    std::vector<bool> rigid(rows.kind.size(), true); // others are determined by their own compliance
-    for (unsigned int r = 0; r < rows.compliance.size(); ++r)
-      rigid[r] = rows.compliance[r] == 0;
-    const auto is_dependent = M->weights().ambiguous(rigid);
+    const auto is_dependent = M->weights().ambiguous(rigid_rows());
     for (unsigned int r = 0; r < is_dependent.size(); ++r)
       of_dependent_rows.push_back(is_dependent[r] ? 1 / row_metric.weights()[r] : 0.);
     const bool is_here = std::find(is_dependent.begin(), is_dependent.end(), true) != is_dependent.end();
@@ -105,6 +144,7 @@ namespace slipstick::tfeti
   void DualProblem::set_right_hand_side(std::vector<double> c)
   {
     rows.c = std::move(c);
+    make_gaps_consistent();
     set_dual_load();
   }
 

@@ -162,18 +162,33 @@ namespace slipstick::tfeti
     return part;
   }
 
-  // Null vectors of W: e_k - W^- W e_k, which is 0 unless the factorisation skipped row k.
+  // e_k - W^- W e_k is 0 unless the factorisation skipped row k; each of those belongs to one null vector, and these are
+  // all.
+  Eigen::SparseMatrix<double> RowWeights::null_vectors(const Eigen::SparseMatrix<double> &matrix)
+  {
+    const SemidefiniteFactor            factor(matrix);
+    const auto                         &skipped = factor.left_out();
+    std::vector<Eigen::Triplet<double>> entries;
+    for (unsigned int k = 0; k < skipped.size(); ++k)
+      {
+        Eigen::VectorXd share = -factor.solve(matrix.col(skipped[k]));
+        share[skipped[k]] += 1;
+        for (unsigned int r = 0; r < share.size(); ++r)
+          if (std::abs(share[r]) > smallest_share)
+            entries.emplace_back(r, k, share[r]);
+      }
+    Eigen::SparseMatrix<double> result(matrix.rows(), skipped.size());
+    result.setFromTriplets(entries.begin(), entries.end());
+    return result;
+  }
+
   std::vector<bool> RowWeights::dependent_rows(const Eigen::SparseMatrix<double> &matrix)
   {
-    std::vector<bool>        result(matrix.rows(), false);
-    const SemidefiniteFactor factor(matrix);
-    for (const unsigned int k : factor.left_out()) // each belongs to one null vector, and these are all
-      {
-        Eigen::VectorXd share = -factor.solve(matrix.col(k));
-        share[k] += 1;
-        for (unsigned int r = 0; r < result.size(); ++r)
-          result[r] = result[r] || std::abs(share[r]) > smallest_share;
-      }
+    std::vector<bool>                 result(matrix.rows(), false);
+    const Eigen::SparseMatrix<double> null = null_vectors(matrix);
+    for (unsigned int k = 0; k < null.cols(); ++k)
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(null, k); entry; ++entry)
+        result[entry.row()] = true;
     return result;
   }
 
@@ -199,6 +214,50 @@ namespace slipstick::tfeti
         const auto dependent = dependent_rows(part.matrix);
         for (unsigned int r = 0; r < dependent.size(); ++r)
           result[part.rows[r]] = dependent[r];
+      }
+    return result;
+  }
+
+  std::vector<double> RowWeights::least_correction(const std::vector<double>    &c,
+                                                   const std::vector<RowChange> &change,
+                                                   const double                  limit) const
+  {
+    std::vector<double> result(c.size(), 0.);
+    for (const auto &full : blocks)
+      {
+        if (full.singular.size() == 0)
+          continue;
+        const Block part = restricted(full.rows, full.singular, [&change](const unsigned int row) {
+          return change[row] != RowChange::ignored;
+        });
+        if (part.rows.empty())
+          continue;
+        const auto      null = null_vectors(part.matrix);
+        Eigen::VectorXd of_block(part.rows.size()), changes(part.rows.size());
+        for (unsigned int r = 0; r < part.rows.size(); ++r)
+          {
+            of_block[r] = c[part.rows[r]];
+            changes[r]  = change[part.rows[r]] == RowChange::may_change ? 1. : 0.;
+          }
+        Eigen::VectorXd by = null.transpose() * of_block; // contradictions
+        for (unsigned int k = 0; k < null.cols(); ++k)
+          {
+            bool   may_change = true;
+            double largest    = 0; // share in x
+            for (Eigen::SparseMatrix<double>::InnerIterator entry(null, k); entry; ++entry)
+              {
+                may_change = may_change && change[part.rows[entry.row()]] != RowChange::forbidden;
+                largest    = std::max(largest, std::abs(entry.value()));
+              }
+            may_change = may_change && std::abs(by[k]) <= limit * largest;
+            by[k] = may_change ? by[k] : 0.;
+          }
+        if (by.isZero(0.))
+          continue;
+        const Eigen::SparseMatrix<double> on_these = changes.asDiagonal() * null;
+        const Eigen::VectorXd least = on_these * SemidefiniteFactor((on_these.transpose() * on_these).eval()).solve(by);
+        for (unsigned int r = 0; r < part.rows.size(); ++r)
+          result[part.rows[r]] = -least[r];
       }
     return result;
   }

@@ -101,7 +101,8 @@ class Answer:
         outside = [entry for kind in ('loads', 'supports', 'foundations') for entry in self.results.get(kind) or []]
         outside += [pair for pair in self.results.get('contact') or [] if self.is_obstacle(pair['pair'])]
         magnitude = sum(abs(c) for entry in outside for c in entry['force'])
-        rounding = 1e-12 * self.stress  # on 1 mm^2
+        inside = [abs(c) for pair in self.results.get('contact') or [] for c in pair['force']]
+        rounding = 1e-12 * max([self.stress] + [10 * force for force in inside])  # of stresses on 1 mm^2, of contact forces
         is_axisymmetric = self.summary['problem']['plane_state'] == 'axisymmetric'  # hoop stresses balance radial forces
         for components in list(zip(*(entry['force'] for entry in outside)))[is_axisymmetric:]:
             if abs(sum(components)) > BALANCE * sum(abs(c) for c in components) + 1e-6 * magnitude + rounding:

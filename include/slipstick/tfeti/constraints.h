@@ -44,6 +44,7 @@ namespace slipstick::tfeti
     unsigned int          slave_body = 0, master_body = 0;
     std::array<double, 3> master_position{{0, 0, 0}}; // weighted mean of the master nodes, where the force acts
     double                gap           = 0;          // reference configuration [mm]
+    bool                  is_measured   = false;      // whether the gap follows from positions of nodes alone
     double                area          = 0;          // tributary: length times thickness, or of revolution [mm^2]
     double                length        = 0;          // tributary length [mm]
     double                traction_area = 0;          // reference area of tractions: `area`, but at least half of the

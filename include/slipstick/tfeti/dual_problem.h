@@ -115,6 +115,13 @@ namespace slipstick::tfeti
       return has_dependent_rows ? &of_dependent_rows : nullptr;
     }
 
+    /// By how much gaps were changed because they contradicted each other where rows depend on each other, as far as
+    /// positions of nodes are rounded [mm].
+    double contradiction_of_gaps() const
+    {
+      return contradiction;
+    }
+
     /// |P F P| times the stiffness of the row of weight 1 with its neighbours held. 0 if unknown (without a
     /// preconditioner) or if it does not improve the prediction of the active set (solids; doc/decisions/0090).
     double point_stiffness() const
@@ -199,10 +206,12 @@ namespace slipstick::tfeti
     }
 
   private:
-    double lanczos(const DualOptions &options) const;
-    void   apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
-    void   set_dependent_compliances();
-    void   set_dual_load(); // e too
+    double            lanczos(const DualOptions &options) const;
+    void              apply_F(const DistributedVector &x, DistributedVector &y) const; // with the rows' compliance
+    void              set_dependent_compliances();
+    void              make_gaps_consistent();
+    std::vector<bool> rigid_rows() const;
+    void              set_dual_load(); // e too
 
     MPI_Comm                                             comm;
     MpiReduction                                         reduce;
@@ -218,6 +227,7 @@ namespace slipstick::tfeti
     RowMetric                                            row_metric;
     std::vector<double>                                  of_dependent_rows; // compliances
     bool                                                 has_dependent_rows = false;
+    double                                               contradiction      = 0;
     DistributedVector                                    dual_load;
     Eigen::VectorXd                                      resultants;
     DistributedVector                                    correction; // (F - F~) x, subtracted from d

@@ -70,6 +70,15 @@ namespace slipstick::tfeti
     /// Displacements of subdomain p of this rank under a motion, all unknowns.
     Eigen::VectorXd displacements(const unsigned int p, const Eigen::VectorXd &amplitudes) const;
 
+    /// Size of the largest body [mm].
+    double largest_length() const
+    {
+      double result = 0;
+      for (const BodyFrame &frame : frames)
+        result = std::max(result, frame.length);
+      return result;
+    }
+
     /// Whether the bodies are solids, in space.
     bool are_solids() const
     {

@@ -11,6 +11,15 @@
 
 namespace slipstick::tfeti
 {
+  /// What may be done to c of a row where c is made consistent.
+  enum class RowChange
+  {
+    ignored,   // the row does not count, since it has a compliance
+    stays,     // c stays
+    forbidden, // c stays, and that of rows that depend on this one
+    may_change
+  };
+
   /// W = B D^-1 B', D = diag K. It couples rows that share nodes and therefore consists of blocks, each on one rank:
   /// small ones of single nodes, large sparse ones where mortar rows are connected. Rows may be linearly dependent;
   /// a small compliance is added to these before W is inverted.
@@ -57,6 +66,13 @@ namespace slipstick::tfeti
     /// nonzero entry in this row. The result does not depend on the partition.
     std::vector<bool> ambiguous(const std::vector<bool> &active) const;
 
+    /// The least change of c after which displacements u with B u = c are not excluded by linear dependences of rows:
+    /// x'c = 0 for the x with B'x = 0, as far as x has no row whose c must not change and |x'c| is at most @p limit, with 1 as
+    /// the largest entry of x. Owned rows.
+    std::vector<double> least_correction(const std::vector<double>    &c,
+                                         const std::vector<RowChange> &change,
+                                         const double                  limit) const;
+
     /// Inverse of W restricted to the active rows.
     class Inverse
     {
@@ -82,6 +98,9 @@ namespace slipstick::tfeti
       Eigen::SparseMatrix<double> matrix;   // W, regularised where rows are linearly dependent
       Eigen::SparseMatrix<double> singular; // W without that; empty if the rows are independent
     };
+
+    /// A basis of the null space of a block of W.
+    static Eigen::SparseMatrix<double> null_vectors(const Eigen::SparseMatrix<double> &matrix);
 
     /// Rows with a share in null vectors of a block of W.
     static std::vector<bool> dependent_rows(const Eigen::SparseMatrix<double> &matrix);
