@@ -475,3 +475,21 @@ TEST(Solve, linear_problem_in_single_precision_gives_the_solution_of_double)
     }
   EXPECT_LT(relative_difference(x[1], x[0]), 1e-8);
 }
+
+TEST(Solve, gap_that_a_motion_closes_leaves_no_forces)
+{
+  for (const Cut &how : four_cuts)
+    for (const std::string law : {"Tresca", "Coulomb"})
+      {
+        Scene scene = box(4);
+        add_body(scene, "lid", {0, 10}, {10, 10}, {{6, 6}});
+        support(scene, 0, "bottom", "0", "0");
+        support(scene, 1, "top", "0", "1e-3");
+        touch(scene, {1, "bottom"}, {0, "top"}, scene::make_law<2>(law, {"0.5"}));
+        scene.contacts[0].offset = scene::Field<2>("-1e-3", "test");
+        const Solved solved(cut(scene, how));
+        EXPECT_EQ(solved.solution.status, qp::Status::converged);
+        EXPECT_LE(solved.solution.counts.hessian_multiplications, 1u) << law;
+        EXPECT_LT(solved.solution.multipliers.linfty_norm(), 1e-10) << law;
+      }
+}

@@ -1,12 +1,16 @@
 """Solids at their extremes: moduli, slabs, single nodes, loose bodies, friction, Poisson ratios. Two blocks whose meshes do not match."""
 
+import contextlib
+import io
 import math
+import sys
 import unittest
+from random import Random
 
 from sweep import Extremes, Table, pair
 
 import scenes
-from program import new_path, shipped
+from program import SOURCE, new_path, shipped
 
 E = 2.1e5
 STEEL = {'Young modulus': repr(E), 'Poisson ratio': '0.3'}
@@ -26,6 +30,30 @@ def blocks(low=None, high=None, contact=None, size='10, 10, 10', above='10, 10, 
         contacts={'joint': {'Slave': 'high/bottom', 'Master': 'low/top', 'Law': 'Coulomb', 'Friction coefficient': '0.3', **(contact or {})}},
         **{'Decomposition': {'Method': 'METIS', 'Subdomains': '4'}, 'Solver': {'Tolerance': '1e-8'}, **sections})
     return scenes.write('solid', '\n'.join(['set Dimension = 3'] + text.split('\n')[1:]))
+
+
+def dome(rings, error):
+    """prm/dome.prm with other rings, its nodes moved at random by so many millimetres."""
+    random = Random(1)
+    sys.path.insert(0, str(SOURCE / 'meshes'))
+    import dome as maker
+    maker.RINGS = rings
+    text = {}
+    for make in (maker.scene, maker.mesh):
+        with contextlib.redirect_stdout(io.StringIO()) as stream:
+            make()
+        text[make.__name__] = stream.getvalue()
+    case = new_path('prm')
+    for folder in (case, case.parent / 'meshes'):
+        folder.mkdir()
+    lines = text['mesh'].split('\n')
+    first = lines.index('$Nodes') + 2
+    for k in range(first, first + int(lines[first - 1])):
+        number, *x = lines[k].split()
+        lines[k] = ' '.join([number] + [repr(float(c) + error * random.uniform(-1, 1)) for c in x])
+    (case.parent / 'meshes' / 'dome.msh').write_text('\n'.join(lines))
+    (case / 'dome.prm').write_text(text['scene'])
+    return case / 'dome.prm'
 
 
 ROLLER = """
@@ -135,6 +163,17 @@ class Solids(Extremes):
         table = Table('dome at other tolerances')
         for tolerance in (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9):
             self.converges(table, tolerance, shipped('dome'), {'Solver/Tolerance': tolerance}, most=300)
+
+    def test_nodes_that_nearly_meet(self):
+        """Four stones, meshed one by one, meet at a point: their gaps contradict each other."""
+        table = Table('dome of three rings, largest error of node positions [mm]')
+        energies = []
+        for error in (0, 1e-7, 1e-5):
+            result = self.converges(table, error, dome(rings=3, error=error), {'Solver/Tolerance': '1e-8'}, most=500)
+            self.assertEqual('contradict each other' in result.stdout, error > 0)
+            energies.append(result.summary['results']['strain_energy'])
+        for energy in energies[1:]:
+            self.near(energy, energies[0], 1e-4)
 
     def test_one_node(self):
         """A ball without friction that touches in one node."""

@@ -37,7 +37,42 @@ namespace
     touch(scene, 0, "bottom", {5 * unit, -20 * unit}, 20 * unit, text(100 * stiffness));
     return cut(scene, how);
   }
+
+  /// Four squares around a point, the second a gap away from the first.
+  Scene window(const double gap)
+  {
+    Scene scene = box(2);
+    add_body(scene, "right", {10 + gap, 0}, {10, 10}, {{2, 2}});
+    add_body(scene, "above right", {10, 10}, {10, 10}, {{2, 2}});
+    add_body(scene, "above", {0, 10}, {10, 10}, {{2, 2}});
+    support(scene, 0, "bottom", "0", "0");
+    const auto law = scene::make_law<2>("Coulomb", {"0.5"});
+    touch(scene, {0, "right"}, {1, "left"}, law);
+    touch(scene, {2, "bottom"}, {1, "top"}, law);
+    touch(scene, {3, "right"}, {2, "left"}, law);
+    touch(scene, {3, "bottom"}, {0, "top"}, law);
+    return scene;
+  }
 } // namespace
+
+// gaps
+
+TEST(DualProblem, gaps_that_contradict_each_other_by_rounding_are_made_consistent)
+{
+  const auto contradiction = [](const Scene &scene) {
+    tfeti::DualOptions options;
+    options.preconditioner = tfeti::Preconditioner::dirichlet;
+    return Torn(scene).dual(options)->contradiction_of_gaps();
+  };
+  const double small = 1e-8;
+  EXPECT_NEAR(contradiction(window(small)), small / 4, 1e-3 * small) << "shared by four pairs";
+  EXPECT_EQ(contradiction(window(0)), 0);
+  EXPECT_EQ(contradiction(window(1e-3)), 0) << "a gap";
+
+  Scene given              = window(0);
+  given.contacts[0].offset = scene::Field<2>("1e-8", "test");
+  EXPECT_EQ(contradiction(given), 0) << "an offset is meant";
+}
 
 // norm
 
