@@ -11,8 +11,8 @@ namespace slipstick::contact
   {
     using tfeti::DistributedVector;
 
-    /// Moment of the contact forces on both sides: the force on the slave body acts at its node, the opposite force at
-    /// the mean of the master nodes.
+    /// Moment of the contact forces on both sides: the force on the slave body acts at the mean of the slave nodes, the
+    /// opposite force at that of the master nodes.
     /// @param N compressive force. @param T minus the tangential force on the slave body, in the plane.
     std::array<double, 3> moment_mismatch(const tfeti::ContactPoint &point,
                                           const ContactNode         &node,
@@ -28,7 +28,7 @@ namespace slipstick::contact
           force[d] = node.traction[d] * node.area - N * point.normal[d];
       std::array<double, 3> apart;
       for (unsigned int d = 0; d < 3; ++d)
-        apart[d] = point.position[d] - point.master_position[d];
+        apart[d] = point.slave_position[d] - point.master_position[d];
       Resultant mismatch;
       mismatch.add<3>(force, apart);
       return mismatch.moment;
@@ -62,6 +62,7 @@ namespace slipstick::contact
     ContactNode node;
     node.pair     = point.pair;
     node.position = point.position;
+    node.acts_at  = point.slave_position;
     node.normal   = point.normal;
     node.area     = point.traction_area;
     node.length   = point.length;
@@ -146,7 +147,7 @@ namespace slipstick::contact
             if (dim == 3)
               force[d] = node.traction[d] * node.area - N * node.normal[d];
           }
-        result.on_slave.add<3>(force, node.position);
+        result.on_slave.add<3>(force, node.acts_at);
         result.max_pressure = std::max(result.max_pressure, node.pressure);
         result.contact_length += node.is_closed ? node.length : 0.;
         result.contact_nodes += node.is_closed;

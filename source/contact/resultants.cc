@@ -37,7 +37,7 @@ namespace slipstick::contact
                 {{-held_forces[i][0] / holders.size(),
                   -held_forces[i][1] / holders.size(),
                   -held_forces[i][2] / holders.size()}},
-                point.contact.position);
+                point.contact.slave_position);
         }
     std::vector<double> numbers;
     for (const auto &resultant : own)

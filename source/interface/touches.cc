@@ -112,9 +112,11 @@ namespace slipstick::interface
     touch.point.is_measured = is_measured(where, node.point(), t);
     if (where.reach && touch.point.gap > *where.reach)
       return false;
-    touch.pair                  = pair;
-    touch.normal                = contact.normal;
-    touch.slave                 = {{i, 1.}};
+    touch.pair   = pair;
+    touch.normal = contact.normal;
+    touch.slave  = {{i, 1.}};
+    for (unsigned int d = 0; d < dim; ++d)
+      touch.point.slave_position[d] = node.position[d];
     touch.point.area            = area.area;
     touch.point.length          = area.length;
     touch.point.traction_area   = area.area;
@@ -140,7 +142,11 @@ namespace slipstick::interface
     point.has_master  = true;
     point.master_body = where.master->body;
     for (unsigned int d = 0; d < dim; ++d)
-      point.master_position[d] = row.master_position[d];
+      {
+        point.master_position[d] = row.master_position[d];
+        for (const auto &[slave, weight] : touch.slave)
+          point.slave_position[d] += weight * nodes[slave].position[d];
+      }
     point.gap         = gap_of(where, nodes[i].point(), row.gap, t);
     point.is_measured = is_measured(where, nodes[i].point(), t);
     point.length      = row.length;

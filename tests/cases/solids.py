@@ -432,6 +432,23 @@ class Quadratic(Solids):
                 self.near(pair['moment_mismatch'], [0, 0, 0], 1e-9)
                 self.assertLess(result.summary['residuals']['moment_balance'], 1e-9)
 
+    def test_moments_balance_on_curved_faces(self):
+        """The force of a slave node acts at a mean of nodes, which on a curved face is not the node itself."""
+        bodies = {'ball': {'Shape': 'half ball', 'Center': '0, 10, 0', 'Radius': '10', 'Cells around': '8', 'Material': 'elastic'},
+                  'plate': {'Size': '10, 5, 10', 'Origin': '-5, -5, -5', 'Cells': '7, 3, 5', 'Material': 'elastic'}}
+        fixed = {'Displacement x': '0', 'Displacement z': '0'}
+        supports = {'floor': {'Boundary': 'plate/bottom', 'Displacement y': '0', **fixed},
+                    'driven': {'Boundary': 'ball/flat', 'Displacement y': '-0.5', **fixed}}
+        case = solid(bodies=bodies, supports=supports, contacts={'touch': {'Slave': 'ball/surface', 'Master': 'plate/top', 'Law': 'Coulomb',
+                                                                           'Friction coefficient': '0.3'}}, **self.TWO)
+        results = converged(case).summary['results']
+        pair, (ball,) = results['contact'][0], [s for s in results['supports'] if s['support'] == 'driven']
+        scale = 10 * pair['normal_force']
+        for of_supports, mismatch in zip(zip(*(support['moment'] for support in results['supports'])), pair['moment_mismatch']):
+            self.assertAlmostEqual((sum(of_supports) + mismatch) / scale, 0, delta=1e-10)
+        for of_ball, of_contact in zip(ball['moment'], pair['moment']):
+            self.assertAlmostEqual((of_ball + of_contact) / scale, 0, delta=1e-10)
+
     def volume(self, directory):
         sum_ = 0
         for piece in fields.pieces(directory):

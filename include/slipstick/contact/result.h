@@ -32,6 +32,8 @@ namespace slipstick::contact
   {
     unsigned int          pair = 0;            // index into Scene::contacts
     std::array<double, 3> position{{0, 0, 0}}; // reference configuration [mm]
+    std::array<double, 3> acts_at{
+      {0, 0, 0}}; // where the force on the slave acts, a mean of nodes near the position [mm]
     std::array<double, 3> normal{{0, 0, 0}};
     double                arc_length          = 0; // along the slave boundary from its first node [mm]
     double                area                = 0; // reference area of tractions, see tfeti::ContactPoint [mm^2]
@@ -52,8 +54,8 @@ namespace slipstick::contact
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &pair &position &normal &arc_length &area &length &gap &pressure &tangential_traction &slip &traction
-        &slip_vector &total_slip &status &is_closed &slip_bound &moment_mismatch;
+      archive &pair &position &acts_at &normal &arc_length &area &length &gap &pressure &tangential_traction &slip
+        &traction &slip_vector &total_slip &status &is_closed &slip_bound &moment_mismatch;
     }
   };
 
