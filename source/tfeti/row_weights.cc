@@ -250,7 +250,7 @@ namespace slipstick::tfeti
                 largest    = std::max(largest, std::abs(entry.value()));
               }
             may_change = may_change && std::abs(by[k]) <= limit * largest;
-            by[k] = may_change ? by[k] : 0.;
+            by[k]      = may_change ? by[k] : 0.;
           }
         if (by.isZero(0.))
           continue;

@@ -32,8 +32,7 @@ namespace slipstick::contact
   {
     unsigned int          pair = 0;            // index into Scene::contacts
     std::array<double, 3> position{{0, 0, 0}}; // reference configuration [mm]
-    std::array<double, 3> acts_at{
-      {0, 0, 0}}; // where the force on the slave acts, a mean of nodes near the position [mm]
+    std::array<double, 3> acts_at{{0, 0, 0}};  // the force on the slave body: mean of nodes near the position [mm]
     std::array<double, 3> normal{{0, 0, 0}};
     double                arc_length          = 0; // along the slave boundary from its first node [mm]
     double                area                = 0; // reference area of tractions, see tfeti::ContactPoint [mm^2]

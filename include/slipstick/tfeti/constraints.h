@@ -42,9 +42,8 @@ namespace slipstick::tfeti
     std::array<double, 3> normal{{0, 0, 0}};  // outward normal of the slave body
     bool                  has_master = false; // true: another body; false: an obstacle
     unsigned int          slave_body = 0, master_body = 0;
-    std::array<double, 3> slave_position{
-      {0, 0, 0}}; // weighted means of the slave and master nodes, where the forces ...
-    std::array<double, 3> master_position{{0, 0, 0}}; // ... act
+    std::array<double, 3> slave_position{{0, 0, 0}};  // weighted mean of the slave nodes, where the force acts, ...
+    std::array<double, 3> master_position{{0, 0, 0}}; // ... and of the master nodes
     double                gap           = 0;          // reference configuration [mm]
     bool                  is_measured   = false;      // whether the gap follows from positions of nodes alone
     double                area          = 0;          // tributary: length times thickness, or of revolution [mm^2]
