@@ -92,6 +92,18 @@ class Launcher(WithFolder):
         result = self.launch('kill -TERM $$; sleep 60', '-n', 1)
         self.assertEqual(result.returncode, -15)
 
+    def test_runs_at_the_same_time_share_no_folder(self):
+        # Open MPI 4 removes a shared one while another run is about to use it
+        show = 'echo $OMPI_MCA_orte_local_tmpdir_base; ls -d $OMPI_MCA_orte_local_tmpdir_base; touch $OMPI_MCA_orte_local_tmpdir_base/left'
+        folders = []
+        for _ in range(2):
+            result = self.launch(show, '-n', 1)
+            name, seen = result.stdout.split()
+            self.assertEqual((seen, result.stderr), (name, ''))
+            self.assertFalse(pathlib.Path(name).exists(), name)
+            folders.append(name)
+        self.assertNotEqual(*folders)
+
     def test_arguments_and_settings_for_both_launchers(self):
         show = 'printf "%s|" "$@"; echo; env | grep -E "policy|quiet|idle" | sort'
         alone = self.launch(show, '-n', 3, 'program', 'with space')
