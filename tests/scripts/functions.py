@@ -94,7 +94,7 @@ class Launcher(WithFolder):
 
     def test_runs_at_the_same_time_share_no_folder(self):
         # Open MPI 4 removes a shared one while another run is about to use it
-        show = 'echo $OMPI_MCA_orte_local_tmpdir_base; ls -d $OMPI_MCA_orte_local_tmpdir_base; touch $OMPI_MCA_orte_local_tmpdir_base/left'
+        show = 'echo $OMPI_MCA_orte_tmpdir_base; ls -d $OMPI_MCA_orte_tmpdir_base; touch $OMPI_MCA_orte_tmpdir_base/left'
         folders = []
         for _ in range(2):
             result = self.launch(show, '-n', 1)
