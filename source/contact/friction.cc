@@ -43,6 +43,10 @@ namespace slipstick::contact
     // Newton's steps on solids that slide after which it is asked whether friction bears the loads at all: where it does not,
     // more of them find nothing.
     constexpr unsigned int steps_before_overload = 30;
+    // That is told by the normal forces that hold them with so many times the friction, the first that does, ...
+    constexpr std::array<double, 3> more_friction{{4, 64, 1024}};
+    // ... and with so many times the friction that these need.
+    constexpr double margin_of_friction = 1.1;
     // In the plane one for so many bodies, if that is more than usual: an arch of 400 stones takes 44, one of 1000 127.
     constexpr unsigned int bodies_per_step = 5;
     // Multiplications after which Newton's method and its fallback give up.
@@ -114,20 +118,16 @@ namespace slipstick::contact
                 solution.multipliers = from;
                 return finished();
               }
-            if (newton_from(from, !start))
+            if (newton_from(from, feasible, start))
               return finished();
-            refuse_overload();
+            refuse_overload(feasible, start);
             ++solution.fallbacks;
-            follow_bounds(fallback_start(from, feasible));
+            follow_bounds_to_the_end(fallback_start(from, feasible), feasible);
           }
         else
-          follow_bounds(feasible);
-        const bool follows =
-          law.depends_on_pressure() && solution.friction_iterations > 0; // not a limit of SMALBE alone
-        if (solution.status == qp::Status::stagnated || (solution.status == qp::Status::iteration_limit && follows))
-          finish_by_newton(feasible);
+          follow_bounds_to_the_end(feasible, feasible);
         if (solution.status != qp::Status::converged)
-          refuse_overload();
+          refuse_overload(feasible, start);
         return finished();
       }
 
@@ -147,19 +147,62 @@ namespace slipstick::contact
         return std::move(point.x);
       }
 
-      /// Where no solution was found: is friction, at the normal forces that the search came to (this time, or in one of its
-      /// attempts before), too weak for the loads along a motion that nothing else resists?
-      void refuse_overload() const
+      /// Where no solution was found: is friction too weak for the loads along a motion that nothing else resists? The
+      /// normal forces that the search came to prove nothing: those count that hold the loads with more friction.
+      void refuse_overload(const Vector &feasible, const DualSolution *start)
       {
         if (!law.depends_on_pressure())
           return;
-        const auto here = weakest_motion(dual, law, solution.multipliers, 1);
-        if (const auto &overload = here ? here : seen_overload)
-          throw NoEquilibrium(
-            (overload->held > 1 - nearness_of_limit ? "friction is at the limit of equilibrium: "
-                                                    : "friction is too weak: ") +
-              describe(*overload, dual.body_motions().names()),
-            "raise the friction coefficient or the normal force, support the body against this motion, or lower the load");
+        for (const double more : more_friction)
+          {
+            const auto held = held_by(more, feasible, start);
+            if (!held)
+              continue;
+            auto overload = weakest_motion(dual, law, *held, 1);
+            if (!overload)
+              return;
+            if (margin_of_friction <
+                more * overload->held) // nearer to sliding the normal forces are more nearly its own
+              if (const auto nearer = held_by(margin_of_friction / overload->held, feasible, start))
+                overload = weakest_motion(dual, law, *nearer, 1);
+            if (!overload)
+              return;
+            throw NoEquilibrium(
+              (overload->held > 1 - nearness_of_limit ? "friction is at the limit of equilibrium: "
+                                                      : "friction is too weak: ") +
+                describe(*overload, dual.body_motions().names()),
+              "raise the friction coefficient or the normal force, support the body against this motion, or lower the load");
+          }
+      }
+
+      /// The forces with so many times the friction, if the algorithm finds them.
+      std::optional<Vector> held_by(const double more, const Vector &feasible, const DualSolution *start)
+      {
+        const SlipLaw with_more = law.scaled(more);
+        ContactSolver held(dual, with_more, options, friction, observer, {});
+        const bool    is_held = held.converges(feasible, start);
+        solution.counts += held.solution.counts;
+        return is_held ? std::optional(std::move(held.solution.multipliers)) : std::nullopt;
+      }
+
+      /// The algorithm without fallback. @return convergence.
+      bool converges(const Vector &feasible, const DualSolution *start)
+      {
+        tractions.emplace(dual,
+                          options.tolerance,
+                          dual.particular().linfty_norm(),
+                          start ? start->largest_traction : 0.);
+        forces_before  = start ? start->largest_forces : 0.;
+        size_of_forces = feasible.l2_norm();
+        set_bounds(law.bounds(feasible));
+        if (options.algorithm == scene::Algorithm::smalbe)
+          {
+            follow_bounds_to_the_end(feasible, feasible);
+            return solution.status == qp::Status::converged;
+          }
+        solution.directions = std::make_shared<qp::DirectionStore<Vector>>(options.newton.n_directions);
+        const auto from     = newton_start(feasible, start);
+        return solution.weighted_reference > 0 && newton(from, true, !start);
       }
 
       void set_bounds(std::vector<double> bounds)
@@ -280,15 +323,15 @@ namespace slipstick::contact
       }
 
       /// Newton's method from a start; in space loads that friction cannot bear end it early, with an error.
-      bool newton_from(const Vector &from, const bool is_rough)
+      bool newton_from(const Vector &from, const Vector &feasible, const DualSolution *start)
       {
         if (!law.has_discs())
-          return newton(from, true, is_rough);
-        if (newton(from, true, is_rough, steps_before_overload))
+          return newton(from, true, !start);
+        if (newton(from, true, !start, steps_before_overload))
           return true;
         if (solution.status != qp::Status::iteration_limit)
           return false;
-        refuse_overload();
+        refuse_overload(feasible, start);
         gradient             = solution.gradient;
         const bool is_solved = newton(Vector(solution.multipliers), true);
         if (law.depends_on_pressure())
@@ -343,8 +386,13 @@ namespace slipstick::contact
       }
 
       /// Where SMALBE-M ends without convergence its set may be near the right one, on which Newton's method solves.
-      void finish_by_newton(const Vector &feasible)
+      void follow_bounds_to_the_end(const Vector &from, const Vector &feasible)
       {
+        follow_bounds(from);
+        const bool follows =
+          law.depends_on_pressure() && solution.friction_iterations > 0; // not a limit of SMALBE alone
+        if (solution.status != qp::Status::stagnated && !(solution.status == qp::Status::iteration_limit && follows))
+          return;
         ++solution.fallbacks;
         if (solution.weighted_reference == 0)
           {
@@ -360,8 +408,6 @@ namespace slipstick::contact
         const auto before = solution;
         if (newton(before.multipliers, true))
           return true;
-        if (!seen_overload && law.depends_on_pressure())
-          seen_overload = weakest_motion(dual, law, solution.multipliers, 1);
         const auto counts = solution.counts;
         solution          = before;
         solution.counts   = counts;
@@ -589,8 +635,6 @@ namespace slipstick::contact
       double                       size_of_forces = 0; // of the least forces found that balance the loads [N]
       double                       forces_before  = 0; // as DualSolution::largest_forces
       std::optional<TractionError> tractions;
-
-      std::optional<tfeti::Overload> seen_overload; // where Newton's method ended in vain
     };
   } // namespace
 

@@ -79,6 +79,17 @@ namespace slipstick::contact
     is_in_space        = dealii::Utilities::MPI::max(has_own ? 1 : 0, dual.communicator()) > 0;
   }
 
+  SlipLaw SlipLaw::scaled(const double factor) const
+  {
+    SlipLaw result = *this;
+    for (double &bound : result.fixed)
+      bound *= factor;
+    for (auto *nodes : {&result.rows, &result.discs})
+      for (auto &node : *nodes)
+        node.forces = {factor * node.forces.fixed, factor * node.forces.coefficient, factor * node.forces.cap};
+    return result;
+  }
+
   std::vector<double> SlipLaw::bounds(const Vector &x) const
   {
     std::vector<double> result = fixed;

@@ -76,19 +76,24 @@ namespace slipstick::tfeti
 
       Eigen::VectorXd motion() const
       {
-        Eigen::VectorXd a       = -loads / loads.squaredNorm();
-        double          largest = 0;
+        Eigen::VectorXd       a = -loads / loads.squaredNorm();
+        const Eigen::MatrixXd across =
+          Eigen::MatrixXd(Eigen::HouseholderQR<Eigen::MatrixXd>(loads).householderQ()).rightCols(loads.size() - 1);
+        if (across.cols() == 0)
+          return a;
+        double largest = 0;
         for (const LooseRow &row : rows)
           largest = std::max(largest, row.jump(a));
         for (double eps = largest; std::isfinite(largest) && eps > least_smoothing * largest;
              eps *= smoothing_reduction)
           for (unsigned int k = 0; k < max_newton_steps; ++k)
             {
-              Eigen::VectorXd slope;
-              Eigen::MatrixXd curvature;
-              const double    value = evaluate(a, eps, &slope, &curvature);
-              Eigen::VectorXd step  = across_loads(-shortest_solution(curvature, slope));
-              const double    along = slope.dot(step);
+              Eigen::VectorXd       slope;
+              Eigen::MatrixXd       curvature;
+              const double          value = evaluate(a, eps, &slope, &curvature);
+              const Eigen::VectorXd step =
+                -across * shortest_solution(across.transpose() * curvature * across, across.transpose() * slope);
+              const double along = slope.dot(step);
               if (!(along < 0))
                 break;
               double t = 1;
@@ -102,13 +107,7 @@ namespace slipstick::tfeti
       }
 
     private:
-      /// The part of v without work of the loads.
-      Eigen::VectorXd across_loads(const Eigen::VectorXd &v) const
-      {
-        return v - loads * (loads.dot(v) / loads.squaredNorm());
-      }
-
-      /// Slope and curvature across the loads.
+      /// The smoothed sum, its slope and curvature.
       double evaluate(const Eigen::VectorXd &a,
                       const double           eps,
                       Eigen::VectorXd       *slope     = nullptr,
@@ -133,16 +132,6 @@ namespace slipstick::tfeti
                 *curvature += factor / smooth *
                               (rows[i].share * rows[i].share.transpose() + rows[i].second * rows[i].second.transpose() -
                                along * along.transpose() / (smooth * smooth));
-              }
-          }
-        if (slope)
-          {
-            *slope = across_loads(*slope);
-            for (int side = 0; side < 2; ++side)
-              {
-                for (Eigen::Index column = 0; column < curvature->cols(); ++column)
-                  curvature->col(column) = across_loads(curvature->col(column));
-                curvature->transposeInPlace();
               }
           }
         return value;
@@ -307,7 +296,11 @@ namespace slipstick::tfeti
                                                 const std::vector<double> &capacity,
                                                 const double               below) const
   {
-    const auto loose = motions.free(free, weak_resistance);
+    std::vector<bool> supports = free, contacts = free;
+    for (unsigned int r = 0; r < free.size(); ++r)
+      (is_equality(rows.kind[r]) ? contacts : supports)[r] = false;
+    // the normals of a rough mesh hardly resist a motion along the true surface
+    const auto loose = motions.free(contacts, weak_resistance, {}, supports);
     if (loose.empty())
       return {};
     const double n_loose = loose.size(), n_rows = dealii::Utilities::MPI::sum(free.size(), comm);

@@ -22,6 +22,8 @@ namespace slipstick::tfeti
     constexpr double rounding_of_vectors = 1e-6;
     // Resultants below this part of the sum of magnitudes are rounding of zero.
     constexpr double rounding_of_loads = 1e-13;
+    // Rigid rows resist by so many times what the best held motion meets.
+    constexpr double weight_of_rigid_rows = 1e6;
 
     /// Frames of all bodies, each taken from a rank that has a subdomain of the body.
     std::vector<BodyFrame> frames_of_bodies(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
@@ -222,11 +224,16 @@ namespace slipstick::tfeti
   // Returns orthonormal motions.
   std::vector<Eigen::VectorXd> BodyMotions::unresisted(const std::vector<bool>  &active,
                                                        const double              resistance,
+                                                       const std::vector<bool>  &rigid,
                                                        const std::vector<Share> &of_rows) const
   {
+    const bool has_rigid       = dealii::Utilities::MPI::max(rigid.empty() ? 0 : 1, comm) > 0;
     const auto null_vectors_of = [&](const bool without_levers) {
-      const Eigen::SparseMatrix<double> all = resistance_of(active, without_levers, of_rows);
-      return null_vectors(all, resistance * std::max(largest_eigenvalue(all), 1.));
+      Eigen::SparseMatrix<double> all     = resistance_of(active, without_levers, of_rows);
+      const double                largest = std::max(largest_eigenvalue(all), 1.);
+      if (has_rigid)
+        all += weight_of_rigid_rows * largest * resistance_of(rigid, without_levers, of_rows);
+      return null_vectors(all, resistance * largest);
     };
     std::vector<Eigen::VectorXd> result = null_vectors_of(false);
     if (dealii::Utilities::MPI::min(active.empty() ? 1 : 0, comm) == 0) // a rank may own no rows
@@ -245,10 +252,11 @@ namespace slipstick::tfeti
 
   std::vector<RigidMotion> BodyMotions::free(const std::vector<bool>     &active,
                                              const double                 resistance,
-                                             const std::vector<qp::Turn> &turns) const
+                                             const std::vector<qp::Turn> &turns,
+                                             const std::vector<bool>     &rigid) const
   {
     std::vector<RigidMotion> motions;
-    for (auto &amplitudes : unresisted(active, resistance, turns.empty() ? shares : turned(turns)))
+    for (auto &amplitudes : unresisted(active, resistance, rigid, turns.empty() ? shares : turned(turns)))
       motions.push_back({std::move(amplitudes), 0., frames});
     if (motions.empty()) // the usual case; avoids computing the loads
       return motions;

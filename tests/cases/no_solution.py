@@ -1,6 +1,7 @@
 """Scenes without equilibrium end with status 4, solves that stop early with status 3; both say so in summary.json."""
 
 import math
+import re
 import unittest
 
 import scenes
@@ -71,6 +72,27 @@ class NoEquilibrium(unittest.TestCase):
         result = run(case, '--check', ranks=2)
         self.assertEqual(result.status, 4, result)
         self.assertIn('nothing holds body box', result.stderr)
+
+
+class FrictionTooWeak(unittest.TestCase):
+    """The shipped ring on its shaft: closed form and coarse mesh agree that it holds up to 1.004 times the torque of turn = 1."""
+
+    def twisted(self, turn, **settings):
+        return solve(shipped('ring_on_shaft'), {'Variables/turn': turn, **settings})
+
+    def test_says_what_part_of_the_load_friction_bears(self):
+        for turn in (1.1, 2):
+            with self.subTest(turn=turn):
+                result = self.twisted(turn)
+                self.assertEqual(result.status, 4, result)
+                found = re.search(r'friction is too weak: .* bears ([0-9.]+) of the load that moves body shaft: rotation about '
+                                  r'the axis along \(0, 0, -1\) through \(0, 0, 2.5\)', result.stderr)
+                self.assertTrue(found, result)
+                self.assertAlmostEqual(float(found.group(1)), 1.004 / turn, delta=0.003)
+
+    def test_normal_forces_of_a_search_that_ended_prove_nothing(self):
+        result = self.twisted(0.9, **{'Solver/Algorithm': 'smalbe', 'Solver/SMALBE/Max outer iterations': 1})
+        self.assertEqual(result.status, 3, result)
 
 
 class LimitOfEquilibrium(unittest.TestCase):

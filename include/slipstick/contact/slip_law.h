@@ -24,6 +24,9 @@ namespace slipstick::contact
     template <int dim>
     SlipLaw(const scene::Scene<dim> &scene, const tfeti::DualProblem &dual, const double t);
 
+    /// The same law with @p factor times the friction at every node.
+    SlipLaw scaled(const double factor) const;
+
     /// Whether the bounds depend on the normal forces (on any rank).
     bool depends_on_pressure() const
     {

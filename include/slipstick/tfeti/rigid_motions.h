@@ -55,9 +55,11 @@ namespace slipstick::tfeti
     /// @param resistance below which a motion counts as free: squared jumps of the rows under a unit motion, over the
     ///        largest of all motions. Rounding by default.
     /// @param turns rows treated as turned, active or not.
+    /// @param rigid further rows, each of which resists any motion that moves it more than all the others together.
     std::vector<RigidMotion> free(const std::vector<bool>     &active,
                                   const double                 resistance = rounding_of_resistance,
-                                  const std::vector<qp::Turn> &turns      = {}) const;
+                                  const std::vector<qp::Turn> &turns      = {},
+                                  const std::vector<bool>     &rigid      = {}) const;
 
     static constexpr double rounding_of_resistance = 1e-12;
 
@@ -98,6 +100,7 @@ namespace slipstick::tfeti
     std::vector<Share>           turned(const std::vector<qp::Turn> &turns) const;
     std::vector<Eigen::VectorXd> unresisted(const std::vector<bool>  &active,
                                             const double              resistance,
+                                            const std::vector<bool>  &rigid,
                                             const std::vector<Share> &of_rows) const;
     Eigen::SparseMatrix<double>  resistance_of(const std::vector<bool>  &active,
                                                const bool                without_levers,
