@@ -19,10 +19,17 @@ namespace slipstick::app
     std::array<std::array<char, longest_text>, 2> texts;
     std::array<std::atomic<std::size_t>, 2>       lengths;
     std::atomic<int>                              present{-1};
+    std::atomic<bool>                             is_held{false};
+    std::atomic<int>                              held_signal{0}; // 0: none
 
     void tell(const int signal)
     {
       // only async-signal-safe functions: POSIX.1-2017, 2.4.3
+      if (is_held.load())
+        {
+          held_signal = signal;
+          return;
+        }
       const int k = present.load();
       if (k >= 0 && write(STDERR_FILENO, texts[k].data(), lengths[k].load()) < 0)
         {} // nothing can be done
@@ -60,5 +67,17 @@ namespace slipstick::app
         if (action.sa_handler == tell)
           std::signal(signal, SIG_DFL);
       }
+  }
+
+  HeldInterruption::HeldInterruption()
+  {
+    is_held = true;
+  }
+
+  HeldInterruption::~HeldInterruption()
+  {
+    is_held = false;
+    if (const int signal = held_signal.exchange(0))
+      raise(signal);
   }
 } // namespace slipstick::app

@@ -376,6 +376,7 @@ namespace slipstick::app
   template <int dim>
   void Run<dim>::write(const output::Summary &summary) const
   {
+    const HeldInterruption all_or_none;
     directory.write_together([&](const output::OutputDirectory &to) {
       output::write_history(to, summary.steps, dim);
       output::write_probes(to, summary.steps, dim);

@@ -11,4 +11,15 @@ namespace slipstick::app
 
   /// From now on these signals end the process without a message again.
   void do_not_tell_when_interrupted();
+
+  /// Holds an interruption back while it lives, as files that agree with each other are written. Not nested; without effect
+  /// where tell_when_interrupted() is not in force.
+  class HeldInterruption
+  {
+  public:
+    HeldInterruption();
+    ~HeldInterruption(); // interrupts now if a signal came in between
+    HeldInterruption(const HeldInterruption &)            = delete;
+    HeldInterruption &operator=(const HeldInterruption &) = delete;
+  };
 } // namespace slipstick::app
