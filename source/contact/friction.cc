@@ -182,6 +182,7 @@ namespace slipstick::contact
         ContactSolver held(dual, with_more, options, friction, observer, {});
         const bool    is_held = held.converges(feasible, start);
         solution.counts += held.solution.counts;
+        multiplications_beside += held.solution.counts.hessian_multiplications;
         return is_held ? std::optional(std::move(held.solution.multipliers)) : std::nullopt;
       }
 
@@ -474,7 +475,7 @@ namespace slipstick::contact
               return;
             if (solution.friction_iterations >= friction.max_iterations ||
                 (options.algorithm == scene::Algorithm::semismooth_newton &&
-                 solution.counts.hessian_multiplications > longest_fallback))
+                 solution.counts.hessian_multiplications > longest_fallback + multiplications_beside))
               {
                 solution.status = qp::Status::iteration_limit;
                 return;
@@ -635,6 +636,8 @@ namespace slipstick::contact
       double                       size_of_forces = 0; // of the least forces found that balance the loads [N]
       double                       forces_before  = 0; // as DualSolution::largest_forces
       std::optional<TractionError> tractions;
+
+      unsigned long long multiplications_beside = 0; // of problems with more friction
     };
   } // namespace
 

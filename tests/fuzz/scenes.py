@@ -40,7 +40,8 @@ SHIPPED = {
     'box_prescribed': ['Decomposition/Cells per block=3'],
     'box_linear': ['Decomposition/Cells per block=3'],
     'raous': [], 'press_fit': [], 'dome': [], 'ring_on_shaft': [], 'bolted_joint': ['Load steps/Factors=1, 2'], 'arch': [],
-    'push_out': [], 'cattaneo_mindlin': [], 'cantilevers': [], 'incline': [], 'patch_gmsh': [], 'lap_joint': [], 'circular_punch': [], 'hertz_ball': [],
+    'push_out': [], 'cattaneo_mindlin': [], 'cantilevers': ['Body upper/Cells=40, 4, 3', 'Body lower/Cells=35, 4, 3'],
+    'incline': [], 'patch_gmsh': [], 'lap_joint': [], 'circular_punch': [], 'hertz_ball': [],
     'oblique_blocks': ['Body base/Cells=4, 1, 4', 'Body box/Cells=3, 2, 3'], 'patch_solid': [],
     'cube_on_sphere': ['Body cube/Cells=4, 4, 4', 'Decomposition/Method=none'],
 }
