@@ -148,10 +148,10 @@ namespace slipstick::contact
       }
 
       /// Where no solution was found: is friction too weak for the loads along a motion that nothing else resists? The
-      /// normal forces that the search came to prove nothing: those count that hold the loads with more friction.
+      /// normal forces that the search came to only raise the question: those count that hold the loads with more friction.
       void refuse_overload(const Vector &feasible, const DualSolution *start)
       {
-        if (!law.depends_on_pressure())
+        if (!law.depends_on_pressure() || !weakest_motion(dual, law, solution.multipliers, 1))
           return;
         for (const double more : more_friction)
           {
