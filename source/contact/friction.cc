@@ -109,10 +109,7 @@ namespace slipstick::contact
           }
         if (options.algorithm == scene::Algorithm::semismooth_newton)
           {
-            solution.directions = start && start->directions
-                                    ? start->directions
-                                    : std::make_shared<qp::DirectionStore<Vector>>(options.newton.n_directions);
-            const auto from     = newton_start(feasible, start);
+            const auto from = newton_start(feasible, start);
             if (solution.weighted_reference == 0) // neither load nor gap: the start is the solution
               {
                 solution.multipliers = from;
@@ -136,8 +133,7 @@ namespace slipstick::contact
       Vector feasible_start(const DualSolution *start)
       {
         const auto loads = dual.particular();
-        forces_before    = start ? start->largest_forces : 0.;
-        tractions.emplace(dual, options.tolerance, loads.linfty_norm(), start ? start->largest_traction : 0.);
+        set_scales(loads, start);
         if (start && loads.l2_norm() <= rounding_of_loads * start->reference) // unloaded to zero
           return dual.zero();
         auto point = qp::feasible_point(dual, loads, law.admissible(dual));
@@ -147,12 +143,20 @@ namespace slipstick::contact
         return std::move(point.x);
       }
 
+      /// Scales of forces and tractions, from the loads and the load step before.
+      void set_scales(const Vector &loads, const DualSolution *start)
+      {
+        forces_before = start ? start->largest_forces : 0.;
+        tractions.emplace(dual, options.tolerance, loads.linfty_norm(), start ? start->largest_traction : 0.);
+      }
+
       /// Where no solution was found: is friction too weak for the loads along a motion that nothing else resists? The
       /// normal forces that the search came to only raise the question: those count that hold the loads with more friction.
       void refuse_overload(const Vector &feasible, const DualSolution *start)
       {
-        if (!law.depends_on_pressure() || !weakest_motion(dual, law, solution.multipliers, 1))
+        if (is_no_overload || !law.depends_on_pressure() || !weakest_motion(dual, law, solution.multipliers, 1))
           return;
+        is_no_overload = true; // unless an error says the opposite
         for (const double more : more_friction)
           {
             const auto held = held_by(more, feasible, start);
@@ -161,9 +165,9 @@ namespace slipstick::contact
             auto overload = weakest_motion(dual, law, *held, 1);
             if (!overload)
               return;
-            if (margin_of_friction <
-                more * overload->held) // nearer to sliding the normal forces are more nearly its own
-              if (const auto nearer = held_by(margin_of_friction / overload->held, feasible, start))
+            const double least = margin_of_friction / overload->held;
+            if (least < more) // nearer to sliding the normal forces are more nearly its own
+              if (const auto nearer = held_by(least, feasible, start))
                 overload = weakest_motion(dual, law, *nearer, 1);
             if (!overload)
               return;
@@ -178,9 +182,11 @@ namespace slipstick::contact
       /// The forces with so many times the friction, if the algorithm finds them.
       std::optional<Vector> held_by(const double more, const Vector &feasible, const DualSolution *start)
       {
-        const SlipLaw with_more = law.scaled(more);
-        ContactSolver held(dual, with_more, options, friction, observer, {});
-        const bool    is_held = held.converges(feasible, start);
+        const SlipLaw          with_more = law.scaled(more);
+        const ProgressObserver goes_on   = [this](Progress progress) { counted()(progress.step); };
+        const AccuracyTest     none;
+        ContactSolver          held(dual, with_more, options, friction, goes_on, none);
+        const bool             is_held = held.converges(feasible, start);
         solution.counts += held.solution.counts;
         multiplications_beside += held.solution.counts.hessian_multiplications;
         return is_held ? std::optional(std::move(held.solution.multipliers)) : std::nullopt;
@@ -189,11 +195,7 @@ namespace slipstick::contact
       /// The algorithm without fallback. @return convergence.
       bool converges(const Vector &feasible, const DualSolution *start)
       {
-        tractions.emplace(dual,
-                          options.tolerance,
-                          dual.particular().linfty_norm(),
-                          start ? start->largest_traction : 0.);
-        forces_before  = start ? start->largest_forces : 0.;
+        set_scales(dual.particular(), start);
         size_of_forces = feasible.l2_norm();
         set_bounds(law.bounds(feasible));
         if (options.algorithm == scene::Algorithm::smalbe)
@@ -201,8 +203,7 @@ namespace slipstick::contact
             follow_bounds_to_the_end(feasible, feasible);
             return solution.status == qp::Status::converged;
           }
-        solution.directions = std::make_shared<qp::DirectionStore<Vector>>(options.newton.n_directions);
-        const auto from     = newton_start(feasible, start);
+        const auto from = newton_start(feasible, start);
         return solution.weighted_reference > 0 && newton(from, true, !start);
       }
 
@@ -264,6 +265,9 @@ namespace slipstick::contact
       /// A few steps of SMALBE-M, or the load step before, tell the first set.
       Vector newton_start(const Vector &feasible, const DualSolution *start)
       {
+        solution.directions = start && start->directions
+                                ? start->directions
+                                : std::make_shared<qp::DirectionStore<Vector>>(options.newton.n_directions);
         if (start)
           {
             const auto load             = homogenised_load(dual, feasible);
@@ -637,7 +641,8 @@ namespace slipstick::contact
       double                       forces_before  = 0; // as DualSolution::largest_forces
       std::optional<TractionError> tractions;
 
-      unsigned long long multiplications_beside = 0; // of problems with more friction
+      unsigned long long multiplications_beside = 0;     // of problems with more friction, ...
+      bool               is_no_overload         = false; // ... which did not say that friction is too weak
     };
   } // namespace
 
