@@ -39,7 +39,7 @@ namespace slipstick::app
   {
     std::vector<LeftOut<dim>> list;
     for (const auto &point : mechanics::singular_points(scene, mesh, spaces, n_supports))
-      if (point.what.rfind("the point", 0) == 0) // the others have finite energy
+      if (point.support || point.load) // the others have finite energy
         {
           double own = 0;
           for (const auto &subdomain : mesh.subdomains)

@@ -2,6 +2,7 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/contact/adjoint.h>
 #include <slipstick/interface/gap_defect.h>
+#include <slipstick/mechanics/singular_points.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -21,6 +22,12 @@ namespace slipstick::app
 
     // A pair slides as a whole if sticking nodes carry no more than this part of its friction.
     constexpr double sticking_part = 0.1;
+
+    // Reactions of point supports below this part of the largest force leave the figures of any affordable mesh unchanged.
+    constexpr double negligible_reaction = 1e-3;
+
+    // Places that differ by less than this part of their coordinates are the same.
+    constexpr double same_place = 1e-9;
 
     using Fields = std::vector<Eigen::VectorXd>;
 
@@ -45,7 +52,11 @@ namespace slipstick::app
     class Functionals
     {
     public:
-      Functionals(const StepSolver<dim> &solver_, const mechanics::Probes<dim> &probes_, const StepSolution &answer_)
+      /// @param t load factor of @p answer_.
+      Functionals(const StepSolver<dim>        &solver_,
+                  const mechanics::Probes<dim> &probes_,
+                  const StepSolution           &answer_,
+                  const double                  t)
         : solver(solver_)
         , probes(probes_)
         , answer(answer_)
@@ -53,7 +64,14 @@ namespace slipstick::app
         , x(answer.recovery.multipliers)
         , comm(solver.dual().communicator())
         , n_rows(rows.kind.size())
+        , points(acting_points(t))
       {}
+
+      /// Points at which forces act: the energy and the displacement there are infinite.
+      const std::vector<mechanics::SingularPoint<dim>> &point_forces() const
+      {
+        return points;
+      }
 
       std::vector<Functional> all() const
       {
@@ -81,13 +99,72 @@ namespace slipstick::app
       }
 
     private:
+      std::vector<mechanics::SingularPoint<dim>> acting_points(const double t) const
+      {
+        const auto                                                   &scene = solver.discrete_scene();
+        std::vector<std::pair<mechanics::SingularPoint<dim>, double>> acting; // with their forces
+        double                                                        largest = 0;
+        for (const auto &point :
+             mechanics::singular_points(scene, solver.mesh(), solver.spaces(), solver.n_given_supports()))
+          if (point.support || point.load)
+            {
+              dealii::Tensor<1, dim> force;
+              for (unsigned int d = 0; d < dim; ++d)
+                force[d] = point.load ? scene.point_loads[*point.load].force[d].value(point.position, t)
+                                      : reaction("", *point.support, d).value;
+              acting.emplace_back(point, force.norm());
+              largest = std::max(largest, force.norm());
+            }
+        if (acting.empty())
+          return {};
+        for (unsigned int s = 0; s < solver.n_given_supports(); ++s)
+          for (unsigned int d = 0; d < dim; ++d)
+            largest = std::max(largest, std::abs(reaction("", s, d).value));
+        for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+          largest = std::max(largest, std::abs(normal_force("", k).value));
+        std::vector<mechanics::SingularPoint<dim>> result;
+        for (const auto &[point, force] : acting)
+          if (force > negligible_reaction * largest)
+            result.push_back(point);
+        return result;
+      }
+
+      /// Why a displacement there has no estimate; empty: it has.
+      std::string infinite_at(const unsigned int body, const dealii::Point<dim> &place) const
+      {
+        for (const auto &point : points)
+          if (point.body == body &&
+              point.position.distance(place) <= same_place * (place.norm() + point.position.norm()))
+            return "it is infinite at " + point.what;
+        return "";
+      }
+
+      /// Of a node of a subdomain of this rank.
+      dealii::Point<dim> position_of(const unsigned int p, const unsigned int node) const
+      {
+        const auto                                  &element = solver.spaces().of(p);
+        std::vector<dealii::types::global_dof_index> dofs;
+        std::vector<unsigned int>                    nodes;
+        for (const auto &cell : solver.spaces().dof_handlers[p]->active_cell_iterators())
+          {
+            element.nodes_of(cell, dofs, nodes);
+            for (unsigned int i = 0; i < nodes.size(); ++i)
+              if (nodes[i] == node)
+                return i < cell->n_vertices()
+                         ? cell->vertex(i)
+                         : element.mapping->transform_unit_to_real_cell(cell, element.scalar->unit_support_point(i));
+          }
+        return {};
+      }
+
       Functional displacement_at(const std::string &name, const unsigned int probe, const unsigned int d) const
       {
         Functional goal{name, "mm", 0, {}, probes.unit_force(probe, d), {}, false};
         double     own = 0;
         for (unsigned int p = 0; p < goal.loads.size(); ++p)
           own += goal.loads[p].dot(answer.recovery.u[p]);
-        goal.value = dealii::Utilities::MPI::sum(own, comm);
+        goal.value  = dealii::Utilities::MPI::sum(own, comm);
+        goal.reason = infinite_at(solver.discrete_scene().probes[probe].body, probes.positions()[probe][0].position);
         return goal;
       }
 
@@ -234,10 +311,17 @@ namespace slipstick::app
         const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(comm);
         const unsigned int best = dealii::Utilities::MPI::min(largest == goal.value ? rank : tfeti::invalid_row, comm);
         if (!(goal.value > 0))
-          goal.reason = "nothing moves";
-        else if (best == rank)
-          goal.loads[at_p].template segment<dim>(dim * at_node) =
-            u[at_p].template segment<dim>(dim * at_node) / largest;
+          {
+            goal.reason = "nothing moves";
+            return goal;
+          }
+        if (best == rank)
+          {
+            goal.loads[at_p].template segment<dim>(dim * at_node) =
+              u[at_p].template segment<dim>(dim * at_node) / largest;
+            goal.reason = infinite_at(solver.mesh().subdomains[at_p]->body, position_of(at_p, at_node));
+          }
+        goal.reason = dealii::Utilities::MPI::broadcast(comm, goal.reason, best);
         return goal;
       }
 
@@ -248,6 +332,8 @@ namespace slipstick::app
       const tfeti::DistributedVector &x;
       const MPI_Comm                  comm;
       const std::size_t               n_rows;
+
+      const std::vector<mechanics::SingularPoint<dim>> points;
     };
 
     /// Energy products of the errors of the solution with those of other displacements.
@@ -395,18 +481,24 @@ namespace slipstick::app
 
     /// With w, the displacement due to the gaps of the bodies without loads: |e|^2 / 2 - a(e, w).
     template <int dim>
-    GoalError energy_error(const StepSolver<dim>     &solver,
-                           const StepSolution        &answer,
-                           const std::vector<double> &gaps,
-                           const ErrorProducts<dim>  &products,
-                           const GapErrors<dim>      &gap_errors,
-                           contact::Adjoint          &adjoint)
+    GoalError energy_error(const StepSolver<dim>                            &solver,
+                           const StepSolution                               &answer,
+                           const std::vector<double>                        &gaps,
+                           const ErrorProducts<dim>                         &products,
+                           const GapErrors<dim>                             &gap_errors,
+                           contact::Adjoint                                 &adjoint,
+                           const std::vector<mechanics::SingularPoint<dim>> &point_forces)
     {
       const MPI_Comm comm = solver.mesh().comm;
       GoalError      goal;
-      goal.quantity        = "strain_energy";
-      goal.unit            = "N mm";
-      goal.value           = answer.contact->checks.energy / 2;
+      goal.quantity = "strain_energy";
+      goal.unit     = "N mm";
+      goal.value    = answer.contact->checks.energy / 2;
+      if (!point_forces.empty())
+        {
+          goal.reason = "it is infinite, with " + point_forces.front().what;
+          return goal;
+        }
       const bool has_bolts = !solver.discrete_scene().pretensions.empty();
       if (has_bolts || !solver.discrete_scene().temperatures.empty())
         {
@@ -450,8 +542,9 @@ namespace slipstick::app
     const auto wanted = [&](const std::string &name) {
       return quantities.empty() || std::find(quantities.begin(), quantities.end(), name) != quantities.end();
     };
-    const auto               gaps        = solver.dual().constraints().c; // overwritten by the adjoint problems
-    const auto               functionals = Functionals<dim>(solver, probes, answer).all();
+    const auto               gaps = solver.dual().constraints().c; // overwritten by the adjoint problems
+    const Functionals<dim>   of_scene(solver, probes, answer, t);
+    const auto               functionals = of_scene.all();
     const ErrorProducts<dim> products(solver, answer, t);
     const GapErrors<dim>     gap_errors(solver, t);
     contact::Adjoint         adjoint(solver.dual_for_adjoints(), solver.solution().free, scene::SolverOptions().pcpg);
@@ -477,7 +570,7 @@ namespace slipstick::app
     if (wanted("strain_energy"))
       {
         if (adjoint.is_possible())
-          errors.push_back(energy_error(solver, answer, gaps, products, gap_errors, adjoint));
+          errors.push_back(energy_error(solver, answer, gaps, products, gap_errors, adjoint, of_scene.point_forces()));
         else
           {
             GoalError error;

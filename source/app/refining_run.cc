@@ -50,7 +50,7 @@ namespace slipstick::app
         const bool  solved  = summary.status == output::RunStatus::converged;
         if (rows.empty() && options.goals.empty())
           leave_out(steps->point_forces());
-        else if (rows.empty() && options.skips_unknown)
+        else if (rows.empty())
           left_out = steps->point_forces();
         if (solved)
           add(*steps, summary);
@@ -135,12 +135,10 @@ namespace slipstick::app
       for (const auto &bar : bars)
         if (const auto goal = std::find(counted.begin(), counted.end(), bar.quantity); goal != counted.end())
           {
-            const bool is_infinite = bar.quantity == "strain_energy" && !left_out.empty();
-            if (!bar.error || is_infinite || bar.value == 0)
+            if (!bar.error || bar.value == 0)
               counted.erase(goal);
-            if (!bar.error || is_infinite)
-              unknown.push_back("the accuracy leaves out " + bar.quantity + ": " +
-                                (is_infinite ? "the energy is infinite where forces act at points" : bar.reason));
+            if (!bar.error)
+              unknown.push_back("the accuracy leaves out " + bar.quantity + ": " + bar.reason);
           }
     counted          = dealii::Utilities::MPI::broadcast(comm, counted);
     without_estimate = counted.empty() ? "none of the figures has an estimate" : "";

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <map>
 #include <tuple>
+#include <utility>
 
 namespace slipstick::mechanics
 {
@@ -142,21 +143,29 @@ namespace slipstick::mechanics
   {
     std::vector<scene::PointName<dim>> points;
     std::vector<std::string>           names;
+    std::vector<unsigned int>          indices;
     for (unsigned int s = 0; s < n_supports; ++s)
       if (scene.supports[s].point)
         {
           points.push_back(*scene.supports[s].point);
           names.push_back("the point support " + scene.supports[s].name);
+          indices.push_back(s);
         }
-    for (const auto &load : scene.point_loads)
+    const auto n_of_supports = points.size();
+    for (unsigned int k = 0; k < scene.point_loads.size(); ++k)
       {
-        points.push_back(load.where);
-        names.push_back("the point load " + load.name);
+        points.push_back(scene.point_loads[k].where);
+        names.push_back("the point load " + scene.point_loads[k].name);
+        indices.push_back(k);
       }
     std::vector<SingularPoint<dim>> result;
     const auto                      nodes = nodes_at(scene, mesh, spaces, points, names);
     for (unsigned int k = 0; k < points.size(); ++k)
-      result.push_back({points[k].body, nodes[k].position, names[k]});
+      {
+        SingularPoint<dim> point{points[k].body, nodes[k].position, names[k]};
+        (k < n_of_supports ? point.support : point.load) = indices[k];
+        result.push_back(std::move(point));
+      }
 
     if constexpr (dim == 2) // edges of solids are not examined
       add_corners(scene, mesh, spaces, n_supports, result);

@@ -7,6 +7,7 @@ import sys
 import unittest
 
 import measured  # noqa: F401  the path of tests/cases
+import scenes
 from program import converged, shipped, solve
 
 QUIET = {'Output/VTU': 'false', 'Solver/Tolerance': '1e-8'}
@@ -158,8 +159,33 @@ class Accuracy(unittest.TestCase):
                         self.assertLess(abs(found[quantity] / exact - 1), accuracy + KNOWN_TO.get(name, 0), (preset, name, quantity))
         summary = converged(shipped('clamp'), {'Mesh': 'adaptive', 'Output/VTU': 'false'}).summary
         told = ' '.join(summary['warnings'])
-        self.assertIn('leaves out strain_energy: the energy is infinite where forces act at points', told)
+        self.assertIn('leaves out strain_energy: it is infinite, with the point load upper bolt', told)
         self.assertIn('leaves out back.max_pressure: a peak at a single node', told)
+
+    def test_what_is_infinite_has_no_bar(self):
+        """Under a force at a point the energy and the displacement; a point support without reaction changes nothing."""
+        probes = {'Probes': 'under the force', 'Probe under the force/Body': 'v16', 'Probe under the force/Point': 'load'}
+        summary = converged(shipped('arch'), {**QUIET, **probes, 'Error bars': 'true'}).summary
+        bars = {bar['quantity']: bar for bar in summary['error_bars']}
+        self.assertEqual(bars['strain_energy']['reason'], 'it is infinite, with the point load load')
+        bar = bars['under the force.u_y']
+        self.assertEqual((bar['error'], bar['reason']), (None, 'it is infinite at the point load load'))
+        for name in ('j05.normal_force', 'max_displacement'):  # the largest displacement is elsewhere
+            self.assertIsNotNone(bars[name]['error'], name)
+        goal = solve(shipped('clamp'), {'Accuracy': '1 %', 'Goal': 'strain_energy', 'Output/VTU': 'false'})
+        self.assertEqual(goal.status, 3, goal.stdout)
+        self.assertIn('strain_energy has no estimate: it is infinite, with the point load upper bolt', goal.stderr)
+        held = {'bodies': {'block': {**scenes.BOX, 'Cells': '6, 6'}}, 'supports': {'bottom': {'Boundary': 'block/bottom', 'Displacement x': '0',
+                                                                                            'Displacement y': '0'}}}
+        pulled = scenes.box(name='pulled', point_loads={'tip': {'Body': 'block', 'Point': '10, 10', 'Force y': '100'}}, **held)
+        bars = {bar['quantity']: bar for bar in converged(pulled, {'Error bars': 'true'}, ranks=2).summary['error_bars']}
+        self.assertEqual(bars['max_displacement']['reason'], 'it is infinite at the point load tip')
+        self.assertIsNotNone(bars['bottom.force_x']['error'])
+        block = scenes.box(name='pinned', bodies={'block': {**scenes.BOX, 'Cells': '6, 6'}}, supports={
+            'bottom': {'Boundary': 'block/bottom', 'Displacement y': '0'},
+            'pin': {'Body': 'block', 'Point': '0, 0', 'Displacement x': '0'}}, tractions={'pulled': {'Boundary': 'block/top', 'Traction y': '-100'}})
+        bars = {bar['quantity']: bar for bar in converged(block, {'Error bars': 'true'}).summary['error_bars']}
+        self.assertIsNotNone(bars['strain_energy']['error'])
 
     def test_figures_that_a_fixed_mesh_does_not_give(self):
         result = converged(shipped('hertz'), {'Accuracy': 'reference', 'Error bars': 'true', 'Output/VTU': 'false'})

@@ -14,8 +14,10 @@ import measured  # noqa: F401  the path of tests/cases
 import scenes
 from program import ENVIRONMENT, PROGRAM, SOURCE, TIME_LIMIT, WORK, converged, new_path
 
-LADDER = ('--refinements', '0,1', '--degrees', '1,2', '--tolerances', '1e-2,1e-4', '--subdomains', 'auto,4', '--ranks', '1')
-RUNS = 2 * 2 * (2 + 1 + 1) + 2 * 3 + 3  # one more number of subdomains and algorithm for each mesh and degree; presets; reference
+LADDER = ('--refinements', '0,1', '--degrees', '1,2', '--tolerances', '1e-2,1e-4', '--subdomains', 'auto,4', '--adaptive', '20',
+          '--ranks', '1')
+RUNS = 2 * 2 * (2 + 1 + 1) + 2 * 3 + 2 + 3  # one more number of subdomains and algorithm for each mesh and degree; presets;
+# adaptive meshes; reference
 
 
 def case():
@@ -144,7 +146,7 @@ class Study(unittest.TestCase):
     def test_closed_form_out_of_reach(self):
         directory = new_path('study')
         result = study(case(), '--refinements', '0', '--degrees', '1', '--tolerances', '1e-4', '--subdomains', 'auto',
-                       '--algorithms', 'auto', '--presets', '', '--ranks', '1', '--reference', 'circle.max_pressure=1', '--output', directory)
+                       '--algorithms', 'auto', '--presets', '', '--adaptive', '', '--ranks', '1', '--reference', 'circle.max_pressure=1', '--output', directory)
         self.assertEqual(result.returncode, 0, result.stderr)
         row, = rows(directory)
         self.assertAlmostEqual(float(row['error']) / abs(float(row['circle.max_pressure']) - 1), 1, delta=1e-3)

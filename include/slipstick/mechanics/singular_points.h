@@ -4,6 +4,7 @@
 #include <slipstick/mechanics/deformation.h>
 #include <slipstick/mechanics/stress.h>
 
+#include <optional>
 #include <string>
 
 namespace slipstick::mechanics
@@ -15,6 +16,8 @@ namespace slipstick::mechanics
     unsigned int       body = 0;
     dealii::Point<dim> position;
     std::string        what; // "the point support tip", "a re-entrant corner", "an end of the support wall"
+
+    std::optional<unsigned int> support = std::nullopt, load = std::nullopt; // of a point: indices in Scene
   };
 
   /// Singular points: point supports and point loads; re-entrant corners of outlines with a turn of 35 degrees or more;

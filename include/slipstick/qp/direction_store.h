@@ -15,21 +15,6 @@
 
 namespace slipstick::qp
 {
-  /// Sums over all processes of any number of values, `batch` in a reduction.
-  template <typename Reduction>
-  void sum_all(std::vector<double> &values, const Reduction &reduction)
-  {
-    constexpr std::size_t batch = 32; // latency against wasted length
-    for (std::size_t first = 0; first < values.size(); first += batch)
-      {
-        const std::size_t         n = std::min(batch, values.size() - first);
-        std::array<double, batch> part{};
-        std::copy_n(values.begin() + first, n, part.begin());
-        part = reduction.sum(part);
-        std::copy_n(part.begin(), n, values.begin() + first);
-      }
-  }
-
   /// What rounding leaves wrong of a product F p in the norm of residuals, of the sum of the squares of p and of that norm of F p:
   /// |F| is near 1, and a product is right to a few times the unit roundoff.
   inline double rounding_of_product(const double squares)

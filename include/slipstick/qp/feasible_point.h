@@ -13,6 +13,7 @@
 #include <slipstick/qp/force_set.h>
 #include <slipstick/qp/options.h>
 #include <slipstick/qp/stagnation.h>
+#include <slipstick/qp/types.h>
 
 #include <optional>
 

@@ -150,4 +150,19 @@ namespace slipstick::qp
   {
     return std::sqrt(dot(x, x, reduction));
   }
+
+  /// Sums over all processes of any number of values, `batch` in a reduction.
+  template <typename Reduction>
+  void sum_all(std::vector<double> &values, const Reduction &reduction)
+  {
+    constexpr std::size_t batch = 32; // latency against wasted length
+    for (std::size_t first = 0; first < values.size(); first += batch)
+      {
+        const std::size_t         n = std::min(batch, values.size() - first);
+        std::array<double, batch> part{};
+        std::copy_n(values.begin() + first, n, part.begin());
+        part = reduction.sum(part);
+        std::copy_n(part.begin(), n, values.begin() + first);
+      }
+  }
 } // namespace slipstick::qp

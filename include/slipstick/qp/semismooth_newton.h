@@ -31,10 +31,11 @@
 
 #include <slipstick/qp/active_set.h>
 #include <slipstick/qp/face_solver.h>
+#include <slipstick/qp/line_search.h>
+#include <slipstick/qp/set_history.h>
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -82,9 +83,7 @@ namespace slipstick::qp
   {
     // Of a step along M r: eigenvalues of F M are 1 to some 5 (first steps of conjugate gradients there: 0.15 to 0.5).
     constexpr double descent_step = 0.3;
-    // Steps on nearly singular faces may be far too long. Where no other set helps, they are cut down to this part; ...
-    constexpr double least_part_of_step = 1e-10;
-    // ... before that so many kinks of the natural residual are crossed from one point.
+    // So many kinks of the natural residual are crossed from one point.
     constexpr std::size_t most_kinks = 10;
 
     template <typename Vector, typename Problem>
@@ -116,6 +115,9 @@ namespace slipstick::qp
         , directions(start.directions ? std::move(start.directions)
                                       : std::make_shared<DirectionStore<Vector>>(options_.n_directions))
         , store(*directions)
+        , line(options_)
+        , solved(options_.n_remembered_sets)
+        , refused(most_kinks + 1)
         , x(std::move(start.x))
         , Fx(zero_like(d_))
         , g(start.gradient ? std::move(*start.gradient) : zero_like(d_))
@@ -143,17 +145,6 @@ namespace slipstick::qp
       }
 
     private:
-      struct Solved
-      {
-        Sides  sides;
-        double residual;
-      };
-
-      struct Point
-      {
-        Vector x, gradient;
-      };
-
       struct Found
       {
         Vector x, gradient;
@@ -221,7 +212,7 @@ namespace slipstick::qp
       // the end of a step that was cut. A step on a face whose matrix is nearly singular could lead far away from it.
       bool solves_already(const Face &face)
       {
-        if (!(merits.back() <= goal.tolerance * goal.reference))
+        if (!(line.present() <= goal.tolerance * goal.reference))
           return false;
         y  = x;
         Fy = Fx;
@@ -350,7 +341,7 @@ namespace slipstick::qp
         problem.multiply(x, Fx);
         ++counts.hessian_multiplications;
         gradient_on(*face, x, Fx, g);
-        merits.push_back(set.natural_residual(x, g));
+        line.begin(set.natural_residual(x, g));
         predict(x, g);
         return true;
       }
@@ -361,11 +352,8 @@ namespace slipstick::qp
       {
         const double before = set.step_length();
         set.predict(at, gradient);
-        if (set.step_length() == before || !(merits.back() > 0))
-          return;
-        const double factor = set.natural_residual(x, g) / merits.back();
-        for (double &merit : merits)
-          merit *= factor;
+        if (set.step_length() != before && line.present() > 0)
+          line.rescale(set.natural_residual(x, g) / line.present());
       }
 
       // g = F x - d + G'a with the a that makes it, with what the turns of forces add, least on the free entries.
@@ -384,7 +372,7 @@ namespace slipstick::qp
       // wander that F does not determine.
       double regularization() const
       {
-        return is_singular ? std::min(options.largest_regularization, merits.back() / goal.reference) : 0.;
+        return is_singular ? std::min(options.largest_regularization, line.present() / goal.reference) : 0.;
       }
 
       // y, F y, and gradient of y: the solution on the face, up to a part of the present residual.
@@ -406,39 +394,16 @@ namespace slipstick::qp
         const double first  = solver.start(std::move(y), std::move(Fy), error_of_Fx, center);
         const double target = std::min(std::max(options.last_forcing * tolerance * goal.reference,
                                                 (is_singular ? options.singular_forcing : options.forcing) *
-                                                  std::min(first, merits.back())),
-                                       options.sharpening * residual_of_earlier_solution());
+                                                  std::min(first, line.present())),
+                                       options.sharpening * solved.least_of_earlier(set.sides(), problem.reduction()));
         auto         result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
         if (is_singular || has_wide_stiffnesses)
-          remember({set.sides(), result.residual});
+          solved.add(set.sides(), result.residual);
         counts += result.counts;
         y           = std::move(result.x);
         Fy          = std::move(result.product);
         error_of_Fy = result.error;
         gradient_on(face, y, Fy, gy);
-      }
-
-      // The residual that a face with the present set was solved to before, if another set came in between: sets were then told by
-      // what was left of residuals. Infinite: none.
-      double residual_of_earlier_solution() const
-      {
-        std::vector<double> differs; // on how many processes
-        for (const Solved &earlier : solved)
-          differs.push_back(earlier.sides == set.sides() ? 0. : 1.);
-        sum_all(differs, problem.reduction());
-        double found = infinity;
-        if (!differs.empty() && differs.back() > 0)
-          for (std::size_t i = 0; i < solved.size(); ++i)
-            if (differs[i] == 0)
-              found = std::min(found, solved[i].residual);
-        return found;
-      }
-
-      void remember(Solved present)
-      {
-        solved.push_back(std::move(present));
-        if (solved.size() > options.n_remembered_sets)
-          solved.pop_front();
       }
 
       // on any process
@@ -492,7 +457,7 @@ namespace slipstick::qp
       // Along the step to the next point and set. @return is there one?
       bool step()
       {
-        const double t = line_search();
+        const double t = line.search(set, x, g, y, gy);
         is_unjudged    = false;
         if (t < options.shortest_step)
           {
@@ -506,10 +471,10 @@ namespace slipstick::qp
         move_by_part(t);
         is_unjudged = t < 1;
         is_stuck    = false;
-        refused_sets.clear();
+        refused.clear();
         if (t < options.shortest_step)
           {
-            predict(refused->x, refused->gradient);
+            predict(line.refused().x, line.refused().gradient);
             return true;
           }
         Vector known(g);
@@ -523,15 +488,11 @@ namespace slipstick::qp
       // derivative along the step (Pang 1990); its own step may lead across others. @return was it not tried yet from x?
       bool cross_kink()
       {
-        refused_sets.push_back(set.sides());
-        if (refused_sets.size() > most_kinks)
+        refused.add(set.sides());
+        if (refused.size() > most_kinks)
           return false;
-        predict(refused->x, refused->gradient);
-        std::vector<double> differs; // on how many processes
-        for (const Sides &refused_set : refused_sets)
-          differs.push_back(refused_set == set.sides() ? 0. : 1.);
-        sum_all(differs, problem.reduction());
-        return std::find(differs.begin(), differs.end(), 0.) == differs.end();
+        predict(line.refused().x, line.refused().gradient);
+        return !refused.contains(set.sides(), problem.reduction());
       }
 
       // From the set of x itself, with bodies balanced finely, then also on softer points, where that is possible. @return whether it
@@ -541,7 +502,7 @@ namespace slipstick::qp
         const bool is_changed = set.balance_finely() || set.soften(), is_first = !is_stuck;
         is_stuck = true;
         if (is_changed)
-          merits = {set.natural_residual(x, g)};
+          line.begin(set.natural_residual(x, g));
         predict(x, g);
         return is_changed || is_first;
       }
@@ -551,7 +512,7 @@ namespace slipstick::qp
       bool leap()
       {
         const double merit = set.natural_residual(y, gy);
-        if (!is_rough || !(merit <= options.longest_leap * merits.back()))
+        if (!is_rough || !(merit <= options.longest_leap * line.present()))
           return false;
         is_rough = false;
         go_to_y(merit);
@@ -562,48 +523,26 @@ namespace slipstick::qp
         return true;
       }
 
-      // How far towards y the natural residual falls below the largest of the last steps; 0: not at all. The end of that step, if it is
-      // less than the whole, and the shortest one that was refused are kept.
-      double line_search()
-      {
-        merit_of_step               = set.natural_residual(y, gy);
-        const std::size_t n         = std::min<std::size_t>(merits.size(), options.memory);
-        const double      reference = *std::max_element(merits.end() - n, merits.end());
-        double            t         = 1;
-        while (!(merit_of_step <= (1 - options.sufficient_decrease * t) * reference))
-          {
-            refused = t < 1 ? std::move(end_of_step) : Point{y, gy};
-            t *= options.backtracking;
-            if (t < least_part_of_step)
-              return 0;
-            end_of_step = Point{y, gy};
-            combine(1 - t, x, t, end_of_step->x);
-            combine(1 - t, g, t, end_of_step->gradient);
-            merit_of_step = set.natural_residual(end_of_step->x, end_of_step->gradient);
-          }
-        return t;
-      }
-
       // x to the end of the step that the line search found.
       void move_by_part(const double t)
       {
         if (t < 1)
           {
-            std::swap(y, end_of_step->x);
-            std::swap(gy, end_of_step->gradient);
+            std::swap(y, line.end().x);
+            std::swap(gy, line.end().gradient);
             combine(1 - t, Fx, t, Fy);
             error_of_Fy = std::max(error_of_Fx, error_of_Fy);
           }
-        if (!has_met_goal && merit_of_step < *std::min_element(merits.begin(), merits.end()))
-          best = Found{y, gy, merit_of_step / goal.reference};
-        if (!(merit_of_step < merits.back()) && (t == 1 || !set.balance_finely()))
+        if (!has_met_goal && line.found() < line.least())
+          best = Found{y, gy, line.found() / goal.reference};
+        if (!(line.found() < line.present()) && (t == 1 || !set.balance_finely()))
           set.soften();
-        go_to_y(merit_of_step);
+        go_to_y(line.found());
       }
 
       void go_to_y(const double merit)
       {
-        merits.push_back(merit);
+        line.move_to(merit);
         set.approach(merit / goal.reference);
         std::swap(x, y);
         std::swap(Fx, Fy);
@@ -646,20 +585,17 @@ namespace slipstick::qp
       double                    tolerance; // that faces are solved to: of the goal, or below it until x is right
       bool                      has_met_goal = false;
 
-      ActiveSet<Vector, Problem>                    set;
-      const std::shared_ptr<DirectionStore<Vector>> directions;
-      DirectionStore<Vector>                       &store;
-      std::vector<Tie>                              ties;   // of the present face
-      std::deque<Solved>                            solved; // the last sets and what their faces were solved to
+      ActiveSet<Vector, Problem>                     set;
+      const std::shared_ptr<DirectionStore<Vector>>  directions;
+      DirectionStore<Vector>                        &store;
+      std::vector<Tie>                               ties; // of the present face
+      LineSearch<Vector, ActiveSet<Vector, Problem>> line;
+      SetHistory                                     solved;  // residuals are those that faces were solved to
+      SetHistory                                     refused; // whose steps do not lower the residual of x
 
       Vector               x, Fx, g;            // where the method is
       Vector               y, Fy, gy;           // where the present step leads
-      std::vector<double>  merits;              // natural residuals of all x so far
       bool                 is_unjudged = false; // x: may it be the solution?
-      std::optional<Point> end_of_step;         // if that is not y
-      double               merit_of_step = 0;   // natural residual there
-      std::vector<Sides>   refused_sets;        // those whose steps do not lower the residual of x
-      std::optional<Point> refused;             // of the last step, the nearest one at which the residual does not fall
       std::optional<Found> best;                // where the natural residual is least, or where the goal was met last
       double               residual              = HUGE_VAL;
       double               last_natural_residual = std::numeric_limits<double>::infinity(); // over the reference

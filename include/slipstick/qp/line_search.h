@@ -1,0 +1,110 @@
+// Line search of the semismooth Newton method on the natural residual, whose value along a step costs no multiplication.
+#pragma once
+
+#include <slipstick/qp/kernels.h>
+#include <slipstick/qp/options.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace slipstick::qp::detail
+{
+  /// Nonmonotone line search (Grippo, Lampariello, Lucidi 1986): a step must end below the largest natural residual of the
+  /// last points. Points are given with their gradients F x - d + G'a, both linear along a step.
+  /// @tparam Set with natural_residual(x, gradient), as ActiveSet
+  template <typename Vector, typename Set>
+  class LineSearch
+  {
+  public:
+    struct Point
+    {
+      Vector x, gradient;
+    };
+
+    /// @param options_ is referred to.
+    explicit LineSearch(const NewtonOptions &options_)
+      : options(options_)
+    {}
+
+    /// From a first point, or from one whose residuals cannot be compared with those before.
+    void begin(const double residual)
+    {
+      residuals = {residual};
+    }
+
+    /// The method has come to a point with this residual.
+    void move_to(const double residual)
+    {
+      residuals.push_back(residual);
+    }
+
+    /// Residuals so far become those in another measure.
+    void rescale(const double factor)
+    {
+      for (double &residual : residuals)
+        residual *= factor;
+    }
+
+    /// Natural residual of the present point.
+    double present() const
+    {
+      return residuals.back();
+    }
+
+    double least() const
+    {
+      return *std::min_element(residuals.begin(), residuals.end());
+    }
+
+    /// How far from x (gradient g) towards y (gradient gy) the residual falls below the largest of the last ones: 1, or as
+    /// often as necessary cut; 0: not at all.
+    double search(Set &set, const Vector &x, const Vector &g, const Vector &y, const Vector &gy)
+    {
+      residual_of_step       = set.natural_residual(y, gy);
+      const std::size_t n    = std::min<std::size_t>(residuals.size(), options.memory);
+      const double      most = *std::max_element(residuals.end() - n, residuals.end());
+      double            t    = 1;
+      while (!(residual_of_step <= (1 - options.sufficient_decrease * t) * most))
+        {
+          nearest_refused = t < 1 ? std::move(end_of_step) : Point{y, gy};
+          t *= options.backtracking;
+          if (t < least_part_of_step)
+            return 0;
+          end_of_step = Point{y, gy};
+          combine(1 - t, x, t, end_of_step->x);
+          combine(1 - t, g, t, end_of_step->gradient);
+          residual_of_step = set.natural_residual(end_of_step->x, end_of_step->gradient);
+        }
+      return t;
+    }
+
+    /// Natural residual of the end of the step found last.
+    double found() const
+    {
+      return residual_of_step;
+    }
+
+    /// That end, if the step was cut.
+    Point &end()
+    {
+      return *end_of_step;
+    }
+
+    /// The point nearest to x that was refused in the last search that cut a step.
+    const Point &refused() const
+    {
+      return *nearest_refused;
+    }
+
+  private:
+    // Steps on nearly singular faces may be far too long.
+    static constexpr double least_part_of_step = 1e-10;
+
+    const NewtonOptions &options;
+    std::vector<double>  residuals; // of all points
+    double               residual_of_step = 0;
+    std::optional<Point> end_of_step, nearest_refused;
+  };
+} // namespace slipstick::qp::detail
