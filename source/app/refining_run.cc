@@ -102,12 +102,15 @@ namespace slipstick::app
     row.unknowns     = summary.problem.primal_dofs;
     row.energy_error = summary.error.estimate_energy_relative;
     find_counted(summary.error_bars);
-    const auto worst = options.goals.empty() ? std::optional<double>(std::sqrt(errors_of(steps).total))
-                       : counted.empty()     ? std::optional<double>()
-                                             : worst_error(summary.error_bars, counted);
-    is_known         = dealii::Utilities::MPI::broadcast(comm, worst.has_value());
-    row.error        = dealii::Utilities::MPI::broadcast(comm, worst.value_or(0.));
-    row.seconds      = summary.time_s.total;
+    const auto worst  = options.goals.empty() ? std::optional<double>(std::sqrt(errors_of(steps).total))
+                        : counted.empty()     ? std::optional<double>()
+                                              : worst_error(summary.error_bars, counted);
+    is_known          = dealii::Utilities::MPI::broadcast(comm, worst.has_value());
+    const auto change = options.goals.empty() ? 0. : change_of_counted(summary.error_bars);
+    is_confirmed      = dealii::Utilities::MPI::broadcast(comm, change.has_value());
+    row.error         = dealii::Utilities::MPI::broadcast(comm, std::max(worst.value_or(0.), change.value_or(0.)));
+    bar_over_error    = row.error > 0 ? dealii::Utilities::MPI::broadcast(comm, worst.value_or(0.)) / row.error : 1.;
+    row.seconds       = summary.time_s.total;
     rows.push_back(row);
     if (rows.size() == 1)
       {
@@ -116,7 +119,8 @@ namespace slipstick::app
             log.line("             " + remark);
         log.line("              mesh      cells   unknowns  energy norm   error    time [s]");
       }
-    reached = is_known && row.error <= options.accuracy && summary.status == output::RunStatus::converged;
+    is_accurate = is_known && row.error <= options.accuracy && summary.status == output::RunStatus::converged;
+    reached     = is_accurate && is_confirmed;
     log.line(format("             %5zu %10llu %10llu %10.2g %% %8s %10.2f",
                     rows.size(),
                     static_cast<unsigned long long>(row.cells),
@@ -150,6 +154,24 @@ namespace slipstick::app
   }
 
   template <int dim>
+  std::optional<double> RefiningRun<dim>::change_of_counted(const std::vector<output::ErrorBar> &bars)
+  {
+    std::optional<double> change = 0.;
+    for (const auto &bar : bars)
+      if (std::find(counted.begin(), counted.end(), bar.quantity) != counted.end())
+        {
+          const auto before = values.find(bar.quantity);
+          if (before == values.end())
+            change.reset();
+          else if (change && bar.value != 0)
+            change = std::max(*change, std::abs((bar.value - before->second) / bar.value));
+        }
+    for (const auto &bar : bars)
+      values[bar.quantity] = bar.value;
+    return change;
+  }
+
+  template <int dim>
   std::string RefiningRun<dim>::why_to_stop(const Run<dim> &steps, const output::Summary &summary)
   {
     if (reached)
@@ -161,10 +183,27 @@ namespace slipstick::app
     n_without = is_known ? 0 : n_without + 1;
     if (n_without == most_without_estimate)
       return so_far;
+    const std::string limit = mark_next(steps, summary);
+    if (limit.empty())
+      return "";
+    if (is_accurate)
+      {
+        reached = true;
+        notes.push_back("the errors of the figures are those of one mesh, which no finer one confirms: " + limit);
+        return "";
+      }
+    return so_far + "; " + limit;
+  }
+
+  template <int dim>
+  std::string RefiningRun<dim>::mark_next(const Run<dim> &steps, const output::Summary &summary)
+  {
     if (rows.size() >= options.max_meshes)
-      return so_far + "; allow more of them (Adaptivity/Max meshes), or begin with a finer one";
-    auto cells =
-      options.goals.empty() || !is_known ? errors_of(steps) : errors_of_goals(goals_of(steps), options.accuracy, comm);
+      return "allow more meshes (Adaptivity/Max meshes), or begin with a finer one";
+    // bars that are too small, or not confirmed, tell where the errors are, but not how large
+    const double aimed_at = is_accurate ? 0. : bar_over_error * options.accuracy;
+    auto         cells =
+      options.goals.empty() || !is_known ? errors_of(steps) : errors_of_goals(goals_of(steps), aimed_at, comm);
     auto n_marked = mark(steps.mesh(), cells, refinement);
     if (n_marked == 0 && !options.goals.empty()) // only the resolution of a pressure is missing
       {
@@ -175,18 +214,18 @@ namespace slipstick::app
     constexpr double cells_for_one = 12;
     const double     growth        = 1 + cells_for_one * n_marked / summary.problem.cells;
     if (n_marked == 0)
-      return so_far + "; no cell is left whose refinement would reduce the error";
+      return "no cell is left whose refinement would reduce the error";
     if (growth * rows.back().unknowns > options.max_unknowns)
-      return so_far + format("; the next mesh may have %.2g unknowns, allowed are %u (Adaptivity/Max unknowns)",
-                             growth * rows.back().unknowns,
-                             options.max_unknowns);
+      return format("the next mesh may have %.2g unknowns, allowed are %u (Adaptivity/Max unknowns)",
+                    growth * rows.back().unknowns,
+                    options.max_unknowns);
     const double needed = dealii::Utilities::MPI::broadcast(comm, summary.memory_mb.peak_total * growth);
     const double free =
       dealii::Utilities::MPI::broadcast(comm,
                                         free_memory_mb(dealii::Utilities::MPI::n_mpi_processes(comm)) +
                                           summary.memory_mb.peak_total);
     if (needed > free)
-      return so_far + format("; the next mesh may need %.0f MB of memory, and %.0f MB are free", needed, free);
+      return format("the next mesh may need %.0f MB of memory, and %.0f MB are free", needed, free);
     return "";
   }
 

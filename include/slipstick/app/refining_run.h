@@ -3,6 +3,11 @@
 
 #include <slipstick/app/run.h>
 
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace slipstick::app
 {
   /// The loop solve, estimate, mark, refine.
@@ -34,8 +39,16 @@ namespace slipstick::app
 
     std::vector<GoalError> goals_of(const Run<dim> &steps) const;
 
-    /// Marks the cells of the next mesh. @return why there is no next mesh; empty: there is one, or none is needed.
+    /// The largest relative change of the counted goals from the mesh before, which bars of coarse meshes may miss by far;
+    /// nothing if one has no value there. On rank 0.
+    std::optional<double> change_of_counted(const std::vector<output::ErrorBar> &bars);
+
+    /// Marks the cells of the next mesh. @return why there is no next mesh although the accuracy is missed; empty: there is
+    /// one, or none is needed.
     std::string why_to_stop(const Run<dim> &steps, const output::Summary &summary);
+
+    /// Marks the cells of the next mesh. @return why there is none.
+    std::string mark_next(const Run<dim> &steps, const output::Summary &summary);
 
     /// Errors in the energy norm; as long as a goal has no estimate, with an allowed error that is useful for reaching
     /// one.
@@ -55,6 +68,11 @@ namespace slipstick::app
     std::vector<std::string>        unknown;          // ... and on rank 0 why the others have none
     std::string                     without_estimate; // a counted goal and the reason; empty: none
     unsigned int                    n_without = 0;    // consecutive meshes
-    bool                            reached = false, is_known = false;
+    std::map<std::string, double>   values;           // on rank 0, of the mesh before
+    double                          bar_over_error = 1;
+    bool                            is_known       = false; // the error
+    bool                            is_accurate    = false; // that error ...
+    bool                            is_confirmed   = false; // ... and there is a mesh before to compare with
+    bool                            reached        = false;
   };
 } // namespace slipstick::app
