@@ -106,7 +106,7 @@ namespace slipstick::app
         double                                                        largest = 0;
         for (const auto &point :
              mechanics::singular_points(scene, solver.mesh(), solver.spaces(), solver.n_given_supports()))
-          if (point.support || point.load)
+          if (point.load || (point.support && !is_in_contact(point)))
             {
               dealii::Tensor<1, dim> force;
               for (unsigned int d = 0; d < dim; ++d)
@@ -127,6 +127,26 @@ namespace slipstick::app
           if (force > negligible_reaction * largest)
             result.push_back(point);
         return result;
+      }
+
+      /// Is it a node of a contact zone or beside one? Then the support bears the share of a node of the pressure.
+      bool is_in_contact(const mechanics::SingularPoint<dim> &point) const
+      {
+        bool is_near = false;
+        for (const auto *nodes : {&rows.contact_points, &rows.bonded_points})
+          for (const auto &node : *nodes)
+            {
+              const double reach = node.is_in_space() ? std::sqrt(node.area) : node.length;
+              for (const auto &[body, place] : {std::make_pair(node.slave_body, node.slave_position),
+                                                std::make_pair(node.master_body, node.master_position)})
+                {
+                  double square = 0;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    square += (place[d] - point.position[d]) * (place[d] - point.position[d]);
+                  is_near = is_near || (body == point.body && square <= reach * reach);
+                }
+            }
+        return dealii::Utilities::MPI::max(is_near ? 1 : 0, comm) == 1;
       }
 
       /// Why a displacement there has no estimate; empty: it has.

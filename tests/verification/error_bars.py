@@ -186,6 +186,8 @@ class Accuracy(unittest.TestCase):
             'pin': {'Body': 'block', 'Point': '0, 0', 'Displacement x': '0'}}, tractions={'pulled': {'Boundary': 'block/top', 'Traction y': '-100'}})
         bars = {bar['quantity']: bar for bar in converged(block, {'Error bars': 'true'}).summary['error_bars']}
         self.assertIsNotNone(bars['strain_energy']['error'])
+        summary = converged(shipped('raous'), {**QUIET, 'Error bars': 'true'}).summary  # the corner is a node of the contact zone
+        self.assertIsNotNone({bar['quantity']: bar for bar in summary['error_bars']}['strain_energy']['error'])
 
     def test_figures_that_a_fixed_mesh_does_not_give(self):
         result = converged(shipped('hertz'), {'Accuracy': 'reference', 'Error bars': 'true', 'Output/VTU': 'false'})
