@@ -38,18 +38,17 @@ namespace slipstick::app
                                          const unsigned int            n_supports)
   {
     std::vector<LeftOut<dim>> list;
-    for (const auto &point : mechanics::singular_points(scene, mesh, spaces, n_supports))
-      if (point.support || point.load) // the others have finite energy
-        {
-          double own = 0;
-          for (const auto &subdomain : mesh.subdomains)
-            if (subdomain->body == point.body)
-              for (const auto &cell : subdomain->triangulation.active_cell_iterators())
-                for (const unsigned int v : cell->vertex_indices())
-                  if (cell->vertex(v).distance(point.position) < at_vertex * cell->diameter())
-                    own = std::max(own, cell->diameter());
-          list.push_back({point.body, point.position, dealii::Utilities::MPI::max(own, mesh.comm), point.what});
-        }
+    for (const auto &point : mechanics::force_points(scene, mesh, spaces, n_supports))
+      {
+        double own = 0;
+        for (const auto &subdomain : mesh.subdomains)
+          if (subdomain->body == point.body)
+            for (const auto &cell : subdomain->triangulation.active_cell_iterators())
+              for (const unsigned int v : cell->vertex_indices())
+                if (cell->vertex(v).distance(point.position) < at_vertex * cell->diameter())
+                  own = std::max(own, cell->diameter());
+        list.push_back({point.body, point.position, dealii::Utilities::MPI::max(own, mesh.comm), point.what});
+      }
     return list;
   }
 

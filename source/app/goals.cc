@@ -23,7 +23,7 @@ namespace slipstick::app
     // A pair slides as a whole if sticking nodes carry no more than this part of its friction.
     constexpr double sticking_part = 0.1;
 
-    // Reactions of point supports below this part of the largest force leave the figures of any affordable mesh unchanged.
+    // Forces at points below this part of the largest force count as none: most point supports only hold rigid motions.
     constexpr double negligible_reaction = 1e-3;
 
     // Places that differ by less than this part of their coordinates are the same.
@@ -99,14 +99,15 @@ namespace slipstick::app
       }
 
     private:
+      /// Of point supports and point loads those that bear something.
       std::vector<mechanics::SingularPoint<dim>> acting_points(const double t) const
       {
         const auto                                                   &scene = solver.discrete_scene();
         std::vector<std::pair<mechanics::SingularPoint<dim>, double>> acting; // with their forces
         double                                                        largest = 0;
         for (const auto &point :
-             mechanics::singular_points(scene, solver.mesh(), solver.spaces(), solver.n_given_supports()))
-          if (point.load || (point.support && !is_in_contact(point)))
+             mechanics::force_points(scene, solver.mesh(), solver.spaces(), solver.n_given_supports()))
+          if (point.load || !is_in_contact(point))
             {
               dealii::Tensor<1, dim> force;
               for (unsigned int d = 0; d < dim; ++d)

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <map>
 #include <tuple>
-#include <utility>
 
 namespace slipstick::mechanics
 {
@@ -136,37 +135,43 @@ namespace slipstick::mechanics
   } // namespace
 
   template <int dim>
+  std::vector<SingularPoint<dim>> force_points(const scene::Scene<dim> &scene,
+                                               const mesh::Mesh<dim>   &mesh,
+                                               const Spaces<dim>       &spaces,
+                                               const unsigned int       n_supports)
+  {
+    std::vector<SingularPoint<dim>>    result;
+    std::vector<scene::PointName<dim>> points;
+    std::vector<std::string>           names;
+    const auto                         add = [&](const scene::PointName<dim> &where, const std::string &what) {
+      points.push_back(where);
+      names.push_back(what);
+      result.push_back({where.body, {}, what});
+    };
+    for (unsigned int s = 0; s < n_supports; ++s)
+      if (scene.supports[s].point)
+        {
+          add(*scene.supports[s].point, "the point support " + scene.supports[s].name);
+          result.back().support = s;
+        }
+    for (unsigned int k = 0; k < scene.point_loads.size(); ++k)
+      {
+        add(scene.point_loads[k].where, "the point load " + scene.point_loads[k].name);
+        result.back().load = k;
+      }
+    const auto nodes = nodes_at(scene, mesh, spaces, points, names);
+    for (unsigned int k = 0; k < result.size(); ++k)
+      result[k].position = nodes[k].position;
+    return result;
+  }
+
+  template <int dim>
   std::vector<SingularPoint<dim>> singular_points(const scene::Scene<dim> &scene,
                                                   const mesh::Mesh<dim>   &mesh,
                                                   const Spaces<dim>       &spaces,
                                                   const unsigned int       n_supports)
   {
-    std::vector<scene::PointName<dim>> points;
-    std::vector<std::string>           names;
-    std::vector<unsigned int>          indices;
-    for (unsigned int s = 0; s < n_supports; ++s)
-      if (scene.supports[s].point)
-        {
-          points.push_back(*scene.supports[s].point);
-          names.push_back("the point support " + scene.supports[s].name);
-          indices.push_back(s);
-        }
-    const auto n_of_supports = points.size();
-    for (unsigned int k = 0; k < scene.point_loads.size(); ++k)
-      {
-        points.push_back(scene.point_loads[k].where);
-        names.push_back("the point load " + scene.point_loads[k].name);
-        indices.push_back(k);
-      }
-    std::vector<SingularPoint<dim>> result;
-    const auto                      nodes = nodes_at(scene, mesh, spaces, points, names);
-    for (unsigned int k = 0; k < points.size(); ++k)
-      {
-        SingularPoint<dim> point{points[k].body, nodes[k].position, names[k]};
-        (k < n_of_supports ? point.support : point.load) = indices[k];
-        result.push_back(std::move(point));
-      }
-
+    auto result = force_points(scene, mesh, spaces, n_supports);
     if constexpr (dim == 2) // edges of solids are not examined
       add_corners(scene, mesh, spaces, n_supports, result);
     return result;
@@ -212,12 +217,20 @@ namespace slipstick::mechanics
   }
 
   template struct SingularPoint<2>;
+  template std::vector<SingularPoint<2>> force_points(const scene::Scene<2> &,
+                                                      const mesh::Mesh<2> &,
+                                                      const Spaces<2> &,
+                                                      const unsigned int);
   template std::vector<SingularPoint<2>> singular_points(const scene::Scene<2> &,
                                                          const mesh::Mesh<2> &,
                                                          const Spaces<2> &,
                                                          const unsigned int);
   template StressPlaces<2>               stress_places(const mesh::Mesh<2> &, const Spaces<2> &, const StressResult &);
   template struct SingularPoint<3>;
+  template std::vector<SingularPoint<3>> force_points(const scene::Scene<3> &,
+                                                      const mesh::Mesh<3> &,
+                                                      const Spaces<3> &,
+                                                      const unsigned int);
   template std::vector<SingularPoint<3>> singular_points(const scene::Scene<3> &,
                                                          const mesh::Mesh<3> &,
                                                          const Spaces<3> &,

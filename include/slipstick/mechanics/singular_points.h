@@ -20,7 +20,15 @@ namespace slipstick::mechanics
     std::optional<unsigned int> support = std::nullopt, load = std::nullopt; // of a point: indices in Scene
   };
 
-  /// Singular points: point supports and point loads; re-entrant corners of outlines with a turn of 35 degrees or more;
+  /// Point supports, then point loads, whatever they bear. The same on every rank. Collective.
+  /// @param n_supports only the first n_supports of scene.supports are considered.
+  template <int dim>
+  std::vector<SingularPoint<dim>> force_points(const scene::Scene<dim> &scene,
+                                               const mesh::Mesh<dim>   &mesh,
+                                               const Spaces<dim>       &spaces,
+                                               const unsigned int       n_supports);
+
+  /// Singular points: those of force_points(); re-entrant corners of outlines with a turn of 35 degrees or more;
   /// ends of boundaries along which supports hold both displacements. Outlines are those of the true curves of the
   /// edges. The same on every rank. Collective.
   /// @param n_supports only the first n_supports of scene.supports are considered.
