@@ -146,11 +146,14 @@ def figures(summary):
     solver, residuals = summary["solver"], summary["residuals"]
     pairs = summary["results"]["contact"]
     pressures = [pair["max_pressure"] or 0 for step in summary["steps"] for pair in step["contact"]]
+    errors = [pair["algebraic_error"] for step in summary["steps"] for pair in step["contact"] if "algebraic_error" in pair]
     worst = max(residuals, key=lambda name: float("inf") if residuals[name] is None else residuals[name])
     return {"multiplications": solver["hessian_multiplications"], "outer": solver["outer_iterations"],
             "fallbacks": solver["fallbacks"], "residual": residuals[worst], "residual_of": worst,
             "multiplications_of_a_step": max((step["hessian_multiplications"] for step in summary["steps"]), default=0),
             "pressure": max(pressures, default=0),
+            "pressure_estimate": max((error["pressure"] for error in errors), default=None),
+            "tangential_estimate": max((error["tangential"] for error in errors), default=None),
             "normal_force": pairs[0]["normal_force"] if pairs else None,
             "tangential_force": pairs[0]["tangential_force"] if pairs else None,
             "contact_nodes": sum(pair["contact_nodes"] for pair in pairs),
@@ -175,6 +178,7 @@ def line(result):
             f"{text(result.get('fallbacks'), 'd'):>5} {text(result.get('residual'), '.1e'):>8} "
             f"{text(result.get('pressure'), '.7g'):>11} {text(result.get('normal_force'), '.7g'):>11} {result['seconds']:6.1f}"
             + (f"  off: pressure {text(result.get('pressure_off'), '.1e')}, tangential {text(result.get('tangential_off'), '.1e')}"
+               f", estimated {text(result.get('pressure_estimate'), '.1e')}, {text(result.get('tangential_estimate'), '.1e')}"
                if "against_status" in result else ""))
 
 

@@ -328,7 +328,7 @@ namespace slipstick::app
     log.line("");
     for (const auto &pair : summary.results.contact)
       log.line(format(
-        "contact %s: largest pressure %.6g MPa; %u nodes in contact, %u open; %u stick, %u slip%s; forces summed along it %.6g N normal, %.6g N tangential",
+        "contact %s: largest pressure %.6g MPa; %u nodes in contact, %u open; %u stick, %u slip%s; forces summed along it %.6g N normal, %.6g N tangential; error of the solver %.1g %% of the pressures, %.1g %% of the tangential tractions",
         pair.pair.c_str(),
         pair.max_pressure,
         pair.contact_nodes,
@@ -337,7 +337,9 @@ namespace slipstick::app
         pair.slip_nodes,
         pair.open_slip_nodes > 0 ? format(" (%u of them open)", pair.open_slip_nodes).c_str() : "",
         pair.normal_force,
-        pair.tangential_force));
+        pair.tangential_force,
+        100 * pair.algebraic_error.pressure,
+        100 * pair.algebraic_error.tangential));
     log.line(format(
       "largest displacement %.6g mm, largest von Mises stress %.6g MPa, strain energy %.6g N mm; errors in the energy norm: discretisation about %.2g %%, algebraic below %.2g %%",
       summary.results.max_displacement,

@@ -300,7 +300,10 @@ namespace slipstick::app
           dim,
           output::contact_displacement(solver.mesh(), solver.spaces(), answer->recovery.u, nodes));
         output::write_contact_pvd(directory, {scene.load_factors.begin(), scene.load_factors.begin() + step + 1});
-        summary.results.contact = contact::pair_results(contact_steps.back().nodes, contact_names(scene).pairs, dim);
+        auto &pairs = summary.results.contact;
+        pairs       = contact::pair_results(contact_steps.back().nodes, contact_names(scene).pairs, dim);
+        for (std::size_t k = 0; k < contact.checks.traction_errors.size(); ++k)
+          pairs[k].algebraic_error = contact.checks.traction_errors[k];
       }
     drop_moments(scene, summary.results);
     clock.leave();

@@ -38,6 +38,8 @@ namespace slipstick::app
     // Tolerance = auto: admissible ratio of algebraic to discretisation error. The two are nearly orthogonal, so that
     // it adds at most 4.4 % to the total error, and less because it is estimated from above.
     constexpr double allowed_part = 0.3;
+    // And admissible error of the tractions of a pair.
+    constexpr double allowed_traction_error = 0.05;
 
     template <int dim>
     scene::SolverOptions resolved_options(const scene::Scene<dim> &scene, const bool solves_adjoints)
@@ -227,6 +229,7 @@ namespace slipstick::app
     const auto            &u = answer.recovery.u;
     answer.contact =
       contact::check(dual(),
+                     law,
                      x,
                      u,
                      law.depends_on_pressure() ? law.bounds(x) : from.slip_bound,
@@ -253,11 +256,14 @@ namespace slipstick::app
     evaluate(answer, iterate, t);
     const auto &checks           = answer.contact->checks;
     discretization_error         = std::sqrt(answer.stress->error_squared);
-    const double algebraic_error = std::sqrt(checks.error_energy);
-    log.line(format("accuracy     algebraic error below %.3g, discretisation error about %.3g sqrt(N mm)",
-                    algebraic_error,
-                    discretization_error));
-    if (algebraic_error > allowed_part * discretization_error || !(checks.worst().second <= check_limit(1)))
+    const double algebraic_error = std::sqrt(checks.error_energy), of_tractions = checks.largest_traction_error();
+    log.line(format(
+      "accuracy     algebraic error below %.3g, discretisation error about %.3g sqrt(N mm); tractions to %.2g %%",
+      algebraic_error,
+      discretization_error,
+      100 * of_tractions));
+    if (algebraic_error > allowed_part * discretization_error || !(of_tractions <= allowed_traction_error) ||
+        !(checks.worst().second <= check_limit(1)))
       return false;
     accepted = std::make_unique<Answer>(std::move(answer));
     return true;

@@ -134,6 +134,7 @@ namespace slipstick::contact
     {
     public:
       Inspection(const tfeti::DualProblem           &dual_,
+                 const SlipLaw                      &law_,
                  const DistributedVector            &multipliers_,
                  const std::vector<Eigen::VectorXd> &u_,
                  const std::vector<double>          &slip_bound_,
@@ -142,6 +143,7 @@ namespace slipstick::contact
                  const History                      &history_,
                  const std::vector<double>          &energies_beside_)
         : dual(dual_)
+        , law(law_)
         , constraints(dual_.constraints())
         , comm(dual_.communicator())
         , multipliers(multipliers_)
@@ -240,7 +242,28 @@ namespace slipstick::contact
         find_place_of_row(dual, row_of_jump, largest[jump]);
         auto energies              = tfeti::jump_energies(dual, wrong, held);
         result.checks.error_energy = energies.of_body.sum();
+        add_errors_of_bounds(energies.forces);
+        const TractionErrors tractions(dual, multipliers, energies.forces);
+        result.checks.largest_traction = tractions.largest_norm();
+        result.checks.traction_errors  = tractions.relative(part_of_history * history.traction);
         return energies;
+      }
+
+      /// Errors of normal forces change the bounds of slipping nodes.
+      void add_errors_of_bounds(DistributedVector &errors) const
+      {
+        for (const qp::PressureBound &bound : law.pressure_bounds())
+          {
+            const double along  = multipliers.local_element(bound.tangential);
+            const double across = bound.is_disc() ? multipliers.local_element(bound.second) : 0.;
+            const double size   = std::hypot(along, across);
+            if (free[bound.tangential] || size == 0 || bound.normal == qp::no_entry)
+              continue;
+            const double change = bound.forces.slope(size) * errors.local_element(bound.normal);
+            errors.local_element(bound.tangential) += along / size * change;
+            if (bound.is_disc())
+              errors.local_element(bound.second) += across / size * change;
+          }
       }
 
       void collect_nodes()
@@ -375,6 +398,7 @@ namespace slipstick::contact
       }
 
       const tfeti::DualProblem           &dual;
+      const SlipLaw                      &law;
       const tfeti::Constraints           &constraints;
       const MPI_Comm                      comm;
       const DistributedVector            &multipliers;
@@ -421,16 +445,26 @@ namespace slipstick::contact
     return {entry.name, entry.value};
   }
 
+  double Checks::largest_traction_error() const
+  {
+    double result = 0;
+    for (const PairTractions &pair : traction_errors)
+      result = std::max({result, pair.pressure, pair.tangential});
+    return result;
+  }
+
   void History::add(const Checks &step)
   {
     displacement = std::max(displacement, step.max_displacement);
     force        = std::max(force, step.largest_force);
+    traction     = std::max(traction, step.largest_traction);
     energies.resize(step.energies.size());
     for (std::size_t b = 0; b < energies.size(); ++b)
       energies[b] = std::max(energies[b], step.energies[b]);
   }
 
   CheckedContact check(const tfeti::DualProblem           &dual,
+                       const SlipLaw                      &law,
                        const DistributedVector            &multipliers,
                        const std::vector<Eigen::VectorXd> &u,
                        const std::vector<double>          &slip_bound,
@@ -439,6 +473,6 @@ namespace slipstick::contact
                        const History                      &history,
                        const std::vector<double>          &initial_strain_energies)
   {
-    return Inspection(dual, multipliers, u, slip_bound, free, n_bodies, history, initial_strain_energies)();
+    return Inspection(dual, law, multipliers, u, slip_bound, free, n_bodies, history, initial_strain_energies)();
   }
 } // namespace slipstick::contact

@@ -53,7 +53,7 @@ namespace slipstick::contact
                                         counted(),
                                         acceptance(),
                                         qp::ErrorTest<Vector>([this](const Vector &x, const Vector &error) {
-                                          return tractions->is_small(x, error);
+                                          return tractions->accepts(x, error);
                                         }));
     gradient.reset();
     solution.counts += result.counts;

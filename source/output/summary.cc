@@ -115,18 +115,21 @@ namespace slipstick::output
     {
       Json pairs = Json::array();
       for (const contact::PairResult &pair : contact)
-        pairs.push_back({{"pair", pair.pair},
-                         {"normal_force", pair.normal_force},
-                         {"tangential_force", pair.tangential_force},
-                         {"force", components(pair.on_slave.force, dim)},
-                         {"moment", moment(pair.on_slave.moment, dim)},
-                         {"moment_mismatch", moment(pair.moment_mismatch, dim)},
-                         {"max_pressure", pair.max_pressure},
-                         {dim == 2 ? "contact_length" : "contact_area", pair.contact_length},
-                         {"contact_nodes", pair.contact_nodes},
-                         {"open_nodes", pair.open_nodes},
-                         {"stick_nodes", pair.stick_nodes},
-                         {"slip_nodes", pair.slip_nodes}});
+        pairs.push_back(
+          {{"pair", pair.pair},
+           {"normal_force", pair.normal_force},
+           {"tangential_force", pair.tangential_force},
+           {"force", components(pair.on_slave.force, dim)},
+           {"moment", moment(pair.on_slave.moment, dim)},
+           {"moment_mismatch", moment(pair.moment_mismatch, dim)},
+           {"max_pressure", pair.max_pressure},
+           {dim == 2 ? "contact_length" : "contact_area", pair.contact_length},
+           {"contact_nodes", pair.contact_nodes},
+           {"open_nodes", pair.open_nodes},
+           {"stick_nodes", pair.stick_nodes},
+           {"slip_nodes", pair.slip_nodes},
+           {"algebraic_error",
+            {{"pressure", pair.algebraic_error.pressure}, {"tangential", pair.algebraic_error.tangential}}}});
       return pairs;
     }
 

@@ -24,10 +24,12 @@ namespace slipstick::tfeti
     std::optional<RowPreconditioner> lumped;
     if (!dual.preconditioner())
       lumped.emplace(systems, F.gluing(), F, dual.constraints().rows, comm, nullptr);
-    const RowPreconditioner &M        = lumped ? *lumped : *dual.preconditioner();
-    const auto               energies = M.energies(RowWeights::Inverse(M.weights(), held), r);
-    const std::size_t        n_bodies = dual.body_motions().names().size();
-    JumpEnergies             result{Eigen::VectorXd::Zero(n_bodies), std::vector<JumpEnergies::Spot>(n_bodies)};
+    const RowPreconditioner  &M = lumped ? *lumped : *dual.preconditioner();
+    const RowWeights::Inverse weights(M.weights(), held);
+    const auto                energies = M.energies(weights, r);
+    const std::size_t         n_bodies = dual.body_motions().names().size();
+    JumpEnergies result{Eigen::VectorXd::Zero(n_bodies), std::vector<JumpEnergies::Spot>(n_bodies), dual.zero()};
+    M.apply(weights, r, result.forces);
     for (unsigned int p = 0; p < systems.size(); ++p)
       {
         const unsigned int body = systems[p]->body();

@@ -14,6 +14,7 @@ namespace
     EXPECT_EQ(solved.solution.status, qp::Status::converged);
     const auto recovery = tfeti::recover(*solved.dual, solved.solution.multipliers, solved.solution.free);
     const auto checked  = contact::check(*solved.dual,
+                                        contact::SlipLaw(solved.solution.slip_bound),
                                         recovery.multipliers,
                                         recovery.u,
                                         solved.solution.slip_bound,

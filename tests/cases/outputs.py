@@ -31,7 +31,8 @@ SUMMARY = {
     'results': {'max_displacement': NUMBER, 'max_von_mises': NUMBER, 'strain_energy': NUMBER,
                 'contact': [{'pair': TEXT, 'normal_force': NUMBER, 'tangential_force': NUMBER, 'max_pressure': NUMBER,
                              'contact_length': NUMBER, 'open_nodes': COUNT, 'stick_nodes': COUNT,
-                             'slip_nodes': COUNT}]},
+                             'slip_nodes': COUNT,
+                             'algebraic_error': {'pressure': NUMBER, 'tangential': NUMBER}}]},
     'time_s': {'total': NUMBER, 'startup': NUMBER, 'mesh': NUMBER, 'assembly': NUMBER, 'factorization': NUMBER, 'dual_setup': NUMBER,
                'solve': NUMBER, 'recovery': NUMBER, 'output': NUMBER, 'other': NUMBER},
     'memory_mb': {'peak_rank_max': NUMBER, 'peak_total': NUMBER}}

@@ -90,6 +90,7 @@ namespace
     {
       const auto recovery = tfeti::recover(*dual, iterate.multipliers, iterate.free);
       return contact::check(*dual,
+                            contact::SlipLaw(iterate.slip_bound),
                             recovery.multipliers,
                             recovery.u,
                             iterate.slip_bound,
@@ -198,4 +199,33 @@ TEST(AlgebraicError, ends_a_solve_as_soon_as_it_is_small_enough)
       EXPECT_LT(coarse.counts.hessian_multiplications, 0.7 * fine.counts.hessian_multiplications);
       EXPECT_EQ(coarse.fallbacks, 0u);
     }
+}
+
+TEST(TractionErrors, are_relative_to_pressures_and_to_tangential_tractions)
+{
+  const Problem problem(pressed_box(Kind::tresca, scene::Algorithm::semismooth_newton, blocks(3)));
+  const auto   &points = problem.dual->constraints().contact_points;
+  const auto    parts  = [&](auto x, const double normal, const double tangential) {
+    for (const auto &point : points)
+      {
+        x.local_element(point.normal_row) *= normal;
+        x.local_element(point.tangential_row) *= tangential;
+      }
+    return x;
+  };
+  const auto errors = [&](const auto &x, const auto &error, const double least) {
+    return contact::TractionErrors(*problem.dual, x, error).relative(least).at(0);
+  };
+  const auto x    = problem.solve({}).multipliers;
+  const auto both = errors(x, parts(x, 0.02, 0.03), 0);
+  EXPECT_NEAR(both.pressure, 0.02, 1e-12);
+  EXPECT_NEAR(both.tangential, 0.03, 1e-12);
+  const double norm = contact::TractionErrors(*problem.dual, x, x).largest_norm();
+  EXPECT_NEAR(errors(x, parts(x, 0.02, 0), 10 * norm).pressure,
+              0.002 * contact::TractionErrors(*problem.dual, parts(x, 1, 0), x).largest_norm() / norm,
+              1e-12);
+  // without tangential tractions a part of the pressures takes their place
+  const double ratio = contact::TractionErrors(*problem.dual, parts(x, 0, 1), x).largest_norm() /
+                       contact::TractionErrors(*problem.dual, parts(x, 1, 0), x).largest_norm();
+  EXPECT_NEAR(errors(parts(x, 1, 0), parts(x, 0, 1e-4), 0).tangential, 1e-2 * ratio, 1e-12);
 }

@@ -55,8 +55,13 @@ namespace
       , law(scene, *dual, 1.)
       , solution(contact::solve(*dual, law, torn.scene.solver, scene.friction, {}))
       , recovery(tfeti::recover(*dual, solution.multipliers, solution.free))
-      , contact(
-          contact::check(*dual, recovery.multipliers, recovery.u, law.bounds(recovery.multipliers), solution.free, 1))
+      , contact(contact::check(*dual,
+                               law,
+                               recovery.multipliers,
+                               recovery.u,
+                               law.bounds(recovery.multipliers),
+                               solution.free,
+                               1))
     {}
 
     Torn                                torn;

@@ -49,6 +49,7 @@ namespace slipstick::test
       , solution(
           contact::solve(dual, contact::SlipLaw(scene, dual, 1.), contact::resolved_options(scene), scene.friction, {}))
       , checked(contact::check(dual,
+                               contact::SlipLaw(scene, dual, 1.),
                                solution.multipliers,
                                tfeti::recover(dual, solution.multipliers, solution.free).u,
                                solution.slip_bound,

@@ -126,7 +126,8 @@ TEST(Summary, results_have_the_keys_of_the_contract)
                   "contact_nodes",
                   "open_nodes",
                   "stick_nodes",
-                  "slip_nodes"}));
+                  "slip_nodes",
+                  "algebraic_error"}));
 }
 
 TEST(Summary, times_and_memory_have_the_keys_of_the_contract)

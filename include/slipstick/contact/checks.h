@@ -3,6 +3,8 @@
 
 #include <slipstick/contact/contact_nodes.h>
 #include <slipstick/contact/places.h>
+#include <slipstick/contact/slip_law.h>
+#include <slipstick/contact/traction_error.h>
 #include <slipstick/tfeti/dual_problem.h>
 
 namespace slipstick::contact
@@ -28,8 +30,10 @@ namespace slipstick::contact
     double max_displacement  = 0; // magnitude [mm]
     double energy            = 0; // u'K u, twice the strain energy [N mm]
     double largest_force     = 0; // of a contact node [N]
+    double largest_traction  = 0; // L2 norm over a pair [sqrt(N MPa)]
 
-    std::vector<double> energies; // u'K u of every body [N mm]
+    std::vector<double>        energies;        // u'K u of every body [N mm]
+    std::vector<PairTractions> traction_errors; // of the forces that would close all violated jumps, see TractionErrors
 
     /// One of the relative checks.
     struct Entry
@@ -49,6 +53,9 @@ namespace slipstick::contact
     /// The worst check; NaN counts as worse than any number.
     Entry worst_entry() const;
 
+    /// The largest of the relative errors of pressures and tangential tractions of all pairs.
+    double largest_traction_error() const;
+
     /// Name and value of the worst check.
     std::pair<std::string, double> worst() const;
   };
@@ -58,6 +65,7 @@ namespace slipstick::contact
   {
     double              displacement = 0;  // magnitude [mm]
     double              force        = 0;  // of a contact node [N]
+    double              traction     = 0;  // L2 norm over a pair [sqrt(N MPa)]
     std::vector<double> energies     = {}; // u'K u of every body [N mm]; empty before the first step
 
     /// Updates the values after one more step.
@@ -81,6 +89,7 @@ namespace slipstick::contact
   /// stick from slip.
   /// Collective.
   CheckedContact check(const tfeti::DualProblem           &dual,
+                       const SlipLaw                      &law,
                        const tfeti::DistributedVector     &multipliers,
                        const std::vector<Eigen::VectorXd> &u,
                        const std::vector<double>          &slip_bound,

@@ -63,7 +63,7 @@ namespace slipstick::contact
 
     double                       size_of_forces = 0; // of the least forces found that balance the loads [N]
     double                       forces_before  = 0; // as DualSolution::largest_forces
-    std::optional<TractionError> tractions;
+    std::optional<TractionTest> tractions;
 
   private:
     /// Of every owned row the size of its multiplier; in space tangential ones have that of both.

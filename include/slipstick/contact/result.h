@@ -58,6 +58,12 @@ namespace slipstick::contact
     }
   };
 
+  /// Two norms or errors of the tractions of a pair.
+  struct PairTractions
+  {
+    double pressure = 0, tangential = 0;
+  };
+
   struct PairResult
   {
     std::string           pair;
@@ -75,5 +81,7 @@ namespace slipstick::contact
     unsigned int stick_nodes     = 0; // closed and not slipping
     unsigned int open_slip_nodes = 0; // of these, not closed
     unsigned int slip_nodes      = 0; // slip bound reached, see ContactNode on nodes that are not closed
+
+    PairTractions algebraic_error; // relative, see TractionErrors
   };
 } // namespace slipstick::contact

@@ -1,35 +1,54 @@
 // Error of the contact tractions of every pair.
 #pragma once
 
+#include <slipstick/contact/result.h>
 #include <slipstick/tfeti/dual_problem.h>
 
 #include <vector>
 
 namespace slipstick::contact
 {
-  /// Assesses estimated errors of the multipliers by the L2 norm of the tractions of each pair.
-  class TractionError
+  /// Estimates of what the solver has left of the exact tractions of the discrete problem.
+  class TractionErrors
+  {
+  public:
+    using Vector = tfeti::DistributedVector;
+
+    /// Collective. @param x multipliers of the owned rows [N]. @param error their estimated error [N].
+    TractionErrors(const tfeti::DualProblem &dual, const Vector &x, const Vector &error);
+
+    /// For each pair the L2 norms of the errors over those of pressures and of tangential tractions, each at least 1 % of
+    /// both together, 0.1 % of those of the pair that bears most, and @p least [sqrt(N MPa)].
+    std::vector<PairTractions> relative(const double least) const;
+
+    /// The largest L2 norm of a pair's tractions [sqrt(N MPa)].
+    double largest_norm() const;
+
+  private:
+    std::vector<PairTractions> norms, errors; // [sqrt(N MPa)], the same on all ranks
+  };
+
+  /// Tells a solver whether the tractions of every pair are accurate enough. (The residual alone does not tell: it is
+  /// relative to all loads and gaps.)
+  class TractionTest
   {
   public:
     using Vector = tfeti::DistributedVector;
 
     /// @param tolerance of the solver. @param balance largest multiplier of forces that balance the loads [N].
     /// @param largest_before largest L2 norm of a pair's tractions in earlier steps [sqrt(N MPa)].
-    TractionError(const tfeti::DualProblem &dual,
-                  const double              tolerance,
-                  const double              balance,
-                  const double              largest_before);
+    TractionTest(const tfeti::DualProblem &dual,
+                 const double              tolerance,
+                 const double              balance,
+                 const double              largest_before);
 
-    /// Whether the error of the tractions of every pair is below a given part of the tractions. (The residual alone
-    /// does not tell: it is relative to all loads and gaps.) Collective.
-    bool is_small(const Vector &x, const Vector &error) const;
+    /// Whether the errors are below a given part of the tractions. Collective. @p error: estimated error of x.
+    bool accepts(const Vector &x, const Vector &error) const;
 
     /// The largest L2 norm of a pair's tractions, in x and in earlier steps [sqrt(N MPa)]. Collective.
     double largest(const Vector &x) const;
 
   private:
-    std::vector<double> squares_of_pairs(const Vector &x, const Vector &error) const;
-
     const tfeti::DualProblem &dual;
     const double              part;           // admissible error over tractions
     const double              balance;        // [N]

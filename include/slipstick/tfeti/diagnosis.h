@@ -17,6 +17,7 @@ namespace slipstick::tfeti
     };
     Eigen::VectorXd   of_body; // by body, the same on all ranks [N mm]
     std::vector<Spot> spots;   // by body
+    DistributedVector forces;  // of the rows, M r on those that are kept closed [N]
   };
 
   /// Approximate squared energy norm of the smallest displacements that close the jumps r (owned rows) [mm]; rows
