@@ -43,7 +43,9 @@ namespace slipstick::app
       {
         steps.reset();
         std::optional<std::vector<std::string>> wanted;
-        if (!options.goals.empty())
+        if (options.error_bars)
+          wanted.emplace(); // all
+        else if (!options.goals.empty())
           wanted = options.goals;
         steps.emplace(scene, directory, quiet, comm, wanted, &refinement);
         const auto &summary = steps->solve_and_write(false);
