@@ -122,6 +122,14 @@ namespace slipstick::contact
     return options.algorithm == scene::Algorithm::semismooth_newton && (rounds & (rounds - 1)) == 0;
   }
 
+  std::vector<double> BoundIteration::blend(const std::vector<double> &next, const double part) const
+  {
+    std::vector<double> result(next.size());
+    for (unsigned int r = 0; r < next.size(); ++r)
+      result[r] = (1 - part) * solution.slip_bound[r] + part * next[r];
+    return result;
+  }
+
   bool BoundIteration::move_bounds(const std::vector<double> &next, double part, Vector &from)
   {
     for (unsigned int k = 0; k < max_blends; ++k, part /= 2)

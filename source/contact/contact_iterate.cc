@@ -76,14 +76,6 @@ namespace slipstick::contact
     return result;
   }
 
-  std::vector<double> ContactIterate::blend(const std::vector<double> &next, const double part) const
-  {
-    std::vector<double> result(next.size());
-    for (unsigned int r = 0; r < next.size(); ++r)
-      result[r] = (1 - part) * solution.slip_bound[r] + part * next[r];
-    return result;
-  }
-
   bool ContactIterate::accepts(const Vector &x, const Vector &g)
   {
     DualSolution iterate;

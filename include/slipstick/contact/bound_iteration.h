@@ -42,6 +42,9 @@ namespace slipstick::contact
     /// Newton's method is tried again after 1, 2, 4, 8, ... rounds: a part of the cost of these, whatever they are.
     bool is_due(const unsigned int rounds) const;
 
+    /// (1 - part) times the present bounds, and part times the next ones.
+    std::vector<double> blend(const std::vector<double> &next, const double part) const;
+
     /// Takes the part of the way to the next bounds that admits an equilibrium; `from` is moved to the nearest one.
     bool move_bounds(const std::vector<double> &next, double part, Vector &from);
   };

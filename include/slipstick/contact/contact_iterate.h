@@ -39,9 +39,6 @@ namespace slipstick::contact
     /// solves with either.
     double change_of_bounds(const std::vector<double> &next, const Vector &x) const;
 
-    /// (1 - part) times the present bounds, and part times the next ones.
-    std::vector<double> blend(const std::vector<double> &next, const double part) const;
-
     /// Ends an algorithm where the present forces are accurate enough, if that is asked for.
     qp::Acceptance<Vector> acceptance();
 

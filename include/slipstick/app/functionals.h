@@ -1,0 +1,96 @@
+// The results that may have error bars, as linear functionals of multipliers or displacements.
+#pragma once
+
+#include <slipstick/app/step_solver.h>
+#include <slipstick/mechanics/probes.h>
+#include <slipstick/mechanics/singular_points.h>
+
+#include <string>
+#include <vector>
+
+namespace slipstick::app
+{
+  /// Data of the adjoint problem of one quantity: jumps or loads, on this rank.
+  struct Functional
+  {
+    std::string                  quantity, unit;
+    double                       value = 0; // the same on all ranks
+    std::vector<double>          jumps;     // of the owned rows, for a quantity of multipliers
+    std::vector<Eigen::VectorXd> loads;     // for a quantity of displacements
+    std::string                  reason;    // why there is no estimate; empty: there is one
+    bool                         is_of_multipliers = true;
+  };
+
+  /// The quantities of a scene, from multipliers and displacements of the last load step. Members are collective.
+  template <int dim>
+  class Functionals
+  {
+  public:
+    /// All arguments are referred to. @param t load factor of @p answer.
+    Functionals(const StepSolver<dim>        &solver,
+                const mechanics::Probes<dim> &probes,
+                const StepSolution           &answer,
+                const double                  t);
+
+    /// Points at which forces act: the energy and the displacement there are infinite.
+    const std::vector<mechanics::SingularPoint<dim>> &point_forces() const
+    {
+      return points;
+    }
+
+    /// All except the strain energy and lengths of contact.
+    std::vector<Functional> all() const;
+
+  private:
+    /// Of point supports and point loads those that bear something.
+    std::vector<mechanics::SingularPoint<dim>> acting_points(const double t) const;
+
+    /// Is it a node of a contact zone or beside one? Then the support bears the share of a node of the pressure.
+    bool is_in_contact(const mechanics::SingularPoint<dim> &point) const;
+
+    /// Why a displacement there has no estimate; empty: it has.
+    std::string infinite_at(const unsigned int body, const dealii::Point<dim> &place) const;
+
+    /// Of a node of a subdomain of this rank.
+    dealii::Point<dim> position_of(const unsigned int p, const unsigned int node) const;
+
+    Functional displacement_at(const std::string &name, const unsigned int probe, const unsigned int d) const;
+
+    template <class F>
+    void for_points_of(const unsigned int pair, const F &f) const;
+
+    double value_of(const std::vector<double> &g) const;
+
+    Functional normal_force(const std::string &name, const unsigned int pair) const;
+
+    /// Sum of the nodal forces along the tangent, in space of their magnitudes.
+    Functional tangential_force(const std::string &name, const unsigned int pair) const;
+
+    /// Magnitude of the tangential force on a node in space [N].
+    double tangential(const tfeti::ContactPoint &point) const;
+
+    /// Whether slipping nodes whose bound follows the pressure carry nearly all of the pair's friction. Otherwise
+    /// equilibrium with the forces of the other nodes determines the friction more than the pressure does.
+    bool slides(const unsigned int pair) const;
+
+    Functional pressure(const std::string &name, const unsigned int pair) const;
+
+    Functional reaction(const std::string &name, const unsigned int support, const unsigned int d) const;
+
+    /// Whether the support holds anything along this axis.
+    bool holds(const Functional &reaction) const;
+
+    /// Displacement in the direction of the largest displacement, at its node.
+    Functional displacement() const;
+
+    const StepSolver<dim>          &solver;
+    const mechanics::Probes<dim>   &probes;
+    const StepSolution             &answer;
+    const tfeti::Constraints       &rows;
+    const tfeti::DistributedVector &x;
+    const MPI_Comm                  comm;
+    const std::size_t               n_rows;
+
+    const std::vector<mechanics::SingularPoint<dim>> points;
+  };
+} // namespace slipstick::app

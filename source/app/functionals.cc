@@ -1,0 +1,324 @@
+#include <slipstick/app/functionals.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    // Components of directions below this are rounding.
+    constexpr double along_axis = 1e-9;
+
+    // A pair slides as a whole if sticking nodes carry no more than this part of its friction.
+    constexpr double sticking_part = 0.1;
+
+    // Forces at points below this part of the largest force count as none: most point supports only hold rigid motions.
+    constexpr double negligible_reaction = 1e-3;
+
+    // Places that differ by less than this part of their coordinates are the same.
+    constexpr double same_place = 1e-9;
+
+    std::string component(const unsigned int d)
+    {
+      return {"xyz"[d]};
+    }
+  } // namespace
+
+  template <int dim>
+  Functionals<dim>::Functionals(const StepSolver<dim>        &solver_,
+                                const mechanics::Probes<dim> &probes_,
+                                const StepSolution           &answer_,
+                                const double                  t)
+    : solver(solver_)
+    , probes(probes_)
+    , answer(answer_)
+    , rows(solver.dual().constraints())
+    , x(answer.recovery.multipliers)
+    , comm(solver.dual().communicator())
+    , n_rows(rows.kind.size())
+    , points(acting_points(t))
+  {}
+
+  template <int dim>
+  std::vector<Functional> Functionals<dim>::all() const
+  {
+    std::vector<Functional> list{displacement()};
+    const auto             &scene = solver.discrete_scene();
+    for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+      {
+        const std::string name = scene.contacts[k].name;
+        list.push_back(normal_force(name + ".normal_force", k));
+        list.push_back(tangential_force(name + ".tangential_force", k));
+        list.push_back(pressure(name + ".max_pressure", k));
+      }
+    for (unsigned int s = 0; s < solver.n_given_supports(); ++s)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          auto goal = reaction(scene.supports[s].name + ".force_" + component(d), s, d);
+          if (holds(goal))
+            list.push_back(std::move(goal));
+        }
+    for (unsigned int k = 0; k < scene.probes.size(); ++k)
+      if (scene.probes[k].ends.size() == 1)
+        for (unsigned int d = 0; d < dim; ++d)
+          list.push_back(displacement_at(scene.probes[k].name + ".u_" + component(d), k, d));
+    return list;
+  }
+
+  template <int dim>
+  std::vector<mechanics::SingularPoint<dim>> Functionals<dim>::acting_points(const double t) const
+  {
+    const auto                                                   &scene = solver.discrete_scene();
+    std::vector<std::pair<mechanics::SingularPoint<dim>, double>> acting; // with their forces
+    double                                                        largest = 0;
+    for (const auto &point : mechanics::force_points(scene, solver.mesh(), solver.spaces(), solver.n_given_supports()))
+      if (point.load || !is_in_contact(point))
+        {
+          dealii::Tensor<1, dim> force;
+          for (unsigned int d = 0; d < dim; ++d)
+            force[d] = point.load ? scene.point_loads[*point.load].force[d].value(point.position, t)
+                                  : reaction("", *point.support, d).value;
+          acting.emplace_back(point, force.norm());
+          largest = std::max(largest, force.norm());
+        }
+    if (acting.empty())
+      return {};
+    for (unsigned int s = 0; s < solver.n_given_supports(); ++s)
+      for (unsigned int d = 0; d < dim; ++d)
+        largest = std::max(largest, std::abs(reaction("", s, d).value));
+    for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+      largest = std::max(largest, std::abs(normal_force("", k).value));
+    std::vector<mechanics::SingularPoint<dim>> result;
+    for (const auto &[point, force] : acting)
+      if (force > negligible_reaction * largest)
+        result.push_back(point);
+    return result;
+  }
+
+  template <int dim>
+  bool Functionals<dim>::is_in_contact(const mechanics::SingularPoint<dim> &point) const
+  {
+    bool is_near = false;
+    for (const auto *nodes : {&rows.contact_points, &rows.bonded_points})
+      for (const auto &node : *nodes)
+        {
+          const double reach = node.is_in_space() ? std::sqrt(node.area) : node.length;
+          for (const auto &[body, place] : {std::make_pair(node.slave_body, node.slave_position),
+                                            std::make_pair(node.master_body, node.master_position)})
+            {
+              double square = 0;
+              for (unsigned int d = 0; d < dim; ++d)
+                square += (place[d] - point.position[d]) * (place[d] - point.position[d]);
+              is_near = is_near || (body == point.body && square <= reach * reach);
+            }
+        }
+    return dealii::Utilities::MPI::max(is_near ? 1 : 0, comm) == 1;
+  }
+
+  template <int dim>
+  std::string Functionals<dim>::infinite_at(const unsigned int body, const dealii::Point<dim> &place) const
+  {
+    for (const auto &point : points)
+      if (point.body == body && point.position.distance(place) <= same_place * (place.norm() + point.position.norm()))
+        return "it is infinite at " + point.what;
+    return "";
+  }
+
+  template <int dim>
+  dealii::Point<dim> Functionals<dim>::position_of(const unsigned int p, const unsigned int node) const
+  {
+    const auto                                  &element = solver.spaces().of(p);
+    std::vector<dealii::types::global_dof_index> dofs;
+    std::vector<unsigned int>                    nodes;
+    for (const auto &cell : solver.spaces().dof_handlers[p]->active_cell_iterators())
+      {
+        element.nodes_of(cell, dofs, nodes);
+        for (unsigned int i = 0; i < nodes.size(); ++i)
+          if (nodes[i] == node)
+            return i < cell->n_vertices()
+                     ? cell->vertex(i)
+                     : element.mapping->transform_unit_to_real_cell(cell, element.scalar->unit_support_point(i));
+      }
+    return {};
+  }
+
+  template <int dim>
+  Functional Functionals<dim>::displacement_at(const std::string &name,
+                                               const unsigned int probe,
+                                               const unsigned int d) const
+  {
+    Functional goal{name, "mm", 0, {}, probes.unit_force(probe, d), {}, false};
+    double     own = 0;
+    for (unsigned int p = 0; p < goal.loads.size(); ++p)
+      own += goal.loads[p].dot(answer.recovery.u[p]);
+    goal.value  = dealii::Utilities::MPI::sum(own, comm);
+    goal.reason = infinite_at(solver.discrete_scene().probes[probe].body, probes.positions()[probe][0].position);
+    return goal;
+  }
+
+  template <int dim>
+  template <class F>
+  void Functionals<dim>::for_points_of(const unsigned int pair, const F &f) const
+  {
+    for (const auto *points : {&rows.contact_points, &rows.bonded_points})
+      for (const auto &point : *points)
+        if (point.pair == pair)
+          f(point);
+  }
+
+  template <int dim>
+  double Functionals<dim>::value_of(const std::vector<double> &g) const
+  {
+    double sum = 0;
+    for (unsigned int r = 0; r < n_rows; ++r)
+      sum += g[r] * x.local_element(r);
+    return dealii::Utilities::MPI::sum(sum, comm);
+  }
+
+  template <int dim>
+  Functional Functionals<dim>::normal_force(const std::string &name, const unsigned int pair) const
+  {
+    Functional goal{name, "N", 0, std::vector<double>(n_rows, 0.), {}, {}};
+    for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+      if (point.normal_row != tfeti::invalid_row)
+        goal.jumps[point.normal_row] = 1;
+    });
+    goal.value = value_of(goal.jumps);
+    return goal;
+  }
+
+  template <int dim>
+  Functional Functionals<dim>::tangential_force(const std::string &name, const unsigned int pair) const
+  {
+    Functional goal{name, "N", 0, std::vector<double>(n_rows, 0.), {}, {}};
+    for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+      const double size = tangential(point);
+      for (const unsigned int row : {point.tangential_row, point.second_row})
+        if (row != tfeti::invalid_row)
+          goal.jumps[row] = dim == 2 ? 1. : size > 0 ? x.local_element(row) / size : 0.;
+    });
+    goal.value = value_of(goal.jumps);
+    if (slides(pair)) // as a whole: friction follows the pressure
+      for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+        if (point.normal_row != tfeti::invalid_row && point.tangential_row != tfeti::invalid_row &&
+            !solver.solution().free[point.tangential_row] && x.local_element(point.normal_row) > 0)
+          goal.jumps[point.normal_row] = tangential(point) / x.local_element(point.normal_row);
+      });
+    return goal;
+  }
+
+  template <int dim>
+  double Functionals<dim>::tangential(const tfeti::ContactPoint &point) const
+  {
+    const double along = point.tangential_row != tfeti::invalid_row ? x.local_element(point.tangential_row) : 0.;
+    if (dim == 2)
+      return along;
+    return std::hypot(along, point.second_row != tfeti::invalid_row ? x.local_element(point.second_row) : 0.);
+  }
+
+  template <int dim>
+  bool Functionals<dim>::slides(const unsigned int pair) const
+  {
+    if (!solver.discrete_scene().contacts[pair].law.coefficient)
+      return false;
+    double sticks = 0, all = 0;
+    for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+      if (point.tangential_row == tfeti::invalid_row)
+        return;
+      const double force = std::abs(tangential(point));
+      all += force;
+      sticks += solver.solution().free[point.tangential_row] ? force : 0.;
+    });
+    return dealii::Utilities::MPI::sum(sticks, comm) <= sticking_part * dealii::Utilities::MPI::sum(all, comm);
+  }
+
+  template <int dim>
+  Functional Functionals<dim>::pressure(const std::string &name, const unsigned int pair) const
+  {
+    Functional   goal{name, "MPa", 0, std::vector<double>(n_rows, 0.), {}, {}};
+    double       largest = 0;
+    unsigned int at      = tfeti::invalid_row;
+    double       area    = 1;
+    for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+      if (point.normal_row == tfeti::invalid_row || !(point.traction_area > 0))
+        return;
+      const double p = x.local_element(point.normal_row) / point.traction_area;
+      if (p > largest)
+        {
+          largest = p;
+          at      = point.normal_row;
+          area    = point.traction_area;
+        }
+    });
+    goal.value              = dealii::Utilities::MPI::max(largest, comm);
+    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(comm);
+    const bool         has  = at != tfeti::invalid_row && largest == goal.value;
+    const unsigned int best = dealii::Utilities::MPI::min(has ? rank : tfeti::invalid_row, comm);
+    if (best == tfeti::invalid_row)
+      goal.reason = "there is no contact";
+    else if (best == rank)
+      goal.jumps[at] = 1 / area;
+    return goal;
+  }
+
+  template <int dim>
+  Functional Functionals<dim>::reaction(const std::string &name, const unsigned int support, const unsigned int d) const
+  {
+    Functional goal{name, "N", 0, std::vector<double>(n_rows, 0.), {}, {}};
+    for (const auto &reaction : rows.reactions)
+      if (std::count(reaction.holders.begin(), reaction.holders.end(), support) > 0)
+        goal.jumps[reaction.row] -= reaction.direction[d] / reaction.holders.size();
+    goal.value = value_of(goal.jumps);
+    return goal;
+  }
+
+  template <int dim>
+  bool Functionals<dim>::holds(const Functional &reaction) const
+  {
+    double largest = 0;
+    for (const double g : reaction.jumps)
+      largest = std::max(largest, std::abs(g));
+    return dealii::Utilities::MPI::max(largest, comm) > along_axis;
+  }
+
+  template <int dim>
+  Functional Functionals<dim>::displacement() const
+  {
+    Functional   goal{"max_displacement", "mm", 0, {}, {}, {}, false};
+    double       largest = -1;
+    unsigned int at_p = 0, at_node = 0;
+    const auto  &u = answer.recovery.u;
+    for (unsigned int p = 0; p < u.size(); ++p)
+      {
+        goal.loads.push_back(Eigen::VectorXd::Zero(u[p].size()));
+        for (unsigned int i = 0; i < u[p].size() / dim; ++i)
+          if (const double size = u[p].template segment<dim>(dim * i).norm(); size > largest)
+            {
+              largest = size;
+              at_p    = p;
+              at_node = i;
+            }
+      }
+    goal.value              = dealii::Utilities::MPI::max(largest, comm);
+    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(comm);
+    const unsigned int best = dealii::Utilities::MPI::min(largest == goal.value ? rank : tfeti::invalid_row, comm);
+    if (!(goal.value > 0))
+      {
+        goal.reason = "nothing moves";
+        return goal;
+      }
+    if (best == rank)
+      {
+        goal.loads[at_p].template segment<dim>(dim * at_node) = u[at_p].template segment<dim>(dim * at_node) / largest;
+        goal.reason = infinite_at(solver.mesh().subdomains[at_p]->body, position_of(at_p, at_node));
+      }
+    goal.reason = dealii::Utilities::MPI::broadcast(comm, goal.reason, best);
+    return goal;
+  }
+
+  template class Functionals<2>;
+  template class Functionals<3>;
+} // namespace slipstick::app
