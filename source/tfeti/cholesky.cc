@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <camd.h>
+#include <cmath>
 
 namespace slipstick::tfeti
 {
@@ -15,8 +16,30 @@ namespace slipstick::tfeti
     // Below this estimate of 1 / condition number (square of the ratio of extreme pivots) the factor is only rounding
     // error.
     constexpr double smallest_reciprocal_condition = 1e-15;
+    // Entries that differ by less than this part of the diagonal are the same: rounding of coordinates. A factorisation
+    // has no less.
+    constexpr double equal_entries = 1e-13;
+    // Factors kept for matrices with the same pattern.
+    constexpr std::size_t max_factors = 4;
     // Cached analyses: the blocks of a rectangle have about ten patterns; each METIS part has its own.
     constexpr std::size_t max_analyses = 32;
+
+    /// Of matrices with the same pattern.
+    bool are_equal(const cholmod_sparse &A, const std::vector<double> &entries)
+    {
+      const auto         *columns = static_cast<const int *>(A.p), *rows = static_cast<const int *>(A.i);
+      const auto         *values = static_cast<const double *>(A.x);
+      std::vector<double> diagonal(A.ncol, 0.);
+      for (std::size_t j = 0; j < A.ncol; ++j)
+        for (int k = columns[j]; k < columns[j + 1]; ++k)
+          if (rows[k] == static_cast<int>(j))
+            diagonal[j] = std::abs(values[k]);
+      for (std::size_t j = 0; j < A.ncol; ++j)
+        for (int k = columns[j]; k < columns[j + 1]; ++k)
+          if (!(std::abs(values[k] - entries[k]) <= equal_entries * std::sqrt(diagonal[j] * diagonal[rows[k]])))
+            return false;
+      return true;
+    }
 
     /// Fill-reducing permutation (CAMD) that keeps the given unknowns last.
     std::vector<int> constrained_ordering(cholmod_sparse                  &A,
@@ -96,6 +119,8 @@ namespace slipstick::tfeti
   CholmodSession::~CholmodSession()
   {
     forget_analyses();
+    for (cholmod_dense **workspace : {&X, &Y, &E})
+      cholmod_free_dense(workspace, &common);
     cholmod_finish(&common);
   }
 
@@ -106,17 +131,51 @@ namespace slipstick::tfeti
     analyses.clear();
   }
 
-  cholmod_factor *CholmodSession::analysis(cholmod_sparse &A, const std::vector<unsigned int> &last)
+  std::vector<CholmodSession::Analysis>::const_iterator CholmodSession::find(
+    const cholmod_sparse            &A,
+    const std::vector<unsigned int> &last) const
   {
     const auto *columns = static_cast<const int *>(A.p), *rows = static_cast<const int *>(A.i);
     const auto  n = A.ncol, n_entries = static_cast<std::size_t>(columns[n]);
-    const auto  is_same = [&](const Analysis &known) {
+    return std::find_if(analyses.begin(), analyses.end(), [&](const Analysis &known) {
       return known.columns.size() == n + 1 && known.rows.size() == n_entries && known.last == last &&
              std::equal(known.columns.begin(), known.columns.end(), columns) &&
              std::equal(known.rows.begin(), known.rows.end(), rows);
-    };
-    const auto found = std::find_if(analyses.begin(), analyses.end(), is_same);
-    if (found != analyses.end())
+    });
+  }
+
+  std::shared_ptr<cholmod_factor> CholmodSession::factor_of(const cholmod_sparse            &A,
+                                                            const std::vector<unsigned int> &last) const
+  {
+    if (const auto of_pattern = find(A, last); of_pattern != analyses.end())
+      for (const Factorised &known : of_pattern->factorised)
+        if (auto factor = known.factor.lock(); factor && are_equal(A, known.entries))
+          return factor;
+    return nullptr;
+  }
+
+  void CholmodSession::keep(const cholmod_sparse                  &A,
+                            const std::vector<unsigned int>       &last,
+                            const std::shared_ptr<cholmod_factor> &factor)
+  {
+    auto &factorised = analyses[find(A, last) - analyses.begin()].factorised;
+    if (factorised.size() == max_factors)
+      factorised.erase(factorised.begin());
+    const auto *entries = static_cast<const double *>(A.x);
+    factorised.push_back({{entries, entries + static_cast<const int *>(A.p)[A.ncol]}, factor});
+  }
+
+  const double *CholmodSession::solve(const int system, cholmod_factor &factor, cholmod_dense &B)
+  {
+    if (cholmod_solve2(system, &factor, &B, nullptr, &X, nullptr, &Y, &E, &common) == 0)
+      throw InputError("not enough memory for a solve with a Cholesky factor",
+                       "use more or smaller subdomains (Decomposition), or more ranks on more machines");
+    return static_cast<const double *>(X->x);
+  }
+
+  cholmod_factor *CholmodSession::analysis(cholmod_sparse &A, const std::vector<unsigned int> &last)
+  {
+    if (const auto found = find(A, last); found != analyses.end())
       return found->factor;
 
     cholmod_factor *factor = analyse(A, last);
@@ -128,7 +187,8 @@ namespace slipstick::tfeti
         cholmod_free_factor(&analyses.front().factor, &common);
         analyses.erase(analyses.begin());
       }
-    analyses.push_back({{columns, columns + n + 1}, {rows, rows + n_entries}, last, factor});
+    const auto *columns = static_cast<const int *>(A.p), *rows = static_cast<const int *>(A.i);
+    analyses.push_back({{columns, columns + A.ncol + 1}, {rows, rows + columns[A.ncol]}, last, factor});
     return factor;
   }
 
@@ -147,27 +207,21 @@ namespace slipstick::tfeti
     return cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common);
   }
 
-  void Cholesky::FactorDeleter::operator()(cholmod_factor *factor) const
-  {
-    cholmod_free_factor(&factor, &session->common);
-  }
-
-  void Cholesky::DenseDeleter::operator()(cholmod_dense *dense) const
-  {
-    cholmod_free_dense(&dense, &session->common);
-  }
-
   Cholesky::Cholesky(const std::shared_ptr<CholmodSession> &session,
                      const Eigen::SparseMatrix<double>     &lower,
                      const std::vector<unsigned int>       &last,
                      const std::string                     &name,
                      const Failure                         &failure)
     : session(session)
-    , factor(nullptr, FactorDeleter{session})
   {
     cholmod_common &common = session->common;
     cholmod_sparse  A      = Eigen::viewAsCholmod(lower.selfadjointView<Eigen::Lower>());
-    factor.reset(cholmod_copy_factor(session->analysis(A, last), &common));
+    if (last.empty() && (factor = session->factor_of(A, last)))
+      return;
+    factor                  = std::shared_ptr<cholmod_factor>(cholmod_copy_factor(session->analysis(A, last), &common),
+                                             [session](cholmod_factor *unused) {
+                                               cholmod_free_factor(&unused, &session->common);
+                                             });
     const auto *permutation = static_cast<const int *>(factor->Perm);
     trailing.assign(permutation + factor->n - last.size(), permutation + factor->n);
     cholmod_factorize(&A, factor.get(), &common);
@@ -177,37 +231,42 @@ namespace slipstick::tfeti
     if (common.status != CHOLMOD_OK || factor->minor < factor->n ||
         cholmod_rcond(factor.get(), &common) < smallest_reciprocal_condition)
       throw NumericalError(name + failure.text, failure.remedy);
+    if (last.empty())
+      session->keep(A, last, factor);
   }
 
   void Cholesky::solve(Eigen::VectorXd &x) const
   {
-    solve(CHOLMOD_A, x);
+    solve(CHOLMOD_A, x.data(), 1);
+  }
+
+  void Cholesky::solve(Eigen::MatrixXd &columns) const
+  {
+    solve(CHOLMOD_A, columns.data(), columns.cols());
   }
 
   void Cholesky::solve_lower(Eigen::VectorXd &x) const
   {
-    solve(CHOLMOD_P, x);
-    solve(CHOLMOD_L, x);
+    solve(CHOLMOD_P, x.data(), 1);
+    solve(CHOLMOD_L, x.data(), 1);
   }
 
   void Cholesky::solve_upper(Eigen::VectorXd &x) const
   {
-    solve(CHOLMOD_Lt, x);
-    solve(CHOLMOD_Pt, x);
+    solve(CHOLMOD_Lt, x.data(), 1);
+    solve(CHOLMOD_Pt, x.data(), 1);
   }
 
-  void Cholesky::solve(const int system, Eigen::VectorXd &x) const
+  void Cholesky::solve(const int system, double *x, const std::size_t n_columns) const
   {
-    cholmod_dense b{};
-    b.nrow = b.d = b.nzmax = x.size();
-    b.ncol                 = 1;
-    b.x                    = x.data();
-    b.xtype                = CHOLMOD_REAL;
-    b.dtype                = CHOLMOD_DOUBLE;
-    const std::unique_ptr<cholmod_dense, DenseDeleter> solution(
-      cholmod_solve(system, factor.get(), &b, &session->common),
-      DenseDeleter{session});
-    std::copy_n(static_cast<const double *>(solution->x), x.size(), x.data());
+    cholmod_dense B{};
+    B.nrow = B.d = factor->n;
+    B.ncol       = n_columns;
+    B.nzmax      = factor->n * n_columns;
+    B.x          = x;
+    B.xtype      = CHOLMOD_REAL;
+    B.dtype      = CHOLMOD_DOUBLE;
+    std::copy_n(session->solve(system, *factor, B), B.nzmax, x);
   }
 
   Eigen::MatrixXd Cholesky::trailing_block() const

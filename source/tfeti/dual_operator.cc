@@ -1,3 +1,4 @@
+#include <slipstick/tfeti/batches.h>
 #include <slipstick/tfeti/dual_operator.h>
 
 #include <algorithm>
@@ -117,51 +118,50 @@ namespace slipstick::tfeti
     return result;
   }
 
-  template <class Local>
-  void DualOperator::apply(const DistributedVector &x, DistributedVector &y, const Local &local) const
+  template <class Products>
+  void DualOperator::apply(const DistributedVector &x, DistributedVector &y, const Products &add_products) const
   {
     ++applications;
     import(x, source);
     target.zero_out_ghost_values();
     target = 0;
-    Eigen::VectorXd at_touched;
-    for (unsigned int p = 0; p < subdomains.size(); ++p)
-      {
-        local(p, scatter(p, source), at_touched);
-        gather(p, at_touched, target);
-      }
+    add_products();
     target.compress(dealii::VectorOperation::add);
     y.copy_locally_owned_data_from(target);
   }
 
   void DualOperator::apply(const DistributedVector &x, DistributedVector &y) const
   {
-    if (is_explicit())
-      apply(x, y, [this](const unsigned int p, const Eigen::VectorXd &force, Eigen::VectorXd &at_touched) {
-        (*blocks)[p].multiply(force, at_touched);
-      });
-    else
-      apply_by_solves(x, y);
+    if (!is_explicit())
+      return apply_by_solves(x, y);
+    apply(x, y, [this]() {
+      Eigen::VectorXd at_touched;
+      for (unsigned int p = 0; p < subdomains.size(); ++p)
+        {
+          (*blocks)[p].multiply(scatter(p, source), at_touched);
+          gather(p, at_touched, target);
+        }
+    });
   }
 
   void DualOperator::apply_by_solves(const DistributedVector &x, DistributedVector &y) const
   {
-    apply(x, y, [this](const unsigned int p, const Eigen::VectorXd &force, Eigen::VectorXd &at_touched) {
-      solve(p, force, at_touched);
+    apply(x, y, [this]() {
+      for (const auto &batch :
+           batches(subdomains.size(), [this](const unsigned int p) { return subdomains[p]->factor(); }))
+        add_solutions(batch);
     });
   }
 
-  // Applies K+ to forces at the touched unknowns.
-  void DualOperator::solve(const unsigned int p, const Eigen::VectorXd &force, Eigen::VectorXd &at_touched) const
+  // Applies the K+ of subdomains with the same factor to forces at the touched unknowns.
+  void DualOperator::add_solutions(const std::vector<unsigned int> &batch) const
   {
-    const auto     &touched = subdomains[p]->touched();
-    Eigen::VectorXd full    = Eigen::VectorXd::Zero(subdomains[p]->n_unknowns());
-    for (unsigned int k = 0; k < touched.size(); ++k)
-      full[touched[k]] = force[k];
-    subdomains[p]->apply_pseudo_inverse(full);
-    at_touched.resize(touched.size());
-    for (unsigned int k = 0; k < touched.size(); ++k)
-      at_touched[k] = full[touched[k]];
+    Eigen::MatrixXd full = Eigen::MatrixXd::Zero(subdomains[batch.front()]->n_unknowns(), batch.size());
+    for (unsigned int k = 0; k < batch.size(); ++k)
+      full.col(k)(subdomains[batch[k]]->touched()) = scatter(batch[k], source);
+    subdomains[batch.front()]->apply_pseudo_inverse(full);
+    for (unsigned int k = 0; k < batch.size(); ++k)
+      gather(batch[k], full.col(k)(subdomains[batch[k]]->touched()), target);
   }
 
   std::size_t DualOperator::block_bytes() const

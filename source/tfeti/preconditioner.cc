@@ -1,3 +1,4 @@
+#include <slipstick/tfeti/batches.h>
 #include <slipstick/tfeti/preconditioner.h>
 
 namespace slipstick::tfeti
@@ -27,12 +28,9 @@ namespace slipstick::tfeti
     scatter_gather.import(z, source);
     target.zero_out_ghost_values();
     target = 0;
-    Eigen::VectorXd force;
-    for (unsigned int p = 0; p < subdomains.size(); ++p)
-      {
-        multiply(p, move(p), force);
-        scatter_gather.gather(p, inverse_diagonals[p].cwiseProduct(force), target);
-      }
+    for_products([this](const unsigned int p, const Eigen::VectorXd &, const Eigen::VectorXd &force) {
+      scatter_gather.gather(p, inverse_diagonals[p].cwiseProduct(force), target);
+    });
     target.compress(dealii::VectorOperation::add);
     DistributedVector weighted(z);
     weighted.copy_locally_owned_data_from(target);
@@ -45,14 +43,10 @@ namespace slipstick::tfeti
     DistributedVector weighted(r);
     inverse.apply(r, weighted);
     scatter_gather.import(weighted, source);
-    std::vector<Eigen::VectorXd> result;
-    Eigen::VectorXd              force;
-    for (unsigned int p = 0; p < subdomains.size(); ++p)
-      {
-        result.push_back(move(p));
-        multiply(p, result.back(), force);
-        result.back().array() *= force.array();
-      }
+    std::vector<Eigen::VectorXd> result(subdomains.size());
+    for_products([&result](const unsigned int p, const Eigen::VectorXd &move, const Eigen::VectorXd &force) {
+      result[p] = move.cwiseProduct(force);
+    });
     return result;
   }
 
@@ -61,13 +55,27 @@ namespace slipstick::tfeti
     return inverse_diagonals[p].cwiseProduct(scatter_gather.scatter(p, source));
   }
 
-  void RowPreconditioner::multiply(const unsigned int p, const Eigen::VectorXd &move, Eigen::VectorXd &force) const
+  template <class F>
+  void RowPreconditioner::for_products(const F &f) const
   {
-    if (!blocks)
-      force = subdomains[p]->apply_touched_stiffness(move);
-    else if (subdomains[p]->has_schur_complement())
-      force = subdomains[p]->apply_schur_complement(move);
-    else
-      (*blocks)[p].multiply(move, force);
+    const auto factor = [this](const unsigned int p) { return blocks ? subdomains[p]->inner_factor() : nullptr; };
+    for (const auto &batch : batches(subdomains.size(), factor))
+      {
+        std::vector<const SubdomainSystem *> systems;
+        std::vector<Eigen::VectorXd>         moves, forces;
+        for (const unsigned int p : batch)
+          {
+            systems.push_back(subdomains[p].get());
+            moves.push_back(move(p));
+          }
+        if (factor(batch.front()))
+          SubdomainSystem::apply_schur_complements(systems, forces = moves);
+        else if (blocks)
+          (*blocks)[batch.front()].multiply(moves.front(), forces.emplace_back());
+        else
+          forces.push_back(systems.front()->apply_touched_stiffness(moves.front()));
+        for (unsigned int k = 0; k < batch.size(); ++k)
+          f(batch[k], moves[k], forces[k]);
+      }
   }
 } // namespace slipstick::tfeti

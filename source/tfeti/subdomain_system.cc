@@ -14,6 +14,8 @@ namespace slipstick::tfeti
   {
     // Pivots below this mean that the touched unknowns do not hold the subdomain well (1 = perfectly).
     constexpr double smallest_good_pivot = 0.1;
+    // Candidates whose squared pivots differ by less than this part are as good: rounding of coordinates must not tell.
+    constexpr double equal_pivots = 1e-8;
     // |K R| over |K| |R| above this means that R is not the kernel.
     constexpr double kernel_tolerance = 1e-8;
 
@@ -66,15 +68,17 @@ namespace slipstick::tfeti
       return stiffness;
     }
 
-    std::vector<unsigned int> choose_fixing(const SubdomainMatrices &matrices, const std::vector<unsigned int> &touched)
+    std::vector<unsigned int> choose_fixing(const SubdomainMatrices         &matrices,
+                                            const std::vector<unsigned int> &touched,
+                                            const bool                       from_touched)
     {
-      if (touched.size() >= static_cast<std::size_t>(matrices.kernel.cols()))
+      if (from_touched && touched.size() >= static_cast<std::size_t>(matrices.kernel.cols()))
         {
           const auto [chosen, pivot] = fixing_unknowns(matrices.kernel, touched);
           if (pivot > smallest_good_pivot)
             return chosen;
         }
-      return fixing_unknowns(matrices.kernel, matrices.boundary_dofs).first;
+      return fixing_unknowns(matrices.kernel, matrices.boundary_dofs, equal_pivots).first;
     }
 
     Eigen::SparseMatrix<double> regularised(const Eigen::SparseMatrix<double> &stiffness,
@@ -96,7 +100,8 @@ namespace slipstick::tfeti
   } // namespace
 
   std::pair<std::vector<unsigned int>, double> fixing_unknowns(const Eigen::MatrixXd           &kernel,
-                                                               const std::vector<unsigned int> &candidates)
+                                                               const std::vector<unsigned int> &candidates,
+                                                               const double                     equal)
   {
     Eigen::MatrixXd rows(candidates.size(), kernel.cols());
     for (unsigned int i = 0; i < candidates.size(); ++i)
@@ -108,10 +113,15 @@ namespace slipstick::tfeti
     double smallest = std::numeric_limits<double>::max();
     for (int k = 0; k < kernel.cols(); ++k)
       {
-        Eigen::Index i;
-        smallest = std::min(smallest, std::sqrt(rows.rowwise().squaredNorm().maxCoeff(&i)));
+        const Eigen::VectorXd squares = rows.rowwise().squaredNorm();
+        const double          largest = squares.maxCoeff();
+        smallest                      = std::min(smallest, std::sqrt(largest));
         if (smallest == 0)
           break;
+        const auto i = std::find_if(squares.begin(),
+                                    squares.end(),
+                                    [&](const double square) { return square >= (1 - equal) * largest; }) -
+                       squares.begin();
         chosen.push_back(candidates[i]);
         const Eigen::RowVectorXd direction = rows.row(i).normalized();
         rows -= (rows * direction.transpose()) * direction;
@@ -122,11 +132,12 @@ namespace slipstick::tfeti
   SubdomainSystem::SubdomainSystem(const std::shared_ptr<CholmodSession> &session,
                                    SubdomainMatrices                      given,
                                    std::vector<unsigned int>              touched,
-                                   const bool                             with_trailing_block)
+                                   const bool                             with_trailing_block,
+                                   const bool                             fixed_at_boundary)
     : session(session)
     , matrices((check_kernel(given), std::move(given)))
     , touched_unknowns(std::move(touched))
-    , fixing_unknowns(choose_fixing(matrices, touched_unknowns))
+    , fixing_unknowns(choose_fixing(matrices, touched_unknowns, !fixed_at_boundary))
     , regularization(matrices.stiffness.diagonal().mean())
     , cholesky(
         factorised(with_trailing_block ? merged(touched_unknowns, fixing_unknowns) : std::vector<unsigned int>()))
@@ -145,6 +156,14 @@ namespace slipstick::tfeti
       cholesky->solve(x);
     else
       factorised({}).solve(x);
+  }
+
+  void SubdomainSystem::apply_pseudo_inverse(Eigen::MatrixXd &columns) const
+  {
+    if (cholesky)
+      cholesky->solve(columns);
+    else
+      factorised({}).solve(columns);
   }
 
   std::array<double, 3> SubdomainSystem::position(const unsigned int unknown) const
@@ -180,34 +199,45 @@ namespace slipstick::tfeti
 
   void SubdomainSystem::prepare_schur_complement(const std::shared_ptr<CholmodSession> &of_inner)
   {
-    std::vector<int> place(n_unknowns(), 0);
+    std::vector<bool>         is_touched(n_unknowns());
+    std::vector<unsigned int> place(n_unknowns()); // among the touched unknowns or the inner ones
     for (const unsigned int i : touched_unknowns)
-      place[i] = -1;
-    inner_unknowns.clear();
+      is_touched[i] = true;
+    std::array<unsigned int, 2> n{{0, 0}};
     for (unsigned int i = 0; i < n_unknowns(); ++i)
-      if (place[i] == 0)
-        {
-          place[i] = inner_unknowns.size();
-          inner_unknowns.push_back(i);
-        }
-    std::vector<Eigen::Triplet<double>> entries;
+      place[i] = n[is_touched[i]]++;
+    std::vector<Eigen::Triplet<double>> of_inner_ones, between, of_touched;
     for (Eigen::Index j = 0; j < matrices.stiffness.outerSize(); ++j)
       for (Eigen::SparseMatrix<double>::InnerIterator entry(matrices.stiffness, j); entry; ++entry)
-        if (place[entry.row()] >= 0 && place[entry.col()] >= 0)
-          entries.emplace_back(place[entry.row()], place[entry.col()], entry.value());
-    Eigen::SparseMatrix<double> lower(inner_unknowns.size(), inner_unknowns.size());
-    lower.setFromTriplets(entries.begin(), entries.end());
-    inner.emplace(of_inner, lower, std::vector<unsigned int>(), name_of(matrices));
+        {
+          const auto row = entry.row(), column = entry.col();
+          if (is_touched[row] != is_touched[column])
+            between.emplace_back(place[is_touched[row] ? column : row],
+                                 place[is_touched[row] ? row : column],
+                                 entry.value());
+          else
+            (is_touched[row] ? of_touched : of_inner_ones).emplace_back(place[row], place[column], entry.value());
+        }
+    const auto matrix = [](const unsigned int rows, const unsigned int columns, const auto &entries) {
+      Eigen::SparseMatrix<double> result(rows, columns);
+      result.setFromTriplets(entries.begin(), entries.end());
+      return result;
+    };
+    inner_touched = matrix(n[0], n[1], between);
+    touched_part  = matrix(n[1], n[1], of_touched);
+    inner.emplace(of_inner, matrix(n[0], n[0], of_inner_ones), std::vector<unsigned int>(), name_of(matrices));
   }
 
-  Eigen::VectorXd SubdomainSystem::apply_schur_complement(const Eigen::VectorXd &x) const
+  void SubdomainSystem::apply_schur_complements(const std::vector<const SubdomainSystem *> &subdomains,
+                                                std::vector<Eigen::VectorXd>               &x)
   {
-    Eigen::VectorXd u        = Eigen::VectorXd::Zero(n_unknowns());
-    u(touched_unknowns)      = x;
-    Eigen::VectorXd at_inner = apply_stiffness(u)(inner_unknowns);
-    inner->solve(at_inner);
-    u(inner_unknowns) = -at_inner; // no forces at the inner unknowns
-    return apply_stiffness(u)(touched_unknowns);
+    Eigen::MatrixXd at_inner(subdomains.front()->inner_touched.rows(), subdomains.size());
+    for (unsigned int k = 0; k < subdomains.size(); ++k)
+      at_inner.col(k) = subdomains[k]->inner_touched * x[k];
+    subdomains.front()->inner->solve(at_inner);
+    for (unsigned int k = 0; k < subdomains.size(); ++k)
+      x[k] = subdomains[k]->touched_part.selfadjointView<Eigen::Lower>() * x[k] -
+             subdomains[k]->inner_touched.transpose() * at_inner.col(k);
   }
 
   bool SubdomainSystem::prefers_factors(const SubdomainMatrices &matrices, const std::size_t n_touched)

@@ -68,7 +68,8 @@ namespace slipstick::tfeti
             systems[p] = std::make_unique<SubdomainSystem>(by_factors ? dissecting : session,
                                                            std::move(parts[p]),
                                                            touched[p],
-                                                           !by_factors && (explicit_blocks || has_schur));
+                                                           !by_factors && (explicit_blocks || has_schur),
+                                                           by_factors);
             if (by_factors)
               systems[p]->prepare_schur_complement(dissecting);
             seconds += MPI_Wtime() - start;

@@ -42,6 +42,43 @@ TEST(Cholesky, solves)
     }
 }
 
+TEST(Cholesky, solves_for_several_columns)
+{
+  const auto      A = shifted_stiffness(6);
+  const Cholesky  factor(session(), A, {}, "box");
+  Eigen::MatrixXd x(A.rows(), 3);
+  for (unsigned int k = 0; k < 3; ++k)
+    x.col(k) = random_vector(A.rows(), k);
+  Eigen::MatrixXd y = A.selfadjointView<Eigen::Lower>() * x;
+  factor.solve(y);
+  EXPECT_LT(relative_difference(y, x), 1e-13);
+}
+
+TEST(Cholesky, matrices_that_differ_by_rounding_share_a_factor_while_one_of_them_lives)
+{
+  const auto A = shifted_stiffness(5);
+  auto       B = A, C = A;
+  B *= 1 + 1e-15;
+  C.coeffRef(7, 7) *= 1 + 1e-9;
+  const auto common = session();
+  auto       a      = std::make_unique<Cholesky>(common, A, std::vector<unsigned int>(), "a");
+  const auto b      = std::make_unique<Cholesky>(common, B, std::vector<unsigned int>(), "b");
+  const auto c      = std::make_unique<Cholesky>(common, C, std::vector<unsigned int>(), "c");
+  EXPECT_EQ(a->identity(), b->identity());
+  EXPECT_NE(a->identity(), c->identity());
+  a.reset();
+  const Cholesky d(common, A, {}, "d");
+  EXPECT_EQ(d.identity(), b->identity());
+  using Solved = std::pair<const Cholesky *, const Eigen::SparseMatrix<double> *>;
+  for (const auto &[factor, matrix] : {Solved(b.get(), &B), Solved(c.get(), &C), Solved(&d, &A)})
+    {
+      const Eigen::VectorXd x = random_vector(A.rows(), 2);
+      Eigen::VectorXd       y = matrix->selfadjointView<Eigen::Lower>() * x;
+      factor->solve(y);
+      EXPECT_LT(relative_difference(y, x), 1e-12);
+    }
+}
+
 TEST(Cholesky, trailing_block_is_the_factor_of_the_schur_complement)
 {
   const auto A = shifted_stiffness(7);

@@ -216,6 +216,48 @@ TEST(SubdomainSystem, block_is_that_of_the_pseudo_inverse_at_the_touched_unknown
     }
 }
 
+TEST(SubdomainSystem, schur_complements_by_factors_are_those_by_blocks)
+{
+  for (const Example &example : examples())
+    {
+      if (example.touched.size() == std::size_t(example.matrices.load.size()) ||
+          tfeti::fixing_unknowns(example.matrices.kernel, example.touched).second <
+            0.1) // blocks hold other unknowns, too
+        continue;
+      SubdomainSystem by_factors = system(example, false);
+      by_factors.prepare_schur_complement(std::make_shared<tfeti::CholmodSession>());
+      const auto      x = random_vector(example.touched.size(), 1), y = random_vector(example.touched.size(), 2);
+      Eigen::VectorXd expected;
+      std::vector<Eigen::VectorXd> products{x, y};
+      SubdomainSystem::apply_schur_complements({&by_factors, &by_factors}, products);
+      system(example).schur_complement(tfeti::Precision::double_precision).multiply(x, expected);
+      EXPECT_LT((products[0] - expected).norm(), 1e-11 * example.matrices.stiffness.norm() * x.norm()) << example.name;
+      EXPECT_NEAR(x.dot(products[1]),
+                  y.dot(products[0]),
+                  1e-11 * example.matrices.stiffness.norm() * x.norm() * y.norm())
+        << example.name;
+    }
+}
+
+TEST(SubdomainSystem, congruent_subdomains_share_their_factors)
+{
+  const Torn                                    torn(cut(box(12), blocks(3)), MPI_COMM_SELF);
+  const auto                                    session = std::make_shared<tfeti::CholmodSession>();
+  std::vector<std::unique_ptr<SubdomainSystem>> systems;
+  for (const SubdomainMatrices &matrices : torn.matrices)
+    {
+      systems.push_back(std::make_unique<SubdomainSystem>(session, matrices, matrices.boundary_dofs, false, true));
+      systems.back()->prepare_schur_complement(session);
+      EXPECT_EQ(systems.back()->factor(), systems.front()->factor());
+      EXPECT_EQ(systems.back()->inner_factor(), systems.front()->inner_factor());
+    }
+  const auto           &K = torn.matrices.back().stiffness; // K K+ K = K
+  const Eigen::VectorXd x = random_vector(K.rows(), 1), Kx = K.selfadjointView<Eigen::Lower>() * x;
+  Eigen::VectorXd       u = Kx;
+  systems.back()->apply_pseudo_inverse(u);
+  EXPECT_LT(relative_difference(Eigen::VectorXd(K.selfadjointView<Eigen::Lower>() * u), Kx), 1e-12);
+}
+
 TEST(SubdomainSystem, fixing_unknowns_hold_all_motions)
 {
   for (const Example &example : examples())

@@ -20,17 +20,29 @@ namespace slipstick::tfeti
   };
 
   /// CHOLMOD's workspace, shared by the factorisations of a rank, and the analyses of their patterns: matrices with the
-  /// same pattern are analysed once.
+  /// same pattern are analysed once, and equal ones share a factor.
   class CholmodSession
   {
   public:
     explicit CholmodSession(const Ordering ordering = Ordering::minimum_degree);
     ~CholmodSession();
+
+    /// X with A X = B for one of the systems that CHOLMOD numbers; valid until the next call.
+    const double *solve(const int system, cholmod_factor &factor, cholmod_dense &B);
+
     CholmodSession(const CholmodSession &)            = delete;
     CholmodSession &operator=(const CholmodSession &) = delete;
 
     /// Symbolic factor of a matrix with the unknowns `last` ordered last. The caller copies it and does not change it.
     cholmod_factor *analysis(cholmod_sparse &A, const std::vector<unsigned int> &last);
+
+    /// A factor of a matrix with this pattern and, up to rounding, the same entries, if one is in use; empty: none.
+    std::shared_ptr<cholmod_factor> factor_of(const cholmod_sparse &A, const std::vector<unsigned int> &last) const;
+
+    /// Keeps a factor for factor_of() as long as others use it.
+    void keep(const cholmod_sparse                  &A,
+              const std::vector<unsigned int>       &last,
+              const std::shared_ptr<cholmod_factor> &factor);
 
     /// Number of analyses in the cache.
     std::size_t n_analyses() const
@@ -46,14 +58,23 @@ namespace slipstick::tfeti
   private:
     cholmod_factor *analyse(cholmod_sparse &A, const std::vector<unsigned int> &last);
 
+    struct Factorised
+    {
+      std::vector<double>           entries; // of the matrix
+      std::weak_ptr<cholmod_factor> factor;
+    };
     struct Analysis
     {
       std::vector<int>          columns, rows; // compressed columns of the pattern
       std::vector<unsigned int> last;
       cholmod_factor           *factor;
+      std::vector<Factorised>   factorised = {};
     };
+    std::vector<Analysis>::const_iterator find(const cholmod_sparse &A, const std::vector<unsigned int> &last) const;
+
     Ordering              ordering;
     std::vector<Analysis> analyses;
+    cholmod_dense        *X = nullptr, *Y = nullptr, *E = nullptr; // of the last solve
   };
 
   /// A = L L' of a symmetric positive definite matrix with n unknowns. The unknowns `last` are ordered last, so that
@@ -80,6 +101,15 @@ namespace slipstick::tfeti
     /// x := A^-1 x; n entries.
     void solve(Eigen::VectorXd &x) const;
 
+    /// The same for every column: the factor is read once.
+    void solve(Eigen::MatrixXd &columns) const;
+
+    /// The same for matrices that share their factor.
+    const void *identity() const
+    {
+      return factor.get();
+    }
+
     /// The two halves of solve(). solve_lower(): x := L^-1 x, the result in the order of L (the last unknowns last, as
     /// in `last_order`). solve_upper(): x := L^-T x, the result in the order of A again.
     void solve_lower(Eigen::VectorXd &x) const;
@@ -98,22 +128,11 @@ namespace slipstick::tfeti
     std::size_t n_nonzeros() const;
 
   private:
-    struct FactorDeleter
-    {
-      std::shared_ptr<CholmodSession> session;
-      void                            operator()(cholmod_factor *factor) const;
-    };
-    struct DenseDeleter
-    {
-      std::shared_ptr<CholmodSession> session;
-      void                            operator()(cholmod_dense *dense) const;
-    };
+    /// Solves one of the linear systems that CHOLMOD numbers (CHOLMOD_A, CHOLMOD_L, ...) for columns x.
+    void solve(const int system, double *x, const std::size_t n_columns) const;
 
-    /// Solves one of the linear systems that CHOLMOD numbers (CHOLMOD_A, CHOLMOD_L, ...).
-    void solve(const int system, Eigen::VectorXd &x) const;
-
-    std::shared_ptr<CholmodSession>                session;
-    std::unique_ptr<cholmod_factor, FactorDeleter> factor;
-    std::vector<unsigned int>                      trailing;
+    std::shared_ptr<CholmodSession> session;
+    std::shared_ptr<cholmod_factor> factor;
+    std::vector<unsigned int>       trailing;
   };
 } // namespace slipstick::tfeti

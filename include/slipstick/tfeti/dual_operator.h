@@ -86,9 +86,9 @@ namespace slipstick::tfeti
     std::size_t block_bytes() const;
 
   private:
-    template <class Local>
-    void apply(const DistributedVector &x, DistributedVector &y, const Local &local) const;
-    void solve(const unsigned int p, const Eigen::VectorXd &force, Eigen::VectorXd &at_touched) const;
+    template <class Products>
+    void apply(const DistributedVector &x, DistributedVector &y, const Products &add_products) const;
+    void add_solutions(const std::vector<unsigned int> &batch) const;
 
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     const std::vector<LocalGluing>                      &of_subdomains;    // B_p

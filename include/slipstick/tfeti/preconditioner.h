@@ -35,8 +35,9 @@ namespace slipstick::tfeti
   private:
     /// D^-1 B' W^-1 r: displacements of the touched unknowns of a subdomain. `source` must contain W^-1 r.
     Eigen::VectorXd move(const unsigned int p) const;
-    /// S or K times the displacements @p move.
-    void multiply(const unsigned int p, const Eigen::VectorXd &move, Eigen::VectorXd &force) const;
+    /// Calls f(p, move(p), S or K times that) for every subdomain of this rank.
+    template <class F>
+    void for_products(const F &f) const;
 
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     const DualOperator                                  &scatter_gather;

@@ -21,14 +21,26 @@ namespace slipstick::tfeti
     /// @param touched unknowns touched by rows of B, sorted; the fixing unknowns are taken from them if they can hold
     /// the subdomain, otherwise from its boundary.
     /// @param with_trailing_block order the touched and fixing unknowns last, for the dense blocks below.
+    /// @param fixed_at_boundary take the fixing unknowns from the boundary in any case: congruent subdomains then have
+    /// the same ones and share their factor.
     /// @throws NumericalError when the kernel of K is not spanned by R.
     SubdomainSystem(const std::shared_ptr<CholmodSession> &session,
                     SubdomainMatrices                      matrices,
                     std::vector<unsigned int>              touched,
-                    const bool                             with_trailing_block);
+                    const bool                             with_trailing_block,
+                    const bool                             fixed_at_boundary = false);
 
     /// x := K+ x; n entries [N] to [mm].
     void apply_pseudo_inverse(Eigen::VectorXd &x) const;
+
+    /// The same for the columns of subdomains with the same factor().
+    void apply_pseudo_inverse(Eigen::MatrixXd &columns) const;
+
+    /// Identity of the factor of K+, which congruent subdomains share; null: none.
+    const void *factor() const
+    {
+      return cholesky ? cholesky->identity() : nullptr;
+    }
 
     bool has_factor() const
     {
@@ -71,7 +83,7 @@ namespace slipstick::tfeti
     /// (strips) it is stored in double precision in any case, since single precision would lose the soft deformation.
     PackedSymmetric schur_complement(const Precision precision) const;
 
-    /// Computes the factor for apply_schur_complement(): of K at the unknowns that rows do not touch.
+    /// Computes the factor for apply_schur_complements(): of K at the unknowns that rows do not touch.
     void prepare_schur_complement(const std::shared_ptr<CholmodSession> &session);
 
     bool has_schur_complement() const
@@ -79,8 +91,16 @@ namespace slipstick::tfeti
       return inner.has_value();
     }
 
-    /// The Schur complement of K on the touched unknowns times @p x, in their order, without forming the matrix.
-    Eigen::VectorXd apply_schur_complement(const Eigen::VectorXd &x) const;
+    /// Identity of that factor; null: none.
+    const void *inner_factor() const
+    {
+      return inner ? inner->identity() : nullptr;
+    }
+
+    /// Schur complements of K on the touched unknowns times x, in their order, without forming the matrices, for subdomains
+    /// with the same inner_factor(). @param x by subdomain, becomes the products.
+    static void apply_schur_complements(const std::vector<const SubdomainSystem *> &subdomains,
+                                        std::vector<Eigen::VectorXd>               &x);
 
     /// Whether the touched unknowns are so many that their dense blocks would have far more entries than K.
     static bool prefers_factors(const SubdomainMatrices &matrices, const std::size_t n_touched);
@@ -144,12 +164,14 @@ namespace slipstick::tfeti
     double                          regularization; // rho [N/mm]
     bool                            is_soft;        // far softer in some deformation than the largest entry of K
     std::optional<Cholesky>         cholesky;       // empty after release()
-    std::vector<unsigned int>       inner_unknowns; // not touched
-    std::optional<Cholesky>         inner;          // of K at the inner unknowns
+    std::optional<Cholesky>         inner;          // of K at the unknowns that are not touched
+    Eigen::SparseMatrix<double>     inner_touched;  // K between these and the touched ones
+    Eigen::SparseMatrix<double>     touched_part;   // lower triangle of K at the touched unknowns
   };
 
   /// As many of the @p candidates as R has columns, chosen by pivoting so that the rows of R are as independent as
-  /// possible. @return the unknowns, and the smallest pivot (about 1 if they hold all motions well, 0 if they do not).
+  /// possible; of candidates whose squared pivots differ by no more than the part @p equal, the first. @return the unknowns, and the smallest pivot (about 1 if they hold all motions well, 0 if they do not).
   std::pair<std::vector<unsigned int>, double> fixing_unknowns(const Eigen::MatrixXd           &kernel,
-                                                               const std::vector<unsigned int> &candidates);
+                                                               const std::vector<unsigned int> &candidates,
+                                                               const double                     equal = 0);
 } // namespace slipstick::tfeti
