@@ -218,9 +218,10 @@ namespace slipstick::tfeti
     cholmod_sparse  A      = Eigen::viewAsCholmod(lower.selfadjointView<Eigen::Lower>());
     if (last.empty() && (factor = session->factor_of(A, last)))
       return;
+    // The session keeps a weak pointer, with which the deleter lives: it must not own the session, as every user does.
     factor                  = std::shared_ptr<cholmod_factor>(cholmod_copy_factor(session->analysis(A, last), &common),
-                                             [session](cholmod_factor *unused) {
-                                               cholmod_free_factor(&unused, &session->common);
+                                             [owner = session.get()](cholmod_factor *unused) {
+                                               cholmod_free_factor(&unused, &owner->common);
                                              });
     const auto *permutation = static_cast<const int *>(factor->Perm);
     trailing.assign(permutation + factor->n - last.size(), permutation + factor->n);
