@@ -158,6 +158,11 @@ namespace slipstick::tfeti
                             const std::vector<unsigned int>       &last,
                             const std::shared_ptr<cholmod_factor> &factor)
   {
+    for (Analysis &known : analyses) // entries of factors that are gone would only take memory
+      known.factorised.erase(std::remove_if(known.factorised.begin(),
+                                            known.factorised.end(),
+                                            [](const Factorised &old) { return old.factor.expired(); }),
+                             known.factorised.end());
     auto &factorised = analyses[find(A, last) - analyses.begin()].factorised;
     if (factorised.size() == max_factors)
       factorised.erase(factorised.begin());
