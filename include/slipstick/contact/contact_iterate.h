@@ -58,8 +58,8 @@ namespace slipstick::contact
     std::optional<Vector> gradient; // that tells Newton's method its first set: where SMALBE-M or the step before ended
     DualSolution          solution;
 
-    double                       size_of_forces = 0; // of the least forces found that balance the loads [N]
-    double                       forces_before  = 0; // as DualSolution::largest_forces
+    double                      size_of_forces = 0; // of the least forces found that balance the loads [N]
+    double                      forces_before  = 0; // as DualSolution::largest_forces
     std::optional<TractionTest> tractions;
 
   private:
