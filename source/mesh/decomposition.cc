@@ -3,6 +3,7 @@
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/decomposition.h>
 #include <slipstick/mesh/make_body.h>
+#include <slipstick/mesh/metis_parts.h>
 #include <slipstick/mesh/shapes.h>
 #include <slipstick/mesh/size_check.h>
 #include <slipstick/mesh/triangulate.h>

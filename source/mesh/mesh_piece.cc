@@ -1,53 +1,11 @@
 #include <slipstick/mesh/mesh_piece.h>
 
-#include <metis.h>
-
-#include <cmath>
 #include <numeric>
 
 namespace slipstick::mesh
 {
   namespace
   {
-    constexpr unsigned int most_bisected = 8; // parts
-    // METIS uses integer weights and sums them in 32 bits.
-    constexpr double weight_of_mean_face = 100, largest_sum = 1e9;
-
-    template <int dim>
-    double size_of(const MeshPiece<dim> &piece, const typename MeshPiece<dim>::Face &face)
-    {
-      const auto x = [&](const unsigned int k) { return piece.vertices[face[k]]; };
-      if constexpr (dim == 2)
-        return x(0).distance(x(1));
-      else
-        {
-          const auto area =
-            [&](const unsigned int a, const unsigned int b, const unsigned int c, const unsigned int d) {
-              return dealii::cross_product_3d(x(b) - x(a), x(d) - x(c)).norm() / 2;
-            };
-          if (face.back() == MeshPiece<dim>::no_vertex)
-            return area(0, 1, 0, 2);
-          // half the product of the diagonals; vertices are sorted, and other pairings give less
-          return std::max({area(0, 1, 2, 3), area(0, 2, 1, 3), area(0, 3, 1, 2)});
-        }
-    }
-
-    /// For every face and cell: size of the face over the geometric mean of the sizes of the cell's faces.
-    template <int dim>
-    std::vector<double> relative_sizes(const MeshPiece<dim>                                                      &piece,
-                                       const std::vector<std::pair<typename MeshPiece<dim>::Face, unsigned int>> &faces)
-    {
-      std::vector<double> sizes, means(piece.cells.size(), 0.); // logarithms of means
-      for (const auto &[face, cell] : faces)
-        {
-          sizes.push_back(std::max(size_of(piece, face), std::numeric_limits<double>::min()));
-          means[cell] += std::log(sizes.back()) / n_faces<dim>(piece.cells[cell]);
-        }
-      for (std::size_t k = 0; k < faces.size(); ++k)
-        sizes[k] /= std::exp(means[faces[k].second]);
-      return sizes;
-    }
-
     /// Sub-piece of the given cells.
     template <int dim>
     MeshPiece<dim> extract(
@@ -268,70 +226,6 @@ namespace slipstick::mesh
     return pieces;
   }
 
-  template <int dim>
-  std::vector<unsigned int> metis_parts(const MeshPiece<dim> &piece,
-                                        const unsigned int    n_parts,
-                                        const unsigned int    seed)
-  {
-    const unsigned int        n_cells = piece.cells.size();
-    std::vector<unsigned int> part(n_cells, 0);
-    if (n_parts <= 1)
-      return part;
-    if (n_parts >= n_cells)
-      {
-        std::iota(part.begin(), part.end(), 0);
-        return part;
-      }
-
-    // cells that share a face, in METIS' compressed row format
-    const auto         faces = faces_with_cells(piece);
-    std::vector<idx_t> first(n_cells + 1, 0);
-    const auto         for_neighbours = [&faces](const auto &f) {
-      for (std::size_t k = 1; k < faces.size(); ++k)
-        if (faces[k].first == faces[k - 1].first)
-          {
-            f(faces[k].second, faces[k - 1].second, k);
-            f(faces[k - 1].second, faces[k].second, k);
-          }
-    };
-    for_neighbours([&first](const unsigned int c, const unsigned int, const std::size_t) { ++first[c + 1]; });
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<idx_t> neighbours(first.back()), weights(first.back()), next(first.begin(), first.end() - 1);
-    const auto         sizes = relative_sizes(piece, faces);
-    const double scale = std::min(weight_of_mean_face, largest_sum / std::accumulate(sizes.begin(), sizes.end(), 1.));
-    for_neighbours([&](const unsigned int c, const unsigned int other, const std::size_t k) {
-      weights[next[c]]      = std::max(1., std::round(scale * std::sqrt(sizes[k] * sizes[k - 1])));
-      neighbours[next[c]++] = other;
-    });
-
-    idx_t options[METIS_NOPTIONS];
-    METIS_SetDefaultOptions(options);
-    options[METIS_OPTION_NUMBERING] = 0;
-    options[METIS_OPTION_SEED]      = seed;
-    if (n_parts > most_bisected)
-      options[METIS_OPTION_CONTIG] = 1; // connected parts
-    idx_t              n = n_cells, n_weights = 1, parts = n_parts, n_cut = 0;
-    std::vector<idx_t> result(n_cells);
-    // bisection gives rounder parts for few parts (METIS manual, section 5.1); k-way keeps each part connected
-    const auto partition = n_parts <= most_bisected ? METIS_PartGraphRecursive : METIS_PartGraphKway;
-    const int  status    = partition(&n,
-                                 &n_weights,
-                                 first.data(),
-                                 neighbours.data(),
-                                 nullptr,
-                                 nullptr,
-                                 weights.data(),
-                                 &parts,
-                                 nullptr,
-                                 nullptr,
-                                 options,
-                                 &n_cut,
-                                 result.data());
-    AssertThrow(status == METIS_OK, dealii::ExcMessage("METIS failed with status " + std::to_string(status)));
-    part.assign(result.begin(), result.end());
-    return part;
-  }
-
   template struct MeshPiece<2>;
   template std::vector<std::pair<MeshPiece<2>::Face, unsigned int>> faces_with_cells(const MeshPiece<2> &);
   template std::map<MeshPiece<2>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<2> &);
@@ -342,7 +236,6 @@ namespace slipstick::mesh
                                            const std::array<unsigned int, 2> &);
   template void                                                     place(MeshPiece<2> &, const scene::Placement<2> &);
   template std::vector<MeshPiece<2>> cut(const MeshPiece<2> &, const std::vector<unsigned int> &);
-  template std::vector<unsigned int> metis_parts(const MeshPiece<2> &, const unsigned int, const unsigned int);
   template struct MeshPiece<3>;
   template std::vector<std::pair<MeshPiece<3>::Face, unsigned int>> faces_with_cells(const MeshPiece<3> &);
   template std::map<MeshPiece<3>::Face, dealii::types::boundary_id> ids_of_faces(const MeshPiece<3> &);
@@ -353,5 +246,4 @@ namespace slipstick::mesh
                                            const std::array<unsigned int, 3> &);
   template void                                                     place(MeshPiece<3> &, const scene::Placement<3> &);
   template std::vector<MeshPiece<3>> cut(const MeshPiece<3> &, const std::vector<unsigned int> &);
-  template std::vector<unsigned int> metis_parts(const MeshPiece<3> &, const unsigned int, const unsigned int);
 } // namespace slipstick::mesh

@@ -1,4 +1,5 @@
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/termination.h>
 #include <slipstick/tfeti/cholesky.h>
 
 #include <deal.II/base/exceptions.h>
@@ -91,8 +92,12 @@ namespace slipstick::tfeti
       pattern.x                   = nullptr;
       pattern.xtype               = CHOLMOD_PATTERN;
       std::vector<int> permutation(others.size());
-      AssertThrow(others.empty() || cholmod_metis(&pattern, nullptr, 0, 1, permutation.data(), &common) != 0,
-                  dealii::ExcMessage("cholmod_metis failed"));
+      if (!others.empty())
+        {
+          const bool success = cholmod_metis(&pattern, nullptr, 0, 1, permutation.data(), &common) != 0;
+          raise_termination(!success && common.status != CHOLMOD_OUT_OF_MEMORY);
+          AssertThrow(success, dealii::ExcMessage("cholmod_metis failed"));
+        }
       for (int &k : permutation)
         k = others[k];
       permutation.insert(permutation.end(), last.begin(), last.end());

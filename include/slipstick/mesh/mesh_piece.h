@@ -173,12 +173,4 @@ namespace slipstick::mesh
   /// parts that are not connected through faces become several pieces. Pieces are ordered by part and first cell.
   template <int dim>
   std::vector<MeshPiece<dim>> cut(const MeshPiece<dim> &whole, const std::vector<unsigned int> &part);
-
-  /// METIS partition of the cells of @p piece, which must be connected through faces, with short interfaces: faces are
-  /// weighted by their size relative to the other faces of their cells, so that flat cells do not give flat parts.
-  /// @return a part number for every cell.
-  template <int dim>
-  std::vector<unsigned int> metis_parts(const MeshPiece<dim> &piece,
-                                        const unsigned int    n_parts,
-                                        const unsigned int    seed = 0);
 } // namespace slipstick::mesh
