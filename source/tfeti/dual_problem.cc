@@ -13,11 +13,6 @@ namespace slipstick::tfeti
     // Positions of nodes in files are rounded by up to this part of the size of bodies (seven digits).
     constexpr double rounding_of_positions = 1e-7;
 
-    // Stiffness of a point over its stiffness with all neighbours held, of which a row metric is made: the neighbours move
-    // with it. The displacements of a point force fall off as the logarithm of the distance in the plane, as 1 over the
-    // distance in space (doc/decisions/0090, 0122).
-    constexpr double yielding_in_plane = 0.1, yielding_in_space = 1. / 3;
-
     /// A number in (-1, 1) from a label, so that the start vector of Lanczos' method does not depend on the number of
     /// ranks.
     double random_number(std::uint64_t label)
@@ -127,11 +122,6 @@ namespace slipstick::tfeti
         rows.c[r] += correction_of_c[r];
       }
     contradiction = dealii::Utilities::MPI::max(contradiction, comm);
-  }
-
-  double DualProblem::point_stiffness() const
-  {
-    return M ? (bodies->are_solids() ? yielding_in_space : yielding_in_plane) * norm_PFP * row_metric.least() : 0.;
   }
 
   void DualProblem::set_dependent_compliances()

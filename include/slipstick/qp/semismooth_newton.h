@@ -25,8 +25,8 @@
 //       `balance(stiffness, set, tolerated, moved)`   moves them, moved -= stiffness times their jumps, so that proj(moved)
 //           balances their loads, up to the part `tolerated` of all forces: the least of the potential of the projected
 //           forces. So sets are predicted that can bear the loads.
-// It may have `point_stiffness() const`, |PFP| over the diagonal entry of F of an entry of weight 1, about (active_set.h), and, as
-// its faces, `dependent_compliances() const` (kernels.h).
+// It may have `point_stiffness() const`, |PFP| times the stiffness of an entry of weight 1 whose neighbours are held (active_set.h),
+// and, as its faces, `dependent_compliances() const` (kernels.h).
 #pragma once
 
 #include <slipstick/qp/active_set.h>

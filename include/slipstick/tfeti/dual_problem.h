@@ -122,9 +122,12 @@ namespace slipstick::tfeti
       return contradiction;
     }
 
-    /// |P F P| times the stiffness of the point of the row of weight 1, about |P F P| over its diagonal entry of F. 0 if
-    /// unknown (without a preconditioner).
-    double point_stiffness() const;
+    /// |P F P| times the stiffness of the row of weight 1 with its neighbours held. 0 if unknown (without a
+    /// preconditioner) or if it does not improve the prediction of the active set (solids; doc/decisions/0090).
+    double point_stiffness() const
+    {
+      return M && !bodies->are_solids() ? norm_PFP * row_metric.least() : 0.;
+    }
 
     /// The problem on the owned rows with `free`; the other rows are fixed, or tied to free ones. In space, rows of
     /// slipping nodes are turned. Collective.
