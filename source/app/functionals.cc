@@ -53,6 +53,8 @@ namespace slipstick::app
         list.push_back(normal_force(name + ".normal_force", k));
         list.push_back(tangential_force(name + ".tangential_force", k));
         list.push_back(pressure(name + ".max_pressure", k));
+        list.push_back(pressure_norm(name + ".pressure_norm", k));
+        list.push_back(traction_norm(name + ".traction_norm", k));
       }
     for (unsigned int s = 0; s < solver.n_given_supports(); ++s)
       for (unsigned int d = 0; d < dim; ++d)
@@ -262,6 +264,49 @@ namespace slipstick::app
     else if (best == rank)
       goal.jumps[at] = 1 / area;
     return goal;
+  }
+
+  template <int dim>
+  Functional Functionals<dim>::pressure_norm(const std::string &name, const unsigned int pair) const
+  {
+    Functional square{name, "N/mm", 0, std::vector<double>(n_rows, 0.), {}, {}};
+    for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+      if (point.normal_row != tfeti::invalid_row && point.traction_area > 0)
+        square.jumps[point.normal_row] = x.local_element(point.normal_row) / point.traction_area;
+    });
+    square.value = value_of(square.jumps);
+    return as_norm(std::move(square));
+  }
+
+  template <int dim>
+  Functional Functionals<dim>::traction_norm(const std::string &name, const unsigned int pair) const
+  {
+    Functional square{name, "N/mm", 0, std::vector<double>(n_rows, 0.), {}, {}};
+    for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+      for (const unsigned int row : {point.tangential_row, point.second_row})
+        if (row != tfeti::invalid_row && point.traction_area > 0)
+          square.jumps[row] = x.local_element(row) / point.traction_area;
+    });
+    square.value = value_of(square.jumps);
+    if (slides(pair)) // as for the force
+      for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+        if (point.normal_row != tfeti::invalid_row && point.tangential_row != tfeti::invalid_row &&
+            point.traction_area > 0 && !solver.solution().free[point.tangential_row] &&
+            x.local_element(point.normal_row) > 0)
+          square.jumps[point.normal_row] =
+            tangential(point) * tangential(point) / (point.traction_area * x.local_element(point.normal_row));
+      });
+    return as_norm(std::move(square));
+  }
+
+  template <int dim>
+  Functional Functionals<dim>::as_norm(Functional square) const
+  {
+    square.value = std::sqrt(square.value);
+    if (square.value > 0)
+      for (double &g : square.jumps)
+        g /= square.value;
+    return square;
   }
 
   template <int dim>

@@ -1,5 +1,6 @@
 #include <slipstick/app/functionals.h>
 #include <slipstick/app/goals.h>
+#include <slipstick/app/stress_functionals.h>
 #include <slipstick/base/collective.h>
 #include <slipstick/contact/adjoint.h>
 #include <slipstick/interface/gap_defect.h>
@@ -216,18 +217,21 @@ namespace slipstick::app
   } // namespace
 
   template <int dim>
-  std::vector<GoalError> goal_errors(StepSolver<dim>                &solver,
-                                     const mechanics::Probes<dim>   &probes,
-                                     const StepSolution             &answer,
-                                     const double                    t,
-                                     const std::vector<std::string> &quantities)
+  std::vector<GoalError> goal_errors(StepSolver<dim>                                 &solver,
+                                     const mechanics::Probes<dim>                    &probes,
+                                     const StepSolution                              &answer,
+                                     const double                                     t,
+                                     const std::vector<mechanics::Surroundings<dim>> &peaks,
+                                     const std::vector<std::string>                  &quantities)
   {
     const auto wanted = [&](const std::string &name) {
       return quantities.empty() || std::find(quantities.begin(), quantities.end(), name) != quantities.end();
     };
-    const auto               gaps = solver.dual().constraints().c; // overwritten by the adjoint problems
-    const Functionals<dim>   of_scene(solver, probes, answer, t);
-    const auto               functionals = of_scene.all();
+    const auto             gaps = solver.dual().constraints().c; // overwritten by the adjoint problems
+    const Functionals<dim> of_scene(solver, probes, answer, t);
+    auto                   functionals = of_scene.all();
+    for (auto &functional : stress_functionals(solver, probes, answer, of_scene.point_forces(), peaks, t, quantities))
+      functionals.push_back(std::move(functional));
     const ErrorProducts<dim> products(solver, answer, t);
     const GapErrors<dim>     gap_errors(solver, t);
     contact::Adjoint         adjoint(solver.dual_for_adjoints(), solver.solution().free, scene::SolverOptions().pcpg);
@@ -240,6 +244,8 @@ namespace slipstick::app
           error.quantity = functional.quantity;
           error.unit     = functional.unit;
           error.value    = functional.value;
+          error.local    = functional.local_error;
+          error.note     = functional.note;
           error.reason   = adjoint.is_possible() ? functional.reason : loose;
           if (error.reason.empty())
             {
@@ -271,10 +277,12 @@ namespace slipstick::app
                                               const mechanics::Probes<2> &,
                                               const StepSolution &,
                                               const double,
+                                              const std::vector<mechanics::Surroundings<2>> &,
                                               const std::vector<std::string> &);
   template std::vector<GoalError> goal_errors(StepSolver<3> &,
                                               const mechanics::Probes<3> &,
                                               const StepSolution &,
                                               const double,
+                                              const std::vector<mechanics::Surroundings<3>> &,
                                               const std::vector<std::string> &);
 } // namespace slipstick::app

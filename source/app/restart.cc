@@ -37,8 +37,8 @@ namespace slipstick
     void serialize(Archive &a, PairResult &x, const unsigned int)
     {
       a &x.pair &x.on_slave &x.normal_force &x.tangential_force &x.moment_mismatch &x.max_pressure &x.contact_length &x
-        .contact_nodes &x.open_nodes &x.stick_nodes &x.open_slip_nodes &x.slip_nodes &x.algebraic_error.pressure &x
-        .algebraic_error.tangential;
+        .contact_nodes &x.open_nodes &x.stick_nodes &x.open_slip_nodes &x.slip_nodes &x.norm.pressure &x.norm
+        .tangential &x.algebraic_error.pressure &x.algebraic_error.tangential;
     }
     template <class Archive>
     void serialize(Archive &a, History &x, const unsigned int)
@@ -172,7 +172,7 @@ namespace slipstick::app
   {
     const std::string head_name = "restart.bin";
     // Number of the file format; it must change with the layout.
-    constexpr unsigned int format_number = 6;
+    constexpr unsigned int format_number = 7;
 
     /// Contents of restart.bin: identifies the run to which the files belong.
     struct Head

@@ -1,3 +1,4 @@
+#include <slipstick/app/contact_profile.h>
 #include <slipstick/app/error_bars.h>
 #include <slipstick/app/formula_warnings.h>
 #include <slipstick/app/geometry_checks.h>
@@ -367,12 +368,9 @@ namespace slipstick::app
   void Run<dim>::estimate_errors(const double t, output::Summary &summary)
   {
     clock.enter("recovery");
-    errors = goal_errors(solver, probes, *last, t, *wanted);
-    summary.error_bars =
-      error_bars(errors,
-                 summary.results,
-                 contact_steps.empty() ? std::vector<contact::ContactNode>() : contact_steps.back().nodes,
-                 scene.contacts);
+    const auto nodes   = contact_steps.empty() ? std::vector<contact::ContactNode>() : contact_steps.back().nodes;
+    errors             = goal_errors(solver, probes, *last, t, pressure_peaks(nodes, scene.contacts, comm), *wanted);
+    summary.error_bars = error_bars(errors, summary.results, nodes, scene.contacts);
     clock.leave();
   }
 

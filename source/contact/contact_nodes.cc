@@ -149,6 +149,8 @@ namespace slipstick::contact
           }
         result.on_slave.add<3>(force, node.acts_at);
         result.max_pressure = std::max(result.max_pressure, node.pressure);
+        result.norm.pressure += node.pressure * node.pressure * node.area;
+        result.norm.tangential += node.tangential_traction * node.tangential_traction * node.area;
         result.contact_length += node.is_closed ? node.length : 0.;
         result.contact_nodes += node.is_closed;
         result.open_nodes += !node.is_closed;
@@ -156,6 +158,8 @@ namespace slipstick::contact
         result.open_slip_nodes += node.status == ContactStatus::slip && !node.is_closed;
         result.stick_nodes += node.status == ContactStatus::stick;
       }
+    for (auto &result : results)
+      result.norm = {std::sqrt(result.norm.pressure), std::sqrt(result.norm.tangential)};
     return results;
   }
 } // namespace slipstick::contact

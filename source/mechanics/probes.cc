@@ -1,6 +1,7 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
+#include <slipstick/mechanics/nearest_in_cell.h>
 #include <slipstick/mechanics/probes.h>
 
 #include <deal.II/base/mpi.h>
@@ -15,49 +16,6 @@ namespace slipstick::mechanics
   {
     // Maximum distance of a point from its cell, as a fraction of the diameter: edges cut off part of the true curves.
     constexpr double reach_of_probe = 0.1;
-    // Cells are examined if their box, enlarged by this fraction of their diameter, contains the point.
-    constexpr double margin_of_boxes = 0.2;
-
-    /// Approximately the point of the reference cell nearest to x.
-    template <int dim>
-    dealii::Point<dim> into_cell(const dealii::ReferenceCell &cell, dealii::Point<dim> x)
-    {
-      for (unsigned int d = 0; d < dim; ++d)
-        x[d] = std::min(1., std::max(0., x[d]));
-      if (cell.is_simplex())
-        {
-          double sum = 0;
-          for (unsigned int d = 0; d < dim; ++d)
-            sum += x[d];
-          if (sum > 1)
-            for (unsigned int d = 0; d < dim; ++d)
-              x[d] = std::max(0., x[d] - (sum - 1) / dim);
-          sum = 0;
-          for (unsigned int d = 0; d < dim; ++d)
-            sum += x[d];
-          if (sum > 1)
-            x /= sum;
-        }
-      return x;
-    }
-
-    template <int dim>
-    bool may_contain(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell, const dealii::Point<dim> &x)
-    {
-      const double margin = margin_of_boxes * cell->diameter();
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          double low = std::numeric_limits<double>::max(), high = -low;
-          for (const unsigned int v : cell->vertex_indices())
-            {
-              low  = std::min(low, cell->vertex(v)[d]);
-              high = std::max(high, cell->vertex(v)[d]);
-            }
-          if (x[d] < low - margin || x[d] > high + margin)
-            return false;
-        }
-      return true;
-    }
   } // namespace
 
   template <int dim>
@@ -120,27 +78,13 @@ namespace slipstick::mechanics
     for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
       if (mesh.subdomains[p]->body == body)
         for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
-          if (may_contain<dim>(cell, x))
+          if (const auto nearest = nearest_in_cell<dim>(spaces.of(p), cell, x);
+              nearest && nearest->distance < best.first)
             {
-              const auto        &mapping = *spaces.of(p).mapping;
-              dealii::Point<dim> unit;
-              try
-                {
-                  unit = mapping.transform_real_to_unit_cell(cell, x);
-                }
-              catch (const typename dealii::Mapping<dim>::ExcTransformationFailed &) // far outside a distorted cell
-                {
-                  continue;
-                }
-              unit                  = into_cell(spaces.of(p).cell, unit);
-              const double distance = mapping.transform_unit_to_real_cell(cell, unit).distance(x);
-              if (distance < best.first)
-                {
-                  best       = {distance, cell->diameter()};
-                  place.p    = p;
-                  place.cell = cell;
-                  place.unit = unit;
-                }
+              best       = {nearest->distance, cell->diameter()};
+              place.p    = p;
+              place.cell = cell;
+              place.unit = nearest->unit;
             }
     return best;
   }

@@ -8,6 +8,7 @@
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -178,8 +179,16 @@ namespace slipstick::mechanics
   }
 
   template <int dim>
-  StressPlaces<dim> stress_places(const mesh::Mesh<dim> &mesh, const Spaces<dim> &spaces, const StressResult &stress)
+  StressPlaces<dim> stress_places(const mesh::Mesh<dim>                &mesh,
+                                  const Spaces<dim>                    &spaces,
+                                  const StressResult                   &stress,
+                                  const std::vector<Surroundings<dim>> &left_out)
   {
+    const auto is_left_out = [&](const unsigned int body, const dealii::Point<dim> &x) {
+      return std::any_of(left_out.begin(), left_out.end(), [&](const Surroundings<dim> &around) {
+        return around.of.body == body && around.of.position.distance(x) <= around.radius;
+      });
+    };
     std::vector<Spot<dim>>                       spots(2); // stress, error
     std::vector<dealii::types::global_dof_index> dofs;
     std::vector<unsigned int>                    nodes;
@@ -198,14 +207,14 @@ namespace slipstick::mechanics
               {
                 const auto   s     = stress.subdomains[p].nodal.row(nodes[i]);
                 const double value = von_mises<dim>(s);
-                if (value >= spots[0].value * (1 - same_value))
-                  spots[0].take(
-                    value,
-                    cell->diameter(),
-                    body,
-                    i < cell->n_vertices()
-                      ? cell->vertex(i)
-                      : element.mapping->transform_unit_to_real_cell(cell, element.scalar->unit_support_point(i)));
+                if (value < spots[0].value * (1 - same_value))
+                  continue;
+                const auto x =
+                  i < cell->n_vertices()
+                    ? cell->vertex(i)
+                    : element.mapping->transform_unit_to_real_cell(cell, element.scalar->unit_support_point(i));
+                if (!is_left_out(body, x))
+                  spots[0].take(value, cell->diameter(), body, x);
               }
           }
       }
@@ -225,7 +234,10 @@ namespace slipstick::mechanics
                                                          const mesh::Mesh<2> &,
                                                          const Spaces<2> &,
                                                          const unsigned int);
-  template StressPlaces<2>               stress_places(const mesh::Mesh<2> &, const Spaces<2> &, const StressResult &);
+  template StressPlaces<2>               stress_places(const mesh::Mesh<2> &,
+                                                       const Spaces<2> &,
+                                                       const StressResult &,
+                                                       const std::vector<Surroundings<2>> &);
   template struct SingularPoint<3>;
   template std::vector<SingularPoint<3>> force_points(const scene::Scene<3> &,
                                                       const mesh::Mesh<3> &,
@@ -235,5 +247,8 @@ namespace slipstick::mechanics
                                                          const mesh::Mesh<3> &,
                                                          const Spaces<3> &,
                                                          const unsigned int);
-  template StressPlaces<3>               stress_places(const mesh::Mesh<3> &, const Spaces<3> &, const StressResult &);
+  template StressPlaces<3>               stress_places(const mesh::Mesh<3> &,
+                                                       const Spaces<3> &,
+                                                       const StressResult &,
+                                                       const std::vector<Surroundings<3>> &);
 } // namespace slipstick::mechanics

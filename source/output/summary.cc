@@ -123,6 +123,8 @@ namespace slipstick::output
            {"moment", moment(pair.on_slave.moment, dim)},
            {"moment_mismatch", moment(pair.moment_mismatch, dim)},
            {"max_pressure", pair.max_pressure},
+           {"pressure_norm", pair.norm.pressure},
+           {"traction_norm", pair.norm.tangential},
            {dim == 2 ? "contact_length" : "contact_area", pair.contact_length},
            {"contact_nodes", pair.contact_nodes},
            {"open_nodes", pair.open_nodes},
@@ -201,6 +203,8 @@ namespace slipstick::output
                           {"unit", bar.unit}});
           if (!bar.error)
             list.back()["reason"] = bar.reason;
+          if (!bar.note.empty())
+            list.back()["note"] = bar.note;
         }
       return list;
     }

@@ -2,6 +2,8 @@
 #include <slipstick/scene/adaptivity.h>
 #include <slipstick/scene/declare.h>
 
+#include <array>
+
 namespace slipstick::scene
 {
   namespace
@@ -12,17 +14,23 @@ namespace slipstick::scene
   template <int dim>
   std::vector<std::string> quantity_names(const Scene<dim> &scene)
   {
-    std::vector<std::string> names = {"max_displacement", "strain_energy"};
+    std::vector<std::string> names = {"max_displacement", "max_von_mises", "max_regular_von_mises", "strain_energy"};
     for (const auto &pair : scene.contacts)
-      for (const char *what : {"normal_force", "tangential_force", "max_pressure"})
+      for (const char *what : {"normal_force", "tangential_force", "max_pressure", "pressure_norm", "traction_norm"})
         names.push_back(pair.name + "." + what);
     for (const auto &support : scene.supports)
       for (unsigned int d = 0; d < dim; ++d)
         names.push_back(support.name + ".force_" + "xyz"[d]);
     for (const auto &probe : scene.probes)
       if (probe.ends.size() == 1)
-        for (unsigned int d = 0; d < dim; ++d)
-          names.push_back(probe.name + ".u_" + "xyz"[d]);
+        {
+          for (unsigned int d = 0; d < dim; ++d)
+            names.push_back(probe.name + ".u_" + "xyz"[d]);
+          constexpr std::array<const char *, 6> components = {{"xx", "yy", "xy", "zz", "xz", "yz"}};
+          for (unsigned int c = 0; c < 2 * dim; ++c)
+            names.push_back(probe.name + ".stress_" + components[c]);
+          names.push_back(probe.name + ".von_mises");
+        }
     return names;
   }
 

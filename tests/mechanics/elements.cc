@@ -59,19 +59,6 @@ namespace
     };
   }
 
-  /// xx, yy, xy, zz of a displacement gradient, from the three-dimensional law
-  Eigen::Vector4d stress_of(const Scene &scene, const Eigen::Matrix2d &gradient)
-  {
-    const double E = scene.materials[0].young_modulus, nu = scene.materials[0].poisson_ratio;
-    const double G = E / (2 * (1 + nu)), lambda = 2 * G * nu / (1 - 2 * nu);
-    const double e_zz  = scene.plane_state == PlaneState::plane_strain ? 0 : -nu / (1 - nu) * gradient.trace();
-    const double theta = gradient.trace() + e_zz;
-    return {lambda * theta + 2 * G * gradient(0, 0),
-            lambda * theta + 2 * G * gradient(1, 1),
-            G * (gradient(0, 1) + gradient(1, 0)),
-            lambda * theta + 2 * G * e_zz};
-  }
-
   /// Tractions that belong to a uniform stress of the unit square.
   void load_uniformly(Scene &scene, const Eigen::Vector4d &s)
   {

@@ -54,10 +54,16 @@ TEST(Summary, sections_are_those_of_the_contract)
 TEST(Summary, problem_has_the_keys_of_the_contract)
 {
   const Json problem = parsed(Summary())["problem"];
-  EXPECT_EQ(
-    keys(problem),
-    Keys(
-      {"dimension", "plane_state", "bodies", "subdomains", "primal_dofs", "kernel_dimension", "cells", "dual", "contact_candidates"}));
+  EXPECT_EQ(keys(problem),
+            Keys({"dimension",
+                  "plane_state",
+                  "bodies",
+                  "subdomains",
+                  "primal_dofs",
+                  "kernel_dimension",
+                  "cells",
+                  "dual",
+                  "contact_candidates"}));
   EXPECT_EQ(keys(problem["dual"]), Keys({"total", "equality", "normal", "tangential"}));
 }
 
@@ -122,6 +128,8 @@ TEST(Summary, results_have_the_keys_of_the_contract)
                   "moment",
                   "moment_mismatch",
                   "max_pressure",
+                  "pressure_norm",
+                  "traction_norm",
                   "contact_length",
                   "contact_nodes",
                   "open_nodes",

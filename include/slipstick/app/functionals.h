@@ -19,6 +19,8 @@ namespace slipstick::app
     std::vector<Eigen::VectorXd> loads;     // for a quantity of displacements
     std::string                  reason;    // why there is no estimate; empty: there is one
     bool                         is_of_multipliers = true;
+    double                       local_error       = 0;  // besides that of the adjoint problem, not negative
+    std::string                  note              = ""; // what the quantity covers, if its name does not say it
   };
 
   /// The quantities of a scene, from multipliers and displacements of the last load step. Members are collective.
@@ -38,7 +40,7 @@ namespace slipstick::app
       return points;
     }
 
-    /// All except the strain energy and lengths of contact.
+    /// All except stresses, the strain energy and lengths of contact.
     std::vector<Functional> all() const;
 
   private:
@@ -74,6 +76,14 @@ namespace slipstick::app
     bool slides(const unsigned int pair) const;
 
     Functional pressure(const std::string &name, const unsigned int pair) const;
+
+    /// L2 norms over the contact of the pressure, of the tangential traction; in the plane and for bodies of revolution over
+    /// the true area.
+    Functional pressure_norm(const std::string &name, const unsigned int pair) const;
+    Functional traction_norm(const std::string &name, const unsigned int pair) const;
+
+    /// Divides by the norm what is still its square.
+    Functional as_norm(Functional square) const;
 
     Functional reaction(const std::string &name, const unsigned int support, const unsigned int d) const;
 

@@ -3,6 +3,7 @@
 
 #include <slipstick/app/step_solver.h>
 #include <slipstick/mechanics/probes.h>
+#include <slipstick/mechanics/singular_points.h>
 
 #include <string>
 #include <vector>
@@ -19,6 +20,8 @@ namespace slipstick::app
     double                       value    = 0; // of the quantity
     double                       signed_  = 0; // sum over the cells: the correction to be added to the value
     double                       absolute = 0; // sum of the magnitudes
+    double                       local    = 0; // error besides that of the cells (Functional::local_error)
+    std::string                  note;         // Functional::note
     std::vector<Eigen::VectorXd> cells;        // by subdomain of this rank: contributions of the cells
   };
 
@@ -29,12 +32,14 @@ namespace slipstick::app
   /// are fixed in the adjoint problem; only for the tangential force of a pair that slides as a whole they follow the
   /// pressure. In space the friction forces of slipping nodes also keep their directions, and the tangential force is
   /// the sum of their magnitudes.
-  /// @param quantities whose errors are requested; empty: all.
+  /// @param peaks of contact where stresses are not resolved. @param quantities whose errors are requested;
+  /// empty: all.
   /// Changes the dual problem of @p solver, which is set to the last load step. Collective.
   template <int dim>
-  std::vector<GoalError> goal_errors(StepSolver<dim>                &solver,
-                                     const mechanics::Probes<dim>   &probes,
-                                     const StepSolution             &answer,
-                                     const double                    t,
-                                     const std::vector<std::string> &quantities);
+  std::vector<GoalError> goal_errors(StepSolver<dim>                                 &solver,
+                                     const mechanics::Probes<dim>                    &probes,
+                                     const StepSolution                              &answer,
+                                     const double                                     t,
+                                     const std::vector<mechanics::Surroundings<dim>> &peaks,
+                                     const std::vector<std::string>                  &quantities);
 } // namespace slipstick::app

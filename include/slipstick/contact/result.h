@@ -82,6 +82,7 @@ namespace slipstick::contact
     unsigned int open_slip_nodes = 0; // of these, not closed
     unsigned int slip_nodes      = 0; // slip bound reached, see ContactNode on nodes that are not closed
 
+    PairTractions norm;            // L2 norms of the tractions [N/mm]
     PairTractions algebraic_error; // relative, see TractionErrors
   };
 } // namespace slipstick::contact

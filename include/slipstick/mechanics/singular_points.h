@@ -47,7 +47,19 @@ namespace slipstick::mechanics
     Peak<dim> error;     // the centre of a cell [sqrt(N mm)]
   };
 
-  /// If values are equal, the place with the smallest x, then y, independent of the number of ranks. Collective.
+  /// A singular point and the distance up to which stresses count as its own [mm].
   template <int dim>
-  StressPlaces<dim> stress_places(const mesh::Mesh<dim> &mesh, const Spaces<dim> &spaces, const StressResult &stress);
+  struct Surroundings
+  {
+    SingularPoint<dim> of;
+    double             radius = 0;
+  };
+
+  /// If values are equal, the place with the smallest x, then y, independent of the number of ranks. Collective.
+  /// @param left_out nodes there are not examined for the largest stress.
+  template <int dim>
+  StressPlaces<dim> stress_places(const mesh::Mesh<dim>                &mesh,
+                                  const Spaces<dim>                    &spaces,
+                                  const StressResult                   &stress,
+                                  const std::vector<Surroundings<dim>> &left_out = {});
 } // namespace slipstick::mechanics

@@ -39,5 +39,4 @@ namespace slipstick::mechanics
                               const tfeti::Constraints           &constraints,
                               const std::vector<Eigen::VectorXd> &u,
                               const double                        t);
-
 } // namespace slipstick::mechanics

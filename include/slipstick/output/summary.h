@@ -192,6 +192,7 @@ namespace slipstick::output
     double                value = 0;
     std::optional<double> error;  // in the same unit; if missing: see `reason`
     std::string           reason; // why there is no estimate
+    std::string           note;   // what the quantity covers, if its name does not say it
   };
 
   /// One mesh of an adaptive run.

@@ -1,0 +1,196 @@
+#include <slipstick/app/contact_profile.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    using contact::ContactNode;
+    using Point  = dealii::Point<3>;
+    using Tensor = dealii::Tensor<1, 3>;
+
+    // A nodal pressure is a mean weighted with the shape function of the node, and the maximum may lie between two
+    // nodes: the error of both together is at most this part of the second difference of the pressures.
+    constexpr double of_second_difference = 1. / 8;
+    // Unresolvable peaks: the largest pressure exceeds the adjacent ones by more than this part of it, or at the end of
+    // a boundary by more than the second value.
+    constexpr double peak = 0.25, peak_at_end = 0.05;
+
+    // Stresses closer to such a peak than this part of the size of the contact depend on the mesh.
+    constexpr double surroundings_of_peak = 0.1;
+
+    // In space pressures are compared with those of this number of nearest nodes; a node is at the edge of the surface
+    // if this number of nearest nodes leaves an angle free.
+    constexpr unsigned int n_beside = 4, n_around = 8;
+    constexpr double       angle_at_edge = 150 * M_PI / 180;
+
+    /// Resolution error of a largest pressure; nothing if it cannot be resolved.
+    /// @param drops differences to the adjacent nodes.
+    std::optional<double> resolution(const double pressure, const std::vector<double> &drops, const bool is_at_end)
+    {
+      double sum = 0;
+      for (const double drop : drops)
+        {
+          if (drop > (is_at_end ? peak_at_end : peak) * pressure)
+            return {};
+          sum += drop;
+        }
+      return of_second_difference * sum;
+    }
+
+    auto with_largest_pressure(const std::vector<ContactNode> &nodes)
+    {
+      return std::max_element(nodes.begin(), nodes.end(), [](const ContactNode &a, const ContactNode &b) {
+        return a.pressure < b.pressure;
+      });
+    }
+
+    Point place(const ContactNode &node)
+    {
+      return {node.position[0], node.position[1], node.position[2]};
+    }
+
+    std::vector<BoxTree<3>::Box> boxes_of(const std::vector<ContactNode> &nodes)
+    {
+      std::vector<BoxTree<3>::Box> result;
+      for (const auto &node : nodes)
+        result.push_back(BoxTree<3>::box_around({place(node)}));
+      return result;
+    }
+  } // namespace
+
+  std::vector<ContactNode> nodes_of_pair(const std::vector<ContactNode> &nodes, const unsigned int pair)
+  {
+    std::vector<ContactNode> list;
+    std::copy_if(nodes.begin(), nodes.end(), std::back_inserter(list), [&](const ContactNode &node) {
+      return node.pair == pair;
+    });
+    return list;
+  }
+
+  ContactLine::ContactLine(std::vector<ContactNode> nodes)
+    : line(std::move(nodes))
+  {
+    std::stable_sort(line.begin(), line.end(), [](const ContactNode &a, const ContactNode &b) {
+      return a.arc_length < b.arc_length;
+    });
+  }
+
+  std::optional<double> ContactLine::resolution() const
+  {
+    const auto at = with_largest_pressure(line);
+    if (at == line.end())
+      return 0.;
+    std::vector<double> drops;
+    if (at != line.begin())
+      drops.push_back(at->pressure - (at - 1)->pressure);
+    if (at + 1 != line.end())
+      drops.push_back(at->pressure - (at + 1)->pressure);
+    return app::resolution(at->pressure, drops, drops.size() < 2);
+  }
+
+  ContactSurface::ContactSurface(std::vector<ContactNode> nodes_)
+    : nodes(std::move(nodes_))
+    , tree(boxes_of(nodes))
+  {}
+
+  std::optional<double> ContactSurface::resolution() const
+  {
+    const auto at = with_largest_pressure(nodes);
+    if (at == nodes.end())
+      return 0.;
+    std::vector<double> drops;
+    for (const unsigned int k : beside(*at))
+      drops.push_back(at->pressure - nodes[k].pressure);
+    return app::resolution(at->pressure, drops, is_at_edge(*at));
+  }
+
+  std::vector<unsigned int> ContactSurface::nearest(const ContactNode &node, const unsigned int n) const
+  {
+    std::vector<unsigned int> found;
+    tree.for_each_by_distance(
+      place(node),
+      [] { return std::numeric_limits<double>::infinity(); },
+      [&](const unsigned int k) {
+        if (nodes[k].position != node.position)
+          found.push_back(k);
+        return found.size() < n;
+      });
+    return found;
+  }
+
+  std::vector<unsigned int> ContactSurface::beside(const ContactNode &node) const
+  {
+    return nearest(node, n_beside);
+  }
+
+  bool ContactSurface::is_at_edge(const ContactNode &node) const
+  {
+    const Tensor normal({node.normal[0], node.normal[1], node.normal[2]});
+    Tensor       first; // in the tangent plane
+    first[std::abs(normal[0]) < std::abs(normal[1]) ? 0 : 1] = 1;
+    first -= first * normal * normal;
+    const Tensor        second = cross_product_3d(normal, first);
+    std::vector<double> angles;
+    for (const unsigned int k : nearest(node, n_around))
+      angles.push_back(std::atan2((place(nodes[k]) - place(node)) * second, (place(nodes[k]) - place(node)) * first));
+    if (angles.empty())
+      return true;
+    std::sort(angles.begin(), angles.end());
+    double widest = 2 * M_PI + angles.front() - angles.back();
+    for (std::size_t k = 1; k < angles.size(); ++k)
+      widest = std::max(widest, angles[k] - angles[k - 1]);
+    return widest > angle_at_edge;
+  }
+
+  template <int dim>
+  std::vector<mechanics::Surroundings<dim>> pressure_peaks(const std::vector<ContactNode>             &nodes,
+                                                           const std::vector<scene::ContactPair<dim>> &pairs,
+                                                           const MPI_Comm                              comm)
+  {
+    std::vector<std::pair<unsigned int, std::array<double, 4>>> found; // pair, position, radius
+    for (unsigned int k = 0; k < pairs.size(); ++k)
+      {
+        const auto                of_pair = nodes_of_pair(nodes, k);
+        const ContactProfile<dim> profile(of_pair);
+        if (profile.resolution())
+          continue;
+        const double size = profile.size([](const ContactNode &node) { return node.is_closed; }).first;
+        const auto   x    = with_largest_pressure(of_pair)->position;
+        found.push_back({k, {{x[0], x[1], x[2], surroundings_of_peak * (dim == 2 ? size : std::sqrt(size))}}});
+      }
+    std::vector<mechanics::Surroundings<dim>> points;
+    for (const auto &[k, place] : dealii::Utilities::MPI::broadcast(comm, found))
+      {
+        mechanics::Surroundings<dim> around;
+        for (unsigned int d = 0; d < dim; ++d)
+          around.of.position[d] = place[d];
+        around.of.what = "the peak of the pressure of " + pairs[k].name;
+        around.of.body = pairs[k].slave.body;
+        around.radius  = place[3];
+        points.push_back(around);
+        if (pairs[k].master)
+          {
+            around.of.body = pairs[k].master->body;
+            points.push_back(around);
+          }
+      }
+    return points;
+  }
+
+  template std::vector<mechanics::Surroundings<2>> pressure_peaks(const std::vector<ContactNode> &,
+                                                                  const std::vector<scene::ContactPair<2>> &,
+                                                                  const MPI_Comm);
+  template std::vector<mechanics::Surroundings<3>> pressure_peaks(const std::vector<ContactNode> &,
+                                                                  const std::vector<scene::ContactPair<3>> &,
+                                                                  const MPI_Comm);
+} // namespace slipstick::app

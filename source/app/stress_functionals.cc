@@ -1,0 +1,214 @@
+#include <slipstick/app/stress_functionals.h>
+#include <slipstick/base/text.h>
+#include <slipstick/mechanics/rigid_modes.h>
+#include <slipstick/mechanics/stress_point.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace slipstick::app
+{
+  namespace
+  {
+    // Stresses closer to a singular point than this part of the body's half diagonal depend on the mesh.
+    constexpr double near_singular_point = 0.1;
+
+    // A probe is at a singular point if it is closer than this part of that distance.
+    constexpr double at_singular_point = 1e-6;
+
+    // By these names in Goal; in the order of mechanics::Stress.
+    constexpr std::array<const char *, 6> names_of_components = {{"xx", "yy", "xy", "zz", "xz", "yz"}};
+
+    template <int dim>
+    class StressFunctionals
+    {
+    public:
+      StressFunctionals(const StepSolver<dim> &solver_, const StepSolution &answer_, const double t_)
+        : solver(solver_)
+        , u(solver.elastic_part(answer_.recovery.u))
+        , stress(*answer_.stress)
+        , t(t_)
+      {}
+
+      /// The largest over all nodes, and that over nodes away from singular points if it is another or @p is_named.
+      void add_largest(const std::vector<mechanics::Surroundings<dim>> &around,
+                       const bool                                       is_named,
+                       std::vector<Functional>                         &list) const
+      {
+        const auto all = mechanics::stress_places(solver.mesh(), solver.spaces(), stress).von_mises;
+        list.push_back(von_mises("max_von_mises", all.body, all.position));
+        const auto near =
+          std::find_if(around.begin(), around.end(), [&](const mechanics::Surroundings<dim> &surroundings) {
+            return surroundings.of.body == all.body &&
+                   surroundings.of.position.distance(all.position) <= surroundings.radius;
+          });
+        if (near != around.end())
+          list.back().reason = "not resolved, or without limit, at " + near->of.what;
+        else if (!is_named)
+          return;
+        const auto regular = mechanics::stress_places(solver.mesh(), solver.spaces(), stress, around).von_mises;
+        list.push_back(von_mises("max_regular_von_mises", regular.body, regular.position));
+        list.back().note = description_of(around);
+        list.back().local_error += increase_towards(regular, around);
+        if (!(regular.value > 0))
+          list.back().reason = "all nodes are near singular points";
+      }
+
+      /// Components and von Mises stress at the point of a probe.
+      void add_probe(const std::string                               &name,
+                     const unsigned int                               body,
+                     const dealii::Point<dim>                        &x,
+                     const std::vector<mechanics::Surroundings<dim>> &around,
+                     std::vector<Functional>                         &list) const
+      {
+        const mechanics::StressPoint<dim> point = at(body, x);
+        const std::size_t                 first = list.size();
+        for (unsigned int c = 0; c < 2 * dim; ++c)
+          {
+            mechanics::Stress<dim> weights = mechanics::Stress<dim>::Zero();
+            weights[c]                     = 1;
+            list.push_back(combination(name + ".stress_" + names_of_components[c], point, weights));
+          }
+        list.push_back(von_mises(name + ".von_mises", body, x));
+        for (const auto &[singular, radius] : around)
+          if (singular.body == body && singular.position.distance(x) <= at_singular_point * radius)
+            for (std::size_t k = first; k < list.size(); ++k)
+              list[k].reason = "not resolved, or without limit, at " + singular.what;
+      }
+
+      /// Of these points, of corners and of ends of supports.
+      std::vector<mechanics::Surroundings<dim>> surroundings(
+        const std::vector<mechanics::SingularPoint<dim>> &acting) const
+      {
+        const auto frames = mechanics::body_frames(solver.discrete_scene(), solver.mesh());
+        std::vector<mechanics::Surroundings<dim>> result;
+        const auto                                add = [&](const mechanics::SingularPoint<dim> &point) {
+          result.push_back({point, near_singular_point * frames[point.body].length});
+        };
+        for (const auto &point : acting)
+          add(point);
+        for (const auto &point : mechanics::singular_points(solver.discrete_scene(),
+                                                            solver.mesh(),
+                                                            solver.spaces(),
+                                                            solver.n_given_supports()))
+          if (!point.support && !point.load)
+            add(point);
+        return result;
+      }
+
+    private:
+      /// The largest stress between a node and the surroundings that are left out, minus that of the node.
+      double increase_towards(const mechanics::Peak<dim>                      &node,
+                              const std::vector<mechanics::Surroundings<dim>> &around) const
+      {
+        double increase = 0;
+        for (const auto &[place, s] : at(node.body, node.position).nodes_around(stress))
+          for (const auto &[point, radius] : around)
+            if (const double within = point.position.distance(place); point.body == node.body && within < radius)
+              {
+                const double beyond = point.position.distance(node.position);
+                increase =
+                  std::max(increase,
+                           (mechanics::von_mises<dim>(s) - node.value) * (beyond - radius) / (beyond - within));
+              }
+        return dealii::Utilities::MPI::max(increase, solver.mesh().comm);
+      }
+
+      mechanics::StressPoint<dim> at(const unsigned int body, const dealii::Point<dim> &x) const
+      {
+        return {solver.discrete_scene(), solver.mesh(), solver.spaces(), body, x, t};
+      }
+
+      Functional combination(const std::string                 &name,
+                             const mechanics::StressPoint<dim> &point,
+                             const mechanics::Stress<dim>      &weights) const
+      {
+        const auto recovered = point.recovered(stress);
+        Functional result{name, "MPa", (recovered * weights).sum(), {}, point.loads(weights), {}, false};
+        if (const auto fitted = point.fitted(u))
+          result.local_error = std::abs(((*fitted - recovered) * weights).sum());
+        else
+          result.reason = "too few cells around the point";
+        return result;
+      }
+
+      Functional von_mises(const std::string &name, const unsigned int body, const dealii::Point<dim> &x) const
+      {
+        const auto point  = at(body, x);
+        const auto s      = point.recovered(stress);
+        auto       result = combination(name, point, mechanics::von_mises_derivatives<dim>(s));
+        result.value      = mechanics::von_mises<dim>(s);
+        if (!(result.value > 0))
+          result.reason = "there is no stress";
+        return result;
+      }
+
+      std::string description_of(const std::vector<mechanics::Surroundings<dim>> &around) const
+      {
+        std::set<std::string> texts;
+        for (const auto &[point, radius] : around)
+          texts.insert(format("%.3g mm from %s at %s of body %s",
+                              radius,
+                              point.what.c_str(),
+                              point_text(point.position, dim).c_str(),
+                              solver.discrete_scene().bodies[point.body].name.c_str()));
+        std::string result;
+        for (const auto &text : texts)
+          result += (result.empty() ? "farther than " : ", ") + text;
+        return result;
+      }
+
+      const StepSolver<dim>             &solver;
+      const std::vector<Eigen::VectorXd> u; // by subdomain
+      const mechanics::StressResult     &stress;
+      const double                       t;
+    };
+  } // namespace
+
+  template <int dim>
+  std::vector<Functional> stress_functionals(const StepSolver<dim>                            &solver,
+                                             const mechanics::Probes<dim>                     &probes,
+                                             const StepSolution                               &answer,
+                                             const std::vector<mechanics::SingularPoint<dim>> &acting,
+                                             const std::vector<mechanics::Surroundings<dim>>  &peaks,
+                                             const double                                      t,
+                                             const std::vector<std::string>                   &quantities)
+  {
+    const auto names = [&](const std::string &text) { // a quantity, or the beginning of some
+      return std::any_of(quantities.begin(), quantities.end(), [&](const std::string &quantity) {
+        return quantity.rfind(text, 0) == 0;
+      });
+    };
+    std::vector<Functional>      list;
+    const StressFunctionals<dim> of_scene(solver, answer, t);
+    auto                         around = of_scene.surroundings(acting);
+    around.insert(around.end(), peaks.begin(), peaks.end());
+    if (quantities.empty() || names("max_von_mises") || names("max_regular_von_mises"))
+      of_scene.add_largest(around, names("max_regular_von_mises"), list);
+    const auto &all = solver.discrete_scene().probes;
+    for (unsigned int k = 0; k < all.size(); ++k)
+      if (all[k].ends.size() == 1 &&
+          (quantities.empty() || names(all[k].name + ".stress_") || names(all[k].name + ".von_mises")))
+        of_scene.add_probe(all[k].name, all[k].body, probes.positions()[k][0].position, around, list);
+    return list;
+  }
+
+  template std::vector<Functional> stress_functionals(const StepSolver<2> &,
+                                                      const mechanics::Probes<2> &,
+                                                      const StepSolution &,
+                                                      const std::vector<mechanics::SingularPoint<2>> &,
+                                                      const std::vector<mechanics::Surroundings<2>> &,
+                                                      const double,
+                                                      const std::vector<std::string> &);
+  template std::vector<Functional> stress_functionals(const StepSolver<3> &,
+                                                      const mechanics::Probes<3> &,
+                                                      const StepSolution &,
+                                                      const std::vector<mechanics::SingularPoint<3>> &,
+                                                      const std::vector<mechanics::Surroundings<3>> &,
+                                                      const double,
+                                                      const std::vector<std::string> &);
+} // namespace slipstick::app
