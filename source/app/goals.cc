@@ -234,7 +234,7 @@ namespace slipstick::app
       functionals.push_back(std::move(functional));
     const ErrorProducts<dim> products(solver, answer, t);
     const GapErrors<dim>     gap_errors(solver, t);
-    contact::Adjoint         adjoint(solver.dual_for_adjoints(), solver.solution().free, scene::SolverOptions().pcpg);
+    contact::Adjoint         adjoint(solver.dual_for_adjoints(), solver.solution().free, solver.solution().directions);
     const std::string        loose = "bodies slide on all of their contacts";
     std::vector<GoalError>   errors;
     for (const auto &functional : functionals)

@@ -176,15 +176,15 @@ int main(int argc, char **argv)
     {
       return run_program(argc, argv, MPI_COMM_WORLD);
     }
-  catch (const std::bad_alloc &)
-    {
-      std::cerr << std::string("error: ") + out_of_memory().what() + '\n' << std::flush;
-      if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1) // the error may be on this rank only
-        MPI_Abort(MPI_COMM_WORLD, static_cast<int>(ExitStatus::bad_input));
-      return static_cast<int>(ExitStatus::bad_input);
-    }
   catch (const std::exception &error)
     {
+      if (is_out_of_memory(error))
+        {
+          std::cerr << std::string("error: ") + out_of_memory().what() + '\n' << std::flush;
+          if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1) // the error may be on this rank only
+            MPI_Abort(MPI_COMM_WORLD, static_cast<int>(ExitStatus::bad_input));
+          return static_cast<int>(ExitStatus::bad_input);
+        }
       // the error may be on this rank only; the others must not be left waiting
       std::cerr << "internal error: " + for_terminal(error.what()) +
                      "\n  remedy: this is a bug of slipstick, please report it with the .prm\n"

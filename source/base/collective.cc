@@ -42,12 +42,10 @@ namespace slipstick
         {
           return {Kind::numerical, error.what()};
         }
-      catch (const std::bad_alloc &)
-        {
-          return {Kind::input, out_of_memory().what()};
-        }
       catch (const std::exception &error)
         {
+          if (is_out_of_memory(error))
+            return {Kind::input, out_of_memory().what()};
           return {Kind::other, error.what()};
         }
       return {};

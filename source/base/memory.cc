@@ -1,8 +1,11 @@
 #include <slipstick/base/memory.h>
 
+#include <deal.II/base/exceptions.h>
+
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <new>
 #include <string>
 
 #include <sys/resource.h>
@@ -10,6 +13,12 @@
 
 namespace slipstick
 {
+  bool is_out_of_memory(const std::exception &error)
+  {
+    return dynamic_cast<const std::bad_alloc *>(&error) ||
+           dynamic_cast<const dealii::StandardExceptions::ExcOutOfMemory *>(&error);
+  }
+
   InputError out_of_memory()
   {
     return {

@@ -80,7 +80,7 @@ namespace slipstick::scene
       "Error bars",
       options.error_bars,
       "estimate the discretisation errors of forces, pressures, lengths and displacements (one linear problem a figure: 15 "
-      "to 70 % more time)");
+      "to 100 % more time)");
     add_word(
       prm,
       adaptive_mesh.first,

@@ -5,8 +5,10 @@
 
 namespace slipstick
 {
-  /// The error reported for a std::bad_alloc: the scene is too large for the machine, or for the memory limit of this
-  /// process.
+  /// Whether an error says that memory ran out: std::bad_alloc, or deal.II's exception for it.
+  bool is_out_of_memory(const std::exception &error);
+
+  /// The error reported then: the scene is too large for the machine, or for the memory limit of this process.
   InputError out_of_memory();
 
   /// Free memory of this machine in MB, limited by the control groups and resource limits of the @p n_ranks processes

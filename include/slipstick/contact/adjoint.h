@@ -2,7 +2,7 @@
 #pragma once
 
 #include <slipstick/contact/dual_solution.h>
-#include <slipstick/qp/options.h>
+#include <slipstick/qp/direction_store.h>
 #include <slipstick/tfeti/face.h>
 
 #include <optional>
@@ -15,7 +15,10 @@ namespace slipstick::contact
   class Adjoint
   {
   public:
-    Adjoint(tfeti::DualProblem &dual, const std::vector<bool> &free, const qp::PcpgOptions &options);
+    using Store = qp::DirectionStore<tfeti::DistributedVector>;
+
+    /// @param directions of earlier solves, to which all solves add theirs; none: an empty store.
+    Adjoint(tfeti::DualProblem &dual, const std::vector<bool> &free, std::shared_ptr<Store> directions = nullptr);
 
     /// Whether the free rows hold all bodies; otherwise there is no solution.
     bool is_possible() const
@@ -47,10 +50,10 @@ namespace slipstick::contact
     }
 
   private:
-    tfeti::DualProblem     &dual;
-    const std::vector<bool> free;
-    const qp::PcpgOptions   options;
-    tfeti::Face             face;
-    qp::Counts              work;
+    tfeti::DualProblem          &dual;
+    const std::vector<bool>      free;
+    const std::shared_ptr<Store> store;
+    tfeti::Face                  face;
+    qp::Counts                   work;
   };
 } // namespace slipstick::contact
