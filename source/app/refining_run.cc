@@ -48,8 +48,10 @@ namespace slipstick::app
         else if (!options.goals.empty())
           wanted = options.goals;
         steps.emplace(scene, directory, quiet, comm, wanted, &refinement);
+        steps->start_from(std::move(contact));
         const auto &summary = steps->solve_and_write(false);
-        const bool  solved  = summary.status == output::RunStatus::converged;
+        contact             = steps->contact_of_first_step();
+        const bool solved   = summary.status == output::RunStatus::converged;
         if (rows.empty() && options.goals.empty())
           leave_out(steps->point_forces());
         else if (rows.empty())

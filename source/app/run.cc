@@ -170,6 +170,14 @@ namespace slipstick::app
   }
 
   template <int dim>
+  contact::ContactOfMesh Run<dim>::contact_of_first_step() const
+  {
+    if (contact_steps.empty())
+      return {};
+    return {contact_names(scene).pairs, dealii::Utilities::MPI::broadcast(comm, contact_steps.front().nodes)};
+  }
+
+  template <int dim>
   void Run<dim>::write_without_equilibrium()
   {
     if (!finished_steps)

@@ -131,6 +131,12 @@ namespace slipstick::app
   }
 
   template <int dim>
+  void StepSolver<dim>::start_from(contact::ContactOfMesh other)
+  {
+    other_mesh = std::move(other);
+  }
+
+  template <int dim>
   StepState StepSolver<dim>::state() const
   {
     StepState state;
@@ -274,10 +280,17 @@ namespace slipstick::app
                                                             const std::uint64_t multiplications_before,
                                                             const bool          goes_on)
   {
-    const double t         = discrete_scene().load_factors[step];
-    bool         is_warm   = goes_on || (step > 0 && problem.advance(t, u));
-    qp::Counts   discarded = goes_on ? the_solution.counts : qp::Counts();
-    discretization_error   = infinity;
+    const double t               = discrete_scene().load_factors[step];
+    bool         is_warm         = goes_on || (step > 0 && problem.advance(t, u));
+    bool         is_carried_over = false;
+    if (step == 0 && !goes_on && !other_mesh.nodes.empty())
+      if (auto start = contact::start_from(other_mesh, dual(), contact_names(discrete_scene()).pairs))
+        {
+          the_solution    = *std::move(start);
+          is_carried_over = is_warm = true;
+        }
+    qp::Counts discarded = goes_on ? the_solution.counts : qp::Counts();
+    discretization_error = infinity;
     contact::AccuracyTest test;
     if (options.stops_at_discretization_error && !goes_on)
       test = [this, t](const contact::DualSolution &iterate, const double residual_energy) {
@@ -305,6 +318,11 @@ namespace slipstick::app
                                      test);
             discarded += the_solution.counts;
             the_solution.counts = discarded;
+            if (is_carried_over && is_warm && the_solution.status != qp::Status::converged)
+              {
+                log.line("solve        the contact of the mesh before was no good start: solving from nothing");
+                continue;
+              }
             clock.enter("recovery");
             auto answer = std::move(accepted);
             if (!answer)

@@ -197,6 +197,16 @@ class Accuracy(unittest.TestCase):
                 print(quantity, found[quantity], exact, flush=True)
                 self.assertLess(abs(found[quantity] / exact - 1), 0.03, (name, quantity))
 
+    def test_meshes_begin_with_the_contact_of_the_one_before(self):
+        case = {'Accuracy': '3 %', 'Output/VTU': 'false', 'Discretization/Refinements': 0}
+        first = solve(shipped('hertz'), {**case, 'Adaptivity/Max meshes': 1}).summary
+        for ranks in (1, 2):
+            last = converged(shipped('hertz'), case, ranks=ranks).summary
+            print([summary['solver']['hessian_multiplications'] for summary in (first, last)], flush=True)
+            self.assertGreater(len(last['meshes']), 2)
+            self.assertLess(2 * last['solver']['hessian_multiplications'], first['solver']['hessian_multiplications'])
+            self.assertEqual(last['solver']['fallbacks'], 0)
+
     def test_presets_with_adaptive_meshes(self):
         """Every figure of a closed form within what the preset stands for; what has no estimate is said."""
         for preset, accuracy in (('draft', 0.1), ('engineering', 0.03), ('reference', 0.003)):

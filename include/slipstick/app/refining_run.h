@@ -61,6 +61,7 @@ namespace slipstick::app
     const Log                       quiet;
     const MPI_Comm                  comm;
     mesh::Refinement                refinement;
+    contact::ContactOfMesh          contact; // on the mesh before
     std::vector<output::MeshRow>    rows;
     std::vector<LeftOut<dim>>       left_out;
     std::vector<std::string>        notes;

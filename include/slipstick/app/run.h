@@ -28,6 +28,15 @@ namespace slipstick::app
         std::optional<std::vector<std::string>> wanted     = {},
         mesh::Refinement                       *refinement = nullptr);
 
+    /// The first load step will begin from the contact on another mesh.
+    void start_from(contact::ContactOfMesh other)
+    {
+      solver.start_from(std::move(other));
+    }
+
+    /// The contact of the first load step. Collective.
+    contact::ContactOfMesh contact_of_first_step() const;
+
     /// @return the summary, complete on rank 0 only.
     const output::Summary &solve_and_write(const bool resumes);
 

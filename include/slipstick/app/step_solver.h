@@ -5,6 +5,7 @@
 #include <slipstick/app/step_state.h>
 #include <slipstick/contact/checks.h>
 #include <slipstick/contact/friction.h>
+#include <slipstick/contact/other_mesh.h>
 #include <slipstick/mechanics/stress.h>
 #include <slipstick/output/convergence.h>
 #include <slipstick/tfeti/recovery.h>
@@ -43,6 +44,9 @@ namespace slipstick::app
 
     /// Builds the dual problem of the first load step. @throws InputError, NoEquilibrium.
     void build();
+
+    /// The first load step will begin from the contact on another mesh.
+    void start_from(contact::ContactOfMesh other);
 
     /// Solves the next load step, until the checks of its solution pass or cannot be improved any further.
     /// @param multiplications_before multiplications by F in the previous steps.
@@ -158,9 +162,10 @@ namespace slipstick::app
     StepProblem<dim>                    problem;
     double                              discretization_error; // last estimate in this step [sqrt(N mm)]
     contact::DualSolution               the_solution;
-    std::unique_ptr<Answer>             accepted; // by the accuracy test in this step
-    std::vector<Eigen::VectorXd>        u;        // of the last step
-    contact::History                    history;  // of the previous steps
+    contact::ContactOfMesh              other_mesh; // without nodes: none
+    std::unique_ptr<Answer>             accepted;   // by the accuracy test in this step
+    std::vector<Eigen::VectorXd>        u;          // of the last step
+    contact::History                    history;    // of the previous steps
     std::vector<output::ConvergenceRow> rows;
   };
 } // namespace slipstick::app
