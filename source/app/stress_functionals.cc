@@ -51,11 +51,15 @@ namespace slipstick::app
         else if (!is_named)
           return;
         const auto regular = mechanics::stress_places(solver.mesh(), solver.spaces(), stress, around).von_mises;
-        list.push_back(von_mises("max_regular_von_mises", regular.body, regular.position));
+        if (regular.value > 0)
+          {
+            list.push_back(von_mises("max_regular_von_mises", regular.body, regular.position));
+            list.back().local_error += increase_towards(regular, around);
+          }
+        else
+          list.push_back(
+            {"max_regular_von_mises", "MPa", 0, {}, {}, "all nodes with stress are near singular points", false});
         list.back().note = description_of(around);
-        list.back().local_error += increase_towards(regular, around);
-        if (!(regular.value > 0))
-          list.back().reason = "all nodes are near singular points";
       }
 
       /// Components and von Mises stress at the point of a probe.

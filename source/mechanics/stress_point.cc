@@ -106,7 +106,9 @@ namespace slipstick::mechanics
     const Eigen::Map<const Rows> points(all.data(), all.size() / n, n);
 
     constexpr unsigned int n_monomials = (dim + 1) * (dim + 2) / 2;
-    Eigen::MatrixXd        monomials(points.rows(), n_monomials), values = points.rightCols(n_components);
+    if (points.rows() < n_monomials)
+      return {};
+    Eigen::MatrixXd monomials(points.rows(), n_monomials), values = points.rightCols(n_components);
     for (unsigned int r = 0; r < points.rows(); ++r)
       {
         const Eigen::Matrix<double, 1, dim> place  = points.row(r).template head<dim>();
