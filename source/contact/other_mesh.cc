@@ -14,6 +14,9 @@ namespace slipstick::contact
   {
     using Triple = std::array<double, 3>;
 
+    // A node closer to a point than this part of the distance of the others is all that counts there.
+    constexpr double same_place = 1e-12;
+
     dealii::Point<3> point_of(const Triple &x)
     {
       return {x[0], x[1], x[2]};
@@ -46,7 +49,7 @@ namespace slipstick::contact
             near.emplace_back(k, x.distance(point_of(nodes[k].position)));
             return near.size() < n;
           });
-        const double least = std::numeric_limits<double>::min(); // a node at the point itself is all that counts
+        const double least = same_place * near.back().second + std::numeric_limits<double>::min();
         double       sum   = 0;
         for (const auto &[k, distance] : near)
           sum += 1 / std::max(distance, least);
