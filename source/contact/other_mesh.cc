@@ -16,6 +16,7 @@ namespace slipstick::contact
 
     // A node closer to a point than this part of the distance of the others is all that counts there.
     constexpr double same_place = 1e-12;
+    constexpr double smallest   = 1e-200; // whose inverses can be summed
 
     dealii::Point<3> point_of(const Triple &x)
     {
@@ -49,7 +50,7 @@ namespace slipstick::contact
             near.emplace_back(k, x.distance(point_of(nodes[k].position)));
             return near.size() < n;
           });
-        const double least = same_place * near.back().second + std::numeric_limits<double>::min();
+        const double least = std::max(same_place * near.back().second, smallest);
         double       sum   = 0;
         for (const auto &[k, distance] : near)
           sum += 1 / std::max(distance, least);
