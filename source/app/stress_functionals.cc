@@ -2,12 +2,13 @@
 #include <slipstick/base/text.h>
 #include <slipstick/mechanics/rigid_modes.h>
 #include <slipstick/mechanics/stress_point.h>
+#include <slipstick/scene/adaptivity.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <optional>
 #include <set>
 
 namespace slipstick::app
@@ -20,8 +21,14 @@ namespace slipstick::app
     // A probe is at a singular point if it is closer than this part of that distance.
     constexpr double at_singular_point = 1e-6;
 
-    // By these names in Goal; in the order of mechanics::Stress.
-    constexpr std::array<const char *, 6> names_of_components = {{"xx", "yy", "xy", "zz", "xz", "yz"}};
+    /// A point with its stresses, which several quantities weigh.
+    template <int dim>
+    struct StressesAt
+    {
+      mechanics::StressPoint<dim>           point;
+      mechanics::Stress<dim>                recovered;
+      std::optional<mechanics::Stress<dim>> fitted;
+    };
 
     template <int dim>
     class StressFunctionals
@@ -40,7 +47,7 @@ namespace slipstick::app
                        std::vector<Functional>                         &list) const
       {
         const auto all = mechanics::stress_places(solver.mesh(), solver.spaces(), stress).von_mises;
-        list.push_back(von_mises("max_von_mises", all.body, all.position));
+        list.push_back(von_mises("max_von_mises", at(all.body, all.position)));
         const auto near =
           std::find_if(around.begin(), around.end(), [&](const mechanics::Surroundings<dim> &surroundings) {
             return surroundings.of.body == all.body &&
@@ -53,8 +60,9 @@ namespace slipstick::app
         const auto regular = mechanics::stress_places(solver.mesh(), solver.spaces(), stress, around).von_mises;
         if (regular.value > 0)
           {
-            list.push_back(von_mises("max_regular_von_mises", regular.body, regular.position));
-            list.back().local_error += increase_towards(regular, around);
+            const auto stresses = at(regular.body, regular.position);
+            list.push_back(von_mises("max_regular_von_mises", stresses));
+            list.back().local_error += increase_towards(regular, stresses.point, around);
           }
         else
           list.push_back(
@@ -69,15 +77,15 @@ namespace slipstick::app
                      const std::vector<mechanics::Surroundings<dim>> &around,
                      std::vector<Functional>                         &list) const
       {
-        const mechanics::StressPoint<dim> point = at(body, x);
-        const std::size_t                 first = list.size();
+        const auto        stresses = at(body, x);
+        const std::size_t first    = list.size();
         for (unsigned int c = 0; c < 2 * dim; ++c)
           {
             mechanics::Stress<dim> weights = mechanics::Stress<dim>::Zero();
             weights[c]                     = 1;
-            list.push_back(combination(name + ".stress_" + names_of_components[c], point, weights));
+            list.push_back(combination(name + ".stress_" + scene::stress_components[c], stresses, weights));
           }
-        list.push_back(von_mises(name + ".von_mises", body, x));
+        list.push_back(von_mises(name + ".von_mises", stresses));
         for (const auto &[singular, radius] : around)
           if (singular.body == body && singular.position.distance(x) <= at_singular_point * radius)
             for (std::size_t k = first; k < list.size(); ++k)
@@ -107,10 +115,11 @@ namespace slipstick::app
     private:
       /// The largest stress between a node and the surroundings that are left out, minus that of the node.
       double increase_towards(const mechanics::Peak<dim>                      &node,
+                              const mechanics::StressPoint<dim>               &at_node,
                               const std::vector<mechanics::Surroundings<dim>> &around) const
       {
         double increase = 0;
-        for (const auto &[place, s] : at(node.body, node.position).nodes_around(stress))
+        for (const auto &[place, s] : at_node.nodes_around(stress))
           for (const auto &[point, radius] : around)
             if (const double within = point.position.distance(place); point.body == node.body && within < radius)
               {
@@ -122,30 +131,28 @@ namespace slipstick::app
         return dealii::Utilities::MPI::max(increase, solver.mesh().comm);
       }
 
-      mechanics::StressPoint<dim> at(const unsigned int body, const dealii::Point<dim> &x) const
+      StressesAt<dim> at(const unsigned int body, const dealii::Point<dim> &x) const
       {
-        return {solver.discrete_scene(), solver.mesh(), solver.spaces(), body, x, t};
+        const mechanics::StressPoint<dim> point(solver.discrete_scene(), solver.mesh(), solver.spaces(), body, x, t);
+        return {point, point.recovered(stress), point.fitted(u)};
       }
 
-      Functional combination(const std::string                 &name,
-                             const mechanics::StressPoint<dim> &point,
-                             const mechanics::Stress<dim>      &weights) const
+      static Functional combination(const std::string            &name,
+                                    const StressesAt<dim>        &at,
+                                    const mechanics::Stress<dim> &weights)
       {
-        const auto recovered = point.recovered(stress);
-        Functional result{name, "MPa", (recovered * weights).sum(), {}, point.loads(weights), {}, false};
-        if (const auto fitted = point.fitted(u))
-          result.local_error = std::abs(((*fitted - recovered) * weights).sum());
+        Functional result{name, "MPa", (at.recovered * weights).sum(), {}, at.point.loads(weights), {}, false};
+        if (at.fitted)
+          result.local_error = std::abs(((*at.fitted - at.recovered) * weights).sum());
         else
           result.reason = "too few cells around the point";
         return result;
       }
 
-      Functional von_mises(const std::string &name, const unsigned int body, const dealii::Point<dim> &x) const
+      static Functional von_mises(const std::string &name, const StressesAt<dim> &at)
       {
-        const auto point  = at(body, x);
-        const auto s      = point.recovered(stress);
-        auto       result = combination(name, point, mechanics::von_mises_derivatives<dim>(s));
-        result.value      = mechanics::von_mises<dim>(s);
+        auto result  = combination(name, at, mechanics::von_mises_derivatives<dim>(at.recovered));
+        result.value = mechanics::von_mises<dim>(at.recovered);
         if (!(result.value > 0))
           result.reason = "there is no stress";
         return result;

@@ -8,7 +8,7 @@ namespace slipstick::contact
 {
   namespace
   {
-    // Residual over that of the start: bars change by less than a hundredth down to 1e-4.
+    // Residual over that of the start: bars change by about a hundredth down to 1e-4 (decision 0124).
     constexpr double tolerance = 1e-2;
     // What is below this part of the numbers that are summed is rounding: forces that the loads alone determine.
     constexpr double rounding = 1e-12;

@@ -2,8 +2,6 @@
 #include <slipstick/scene/adaptivity.h>
 #include <slipstick/scene/declare.h>
 
-#include <array>
-
 namespace slipstick::scene
 {
   namespace
@@ -26,9 +24,8 @@ namespace slipstick::scene
         {
           for (unsigned int d = 0; d < dim; ++d)
             names.push_back(probe.name + ".u_" + "xyz"[d]);
-          constexpr std::array<const char *, 6> components = {{"xx", "yy", "xy", "zz", "xz", "yz"}};
           for (unsigned int c = 0; c < 2 * dim; ++c)
-            names.push_back(probe.name + ".stress_" + components[c]);
+            names.push_back(probe.name + ".stress_" + stress_components[c]);
           names.push_back(probe.name + ".von_mises");
         }
     return names;

@@ -3,6 +3,7 @@
 
 #include <slipstick/scene/scene.h>
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,9 @@ namespace dealii
 
 namespace slipstick::scene
 {
+  /// Names of the stress components in quantities; the last two in space only.
+  inline constexpr std::array<const char *, 6> stress_components = {{"xx", "yy", "xy", "zz", "xz", "yz"}};
+
   /// The parameter and the value that make presets refine meshes.
   inline const std::pair<std::string, std::string> adaptive_mesh = {"Mesh", "adaptive"};
 
