@@ -35,9 +35,9 @@ namespace slipstick::app
     // ... at most this number of times, as long as the worst check decreases by this factor.
     constexpr unsigned int max_closings     = 4;
     constexpr double       closing_progress = 0.5;
-    // Tolerance = auto: admissible ratio of algebraic to discretisation error. The two are nearly orthogonal, so that
-    // it adds at most 4.4 % to the total error, and less because it is estimated from above.
-    constexpr double allowed_part = 0.3;
+    // Tolerance = auto: admissible ratio of algebraic to discretisation error. The two are nearly orthogonal: it adds 2 % to
+    // the total error, 5 % if both estimates are a quarter off.
+    constexpr double allowed_part = 0.2;
     // And admissible error of the tractions of a pair.
     constexpr double allowed_traction_error = 0.05;
 

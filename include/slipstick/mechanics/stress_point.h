@@ -30,8 +30,7 @@ namespace slipstick::mechanics
     Stress<dim> recovered(const StressResult &stress) const;
 
     /// Value of the quadratic polynomial that fits the computed stresses at the superconvergent points of the cells around
-    /// best: three layers of cells of degree 1, two of degree 2. At boundaries it is more accurate than the recovered
-    /// stress, which is the mean of stresses inside the body. Nothing if the cells do not determine it. @param u
+    /// best: three layers of cells of degree 1, two of degree 2. It uses more cells than the recovered stress. Nothing if the cells do not determine it. @param u
     /// displacements by subdomain of this rank. Collective.
     std::optional<Stress<dim>> fitted(const std::vector<Eigen::VectorXd> &u) const;
 

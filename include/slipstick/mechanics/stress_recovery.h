@@ -10,11 +10,9 @@
 
 namespace slipstick::mechanics
 {
-  /// Nodal stresses of the displacements @p u, by subdomain of this rank nodes x components of StressModel [MPa]: the
-  /// polynomial of one degree less than the displacement through the stresses at the points of Element::stress, averaged
-  /// over the cells around a node with their areas as weights, also across the subdomains of a body. On triangles and
-  /// tetrahedra of degree 2, where averages are not superconvergent, a least squares fit around every vertex is used
-  /// instead (PatchRecovery). Collective.
+  /// Nodal stresses of the displacements @p u, by subdomain of this rank nodes x components of StressModel [MPa]: values of
+  /// polynomials that fit the stresses at the points of Element::stress around every vertex (LinearPatches,
+  /// QuadraticPatches), also across the subdomains of a body. Collective.
   template <int dim>
   std::vector<Eigen::MatrixXd> recover_nodal(const scene::Scene<dim>            &scene,
                                              const mesh::Mesh<dim>              &mesh,

@@ -1,0 +1,55 @@
+// Recovery of stresses on a subdomain of elements of degree 2.
+#pragma once
+
+#include <slipstick/mechanics/patch_sums.h>
+
+namespace slipstick::mechanics
+{
+  /// Superconvergent patch recovery (Zienkiewicz, Zhu 1992): around every vertex a polynomial of degree 2 is fitted to the
+  /// stresses at the points of Element::stress of the adjacent cells. Where the points do not determine it, as across a
+  /// boundary, the slopes that fit come first, then the smallest coefficients of degree 2. On quadrilaterals and hexahedra
+  /// the constant is then fitted to the point of each cell that is nearest to the vertex, so that peaks are not smoothed; on
+  /// triangles and tetrahedra single points are not superconvergent. Other nodes take the mean of the polynomials of the
+  /// vertices of their edge, face or cell.
+  template <int dim>
+  class QuadraticPatches
+  {
+  public:
+    /// @p shared as for PatchSums.
+    QuadraticPatches(const dealii::DoFHandler<dim>   &dof_handler,
+                     const Element<dim>              &element,
+                     StressSamples<dim>               samples,
+                     const std::vector<unsigned int> &shared);
+
+    /// First: coordinates in which the covariance of the points around a vertex is 1, so that slender and oblique cells are
+    /// as good as others. Effective once sums.finish() was called.
+    void start_metrics();
+
+    /// Then: the polynomials.
+    void start_fit();
+
+    /// Recovered stresses, nodes x components.
+    Eigen::MatrixXd nodal() const;
+
+    PatchSums<dim> sums;
+
+    static constexpr unsigned int n_monomials = (dim + 1) * (dim + 2) / 2;
+
+  private:
+    using Vector    = Eigen::Matrix<double, dim, 1>;
+    using Monomials = Eigen::Matrix<double, n_monomials, 1>;
+
+    Monomials monomials(const unsigned int vertex, const Vector &distance) const;
+
+    const dealii::DoFHandler<dim> &dof_handler;
+    const Element<dim>            &element;
+    StressSamples<dim>             samples;
+    const unsigned int             n_components;
+    std::vector<std::vector<unsigned int>>
+      nearest; // points that determine the constant, by vertex of the reference cell
+
+    // by vertex
+    std::vector<Eigen::Matrix<double, dim, dim>>                         metrics;
+    std::vector<Eigen::Matrix<double, int(n_monomials), Eigen::Dynamic>> polynomials; // monomials x components
+  };
+} // namespace slipstick::mechanics
