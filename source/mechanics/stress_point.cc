@@ -5,7 +5,10 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace slipstick::mechanics
 {
@@ -19,6 +22,22 @@ namespace slipstick::mechanics
     constexpr double independent = 1e-3;
     // For derivatives of the mapping at the middle of a reference cell.
     constexpr double step_in_cell = 0.1;
+
+    /// Exponents of the monomials of a polynomial, the constant first.
+    template <int dim>
+    std::vector<std::array<unsigned int, dim>> powers_up_to(const unsigned int degree)
+    {
+      std::vector<std::array<unsigned int, dim>> result;
+      std::array<unsigned int, dim>              next{};
+      while (next[dim - 1] <= degree)
+        {
+          if (std::accumulate(next.begin(), next.end(), 0u) <= degree)
+            result.push_back(next);
+          for (unsigned int d = 0; ++next[d] > degree && d + 1 < dim; ++d)
+            next[d] = 0;
+        }
+      return result;
+    }
   } // namespace
 
   template <int dim>
@@ -105,7 +124,8 @@ namespace slipstick::mechanics
     using Rows           = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const Eigen::Map<const Rows> points(all.data(), all.size() / n, n);
 
-    constexpr unsigned int n_monomials = (dim + 1) * (dim + 2) / 2;
+    const std::vector<std::array<unsigned int, dim>> powers      = powers_up_to<dim>(spaces.degree + 1);
+    const unsigned int                               n_monomials = powers.size();
     if (points.rows() < n_monomials)
       return {};
     Eigen::MatrixXd monomials(points.rows(), n_monomials), values = points.rightCols(n_components);
@@ -113,13 +133,12 @@ namespace slipstick::mechanics
       {
         const Eigen::Matrix<double, 1, dim> place  = points.row(r).template head<dim>();
         const double                        weight = 1 / (1 + place.squaredNorm()); // the nearer, the more
-        unsigned int                        k      = 0;
-        monomials(r, k++)                          = weight;
-        for (unsigned int d = 0; d < dim; ++d)
-          monomials(r, k++) = weight * place[d];
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int e = d; e < dim; ++e)
-            monomials(r, k++) = weight * place[d] * place[e];
+        for (unsigned int k = 0; k < n_monomials; ++k)
+          {
+            monomials(r, k) = weight;
+            for (unsigned int d = 0; d < dim; ++d)
+              monomials(r, k) *= std::pow(place[d], powers[k][d]);
+          }
         values.row(r) *= weight;
       }
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors;
@@ -145,7 +164,7 @@ namespace slipstick::mechanics
         difference[d] = y[d] - x[d];
       return Eigen::Matrix<double, dim, 1>(to_edges * difference);
     };
-    const double                                 layers = spaces.degree == 1 ? 3 : 2;
+    const double                                 layers = 3;
     std::vector<double>                          result;
     std::vector<dealii::types::global_dof_index> dofs;
     std::vector<unsigned int>                    nodes;

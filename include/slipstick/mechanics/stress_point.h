@@ -29,9 +29,9 @@ namespace slipstick::mechanics
     /// Recovered stress, interpolated between the nodes. Collective.
     Stress<dim> recovered(const StressResult &stress) const;
 
-    /// Value of the quadratic polynomial that fits the computed stresses at the superconvergent points of the cells around
-    /// best: three layers of cells of degree 1, two of degree 2. It uses more cells than the recovered stress. Nothing if the cells do not determine it. @param u
-    /// displacements by subdomain of this rank. Collective.
+    /// Value of the polynomial, of one degree more than the elements, that fits the computed stresses at the superconvergent
+    /// points of three layers of cells around best. Nothing if the cells do not determine it. @param u displacements by
+    /// subdomain of this rank. Collective.
     std::optional<Stress<dim>> fitted(const std::vector<Eigen::VectorXd> &u) const;
 
     /// Positions of the nodes of the cells of this rank that contain the point, and recovered stresses there.
