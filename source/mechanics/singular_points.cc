@@ -1,3 +1,4 @@
+#include <slipstick/mechanics/bond_ends.h>
 #include <slipstick/mechanics/elasticity.h>
 #include <slipstick/mechanics/points.h>
 #include <slipstick/mechanics/singular_points.h>
@@ -17,12 +18,6 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    constexpr double degree = M_PI / 180;
-    // An outline is re-entrant where its direction turns by this angle or more; it is also the default corner angle.
-    constexpr double least_turn = 35 * degree;
-    // Smallest angles with infinite stress at the end of a support. Both displacements held: from 63 (nu = 0) to 51
-    // degrees (nu = 0.5), plane strain (Williams 1952); one displacement held: above a right angle.
-    constexpr double least_angle_of_clamp = 63 * degree, least_angle_of_roller = 95 * degree;
     // Values that differ by less than this part are equal: symmetric places.
     constexpr double same_value = 1e-6;
 
@@ -111,13 +106,12 @@ namespace slipstick::mechanics
 
     /// Corners of outlines, and ends of supports along them.
     template <int dim>
-    void add_corners(const scene::Scene<dim>         &scene,
-                     const mesh::Mesh<dim>           &mesh,
-                     const Spaces<dim>               &spaces,
-                     const unsigned int               n_supports,
-                     std::vector<SingularPoint<dim>> &result)
+    void add_corners(const scene::Scene<dim>             &scene,
+                     const mesh::Mesh<dim>               &mesh,
+                     const std::vector<SurfaceEdge<dim>> &edges,
+                     const unsigned int                   n_supports,
+                     std::vector<SingularPoint<dim>>     &result)
     {
-      const auto edges = outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
       std::map<std::pair<unsigned int, NodeKey>, unsigned int> from;
       for (unsigned int e = 0; e < edges.size(); ++e)
         from.emplace(std::make_pair(edges[e].body, edges[e].keys[0]), e);
@@ -174,7 +168,12 @@ namespace slipstick::mechanics
   {
     auto result = force_points(scene, mesh, spaces, n_supports);
     if constexpr (dim == 2) // edges of solids are not examined
-      add_corners(scene, mesh, spaces, n_supports, result);
+      {
+        const auto edges = outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
+        add_corners(scene, mesh, edges, n_supports, result);
+        const auto ends = bond_ends(scene, mesh, edges, n_supports);
+        result.insert(result.end(), ends.begin(), ends.end());
+      }
     return result;
   }
 

@@ -31,6 +31,31 @@ class Singular(unittest.TestCase):
         _, _, position, why = self.peak(stretched(supports=clamp))
         self.assertEqual((position[0], why), (0, 'the end of a support'))
 
+    def test_ends_of_bonds(self):
+        """A small block bonded to the middle of a larger one makes a re-entrant corner with it; two of the same width do not.
+        Bonded to a rigid line, it ends like a clamp."""
+        def bonded(width):
+            return stretched(bodies={'box': {'Size': '10, 10', 'Cells': '10, 10', 'Material': 'elastic'},
+                                     'block': {'Origin': '{}, 10'.format(5 - width / 2), 'Size': '{}, 5'.format(width),
+                                               'Cells': '{}, 6'.format(width), 'Material': 'elastic'}},
+                             supports={'foot': {'Boundary': 'box/bottom', 'Displacement x': '0', 'Displacement y': '0'}},
+                             tractions={'push': {'Boundary': 'block/top', 'Traction x': '10'}},
+                             contacts={'joint': {'Slave': 'block/bottom', 'Master': 'box/top', 'Law': 'bonded'}})
+        for ranks in (1, 2):
+            _, _, position, why = self.peak(bonded(4), ranks)
+            self.assertEqual((position[1], why), (10, 'an end of the bond joint'))
+            self.assertIn(position[0], (3, 7))
+        summary = converged(bonded(4), {'Error bars': 'true'}).summary
+        regular, = (bar for bar in summary['error_bars'] if bar['quantity'] == 'max_regular_von_mises')
+        self.assertEqual(regular['note'].count('an end of the bond joint'), 4)  # two of each body
+        _, _, position, why = self.peak(bonded(10))
+        self.assertEqual((position[1], why), (0, 'the end of a support'))
+        rigid = stretched(obstacles={'wall': {'Shape': 'half plane', 'Point': '0, 0', 'Normal': '0, 1'}}, supports={},
+                          contacts={'base': {'Slave': 'box/bottom', 'Master': 'wall', 'Law': 'bonded'}},
+                          tractions={'push': {'Boundary': 'box/top', 'Traction x': '10'}})
+        _, _, position, why = self.peak(rigid)
+        self.assertEqual((position[1], why), (0, 'an end of the bond base'))
+
     def test_regular_places(self):
         bent = {'pull': {'Boundary': 'box/right', 'Traction x': '10*y'}}
         _, _, position, why = self.peak(stretched(tractions=bent))
