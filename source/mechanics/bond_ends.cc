@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 
 namespace slipstick::mechanics
@@ -11,38 +10,6 @@ namespace slipstick::mechanics
   {
     // The other body is at the end of a bond if it is nearer than this part of an edge.
     constexpr double reached = 0.1;
-
-    /// A vertex of an outline: where one edge ends and the next begins.
-    template <int dim>
-    struct OutlineVertex
-    {
-      const SurfaceEdge<dim> *in, *out;
-
-      dealii::Point<dim> position() const
-      {
-        return in->node(1);
-      }
-
-      /// Inside the body.
-      double angle() const
-      {
-        const auto n = in->outline_normal(1), m = out->outline_normal(0);
-        return M_PI - std::atan2(cross(n, m), n * m);
-      }
-    };
-
-    template <int dim>
-    std::vector<OutlineVertex<dim>> vertices_of(const std::vector<SurfaceEdge<dim>> &edges)
-    {
-      std::map<std::pair<unsigned int, NodeKey>, const SurfaceEdge<dim> *> from;
-      for (const auto &edge : edges)
-        from.emplace(std::make_pair(edge.body, edge.keys[0]), &edge);
-      std::vector<OutlineVertex<dim>> result;
-      for (const auto &in : edges)
-        if (const auto out = from.find({in.body, in.keys[1]}); out != from.end())
-          result.push_back({&in, out->second});
-      return result;
-    }
 
     template <int dim>
     double distance_from(const SurfaceEdge<dim> &edge, const dealii::Point<dim> &x)
@@ -74,10 +41,10 @@ namespace slipstick::mechanics
   } // namespace
 
   template <int dim>
-  std::vector<SingularPoint<dim>> bond_ends(const scene::Scene<dim>             &scene,
-                                            const mesh::Mesh<dim>               &mesh,
-                                            const std::vector<SurfaceEdge<dim>> &edges,
-                                            const unsigned int                   n_supports)
+  std::vector<BondEnd<dim>> bond_ends(const scene::Scene<dim>               &scene,
+                                      const mesh::Mesh<dim>                 &mesh,
+                                      const std::vector<OutlineVertex<dim>> &vertices,
+                                      const unsigned int                     n_supports)
   {
     const auto on = [&](const SurfaceEdge<dim> &edge, const scene::BoundaryName &where) {
       return edge.body == where.body && mesh.on_boundary(where, edge.boundary);
@@ -92,18 +59,17 @@ namespace slipstick::mechanics
         return !support.point && on(edge, support.where);
       });
     };
-    const auto                      vertices = vertices_of(edges);
-    std::vector<SingularPoint<dim>> result;
-    const auto add = [&](const unsigned int body, const OutlineVertex<dim> &at, const scene::ContactPair<dim> &pair) {
+    std::vector<BondEnd<dim>> result;
+    const auto add = [&](const unsigned int body, const unsigned int pair, const OutlineVertex<dim> &at) {
       const auto   x     = at.position();
       const double close = reached * std::min(at.in->chord(), at.out->chord());
-      if (std::none_of(result.begin(), result.end(), [&](const SingularPoint<dim> &other) {
+      if (std::none_of(result.begin(), result.end(), [&](const BondEnd<dim> &other) {
             return other.body == body && other.position.distance(x) <= close; // the same, found on the other side
           }))
-        result.push_back({body, x, "an end of the bond " + pair.name});
+        result.push_back({body, pair, x});
     };
-    for (const auto &pair : scene.contacts)
-      if (pair.law.is_bonded)
+    for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+      if (const auto &pair = scene.contacts[k]; pair.law.is_bonded)
         for (const bool is_slave : {true, false})
           {
             if (!is_slave && !pair.master)
@@ -119,21 +85,21 @@ namespace slipstick::mechanics
                 if (!pair.master)
                   {
                     if (vertex.angle() >= least_angle_of_clamp)
-                      add(side.body, vertex, pair);
+                      add(side.body, k, vertex);
                     continue;
                   }
                 const auto &partner = is_slave ? *pair.master : pair.slave;
                 if (const auto angle = angle_at(mesh, vertices, partner, vertex.position());
                     angle && vertex.angle() + *angle >= M_PI + least_turn)
                   for (const unsigned int body : {side.body, partner.body})
-                    add(body, vertex, pair);
+                    add(body, k, vertex);
               }
           }
     return result;
   }
 
-  template std::vector<SingularPoint<2>> bond_ends(const scene::Scene<2> &,
-                                                   const mesh::Mesh<2> &,
-                                                   const std::vector<SurfaceEdge<2>> &,
-                                                   const unsigned int);
+  template std::vector<BondEnd<2>> bond_ends(const scene::Scene<2> &,
+                                             const mesh::Mesh<2> &,
+                                             const std::vector<OutlineVertex<2>> &,
+                                             const unsigned int);
 } // namespace slipstick::mechanics

@@ -2,6 +2,8 @@
 
 #include <deal.II/dofs/dof_accessor.h>
 
+#include <algorithm>
+
 namespace slipstick::mechanics
 {
   template <int dim>

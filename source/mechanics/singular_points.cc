@@ -39,22 +39,18 @@ namespace slipstick::mechanics
 
     /// Kind of singularity at a corner of an outline, or at a change of supports; empty if there is none.
     template <int dim>
-    std::string what_is_between(const SurfaceEdge<dim>    &in,
-                                const SurfaceEdge<dim>    &out,
-                                const std::array<bool, 2> &held_in,
-                                const std::array<bool, 2> &held_out)
+    std::string what_is_at(const OutlineVertex<dim>  &vertex,
+                           const std::array<bool, 2> &held_in,
+                           const std::array<bool, 2> &held_out)
     {
-      const auto   n = in.outline_normal(1), m = out.outline_normal(0);
-      const double turn  = std::atan2(cross(n, m), n * m); // positive to the left, the side of the body
-      const double angle = M_PI - turn;
-      const auto   all   = [](const std::array<bool, 2> &held) { return held[0] && held[1]; };
+      const auto all = [](const std::array<bool, 2> &held) { return held[0] && held[1]; };
       if (all(held_in) && all(held_out))
         return "";
-      if (turn <= -least_turn)
+      if (vertex.turn() <= -least_turn)
         return "a re-entrant corner";
       if (held_in == held_out)
         return "";
-      return angle >= (all(held_in) || all(held_out) ? least_angle_of_clamp : least_angle_of_roller)
+      return vertex.angle() >= (all(held_in) || all(held_out) ? least_angle_of_clamp : least_angle_of_roller)
                ? "the end of a support"
                : "";
     }
@@ -103,30 +99,6 @@ namespace slipstick::mechanics
         return result;
       }
     };
-
-    /// Corners of outlines, and ends of supports along them.
-    template <int dim>
-    void add_corners(const scene::Scene<dim>             &scene,
-                     const mesh::Mesh<dim>               &mesh,
-                     const std::vector<SurfaceEdge<dim>> &edges,
-                     const unsigned int                   n_supports,
-                     std::vector<SingularPoint<dim>>     &result)
-    {
-      std::map<std::pair<unsigned int, NodeKey>, unsigned int> from;
-      for (unsigned int e = 0; e < edges.size(); ++e)
-        from.emplace(std::make_pair(edges[e].body, edges[e].keys[0]), e);
-      for (const auto &in : edges)
-        if (const auto found = from.find({in.body, in.keys[1]}); found != from.end())
-          {
-            const auto       &out  = edges[found->second];
-            const std::string what = what_is_between(in,
-                                                     out,
-                                                     held_along(scene, mesh, n_supports, in),
-                                                     held_along(scene, mesh, n_supports, out));
-            if (!what.empty())
-              result.push_back({in.body, in.node(1), what});
-          }
-    }
   } // namespace
 
   template <int dim>
@@ -169,10 +141,16 @@ namespace slipstick::mechanics
     auto result = force_points(scene, mesh, spaces, n_supports);
     if constexpr (dim == 2) // edges of solids are not examined
       {
-        const auto edges = outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
-        add_corners(scene, mesh, edges, n_supports, result);
-        const auto ends = bond_ends(scene, mesh, edges, n_supports);
-        result.insert(result.end(), ends.begin(), ends.end());
+        const auto edges    = outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
+        const auto vertices = outline_vertices(edges);
+        for (const auto &vertex : vertices)
+          if (const auto what = what_is_at(vertex,
+                                           held_along(scene, mesh, n_supports, *vertex.in),
+                                           held_along(scene, mesh, n_supports, *vertex.out));
+              !what.empty())
+            result.push_back({vertex.in->body, vertex.position(), what});
+        for (const auto &end : bond_ends(scene, mesh, vertices, n_supports))
+          result.push_back({end.body, end.position, "an end of the bond " + scene.contacts[end.pair].name});
       }
     return result;
   }
