@@ -3,6 +3,7 @@
 #include <slipstick/contact/given_bounds.h>
 #include <slipstick/contact/linear.h>
 #include <slipstick/qp/box.h>
+#include <slipstick/tfeti/face.h>
 
 #include <algorithm>
 #include <utility>

@@ -8,6 +8,7 @@
 #include <slipstick/contact/no_forces.h>
 #include <slipstick/qp/feasible_point.h>
 #include <slipstick/tfeti/diagnosis.h>
+#include <slipstick/tfeti/face.h>
 
 #include <algorithm>
 #include <array>
