@@ -77,4 +77,20 @@ namespace slipstick::app
       }
     return "";
   }
+
+  template <int dim>
+  output::ContactNames contact_names(const scene::Scene<dim> &scene)
+  {
+    output::ContactNames names;
+    for (const auto &pair : scene.contacts)
+      {
+        names.pairs.push_back(pair.name);
+        names.slave_bodies.push_back(scene.bodies[pair.slave.body].name);
+      }
+    names.dimension = dim;
+    return names;
+  }
+
+  template output::ContactNames contact_names(const scene::Scene<2> &);
+  template output::ContactNames contact_names(const scene::Scene<3> &);
 } // namespace slipstick::app

@@ -4,6 +4,7 @@
 #include <slipstick/app/geometry_checks.h>
 #include <slipstick/app/held_nodes.h>
 #include <slipstick/app/interruption.h>
+#include <slipstick/app/names.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/run.h>
 #include <slipstick/app/solution_warnings.h>

@@ -219,19 +219,6 @@ namespace slipstick::app
     return step;
   }
 
-  template <int dim>
-  output::ContactNames contact_names(const scene::Scene<dim> &scene)
-  {
-    output::ContactNames names;
-    for (const auto &pair : scene.contacts)
-      {
-        names.pairs.push_back(pair.name);
-        names.slave_bodies.push_back(scene.bodies[pair.slave.body].name);
-      }
-    names.dimension = dim;
-    return names;
-  }
-
   template output::ForceSummary forces(const StepSolver<2> &, const StepSolution &, const double, Warnings &);
   template void                 add_places(const StepSolver<2> &, const mechanics::StressResult &, output::Summary &);
   template std::vector<output::ProbeResult> probe_results(const scene::Scene<2> &,
@@ -242,7 +229,6 @@ namespace slipstick::app
                                                            const contact::CheckedContact &,
                                                            TotalSlip &,
                                                            std::vector<mechanics::NodeKey> &);
-  template output::ContactNames             contact_names(const scene::Scene<2> &);
   template output::ForceSummary forces(const StepSolver<3> &, const StepSolution &, const double, Warnings &);
   template void                 add_places(const StepSolver<3> &, const mechanics::StressResult &, output::Summary &);
   template std::vector<output::ProbeResult> probe_results(const scene::Scene<3> &,
@@ -253,5 +239,4 @@ namespace slipstick::app
                                                            const contact::CheckedContact &,
                                                            TotalSlip &,
                                                            std::vector<mechanics::NodeKey> &);
-  template output::ContactNames             contact_names(const scene::Scene<3> &);
 } // namespace slipstick::app

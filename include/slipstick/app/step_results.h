@@ -44,7 +44,4 @@ namespace slipstick::app
                                      const contact::CheckedContact   &own,
                                      TotalSlip                       &total_slip,
                                      std::vector<mechanics::NodeKey> &keys_of_nodes);
-
-  template <int dim>
-  output::ContactNames contact_names(const scene::Scene<dim> &scene);
 } // namespace slipstick::app
