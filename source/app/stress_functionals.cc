@@ -17,9 +17,6 @@ namespace slipstick::app
   {
     // Stresses closer to a singular point than this part of the body's half diagonal depend on the mesh.
     constexpr double near_singular_point = 0.1;
-    // Peaks of pressure have surroundings of the size of their contact, but not less than this part of half the diagonal of
-    // the body: the contact may shrink to a point.
-    constexpr double near_peak = 0.01;
 
     // A probe is at a singular point if it is closer than this part of that distance.
     constexpr double at_singular_point = 1e-6;
@@ -95,10 +92,9 @@ namespace slipstick::app
               list[k].reason = "not resolved, or without limit, at " + singular.what;
       }
 
-      /// Of these points, of corners and of ends of supports and bonds; @p peaks of pressures follow.
+      /// Of these points, of corners and of ends of supports.
       std::vector<mechanics::Surroundings<dim>> surroundings(
-        const std::vector<mechanics::SingularPoint<dim>> &acting,
-        const std::vector<mechanics::Surroundings<dim>>  &peaks) const
+        const std::vector<mechanics::SingularPoint<dim>> &acting) const
       {
         const auto frames = mechanics::body_frames(solver.discrete_scene(), solver.mesh());
         std::vector<mechanics::Surroundings<dim>> result;
@@ -113,8 +109,6 @@ namespace slipstick::app
                                                             solver.n_given_supports()))
           if (!point.support && !point.load)
             add(point);
-        for (const auto &peak : peaks)
-          result.push_back({peak.of, std::max(peak.radius, near_peak * frames[peak.of.body].length)});
         return result;
       }
 
@@ -202,7 +196,8 @@ namespace slipstick::app
     };
     std::vector<Functional>      list;
     const StressFunctionals<dim> of_scene(solver, answer, t);
-    const auto                   around = of_scene.surroundings(acting, peaks);
+    auto                         around = of_scene.surroundings(acting);
+    around.insert(around.end(), peaks.begin(), peaks.end());
     if (quantities.empty() || names("max_von_mises") || names("max_regular_von_mises"))
       of_scene.add_largest(around, names("max_regular_von_mises"), list);
     const auto &all = solver.discrete_scene().probes;

@@ -185,7 +185,7 @@ namespace slipstick::mechanics
     for (const auto &cell : dof_handler.active_cell_iterators())
       {
         element.nodes_of(cell, dofs, nodes);
-        at_nodes.reinit(cell);
+        at_nodes.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell)); // points alone
         for (unsigned int i = 0; i < nodes.size(); ++i)
           {
             Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(n_components);
