@@ -60,7 +60,7 @@ TEST(PatchRecovery, linear_stresses_of_degree_one)
 {
   const std::function<Point(double, double)> maps[] = {
     [](const double s, const double t) { return Point(s, t); },
-    [](const double s, const double t) { return Point(s + 0.01 * t, s - 0.01 * t); },
+    [](const double s, const double t) { return Point(s - 0.01 * t, s + 0.01 * t); },
     [](const double s, const double t) { return Point(1e-3 * s + 4 * t, 7 * t); }};
   for (const auto &map : maps)
     {
@@ -137,7 +137,7 @@ TEST(PatchRecovery, converges_at_boundaries)
         {
           Grid grid = lattice(cells, {{n, n}});
           grid.map  = [](const double s, const double t) {
-            const double angle = std::acos(-1.) / 2 * s;
+            const double angle = std::acos(-1.) / 2 * (1 - s);
             return (1 + t) * Point(std::cos(angle), std::sin(angle));
           };
           const OnGrid on_grid(scene, grid);
