@@ -34,23 +34,13 @@ namespace slipstick::mechanics
 
     /// Solution of covariance x = right; zero in directions in which the points have no extent.
     template <int dim>
-    Slopes<dim> solved(const Eigen::Matrix<double, dim, dim> &covariance, const Slopes<dim> &right)
+    Slopes<dim> solved(const PointMoments<dim> &moments, const Slopes<dim> &right)
     {
-      using Matrix                              = Eigen::Matrix<double, dim, dim>;
-      const Eigen::Matrix<double, dim, 1> scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
-      if (scale.array().isFinite().all())
-        {
-          const Eigen::LLT<Matrix>            factor(scale.asDiagonal() * covariance * scale.asDiagonal());
-          const Eigen::Matrix<double, dim, 1> pivots = factor.matrixLLT().diagonal();
-          if (factor.info() == Eigen::Success && pivots.cwiseAbs2().minCoeff() > 1e3 * no_extent &&
-              scale.minCoeff() > 1e-3 * scale.maxCoeff())
-            return scale.asDiagonal() * factor.solve(scale.asDiagonal() * right);
-        }
-      const Eigen::SelfAdjointEigenSolver<Matrix> axes(covariance);
-      Eigen::Matrix<double, dim, 1>               inverses = axes.eigenvalues();
-      const double                                longest  = inverses[dim - 1];
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>> axes(moments.covariance);
+      Eigen::Matrix<double, dim, 1>                                        inverses = axes.eigenvalues();
+      const double least = moments.least_variance(inverses[dim - 1]);
       for (double &value : inverses)
-        value = value > no_extent * longest ? 1 / value : 0;
+        value = value > least ? 1 / value : 0;
       return axes.eigenvectors() * (inverses.asDiagonal() * (axes.eigenvectors().transpose() * right));
     }
   } // namespace
@@ -116,7 +106,7 @@ namespace slipstick::mechanics
         Slopes products(dim, n_components);
         for (unsigned int c = 0; c < n_components; ++c)
           products.col(c) = row.template segment<dim>(at_products + dim * c).transpose() / moments.n;
-        set_slopes(v, solved<dim>(moments.covariance, products - moments.mean * mean));
+        set_slopes(v, solved<dim>(moments, products - moments.mean * mean));
         values.row(v)      = mean - moments.mean.transpose() * slopes_of(v);
         has_simplices[v]   = row[at_simplices] > 0;
         const auto normals = Moments::symmetric(row, at_normals);
@@ -136,17 +126,17 @@ namespace slipstick::mechanics
                [&](typename PatchSums<dim>::Sums &sum) {
                  for (const auto &cell : dof_handler.active_cell_iterators())
                    for (const unsigned int v : cell->vertex_indices())
-                     for (const unsigned int w : cell->vertex_indices())
-                       if (const unsigned int to = cell->vertex_index(v), from = cell->vertex_index(w);
-                           n_sides[to] > sides && !has_taken[to] && n_sides[from] == sides)
-                         {
-                           const Vector x   = distance<dim>(cell->vertex(v), cell->vertex(w));
-                           auto         row = sum.row(to);
-                           row.head(dim * n_components) += slopes.row(from);
-                           row.segment(dim * n_components, n_components) +=
-                             values.row(from) + x.transpose() * slopes_of(from);
-                           row[(dim + 1) * n_components] += 1;
-                         }
+                     if (const unsigned int to = cell->vertex_index(v); n_sides[to] > sides && !has_taken[to])
+                       for (const unsigned int w : cell->vertex_indices())
+                         if (const unsigned int from = cell->vertex_index(w); n_sides[from] == sides)
+                           {
+                             const Vector x   = distance<dim>(cell->vertex(v), cell->vertex(w));
+                             auto         row = sum.row(to);
+                             row.head(dim * n_components) += slopes.row(from);
+                             row.segment(dim * n_components, n_components) +=
+                               values.row(from) + x.transpose() * slopes_of(from);
+                             row[(dim + 1) * n_components] += 1;
+                           }
                },
                [=](const unsigned int v, const typename PatchSums<dim>::Row &row) {
                  const double n = row[(dim + 1) * n_components];

@@ -2,15 +2,14 @@
 
 #include <deal.II/dofs/dof_accessor.h>
 
-#include <algorithm>
-
 namespace slipstick::mechanics
 {
   template <int dim>
   PatchSums<dim>::PatchSums(const dealii::DoFHandler<dim> &dof_handler, const std::vector<unsigned int> &shared_nodes)
-    : row_of_node(dof_handler.n_dofs() / dim, -1)
+    : n_vertices(dof_handler.get_triangulation().n_vertices())
+    , row_of_node(dof_handler.n_dofs() / dim, -1)
   {
-    std::vector<bool> is_shared(row_of_node.size()), is_found(dof_handler.get_triangulation().n_vertices());
+    std::vector<bool> is_shared(row_of_node.size()), is_found(n_vertices);
     for (const unsigned int node : shared_nodes)
       is_shared[node] = true;
     for (const auto &cell : dof_handler.active_cell_iterators())
@@ -28,10 +27,6 @@ namespace slipstick::mechanics
   template <int dim>
   void PatchSums<dim>::start(const unsigned int n_columns, const std::function<void(Sums &)> &sum, const Use &use)
   {
-    unsigned int n_vertices = 0;
-    for (const auto *vertices : {&inner, &shared})
-      for (const unsigned int v : *vertices)
-        n_vertices = std::max(n_vertices, v + 1);
     Sums sums = Sums::Zero(n_vertices, n_columns);
     sum(sums);
     for (const unsigned int v : inner)

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace slipstick::mechanics
@@ -18,13 +17,13 @@ namespace slipstick::mechanics
     /// Symmetric matrix that maps points with this covariance to points with covariance 1; directions without extent are
     /// scaled as the longest.
     template <int dim>
-    Eigen::Matrix<double, dim, dim> to_unit_covariance(const Eigen::Matrix<double, dim, dim> &covariance)
+    Eigen::Matrix<double, dim, dim> to_unit_covariance(const PointMoments<dim> &moments)
     {
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>> axes(covariance);
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>> axes(moments.covariance);
       const double                                                         longest = axes.eigenvalues()[dim - 1];
       Eigen::Matrix<double, dim, 1>                                        squares = axes.eigenvalues();
       for (double &square : squares)
-        square = square > no_extent * longest ? square : longest;
+        square = square > moments.least_variance(longest) ? square : longest;
       return axes.eigenvectors() * squares.cwiseSqrt().cwiseInverse().asDiagonal() * axes.eigenvectors().transpose();
     }
 
@@ -112,7 +111,7 @@ namespace slipstick::mechanics
           }
       },
       [this](const unsigned int v, const typename PatchSums<dim>::Row &row) {
-        metrics[v] = to_unit_covariance<dim>(PointMoments<dim>(row).covariance);
+        metrics[v] = to_unit_covariance(PointMoments<dim>(row));
       });
   }
 
@@ -206,10 +205,10 @@ namespace slipstick::mechanics
   /// squares of coefficients.
   template <int dim>
   typename QuadraticPatches<dim>::Monomials QuadraticPatches<dim>::monomials(const unsigned int vertex,
-                                                                             const Vector      &distance) const
+                                                                             const Vector      &from_vertex) const
   {
     static const double root_of_two = std::sqrt(2.);
-    const Vector        x           = metrics[vertex] * distance;
+    const Vector        x           = metrics[vertex] * from_vertex;
     Monomials           result;
     unsigned int        next = 0;
     result[next++]           = 1;

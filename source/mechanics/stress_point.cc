@@ -3,12 +3,11 @@
 #include <slipstick/mechanics/stress_point.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/polynomial.h>
+#include <deal.II/base/polynomial_space.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace slipstick::mechanics
 {
@@ -22,22 +21,6 @@ namespace slipstick::mechanics
     constexpr double independent = 1e-3;
     // For derivatives of the mapping at the middle of a reference cell.
     constexpr double step_in_cell = 0.1;
-
-    /// Exponents of the monomials of a polynomial, the constant first.
-    template <int dim>
-    std::vector<std::array<unsigned int, dim>> powers_up_to(const unsigned int degree)
-    {
-      std::vector<std::array<unsigned int, dim>> result;
-      std::array<unsigned int, dim>              next{};
-      while (next[dim - 1] <= degree)
-        {
-          if (std::accumulate(next.begin(), next.end(), 0u) <= degree)
-            result.push_back(next);
-          for (unsigned int d = 0; ++next[d] > degree && d + 1 < dim; ++d)
-            next[d] = 0;
-        }
-      return result;
-    }
   } // namespace
 
   template <int dim>
@@ -124,21 +107,20 @@ namespace slipstick::mechanics
     using Rows           = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const Eigen::Map<const Rows> points(all.data(), all.size() / n, n);
 
-    const std::vector<std::array<unsigned int, dim>> powers      = powers_up_to<dim>(spaces.degree + 1);
-    const unsigned int                               n_monomials = powers.size();
+    const dealii::PolynomialSpace<dim> polynomials( // of complete degree; the constant is the first
+      dealii::Polynomials::Monomial<double>::generate_complete_basis(spaces.degree + 1));
+    const unsigned int                 n_monomials = polynomials.n();
     if (points.rows() < n_monomials)
       return {};
     Eigen::MatrixXd monomials(points.rows(), n_monomials), values = points.rightCols(n_components);
     for (unsigned int r = 0; r < points.rows(); ++r)
       {
-        const Eigen::Matrix<double, 1, dim> place  = points.row(r).template head<dim>();
-        const double                        weight = 1 / (1 + place.squaredNorm()); // the nearer, the more
+        dealii::Point<dim> place;
+        for (unsigned int d = 0; d < dim; ++d)
+          place[d] = points(r, d);
+        const double weight = 1 / (1 + place.square()); // the nearer, the more
         for (unsigned int k = 0; k < n_monomials; ++k)
-          {
-            monomials(r, k) = weight;
-            for (unsigned int d = 0; d < dim; ++d)
-              monomials(r, k) *= std::pow(place[d], powers[k][d]);
-          }
+          monomials(r, k) = weight * polynomials.compute_value(k, place);
         values.row(r) *= weight;
       }
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors;

@@ -93,31 +93,31 @@ TEST(PatchRecovery, quadratic_stresses_of_degree_two)
     return x[0] > margin && x[0] < 1 - margin && x[1] > margin && x[1] < 1 - margin;
   };
   EXPECT_LT(error(grid, scene, u, gradient, inside), 1e-11);
-  EXPECT_LT(error(grid, scene, u, gradient), 0.01);
+  EXPECT_LT(error(grid, scene, u, gradient), 0.002);
 }
 
-/// The slope across is not known; along the layer it is.
+/// The slope across is not known; along the layer it is, also where cells are much higher than long.
 TEST(PatchRecovery, one_layer_of_cells)
 {
   const auto u = [](const Point &x) { return Eigen::Vector2d(1e-3 * x[0] * x[0], 0); };
   const auto g = [](const Point &x) { return (Eigen::Matrix2d() << 2e-3 * x[0], 0, 0, 0).finished(); };
-  for (const double angle : {0., 0.6})
+  for (const auto &[angle, height] : {std::pair(0., 0.05), {0.6, 0.05}, {0., 300.}, {0.6, 300.}})
     {
-      const Scene scene = sheet(1);
-      Grid        grid  = lattice(Cells::quadrilaterals, {{12, 1}});
-      const auto  turn  = [angle](const double x, const double y) {
-        return Point(std::cos(angle) * x - std::sin(angle) * y, std::sin(angle) * x + std::cos(angle) * y);
+      const Scene  scene   = sheet(1);
+      Grid         grid    = lattice(Cells::quadrilaterals, {{12, 1}});
+      const double along_x = std::cos(angle), along_y = std::sin(angle);
+      const auto   turn = [&](const double x, const double y) {
+        return Point(along_x * x - along_y * y, along_y * x + along_x * y);
       };
-      grid.map = [&](const double s, const double t) { return turn(s, 0.05 * t); };
-      const Eigen::Matrix2d rotation =
-        (Eigen::Matrix2d() << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle)).finished();
-      const auto along = [angle](const Point &x) { return Point(std::cos(angle) * x[0] + std::sin(angle) * x[1], 0); };
-      const OnGrid on_grid(scene, grid);
+      grid.map = [&, height = height](const double s, const double t) { return turn(s, height * t); };
+      const Eigen::Matrix2d rotation = (Eigen::Matrix2d() << along_x, -along_y, along_y, along_x).finished();
+      const auto            along    = [&](const Point &x) { return Point(along_x * x[0] + along_y * x[1], 0); };
+      const OnGrid          on_grid(scene, grid);
       EXPECT_LT(error(on_grid,
                       scene,
                       on_grid.nodal([&](const Point &x) -> Eigen::Vector2d { return rotation * u(along(x)); }),
                       [&](const Point &x) -> Eigen::Matrix2d { return rotation * g(along(x)) * rotation.transpose(); }),
-                1e-10);
+                height < 1 ? 1e-10 : 1e-5);
     }
 }
 

@@ -49,8 +49,9 @@ namespace slipstick::mechanics
     const unsigned int             n_components;
 
     // by vertex
-    Eigen::MatrixXd            values, slopes; // vertices x components; vertices x (dim x components), column by column
-    std::vector<unsigned char> n_sides;        // of the body at the vertex
+    typename PatchSums<dim>::Sums values,
+      slopes;                           // vertices x components; vertices x (dim x components), column by column
+    std::vector<unsigned char> n_sides; // of the body at the vertex
     std::vector<bool>          has_simplices, has_taken;
 
     std::unordered_map<unsigned int, Vector> mean_place; // of the points around vertices on the boundary

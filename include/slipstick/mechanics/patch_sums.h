@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -47,6 +48,7 @@ namespace slipstick::mechanics
     void finish();
 
   private:
+    unsigned int              n_vertices;
     std::vector<int>          row_of_node;
     std::vector<unsigned int> inner, shared; // vertices
     Use                       use_later;
@@ -97,6 +99,13 @@ namespace slipstick::mechanics
       return result;
     }
 
+    /// Variance below which the points have no extent in a direction, where @p longest is the largest: aspect ratios of 1e6,
+    /// and what rounding leaves where the points are far from the vertex.
+    double least_variance(const double longest) const
+    {
+      return std::max(1e-12 * longest, 1e-14 * mean.squaredNorm());
+    }
+
     double                          n;
     Eigen::Matrix<double, dim, 1>   mean;
     Eigen::Matrix<double, dim, dim> covariance;
@@ -110,7 +119,4 @@ namespace slipstick::mechanics
       result[d] = to[d] - from[d];
     return result;
   }
-
-  /// Points have no extent in a direction if its square is below this part of that of the longest (aspect ratios of 1e6).
-  constexpr double no_extent = 1e-12;
 } // namespace slipstick::mechanics

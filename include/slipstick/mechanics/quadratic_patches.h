@@ -39,7 +39,7 @@ namespace slipstick::mechanics
     using Vector    = Eigen::Matrix<double, dim, 1>;
     using Monomials = Eigen::Matrix<double, n_monomials, 1>;
 
-    Monomials monomials(const unsigned int vertex, const Vector &distance) const;
+    Monomials monomials(const unsigned int vertex, const Vector &from_vertex) const;
 
     const dealii::DoFHandler<dim> &dof_handler;
     const Element<dim>            &element;
