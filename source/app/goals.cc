@@ -241,12 +241,13 @@ namespace slipstick::app
       if (wanted(functional.quantity))
         {
           GoalError error;
-          error.quantity = functional.quantity;
-          error.unit     = functional.unit;
-          error.value    = functional.value;
-          error.local    = functional.local_error;
-          error.note     = functional.note;
-          error.reason   = adjoint.is_possible() ? functional.reason : loose;
+          error.quantity      = functional.quantity;
+          error.unit          = functional.unit;
+          error.value         = functional.value;
+          error.local         = functional.local_error;
+          error.note          = functional.note;
+          error.reason        = adjoint.is_possible() ? functional.reason : loose;
+          error.is_resolvable = adjoint.is_possible() && functional.is_resolvable;
           if (error.reason.empty())
             {
               const auto z = functional.is_of_multipliers

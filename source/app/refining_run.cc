@@ -184,7 +184,10 @@ namespace slipstick::app
       format("the accuracy of %g %% of %s is not reached: ", 100 * options.accuracy, what().c_str()) +
       (is_known ? format("the error is %.2g %% after %zu meshes", 100 * rows.back().error, rows.size())
                 : format("after %zu meshes %s", rows.size(), without_estimate.c_str()));
-    n_without = is_known ? 0 : n_without + 1;
+    const auto goals = goals_of(steps);
+    const bool is_resolvable =
+      std::any_of(goals.begin(), goals.end(), [](const GoalError &goal) { return goal.is_resolvable; });
+    n_without = is_known || is_resolvable ? 0 : n_without + 1;
     if (n_without == most_without_estimate)
       return so_far;
     const std::string limit = mark_next(steps, summary);

@@ -18,6 +18,10 @@ namespace slipstick::app
     // Stresses closer to a singular point than this part of the body's half diagonal depend on the mesh.
     constexpr double near_singular_point = 0.1;
 
+    // A singular point whose cell is larger than what is left out around it is not resolved. Refinement may then move
+    // the largest stress elsewhere to it, if the cell bears this part of that stress.
+    constexpr double may_become_largest = 0.5;
+
     // A probe is at a singular point if it is closer than this part of that distance.
     constexpr double at_singular_point = 1e-6;
 
@@ -55,7 +59,7 @@ namespace slipstick::app
           });
         if (near != around.end())
           list.back().reason = "not resolved, or without limit, at " + near->of.what;
-        else if (!is_named)
+        else if (!note_unresolved(around, list.back()) && !is_named)
           return;
         const auto regular = mechanics::stress_places(solver.mesh(), solver.spaces(), stress, around).von_mises;
         if (regular.value > 0)
@@ -63,6 +67,7 @@ namespace slipstick::app
             const auto stresses = at(regular.body, regular.position);
             list.push_back(von_mises("max_regular_von_mises", stresses));
             list.back().local_error += increase_towards(regular, stresses.point, around);
+            note_unresolved(around, list.back());
           }
         else
           list.push_back(
@@ -129,6 +134,29 @@ namespace slipstick::app
                            (mechanics::von_mises<dim>(s) - node.value) * (beyond - radius) / (beyond - within));
               }
         return dealii::Utilities::MPI::max(increase, solver.mesh().comm);
+      }
+
+      /// Gives @p largest a reason to have no bar if it may be found elsewhere once the cells there are smaller than what
+      /// is left out. Returns whether it does.
+      bool note_unresolved(const std::vector<mechanics::Surroundings<dim>> &around, Functional &largest) const
+      {
+        if (!largest.reason.empty())
+          return false;
+        const auto cells = mechanics::cells_at(solver.mesh(), solver.spaces(), stress, around);
+        for (std::size_t k = 0; k < around.size(); ++k)
+          if (cells[k].size > around[k].radius && cells[k].von_mises > may_become_largest * largest.value)
+            {
+              largest.reason = format("%s at %s of body %s is not resolved: the cell there has edges of %.3g mm, and "
+                                      "%.3g mm around it are left out",
+                                      around[k].of.what.c_str(),
+                                      point_text(around[k].of.position, dim).c_str(),
+                                      solver.discrete_scene().bodies[around[k].of.body].name.c_str(),
+                                      cells[k].size,
+                                      around[k].radius);
+              largest.is_resolvable = true;
+              return true;
+            }
+        return false;
       }
 
       StressesAt<dim> at(const unsigned int body, const dealii::Point<dim> &x) const

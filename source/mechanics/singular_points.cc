@@ -10,7 +10,9 @@
 #include <boost/serialization/vector.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -202,6 +204,40 @@ namespace slipstick::mechanics
     return {spots[0].peak(), spots[0].size, spots[1].peak()};
   }
 
+  template <int dim>
+  std::vector<CellAtPlace> cells_at(const mesh::Mesh<dim>                &mesh,
+                                    const Spaces<dim>                    &spaces,
+                                    const StressResult                   &stress,
+                                    const std::vector<Surroundings<dim>> &places)
+  {
+    using Entry =
+      std::array<double, 3>; // distance, size, minus the stress: of equally near cells the small, loaded one
+    std::vector<Entry> nearest(places.size(), {{std::numeric_limits<double>::infinity(), 0, 0}});
+    std::vector<dealii::types::global_dof_index> dofs;
+    std::vector<unsigned int>                    nodes;
+    for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
+      for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
+        for (std::size_t k = 0; k < places.size(); ++k)
+          if (const double distance = cell->center().distance(places[k].of.position);
+              places[k].of.body == mesh.subdomains[p]->body && distance <= nearest[k][0])
+            {
+              double edges = 0, largest = 0;
+              for (const unsigned int l : cell->line_indices())
+                edges += cell->line(l)->diameter();
+              spaces.of(p).nodes_of(cell, dofs, nodes);
+              for (const unsigned int node : nodes)
+                largest = std::max(largest, von_mises<dim>(stress.subdomains[p].nodal.row(node)));
+              nearest[k] = std::min(nearest[k], {{distance, edges / cell->n_lines(), -largest}});
+            }
+    for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.comm, nearest))
+      for (std::size_t k = 0; k < places.size(); ++k)
+        nearest[k] = std::min(nearest[k], of_rank[k]);
+    std::vector<CellAtPlace> cells;
+    for (const auto &[distance, size, minus_stress] : nearest)
+      cells.push_back({size, -minus_stress});
+    return cells;
+  }
+
   template struct SingularPoint<2>;
   template std::vector<SingularPoint<2>> force_points(const scene::Scene<2> &,
                                                       const mesh::Mesh<2> &,
@@ -215,6 +251,10 @@ namespace slipstick::mechanics
                                                        const Spaces<2> &,
                                                        const StressResult &,
                                                        const std::vector<Surroundings<2>> &);
+  template std::vector<CellAtPlace>      cells_at(const mesh::Mesh<2> &,
+                                                  const Spaces<2> &,
+                                                  const StressResult &,
+                                                  const std::vector<Surroundings<2>> &);
   template struct SingularPoint<3>;
   template std::vector<SingularPoint<3>> force_points(const scene::Scene<3> &,
                                                       const mesh::Mesh<3> &,
@@ -228,4 +268,8 @@ namespace slipstick::mechanics
                                                        const Spaces<3> &,
                                                        const StressResult &,
                                                        const std::vector<Surroundings<3>> &);
+  template std::vector<CellAtPlace>      cells_at(const mesh::Mesh<3> &,
+                                                  const Spaces<3> &,
+                                                  const StressResult &,
+                                                  const std::vector<Surroundings<3>> &);
 } // namespace slipstick::mechanics

@@ -285,6 +285,23 @@ class Accuracy(unittest.TestCase):
         self.assertEqual(len(result.summary['meshes']), 3)
         self.assertIn('after 3 meshes back.max_pressure has no estimate: a peak at a single node', result.stderr)
 
+    def test_stresses_beside_a_peak_that_is_not_resolved(self):
+        """The cells at the edge of the back are larger than what is left out around it: the largest stress of the coarse mesh
+        is elsewhere, and half as large as the true one."""
+        result = solve(shipped('clamp'), {'Error bars': 'true', 'Output/VTU': 'false'})
+        self.assertEqual(result.status, 0, result)
+        for name in ('max_von_mises', 'max_regular_von_mises'):
+            bar, = (bar for bar in result.summary['error_bars'] if bar['quantity'] == name)
+            self.assertIsNone(bar['error'])
+            self.assertIn('the peak of the pressure of back at (55.6', bar['reason'])
+            self.assertIn('is not resolved: the cell there has edges of 2.69 mm', bar['reason'])
+        result = solve(shipped('clamp'), {'Mesh': 'adaptive', 'Goal': 'max_regular_von_mises', 'Output/VTU': 'false'})
+        self.assertEqual(result.status, 0, result)
+        self.assertGreater(len(result.summary['meshes']), 3)  # those without an estimate do not end the run
+        bar, = result.summary['error_bars']
+        self.assertAlmostEqual(bar['value'], 1015, delta=3 * bar['error'])
+        self.assertLess(bar['error'], 0.03 * bar['value'])
+
     def test_what_is_refused(self):
         for overrides, words in (({'Goal': 'touch.max_pressure'}, ('Goal', 'set Accuracy', 'Mesh = adaptive')),
                                  ({'Accuracy': '1 %', 'Goal': 'touch.max_presure'}, ("did you mean 'touch.max_pressure'",)),

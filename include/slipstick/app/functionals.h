@@ -19,8 +19,9 @@ namespace slipstick::app
     std::vector<Eigen::VectorXd> loads;     // for a quantity of displacements
     std::string                  reason;    // why there is no estimate; empty: there is one
     bool                         is_of_multipliers = true;
-    double                       local_error       = 0;  // besides that of the adjoint problem, not negative
-    std::string                  note              = ""; // what the quantity covers, if its name does not say it
+    double                       local_error       = 0;     // besides that of the adjoint problem, not negative
+    bool                         is_resolvable     = false; // finer cells remove the reason
+    std::string                  note              = "";    // what the quantity covers, if its name does not say it
   };
 
   /// The quantities of a scene, from multipliers and displacements of the last load step. Members are collective.

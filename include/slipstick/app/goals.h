@@ -16,13 +16,14 @@ namespace slipstick::app
     std::string                  quantity; // as in Goal
     std::string                  unit;
     bool                         is_known = false;
-    std::string                  reason;       // why there is no estimate
-    double                       value    = 0; // of the quantity
-    double                       signed_  = 0; // sum over the cells: the correction to be added to the value
-    double                       absolute = 0; // sum of the magnitudes
-    double                       local    = 0; // error besides that of the cells (Functional::local_error)
-    std::string                  note;         // Functional::note
-    std::vector<Eigen::VectorXd> cells;        // by subdomain of this rank: contributions of the cells
+    std::string                  reason;                // why there is no estimate
+    bool                         is_resolvable = false; // finer cells remove the reason
+    double                       value         = 0;     // of the quantity
+    double                       signed_       = 0;     // sum over the cells: the correction to be added to the value
+    double                       absolute      = 0;     // sum of the magnitudes
+    double                       local         = 0;     // error besides that of the cells (Functional::local_error)
+    std::string                  note;                  // Functional::note
+    std::vector<Eigen::VectorXd> cells;                 // by subdomain of this rank: contributions of the cells
   };
 
   /// Dual weighted residuals (Becker, Rannacher, Acta Numerica 2001): the error of a quantity is the energy product of

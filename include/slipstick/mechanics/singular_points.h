@@ -29,8 +29,8 @@ namespace slipstick::mechanics
                                                const unsigned int       n_supports);
 
   /// Singular points: those of force_points(); re-entrant corners of outlines with a turn of 35 degrees or more;
-  /// ends of boundaries along which supports hold both displacements; ends of bonds (bond_ends). Outlines are those of the true curves of the
-  /// edges. The same on every rank. Collective.
+  /// ends of boundaries along which supports hold both displacements; ends of bonds (bond_ends). Outlines are those of
+  /// the true curves of the edges. The same on every rank. Collective.
   /// @param n_supports only the first n_supports of scene.supports are considered.
   template <int dim>
   std::vector<SingularPoint<dim>> singular_points(const scene::Scene<dim> &scene,
@@ -62,4 +62,18 @@ namespace slipstick::mechanics
                                   const Spaces<dim>                    &spaces,
                                   const StressResult                   &stress,
                                   const std::vector<Surroundings<dim>> &left_out = {});
+
+  /// The cell at a place, that whose centre is nearest to it.
+  struct CellAtPlace
+  {
+    double size      = 0; // mean length of its edges [mm]
+    double von_mises = 0; // largest at its nodes [MPa]
+  };
+
+  /// For each of @p places the cell of its body there. The same on every rank. Collective.
+  template <int dim>
+  std::vector<CellAtPlace> cells_at(const mesh::Mesh<dim>                &mesh,
+                                    const Spaces<dim>                    &spaces,
+                                    const StressResult                   &stress,
+                                    const std::vector<Surroundings<dim>> &places);
 } // namespace slipstick::mechanics
