@@ -91,9 +91,9 @@ namespace slipstick::app
     double nearest = cells_of_singularity * places.size;
     for (const auto &point :
          mechanics::singular_points(scene, solver.mesh(), solver.spaces(), solver.n_given_supports()))
-      if (point.body == places.von_mises.body && point.position.distance(places.von_mises.position) < nearest)
+      if (point.body == places.von_mises.body && point.distance(places.von_mises.position) < nearest)
         {
-          nearest                  = point.position.distance(places.von_mises.position);
+          nearest                  = point.distance(places.von_mises.position);
           summary.results.singular = point.what;
         }
   }

@@ -54,8 +54,7 @@ namespace slipstick::app
         list.push_back(von_mises("max_von_mises", at(all.body, all.position)));
         const auto near =
           std::find_if(around.begin(), around.end(), [&](const mechanics::Surroundings<dim> &surroundings) {
-            return surroundings.of.body == all.body &&
-                   surroundings.of.position.distance(all.position) <= surroundings.radius;
+            return surroundings.of.body == all.body && surroundings.of.distance(all.position) <= surroundings.radius;
           });
         if (near != around.end())
           list.back().reason = "not resolved, or without limit, at " + near->of.what;
@@ -92,7 +91,7 @@ namespace slipstick::app
           }
         list.push_back(von_mises(name + ".von_mises", stresses));
         for (const auto &[singular, radius] : around)
-          if (singular.body == body && singular.position.distance(x) <= at_singular_point * radius)
+          if (singular.body == body && singular.distance(x) <= at_singular_point * radius)
             for (std::size_t k = first; k < list.size(); ++k)
               list[k].reason = "not resolved, or without limit, at " + singular.what;
       }
@@ -126,9 +125,9 @@ namespace slipstick::app
         double increase = 0;
         for (const auto &[place, s] : at_node.nodes_around(stress))
           for (const auto &[point, radius] : around)
-            if (const double within = point.position.distance(place); point.body == node.body && within < radius)
+            if (const double within = point.distance(place); point.body == node.body && within < radius)
               {
-                const double beyond = point.position.distance(node.position);
+                const double beyond = point.distance(node.position);
                 increase =
                   std::max(increase,
                            (mechanics::von_mises<dim>(s) - node.value) * (beyond - radius) / (beyond - within));
@@ -149,7 +148,7 @@ namespace slipstick::app
               largest.reason = format("%s at %s of body %s is not resolved: the cell there has edges of %.3g mm, and "
                                       "%.3g mm around it are left out",
                                       around[k].of.what.c_str(),
-                                      point_text(around[k].of.position, dim).c_str(),
+                                      point_text(around[k].of.middle(), dim).c_str(),
                                       solver.discrete_scene().bodies[around[k].of.body].name.c_str(),
                                       cells[k].size,
                                       around[k].radius);
@@ -190,10 +189,10 @@ namespace slipstick::app
       {
         std::set<std::string> texts;
         for (const auto &[point, radius] : around)
-          texts.insert(format("%.3g mm from %s at %s of body %s",
+          texts.insert(format("%.3g mm from %s%s of body %s",
                               radius,
                               point.what.c_str(),
-                              point_text(point.position, dim).c_str(),
+                              point.end ? "" : (" at " + point_text(point.position, dim)).c_str(),
                               solver.discrete_scene().bodies[point.body].name.c_str()));
         std::string result;
         for (const auto &text : texts)

@@ -68,19 +68,6 @@ namespace slipstick::interface
     return best;
   }
 
-  BoxTree<3> facet_tree(const std::vector<mechanics::SurfaceFacet> &facets)
-  {
-    std::vector<BoxTree<3>::Box> boxes;
-    for (const auto &facet : facets)
-      {
-        std::vector<dealii::Point<3>> corners;
-        for (unsigned int i = 0; i < facet.n_nodes; ++i)
-          corners.push_back(facet.node(i));
-        boxes.push_back(BoxTree<3>::box_around(corners));
-      }
-    return BoxTree<3>(boxes);
-  }
-
   bool ClosedSurface<mechanics::SurfaceFacet>::contains(const dealii::Point<3> &x) const
   {
     double angle = 0;

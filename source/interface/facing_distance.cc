@@ -1,3 +1,4 @@
+#include <slipstick/base/nearest.h>
 #include <slipstick/interface/edge_tree.h>
 #include <slipstick/interface/facing_distance.h>
 
@@ -7,16 +8,6 @@ namespace slipstick::interface
 {
   namespace
   {
-    /// Nearest point of a segment.
-    template <int dim>
-    dealii::Point<dim> nearest_on_segment(const dealii::Point<dim> &from,
-                                          const dealii::Point<dim> &to,
-                                          const dealii::Point<dim> &x)
-    {
-      const auto along = to - from;
-      return from + std::min(1., std::max(0., (x - from) * along / along.norm_square())) * along;
-    }
-
     double distance_to(const mechanics::SurfaceEdge<2> &edge, const dealii::Point<2> &x)
     {
       return x.distance(nearest_on_segment(edge.node(0), edge.node(1), x));
@@ -24,10 +15,7 @@ namespace slipstick::interface
 
     double distance_to(const mechanics::SurfaceFacet &facet, const dealii::Point<3> &x)
     {
-      double least = x.distance(nearest_on_triangle({{facet.node(0), facet.node(1), facet.node(2)}}, x));
-      if (facet.n_corners() == 4)
-        least = std::min(least, x.distance(nearest_on_triangle({{facet.node(0), facet.node(2), facet.node(3)}}, x)));
-      return least;
+      return facet.distance(x);
     }
 
     std::vector<double> sample_places(const mechanics::SurfaceEdge<2> &)
@@ -74,21 +62,6 @@ namespace slipstick::interface
           }
     }
   } // namespace
-
-  dealii::Point<3> nearest_on_triangle(const std::array<dealii::Point<3>, 3> &corner, const dealii::Point<3> &x)
-  {
-    const auto   a = corner[1] - corner[0], b = corner[2] - corner[0], to = x - corner[0];
-    const auto   n     = cross_product_3d(a, b);
-    const double beta  = cross_product_3d(to, b) * n / n.norm_square(),
-                 gamma = cross_product_3d(a, to) * n / n.norm_square();
-    if (beta >= 0 && gamma >= 0 && beta + gamma <= 1)
-      return corner[0] + beta * a + gamma * b;
-    auto best = nearest_on_segment(corner[2], corner[0], x);
-    for (const unsigned int i : {0, 1})
-      if (const auto y = nearest_on_segment(corner[i], corner[i + 1], x); x.distance(y) < x.distance(best))
-        best = y;
-    return best;
-  }
 
   template <class Part>
   std::optional<double> facing_distance(const std::vector<Part> &a, const std::vector<Part> &b, const double bound)

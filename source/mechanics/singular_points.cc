@@ -1,4 +1,7 @@
+#include <slipstick/base/box_tree.h>
+#include <slipstick/base/nearest.h>
 #include <slipstick/mechanics/bond_ends.h>
+#include <slipstick/mechanics/creases.h>
 #include <slipstick/mechanics/elasticity.h>
 #include <slipstick/mechanics/points.h>
 #include <slipstick/mechanics/singular_points.h>
@@ -23,37 +26,41 @@ namespace slipstick::mechanics
     // Values that differ by less than this part are equal: symmetric places.
     constexpr double same_value = 1e-6;
 
-    /// Displacements held by supports along an edge: none, one (which), both.
+    /// The displacements that supports hold on a boundary.
     template <int dim>
-    std::array<bool, 2> held_along(const scene::Scene<dim> &scene,
-                                   const mesh::Mesh<dim>   &mesh,
-                                   const unsigned int       n_supports,
-                                   const SurfaceEdge<dim>  &edge)
+    std::array<bool, dim> held_on(const scene::Scene<dim> &scene,
+                                  const mesh::Mesh<dim>   &mesh,
+                                  const unsigned int       n_supports,
+                                  const unsigned int       body,
+                                  const unsigned int       boundary)
     {
-      std::array<bool, 2> held{{false, false}};
+      std::array<bool, dim> held{};
       for (unsigned int s = 0; s < n_supports; ++s)
         if (const auto &support = scene.supports[s];
-            !support.point && support.where.body == edge.body && mesh.on_boundary(support.where, edge.boundary))
+            !support.point && support.where.body == body && mesh.on_boundary(support.where, boundary))
           for (unsigned int c = 0; c < dim; ++c)
             held[c] = held[c] || support.components[c];
       return held;
     }
 
-    /// Kind of singularity at a corner of an outline, or at a change of supports; empty if there is none.
+    /// Kind of singularity where an outline turns (positive: where the body is convex) or supports change; empty if
+    /// there is none.
     template <int dim>
-    std::string what_is_at(const OutlineVertex<dim>  &vertex,
-                           const std::array<bool, 2> &held_in,
-                           const std::array<bool, 2> &held_out)
+    std::string what_is_at(const double                 turn,
+                           const std::array<bool, dim> &held_in,
+                           const std::array<bool, dim> &held_out)
     {
-      const auto all = [](const std::array<bool, 2> &held) { return held[0] && held[1]; };
+      const auto all = [](const std::array<bool, dim> &held) {
+        return std::all_of(held.begin(), held.end(), [](const bool is_held) { return is_held; });
+      };
       if (all(held_in) && all(held_out))
         return "";
-      if (vertex.turn() <= -least_turn)
-        return "a re-entrant corner";
+      if (turn <= -least_turn)
+        return dim == 2 ? "a re-entrant corner" : "a re-entrant edge";
       if (held_in == held_out)
         return "";
-      return vertex.angle() >= (all(held_in) || all(held_out) ? least_angle_of_clamp : least_angle_of_roller)
-               ? "the end of a support"
+      return M_PI - turn >= (all(held_in) || all(held_out) ? least_angle_of_clamp : least_angle_of_roller)
+               ? (dim == 2 ? "the end of a support" : "the edge of a support")
                : "";
     }
 
@@ -104,6 +111,12 @@ namespace slipstick::mechanics
   } // namespace
 
   template <int dim>
+  double SingularPoint<dim>::distance(const dealii::Point<dim> &x) const
+  {
+    return (end ? nearest_on_segment(position, *end, x) : position).distance(x);
+  }
+
+  template <int dim>
   std::vector<SingularPoint<dim>> force_points(const scene::Scene<dim> &scene,
                                                const mesh::Mesh<dim>   &mesh,
                                                const Spaces<dim>       &spaces,
@@ -140,19 +153,38 @@ namespace slipstick::mechanics
                                                   const Spaces<dim>       &spaces,
                                                   const unsigned int       n_supports)
   {
-    auto result = force_points(scene, mesh, spaces, n_supports);
-    if constexpr (dim == 2) // edges of solids are not examined
+    auto       result  = force_points(scene, mesh, spaces, n_supports);
+    const auto held_at = [&](const unsigned int body, const auto &side) {
+      return held_on(scene, mesh, n_supports, body, side.boundary);
+    };
+    if constexpr (dim == 2)
       {
         const auto edges    = outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
         const auto vertices = outline_vertices(edges);
         for (const auto &vertex : vertices)
-          if (const auto what = what_is_at(vertex,
-                                           held_along(scene, mesh, n_supports, *vertex.in),
-                                           held_along(scene, mesh, n_supports, *vertex.out));
+          if (const auto what = what_is_at<dim>(vertex.turn(),
+                                                held_at(vertex.in->body, *vertex.in),
+                                                held_at(vertex.in->body, *vertex.out));
               !what.empty())
             result.push_back({vertex.in->body, vertex.position(), what});
         for (const auto &end : bond_ends(scene, mesh, vertices, n_supports))
           result.push_back({end.body, end.position, "an end of the bond " + scene.contacts[end.pair].name});
+      }
+    else
+      {
+        const auto edges  = creases(mesh, spaces, least_turn);
+        const auto add_at = [&](const Crease &crease, const unsigned int body, const std::string &what) {
+          result.push_back({body, crease.end(0), what});
+          result.back().end = crease.end(1);
+        };
+        for (const auto &crease : edges)
+          if (const auto what = what_is_at<dim>(crease.turn(),
+                                                held_at(crease.body, crease.sides[0]),
+                                                held_at(crease.body, crease.sides[1]));
+              !what.empty())
+            add_at(crease, crease.body, what);
+        for (const auto &edge : bond_edges(scene, mesh, spaces, edges, n_supports))
+          add_at(*edge.crease, edge.body, "an edge of the bond " + scene.contacts[edge.pair].name);
       }
     return result;
   }
@@ -165,7 +197,7 @@ namespace slipstick::mechanics
   {
     const auto is_left_out = [&](const unsigned int body, const dealii::Point<dim> &x) {
       return std::any_of(left_out.begin(), left_out.end(), [&](const Surroundings<dim> &around) {
-        return around.of.body == body && around.of.position.distance(x) <= around.radius;
+        return around.of.body == body && around.of.distance(x) <= around.radius;
       });
     };
     std::vector<Spot<dim>>                       spots(2); // stress, error
@@ -210,32 +242,46 @@ namespace slipstick::mechanics
                                     const StressResult                   &stress,
                                     const std::vector<Surroundings<dim>> &places)
   {
-    using Entry =
-      std::array<double, 3>; // distance, size, minus the stress: of equally near cells the small, loaded one
+    // distance, size, minus the stress: of equally near cells the small, loaded one
+    using Entry = std::array<double, 3>;
     std::vector<Entry> nearest(places.size(), {{std::numeric_limits<double>::infinity(), 0, 0}});
     std::vector<dealii::types::global_dof_index> dofs;
     std::vector<unsigned int>                    nodes;
     for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
-      for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
+      {
+        std::vector<typename dealii::DoFHandler<dim>::active_cell_iterator> cells;
+        std::vector<typename BoxTree<dim>::Box>                             centers;
+        for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
+          {
+            cells.push_back(cell);
+            centers.push_back(BoxTree<dim>::box_around({cell->center()}));
+          }
+        const BoxTree<dim> tree(centers);
         for (std::size_t k = 0; k < places.size(); ++k)
-          if (const double distance = cell->center().distance(places[k].of.position);
-              places[k].of.body == mesh.subdomains[p]->body && distance <= nearest[k][0])
-            {
-              double edges = 0, largest = 0;
-              for (const unsigned int l : cell->line_indices())
-                edges += cell->line(l)->diameter();
-              spaces.of(p).nodes_of(cell, dofs, nodes);
-              for (const unsigned int node : nodes)
-                largest = std::max(largest, von_mises<dim>(stress.subdomains[p].nodal.row(node)));
-              nearest[k] = std::min(nearest[k], {{distance, edges / cell->n_lines(), -largest}});
-            }
+          if (places[k].of.body == mesh.subdomains[p]->body)
+            tree.for_each_by_distance(
+              places[k].of.middle(),
+              [&] { return nearest[k][0]; },
+              [&](const unsigned int i) {
+                double edges = 0, largest = 0;
+                for (const unsigned int l : cells[i]->line_indices())
+                  edges += cells[i]->line(l)->diameter();
+                spaces.of(p).nodes_of(cells[i], dofs, nodes);
+                for (const unsigned int node : nodes)
+                  largest = std::max(largest, von_mises<dim>(stress.subdomains[p].nodal.row(node)));
+                nearest[k] = std::min(
+                  nearest[k],
+                  {{cells[i]->center().distance(places[k].of.middle()), edges / cells[i]->n_lines(), -largest}});
+                return true;
+              });
+      }
     for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.comm, nearest))
       for (std::size_t k = 0; k < places.size(); ++k)
         nearest[k] = std::min(nearest[k], of_rank[k]);
-    std::vector<CellAtPlace> cells;
+    std::vector<CellAtPlace> found;
     for (const auto &[distance, size, minus_stress] : nearest)
-      cells.push_back({size, -minus_stress});
-    return cells;
+      found.push_back({size, -minus_stress});
+    return found;
   }
 
   template struct SingularPoint<2>;

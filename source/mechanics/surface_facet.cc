@@ -1,3 +1,4 @@
+#include <slipstick/base/nearest.h>
 #include <slipstick/mechanics/surface_facet.h>
 
 #include <deal.II/base/mpi.h>
@@ -98,6 +99,14 @@ namespace slipstick::mechanics
     if (corners.size() == 4)
       add(others.back(), facet);
     return facet;
+  }
+
+  double SurfaceFacet::distance(const dealii::Point<3> &x) const
+  {
+    double least = x.distance(nearest_on_triangle({{node(0), node(1), node(2)}}, x));
+    if (n_corners() == 4)
+      least = std::min(least, x.distance(nearest_on_triangle({{node(0), node(2), node(3)}}, x)));
+    return least;
   }
 
   SurfaceFacet::Shape SurfaceFacet::shape_of_corners(const Place &s) const
@@ -222,5 +231,18 @@ namespace slipstick::mechanics
       all.insert(all.end(), list.begin(), list.end());
     std::sort(all.begin(), all.end());
     return all;
+  }
+
+  BoxTree<3> facet_tree(const std::vector<SurfaceFacet> &facets)
+  {
+    std::vector<BoxTree<3>::Box> boxes;
+    for (const auto &facet : facets)
+      {
+        std::vector<dealii::Point<3>> corners;
+        for (unsigned int i = 0; i < facet.n_nodes; ++i)
+          corners.push_back(facet.node(i));
+        boxes.push_back(BoxTree<3>::box_around(corners));
+      }
+    return BoxTree<3>(boxes);
   }
 } // namespace slipstick::mechanics

@@ -57,9 +57,6 @@ namespace slipstick::interface
     using ClosedOutline::ClosedOutline;
   };
 
-  /// Tree of the bounding boxes of facets.
-  BoxTree<3> facet_tree(const std::vector<mechanics::SurfaceFacet> &facets);
-
   template <>
   class ClosedSurface<mechanics::SurfaceFacet>
   {

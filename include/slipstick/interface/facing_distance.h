@@ -11,9 +11,6 @@ namespace slipstick::interface
   // Curves and surfaces face each other where the scalar product of their normals is below this.
   constexpr double facing_cosine = -0.25; // 104 degrees
 
-  /// Nearest point of a triangle (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
-  dealii::Point<3> nearest_on_triangle(const std::array<dealii::Point<3>, 3> &corner, const dealii::Point<3> &x);
-
   /// Smallest distance of two curves or surfaces where they face each other [mm]: nodes and edge or facet midpoints of
   /// one against those of the other; curved edges are replaced by chords, quadrilaterals by two triangles. Empty if
   /// nothing faces each other or nothing is closer than @p bound.

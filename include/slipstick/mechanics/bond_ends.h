@@ -1,6 +1,7 @@
-// Where bonded contacts of plane bodies end.
+// Where bonded contacts end.
 #pragma once
 
+#include <slipstick/mechanics/creases.h>
 #include <slipstick/mechanics/outline_vertices.h>
 
 namespace slipstick::mechanics
@@ -21,4 +22,18 @@ namespace slipstick::mechanics
                                       const mesh::Mesh<dim>                 &mesh,
                                       const std::vector<OutlineVertex<dim>> &vertices,
                                       const unsigned int                     n_supports);
+
+  struct BondEdge
+  {
+    unsigned int  body = 0, pair = 0; // index in Scene::contacts
+    const Crease *crease = nullptr;   // of this body or the other
+  };
+
+  /// The same in space, for the angles in the planes across the edges. @param creases of all bodies, which the result
+  /// refers to. Collective.
+  std::vector<BondEdge> bond_edges(const scene::Scene<3>     &scene,
+                                   const mesh::Mesh<3>       &mesh,
+                                   const Spaces<3>           &spaces,
+                                   const std::vector<Crease> &creases,
+                                   const unsigned int         n_supports);
 } // namespace slipstick::mechanics

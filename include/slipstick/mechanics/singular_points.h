@@ -1,4 +1,4 @@
-// Points at which stresses grow without limit under refinement, and places of the largest stresses.
+// Points and edges at which stresses grow without limit under refinement, and places of the largest stresses.
 #pragma once
 
 #include <slipstick/mechanics/deformation.h>
@@ -9,7 +9,7 @@
 
 namespace slipstick::mechanics
 {
-  /// A point at which the stress of linear elasticity is infinite.
+  /// A point at which the stress of linear elasticity is infinite, or in a solid an edge of the mesh along which it is.
   template <int dim>
   struct SingularPoint
   {
@@ -18,6 +18,16 @@ namespace slipstick::mechanics
     std::string        what; // "the point support tip", "a re-entrant corner", "an end of the support wall"
 
     std::optional<unsigned int> support = std::nullopt, load = std::nullopt; // of a point: indices in Scene
+
+    std::optional<dealii::Point<dim>> end = std::nullopt; // of an edge that begins at position
+
+    dealii::Point<dim> middle() const
+    {
+      return end ? position + (*end - position) / 2 : position;
+    }
+
+    /// Distance of the point or edge from @p x [mm].
+    double distance(const dealii::Point<dim> &x) const;
   };
 
   /// Point supports, then point loads, whatever they bear. The same on every rank. Collective.
@@ -29,8 +39,9 @@ namespace slipstick::mechanics
                                                const unsigned int       n_supports);
 
   /// Singular points: those of force_points(); re-entrant corners of outlines with a turn of 35 degrees or more;
-  /// ends of boundaries along which supports hold both displacements; ends of bonds (bond_ends). Outlines are those of
-  /// the true curves of the edges. The same on every rank. Collective.
+  /// ends of boundaries along which supports hold both displacements; ends of bonds (bond_ends). In solids the edges
+  /// where the same happens in the plane across them. Outlines and surfaces are the true ones. The same on every rank.
+  /// Collective.
   /// @param n_supports only the first n_supports of scene.supports are considered.
   template <int dim>
   std::vector<SingularPoint<dim>> singular_points(const scene::Scene<dim> &scene,

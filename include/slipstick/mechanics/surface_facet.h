@@ -1,6 +1,7 @@
 // Boundary faces of solids as independent surfaces: nodes, shape functions, normals.
 #pragma once
 
+#include <slipstick/base/box_tree.h>
 #include <slipstick/mechanics/surface.h>
 
 #include <boost/serialization/array.hpp>
@@ -108,6 +109,9 @@ namespace slipstick::mechanics
     /// Mean length of the edges [mm].
     double chord() const;
 
+    /// Distance from the triangle of the corners, or the two of a quadrilateral [mm].
+    double distance(const dealii::Point<3> &x) const;
+
     /// Integral of the shape function of every node over the facet [mm^2]: lengths and measures in space. It is 0 at
     /// the corners of a triangle of degree 2: equal pressure exerts no force on them.
     Shape tributary_areas() const;
@@ -156,6 +160,9 @@ namespace slipstick::mechanics
   /// Sampling points between the nodes.
   std::vector<dealii::Point<2>> inner_points(const SurfaceEdge<2> &edge);
   std::vector<dealii::Point<3>> inner_points(const SurfaceFacet &facet);
+
+  /// Tree of the bounding boxes of facets.
+  BoxTree<3> facet_tree(const std::vector<SurfaceFacet> &facets);
 
   /// The facets of the surfaces of bodies (by index: whether wanted), sorted, the same on every rank. Collective.
   std::vector<SurfaceFacet> outlines(const mesh::Mesh<3>     &mesh,
