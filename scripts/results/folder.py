@@ -147,6 +147,10 @@ class Run:
     def is_open_anywhere(self):
         return any(row["status"] == "open" for row in self.contact)
 
+    def largest_closed_gap(self):
+        """Largest magnitude of the initial gaps or overlaps that loading has closed."""
+        return max((abs(float(row.get("initial_gap") or 0)) for row in self.contact if row["status"] != "open"), default=0.)
+
     def contact_pairs(self, step, wanted=None):
         """Pair name -> columns of its nodes in the step, in order of arc length."""
         pairs = {}

@@ -11,6 +11,7 @@ import numpy as np
 from . import bands, fields, symbols
 
 DRAWN_DISPLACEMENT = 0.04  # of the size of the scene
+DRAWN_GAP = 0.002  # of that size: less does not show
 CLIPPED_SHARE = 0.001  # of the points may lie above the colour bar: corner singularities would swallow it
 WIDTH = 7  # inches of the longer side of the drawing
 DPI = 150
@@ -26,9 +27,9 @@ class Options:
 
 
 def magnification(run, grids, wanted):
-    """What displacements are multiplied by: what is wanted, or 1 where contact is open or gaps are not those of the geometry
-    (beside magnified displacements they look like penetration, or like open contact), or 1, 2, 5, 10, ... so that they
-    show."""
+    """What displacements are multiplied by: what is wanted, or 1 where contact is open, bodies overlap before loading, or gaps
+    are not those of the geometry (beside magnified displacements they look like penetration, or like open contact), or 1, 2,
+    5, 10, ... so that they show."""
     if wanted is not None:
         return wanted
     if run.is_open_anywhere() or run.scene.has_given_gaps():
@@ -36,9 +37,11 @@ def magnification(run, grids, wanted):
     largest = max(np.linalg.norm(grid.displacement, axis=1).max() for grid in grids)
     if not largest > 0 or not math.isfinite(largest):
         return 1
-    share = DRAWN_DISPLACEMENT * max(np.ptp(grids[0].points, axis=0)) / largest
+    size = max(np.ptp(grids[0].points, axis=0))
+    share = DRAWN_DISPLACEMENT * size / largest
     decade = 10.0 ** math.floor(math.log10(share)) if share > 0 else 1
-    return max(1, int(max(step for step in (1, 2, 5) if step * decade <= share * (1 + 1e-12)) * decade))
+    factor = max(1, int(max(step for step in (1, 2, 5) if step * decade <= share * (1 + 1e-12)) * decade))
+    return 1 if factor * run.largest_closed_gap() > DRAWN_GAP * size else factor
 
 
 def inside(points, box):

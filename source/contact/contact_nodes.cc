@@ -60,12 +60,13 @@ namespace slipstick::contact
   ContactNode node_at(const tfeti::ContactPoint &point)
   {
     ContactNode node;
-    node.pair     = point.pair;
-    node.position = point.position;
-    node.acts_at  = point.slave_position;
-    node.normal   = point.normal;
-    node.area     = point.traction_area;
-    node.length   = point.length;
+    node.pair        = point.pair;
+    node.position    = point.position;
+    node.acts_at     = point.slave_position;
+    node.normal      = point.normal;
+    node.area        = point.traction_area;
+    node.length      = point.length;
+    node.initial_gap = point.gap;
     return node;
   }
 

@@ -49,7 +49,7 @@ namespace slipstick::output
             for (const double value : *vector)
               out << ',' << to_text(value);
         }
-      out << '\n';
+      out << ',' << to_text(node.initial_gap) << '\n';
     }
 
     bool is_little_endian()
@@ -118,6 +118,7 @@ namespace slipstick::output
       write_scalar(out, "s", nodes, [](const ContactNode &node) { return node.arc_length; });
       write_scalar(out, "area", nodes, [](const ContactNode &node) { return node.area; });
       write_scalar(out, "gap", nodes, [](const ContactNode &node) { return node.gap; });
+      write_scalar(out, "initial_gap", nodes, [](const ContactNode &node) { return node.initial_gap; });
       write_scalar(out, "pressure", nodes, [](const ContactNode &node) { return node.pressure; });
       write_scalar(out, "tangential_traction", nodes, [](const ContactNode &node) { return node.tangential_traction; });
       write_scalar(out, "slip_bound", nodes, [](const ContactNode &node) { return node.slip_bound; });
@@ -249,7 +250,7 @@ namespace slipstick::output
           << (names.dimension == 3
                 ? ",z,area,normal_x,normal_y,normal_z,traction_x,traction_y,traction_z,slip_x,slip_y,slip_z"
                 : "")
-          << '\n';
+          << ",initial_gap\n";
       for (const ContactStep &step : steps)
         for (const ContactNode &node : along_the_arc(step.nodes))
           write_row(out, names, step.step, node);

@@ -21,7 +21,7 @@ namespace
   using ContactLine = TemporaryDirectory;
 
   const std::string header =
-    "pair,slave body,x,y,s,gap,pressure,tangential_traction,slip,status,step,slip_bound,total_slip\n";
+    "pair,slave body,x,y,s,gap,pressure,tangential_traction,slip,status,step,slip_bound,total_slip,initial_gap\n";
 
   ContactNode node(const unsigned int pair, const double arc_length, const double pressure)
   {
@@ -69,6 +69,7 @@ TEST_F(ContactLine, csv_row_holds_the_columns_of_the_header)
   slipping.position            = {{0.1, 1. / 3, 0}};
   slipping.arc_length          = 1;
   slipping.gap                 = -1e-17;
+  slipping.initial_gap         = -0.02;
   slipping.pressure            = 1259.5;
   slipping.tangential_traction = -500;
   slipping.slip                = 1e-3;
@@ -77,7 +78,7 @@ TEST_F(ContactLine, csv_row_holds_the_columns_of_the_header)
   slipping.total_slip          = -2e-3;
   write_contact_csv(directory, {{"circle"}, {"box"}}, {{7, {slipping}}});
   EXPECT_EQ(content(directory.path("contact.csv")),
-            header + "circle,box,0.1,0.3333333333333333,1,-1e-17,1259.5,-500,0.001,slip,7,500,-0.002\n");
+            header + "circle,box,0.1,0.3333333333333333,1,-1e-17,1259.5,-500,0.001,slip,7,500,-0.002,-0.02\n");
 }
 
 TEST_F(ContactLine, csv_goes_by_step_pair_and_arc_length)
@@ -86,10 +87,10 @@ TEST_F(ContactLine, csv_goes_by_step_pair_and_arc_length)
   const std::vector<ContactNode> nodes = {node(1, 0, 0), node(0, 2, 0), node(0, 1, 0)};
   write_contact_csv(directory, {{"a", "b"}, {"A", "B"}}, {{0, nodes}, {1, {node(0, 0, 3)}}});
   EXPECT_EQ(content(directory.path("contact.csv")),
-            header + "a,A,1,2,1,0,0,0,0,open,0,0,0\n"
-                     "a,A,2,2,2,0,0,0,0,open,0,0,0\n"
-                     "b,B,0,2,0,0,0,0,0,open,0,0,0\n"
-                     "a,A,0,2,0,0,3,0,0,stick,1,0,0\n");
+            header + "a,A,1,2,1,0,0,0,0,open,0,0,0,0\n"
+                     "a,A,2,2,2,0,0,0,0,open,0,0,0,0\n"
+                     "b,B,0,2,0,0,0,0,0,open,0,0,0,0\n"
+                     "a,A,0,2,0,0,3,0,0,stick,1,0,0,0\n");
 }
 
 TEST_F(ContactLine, csv_quotes_names_with_commas)

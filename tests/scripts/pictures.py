@@ -98,6 +98,23 @@ class Pictures(WithRun):
         run.scene.values['Contact joint/Offset'] = '-0.1'
         self.assertTrue(run.scene.has_given_gaps())
 
+    def test_overlaps_of_the_geometry_are_not_magnified(self):
+        """A ring shrunk on a shaft, drawn 200 times, would be far from it."""
+        class Run:
+            scene = type('Scene', (), {'has_given_gaps': staticmethod(lambda: False)})
+            contact = [{'status': 'stick', 'initial_gap': '-0.02'}, {'status': 'slip', 'initial_gap': '0'}]
+            is_open_anywhere, largest_closed_gap = folder.Run.is_open_anywhere, folder.Run.largest_closed_gap
+
+        class Grid:
+            points, displacement = numpy.array([[0, 0], [80, 0]]), numpy.array([[0.012, 0], [0, 0]])
+
+        run = Run()
+        self.assertEqual(pictures.magnification(run, [Grid], None), 1)
+        self.assertEqual(pictures.magnification(run, [Grid], 7), 7)
+        for row in run.contact:
+            row['initial_gap'] = '1e-9'
+        self.assertEqual(pictures.magnification(run, [Grid], None), 200)
+
     def test_all_steps_have_the_same_colours_and_axes(self):
         painter = self.painter()
         self.assertAlmostEqual(painter.limits[0], 5, delta=0.1)  # of the first step

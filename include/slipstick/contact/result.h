@@ -38,6 +38,7 @@ namespace slipstick::contact
     double                area                = 0; // reference area of tractions, see tfeti::ContactPoint [mm^2]
     double                length              = 0; // tributary length; in space area [mm], [mm^2]
     double                gap                 = 0; // [mm]
+    double                initial_gap         = 0; // before loading [mm]
     double                pressure            = 0; // [MPa]
     double                tangential_traction = 0; // [MPa]
     double                slip                = 0; // of the load step [mm]
@@ -53,7 +54,7 @@ namespace slipstick::contact
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &pair &position &acts_at &normal &arc_length &area &length &gap &pressure &tangential_traction &slip
+      archive &pair &position &acts_at &normal &arc_length &area &length &gap &initial_gap &pressure &tangential_traction &slip
         &traction &slip_vector &total_slip &status &is_closed &slip_bound &moment_mismatch;
     }
   };
