@@ -53,6 +53,23 @@ namespace slipstick::qp::detail
       return residuals.back();
     }
 
+    /// What a step must end below.
+    double most() const
+    {
+      const std::size_t n = std::min<std::size_t>(residuals.size(), options.memory);
+      return *std::max_element(residuals.end() - n, residuals.end());
+    }
+
+    /// To the state that @p earlier is a copy of.
+    void go_back(LineSearch earlier)
+    {
+      residuals         = std::move(earlier.residuals);
+      residual_of_step  = earlier.residual_of_step;
+      residual_of_whole = earlier.residual_of_whole;
+      end_of_step       = std::move(earlier.end_of_step);
+      nearest_refused   = std::move(earlier.nearest_refused);
+    }
+
     double least() const
     {
       return *std::min_element(residuals.begin(), residuals.end());
@@ -62,11 +79,10 @@ namespace slipstick::qp::detail
     /// often as necessary cut; 0: not at all.
     double search(Set &set, const Vector &x, const Vector &g, const Vector &y, const Vector &gy)
     {
-      residual_of_step       = set.natural_residual(y, gy);
-      const std::size_t n    = std::min<std::size_t>(residuals.size(), options.memory);
-      const double      most = *std::max_element(residuals.end() - n, residuals.end());
-      double            t    = 1;
-      while (!(residual_of_step <= (1 - options.sufficient_decrease * t) * most))
+      residual_of_step = residual_of_whole = set.natural_residual(y, gy);
+      const double bound                   = most();
+      double       t                       = 1;
+      while (!(residual_of_step <= (1 - options.sufficient_decrease * t) * bound))
         {
           nearest_refused = t < 1 ? std::move(end_of_step) : Point{y, gy};
           t *= options.backtracking;
@@ -78,6 +94,12 @@ namespace slipstick::qp::detail
           residual_of_step = set.natural_residual(end_of_step->x, end_of_step->gradient);
         }
       return t;
+    }
+
+    /// Natural residual of y in the last search.
+    double whole() const
+    {
+      return residual_of_whole;
     }
 
     /// Natural residual of the end of the step found last.
@@ -104,7 +126,7 @@ namespace slipstick::qp::detail
 
     const NewtonOptions &options;
     std::vector<double>  residuals; // of all points
-    double               residual_of_step = 0;
+    double               residual_of_step = 0, residual_of_whole = 0;
     std::optional<Point> end_of_step, nearest_refused;
   };
 } // namespace slipstick::qp::detail

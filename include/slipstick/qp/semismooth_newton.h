@@ -125,6 +125,7 @@ namespace slipstick::qp
         , Fy(zero_like(d_))
         , gy(zero_like(d_))
         , is_rough(start.is_rough)
+        , told(zero_like(d_))
       {
         set.predict(x, g);
       }
@@ -149,6 +150,14 @@ namespace slipstick::qp
       {
         Vector x, gradient;
         double residual; // over the reference
+      };
+
+      // Where whole steps began in spite of the residual: the step that was cut there, and what told its set.
+      struct Watch
+      {
+        Vector                                         x, Fx, g, y, Fy, gy, told;
+        double                                         error_of_Fx, error_of_Fy, t;
+        LineSearch<Vector, ActiveSet<Vector, Problem>> line;
       };
 
       using Face = decltype(std::declval<Problem>().face(std::vector<bool>(), std::vector<Tie>(), std::vector<Turn>()));
@@ -351,9 +360,14 @@ namespace slipstick::qp
       void predict(const Vector &at, const Vector &gradient)
       {
         const double before = set.step_length();
+        told                = gradient;
         set.predict(at, gradient);
-        if (set.step_length() != before && line.present() > 0)
-          line.rescale(set.natural_residual(x, g) / line.present());
+        if (set.step_length() == before || !(line.present() > 0))
+          return;
+        const double factor = set.natural_residual(x, g) / line.present();
+        line.rescale(factor);
+        if (watch)
+          watch->line.rescale(factor);
       }
 
       // g = F x - d + G'a with the a that makes it, with what the turns of forces add, least on the free entries.
@@ -457,8 +471,16 @@ namespace slipstick::qp
       // Along the step to the next point and set. @return is there one?
       bool step()
       {
-        const double t = line.search(set, x, g, y, gy);
-        is_unjudged    = false;
+        double t    = line.search(set, x, g, y, gy);
+        is_unjudged = false;
+        if (watch ? goes_on() : t < options.shortest_step && goes_off(t))
+          {
+            refused.clear();
+            go_whole();
+            return true;
+          }
+        if (watch)
+          t = come_back();
         if (t < options.shortest_step)
           {
             if (has_met_goal)
@@ -507,20 +529,72 @@ namespace slipstick::qp
         return is_changed || is_first;
       }
 
-      // Once from a rough start the whole step all the same (watchdog technique: Chamberlain, Powell, Lemarechal, Pedersen
-      // 1982): there the set that follows is much better than the residual tells. @return whether there was such a step left.
+      // Once from a rough start the whole step all the same, wherever it leads. @return whether there was such a step left.
       bool leap()
       {
-        const double merit = set.natural_residual(y, gy);
-        if (!is_rough || !(merit <= options.longest_leap * line.present()))
+        if (!is_rough || !may_be_left())
           return false;
         is_rough = false;
-        go_to_y(merit);
+        go_whole();
+        return true;
+      }
+
+      // Where a step would be cut to next to nothing, whole ones are taken all the same (watchdog technique: Chamberlain, Powell,
+      // Lemarechal, Pedersen 1982), since the set at their end often is much better than its residual tells. They go on while each
+      // but the first halves the residual, until it is below where they began; else the method goes back there.
+      // @param t of the step that is cut. @return is it worth while?
+      bool goes_off(const double t)
+      {
+        if (has_met_goal || n_cut++ < n_cut_before_watch || !may_be_left())
+          return false;
+        watch.emplace(Watch{x, Fx, g, y, Fy, gy, told, error_of_Fx, error_of_Fy, t, line});
+        return true;
+      }
+
+      bool may_be_left() const
+      {
+        return line.whole() <= options.longest_leap * line.present();
+      }
+
+      bool goes_on()
+      {
+        if (line.whole() <= (1 - options.sufficient_decrease) * watch->line.most())
+          {
+            watch.reset();
+            n_cut = n_cut_before_watch = 0;
+            return true;
+          }
+        return line.whole() <= options.least_progress * line.present();
+      }
+
+      // To where whole steps began; the next ones have to wait for more steps that are cut. @return how much of the step there is
+      // taken.
+      double come_back()
+      {
+        const double t = watch->t;
+        x              = std::move(watch->x);
+        Fx             = std::move(watch->Fx);
+        g              = std::move(watch->g);
+        y              = std::move(watch->y);
+        Fy             = std::move(watch->Fy);
+        gy             = std::move(watch->gy);
+        error_of_Fx    = watch->error_of_Fx;
+        error_of_Fy    = watch->error_of_Fy;
+        line.go_back(std::move(watch->line));
+        predict(x, watch->told);
+        watch.reset();
+        n_cut              = 0;
+        n_cut_before_watch = 2 * n_cut_before_watch + 1;
+        return t;
+      }
+
+      void go_whole()
+      {
+        go_to_y(line.whole());
         is_stuck = false;
         Vector known(g);
         set.clear_solved(x, known);
         predict(x, known);
-        return true;
       }
 
       // x to the end of the step that the line search found.
@@ -603,6 +677,9 @@ namespace slipstick::qp
       double               error_of_Fx = 0, error_of_Fy = 0; // by rounding, weighted, estimates
       bool                 is_stuck = false;                 // the last step did not lower the residual
       bool                 is_rough; // the start, and no step was made yet in spite of the residual
+      Vector               told;     // gradient of the last prediction
+      std::optional<Watch> watch;    // whole steps are being taken
+      unsigned int         n_cut = 0, n_cut_before_watch = 0; // steps since the last ones, and how many there must be
       Counts               counts;
     };
   } // namespace detail
