@@ -25,6 +25,9 @@ namespace slipstick::app
     // a boundary by more than the second value.
     constexpr double peak = 0.25, peak_at_end = 0.05;
 
+    // Other peaks of a pair than the largest, at least this part of it: at its other end, for example.
+    constexpr double smallest_peak = 0.1;
+
     // Stresses closer to such a peak than this part of the size of the contact depend on the mesh.
     constexpr double surroundings_of_peak = 0.1;
 
@@ -52,6 +55,13 @@ namespace slipstick::app
       return std::max_element(nodes.begin(), nodes.end(), [](const ContactNode &a, const ContactNode &b) {
         return a.pressure < b.pressure;
       });
+    }
+
+    /// Smaller pressures are no peaks.
+    double least_peak(const std::vector<ContactNode> &nodes)
+    {
+      const auto at = with_largest_pressure(nodes);
+      return at == nodes.end() ? 0. : smallest_peak * std::max(0., at->pressure);
     }
 
     Point place(const ContactNode &node)
@@ -88,14 +98,28 @@ namespace slipstick::app
   std::optional<double> ContactLine::resolution() const
   {
     const auto at = with_largest_pressure(line);
-    if (at == line.end())
-      return 0.;
+    return at == line.end() ? 0. : resolution_at(at - line.begin());
+  }
+
+  std::optional<double> ContactLine::resolution_at(const std::size_t i) const
+  {
     std::vector<double> drops;
-    if (at != line.begin())
-      drops.push_back(at->pressure - (at - 1)->pressure);
-    if (at + 1 != line.end())
-      drops.push_back(at->pressure - (at + 1)->pressure);
-    return app::resolution(at->pressure, drops, drops.size() < 2);
+    if (i > 0)
+      drops.push_back(line[i].pressure - line[i - 1].pressure);
+    if (i + 1 < line.size())
+      drops.push_back(line[i].pressure - line[i + 1].pressure);
+    return app::resolution(line[i].pressure, drops, drops.size() < 2);
+  }
+
+  std::vector<ContactNode> ContactLine::unresolved_peaks() const
+  {
+    std::vector<ContactNode> result;
+    const double             least = least_peak(line);
+    for (std::size_t i = 0; i < line.size(); ++i)
+      if (line[i].pressure > least && (i == 0 || line[i].pressure >= line[i - 1].pressure) &&
+          (i + 1 == line.size() || line[i].pressure >= line[i + 1].pressure) && !resolution_at(i))
+        result.push_back(line[i]);
+    return result;
   }
 
   ContactSurface::ContactSurface(std::vector<ContactNode> nodes_)
@@ -106,12 +130,32 @@ namespace slipstick::app
   std::optional<double> ContactSurface::resolution() const
   {
     const auto at = with_largest_pressure(nodes);
-    if (at == nodes.end())
-      return 0.;
+    return at == nodes.end() ? 0. : resolution_at(*at);
+  }
+
+  std::optional<double> ContactSurface::resolution_at(const ContactNode &node) const
+  {
     std::vector<double> drops;
-    for (const unsigned int k : beside(*at))
-      drops.push_back(at->pressure - nodes[k].pressure);
-    return app::resolution(at->pressure, drops, is_at_edge(*at));
+    for (const unsigned int k : beside(node))
+      drops.push_back(node.pressure - nodes[k].pressure);
+    return app::resolution(node.pressure, drops, is_at_edge(node));
+  }
+
+  std::vector<ContactNode> ContactSurface::unresolved_peaks() const
+  {
+    std::vector<ContactNode> result;
+    const double             least = least_peak(nodes);
+    for (const auto &node : nodes)
+      if (node.pressure > least && !resolution_at(node))
+        {
+          const bool at_edge = is_at_edge(node);
+          const auto around  = beside(node);
+          if (std::none_of(around.begin(), around.end(), [&](const unsigned int k) {
+                return nodes[k].pressure > node.pressure && !(at_edge && is_at_edge(nodes[k]));
+              }))
+            result.push_back(node);
+        }
+    return result;
   }
 
   std::vector<unsigned int> ContactSurface::nearest(const ContactNode &node, const unsigned int n) const
@@ -160,13 +204,13 @@ namespace slipstick::app
     std::vector<std::pair<unsigned int, std::array<double, 4>>> found; // pair, position, radius
     for (unsigned int k = 0; k < pairs.size(); ++k)
       {
-        const auto                of_pair = nodes_of_pair(nodes, k);
-        const ContactProfile<dim> profile(of_pair);
-        if (profile.resolution())
-          continue;
-        const double size = profile.size([](const ContactNode &node) { return node.is_closed; }).first;
-        const auto   x    = with_largest_pressure(of_pair)->position;
-        found.push_back({k, {{x[0], x[1], x[2], surroundings_of_peak * (dim == 2 ? size : std::sqrt(size))}}});
+        const ContactProfile<dim> profile(nodes_of_pair(nodes, k));
+        const double              size = profile.size([](const ContactNode &node) { return node.is_closed; }).first;
+        for (const auto &node : profile.unresolved_peaks())
+          {
+            const auto &x = node.position;
+            found.push_back({k, {{x[0], x[1], x[2], surroundings_of_peak * (dim == 2 ? size : std::sqrt(size))}}});
+          }
       }
     std::vector<mechanics::Surroundings<dim>> points;
     for (const auto &[k, place] : dealii::Utilities::MPI::broadcast(comm, found))

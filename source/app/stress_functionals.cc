@@ -58,7 +58,8 @@ namespace slipstick::app
           });
         if (near != around.end())
           list.back().reason = "not resolved, or without limit, at " + near->of.what;
-        else if (!note_unresolved(around, list.back()) && !is_named)
+        const auto cells = mechanics::cells_at(solver.mesh(), solver.spaces(), stress, around);
+        if (!note_unresolved(around, cells, list.back()) && near == around.end() && !is_named)
           return;
         const auto regular = mechanics::stress_places(solver.mesh(), solver.spaces(), stress, around).von_mises;
         if (regular.value > 0)
@@ -66,7 +67,7 @@ namespace slipstick::app
             const auto stresses = at(regular.body, regular.position);
             list.push_back(von_mises("max_regular_von_mises", stresses));
             list.back().local_error += increase_towards(regular, stresses.point, around);
-            note_unresolved(around, list.back());
+            note_unresolved(around, cells, list.back());
           }
         else
           list.push_back(
@@ -136,12 +137,14 @@ namespace slipstick::app
       }
 
       /// Gives @p largest a reason to have no bar if it may be found elsewhere once the cells there are smaller than what
-      /// is left out. Returns whether it does.
-      bool note_unresolved(const std::vector<mechanics::Surroundings<dim>> &around, Functional &largest) const
+      /// is left out.
+      /// @param cells those at the places @p around. @return whether it has this reason now.
+      bool note_unresolved(const std::vector<mechanics::Surroundings<dim>> &around,
+                           const std::vector<mechanics::CellAtPlace>       &cells,
+                           Functional                                      &largest) const
       {
         if (!largest.reason.empty())
           return false;
-        const auto cells = mechanics::cells_at(solver.mesh(), solver.spaces(), stress, around);
         for (std::size_t k = 0; k < around.size(); ++k)
           if (cells[k].size > around[k].radius && cells[k].von_mises > may_become_largest * largest.value)
             {

@@ -62,6 +62,7 @@ namespace slipstick::mechanics
             }
       return result;
     }
+
     /// Of an edge at the end of a boundary that of its sides which is not on it; nothing for other edges.
     std::optional<unsigned int> side_beyond(const mesh::Mesh<3>       &mesh,
                                             const Crease              &crease,

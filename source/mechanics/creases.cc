@@ -3,12 +3,10 @@
 #include <deal.II/base/mpi.h>
 
 #include <boost/serialization/array.hpp>
-#include <boost/serialization/utility.hpp>
 #include <boost/serialization/vector.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <tuple>
 
 namespace slipstick::mechanics
@@ -49,10 +47,9 @@ namespace slipstick::mechanics
       half.side.boundary = facet.boundary;
       half.side.normal   = facet.outline_normal(a) + facet.outline_normal(b);
       half.side.normal /= half.side.normal.norm();
-      for (unsigned int d = 0; d < 3; ++d)
-        half.side.along[d] = facet.at[b][d] - facet.at[a][d];
-      half.keys = {{facet.keys[a], facet.keys[b]}};
-      half.at   = {{facet.at[a], facet.at[b]}};
+      half.side.along = facet.node(b) - facet.node(a);
+      half.keys       = {{facet.keys[a], facet.keys[b]}};
+      half.at         = {{facet.at[a], facet.at[b]}};
       if (half.keys[1] < half.keys[0])
         {
           std::swap(half.keys[0], half.keys[1]);
@@ -84,8 +81,7 @@ namespace slipstick::mechanics
 
   double Crease::turn() const
   {
-    const auto                &n = sides[0].normal, &m = sides[1].normal;
-    const dealii::Tensor<1, 3> along({sides[0].along[0], sides[0].along[1], sides[0].along[2]});
+    const auto &n = sides[0].normal, &m = sides[1].normal, &along = sides[0].along;
     return std::atan2(cross_product_3d(n, m) * along / along.norm(), n * m);
   }
 

@@ -249,6 +249,10 @@ namespace slipstick::mechanics
     std::vector<unsigned int>                    nodes;
     for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
       {
+        if (std::none_of(places.begin(), places.end(), [&](const Surroundings<dim> &place) {
+              return place.of.body == mesh.subdomains[p]->body;
+            }))
+          continue;
         std::vector<typename dealii::DoFHandler<dim>::active_cell_iterator> cells;
         std::vector<typename BoxTree<dim>::Box>                             centers;
         for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())

@@ -59,7 +59,13 @@ namespace slipstick::app
       return all > 0 ? differences / (2 * all) : 0.;
     }
 
+    /// Nodes whose pressure is the largest around them, that of the pair or comparable to it, and not resolved.
+    std::vector<contact::ContactNode> unresolved_peaks() const;
+
   private:
+    /// As resolution(), of the pressure of node @p i.
+    std::optional<double> resolution_at(std::size_t i) const;
+
     std::vector<contact::ContactNode> line;
   };
 
@@ -110,7 +116,12 @@ namespace slipstick::app
       return all > 0 ? differences / (2 * all) : 0.;
     }
 
+    /// As of ContactLine; at the edge of the surface only nodes inside are compared, since pressures may be large all along it.
+    std::vector<contact::ContactNode> unresolved_peaks() const;
+
   private:
+    std::optional<double> resolution_at(const contact::ContactNode &node) const;
+
     std::vector<unsigned int> nearest(const contact::ContactNode &node, const unsigned int n) const;
 
     /// Nodes that count as adjacent.
@@ -125,7 +136,7 @@ namespace slipstick::app
   template <int dim>
   using ContactProfile = std::conditional_t<dim == 2, ContactLine, ContactSurface>;
 
-  /// Nodes with the largest pressure of a pair that no neighbour resolves, on both bodies, with a tenth of the size of the
+  /// Peaks of the pressure of every pair that its nodes do not resolve, on both bodies, with a tenth of the size of the
   /// contact: stresses there grow with every refinement, or need one. Of the nodes of rank 0; the same on all ranks.
   /// Collective.
   template <int dim>

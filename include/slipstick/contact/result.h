@@ -54,8 +54,8 @@ namespace slipstick::contact
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &pair &position &acts_at &normal &arc_length &area &length &gap &initial_gap &pressure &tangential_traction &slip
-        &traction &slip_vector &total_slip &status &is_closed &slip_bound &moment_mismatch;
+      archive &pair &position &acts_at &normal &arc_length &area &length &gap &initial_gap &pressure
+        &tangential_traction &slip &traction &slip_vector &total_slip &status &is_closed &slip_bound &moment_mismatch;
     }
   };
 

@@ -12,9 +12,9 @@ namespace slipstick::mechanics
   {
     struct Side
     {
-      unsigned int          boundary = 0; // boundary id
-      dealii::Tensor<1, 3>  normal;       // outward unit normal of the true surface at the middle of the edge
-      std::array<double, 3> along{};      // the edge, the facet on its left as seen from outside [mm]
+      unsigned int         boundary = 0; // boundary id
+      dealii::Tensor<1, 3> normal;       // outward unit normal of the true surface at the middle of the edge
+      dealii::Tensor<1, 3> along;        // the edge, the facet on its left as seen from outside [mm]
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)

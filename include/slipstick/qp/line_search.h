@@ -25,7 +25,7 @@ namespace slipstick::qp::detail
 
     /// @param options_ is referred to.
     explicit LineSearch(const NewtonOptions &options_)
-      : options(options_)
+      : options(&options_)
     {}
 
     /// From a first point, or from one whose residuals cannot be compared with those before.
@@ -56,18 +56,8 @@ namespace slipstick::qp::detail
     /// What a step must end below.
     double most() const
     {
-      const std::size_t n = std::min<std::size_t>(residuals.size(), options.memory);
+      const std::size_t n = std::min<std::size_t>(residuals.size(), options->memory);
       return *std::max_element(residuals.end() - n, residuals.end());
-    }
-
-    /// To the state that @p earlier is a copy of.
-    void go_back(LineSearch earlier)
-    {
-      residuals         = std::move(earlier.residuals);
-      residual_of_step  = earlier.residual_of_step;
-      residual_of_whole = earlier.residual_of_whole;
-      end_of_step       = std::move(earlier.end_of_step);
-      nearest_refused   = std::move(earlier.nearest_refused);
     }
 
     double least() const
@@ -82,10 +72,10 @@ namespace slipstick::qp::detail
       residual_of_step = residual_of_whole = set.natural_residual(y, gy);
       const double bound                   = most();
       double       t                       = 1;
-      while (!(residual_of_step <= (1 - options.sufficient_decrease * t) * bound))
+      while (!(residual_of_step <= (1 - options->sufficient_decrease * t) * bound))
         {
           nearest_refused = t < 1 ? std::move(end_of_step) : Point{y, gy};
-          t *= options.backtracking;
+          t *= options->backtracking;
           if (t < least_part_of_step)
             return 0;
           end_of_step = Point{y, gy};
@@ -124,7 +114,7 @@ namespace slipstick::qp::detail
     // Steps on nearly singular faces may be far too long.
     static constexpr double least_part_of_step = 1e-10;
 
-    const NewtonOptions &options;
+    const NewtonOptions *options;
     std::vector<double>  residuals; // of all points
     double               residual_of_step = 0, residual_of_whole = 0;
     std::optional<Point> end_of_step, nearest_refused;

@@ -532,28 +532,24 @@ namespace slipstick::qp
       // Once from a rough start the whole step all the same, wherever it leads. @return whether there was such a step left.
       bool leap()
       {
-        if (!is_rough || !may_be_left())
+        if (!is_rough || !(line.whole() <= options.longest_leap * line.present()))
           return false;
         is_rough = false;
         go_whole();
         return true;
       }
 
-      // Where a step would be cut to next to nothing, whole ones are taken all the same (watchdog technique: Chamberlain, Powell,
-      // Lemarechal, Pedersen 1982), since the set at their end often is much better than its residual tells. They go on while each
-      // but the first halves the residual, until it is below where they began; else the method goes back there.
+      // Where a step would be cut to next to nothing, whole ones are taken all the same (watchdog technique: Chamberlain,
+      // Powell, Lemarechal, Pedersen 1982), since the set at their end often is much better than its residual tells. They go
+      // on while each but the first halves the residual, until it is below the bound of the line search where they began;
+      // else the method goes back there.
       // @param t of the step that is cut. @return is it worth while?
       bool goes_off(const double t)
       {
-        if (has_met_goal || n_cut++ < n_cut_before_watch || !may_be_left())
+        if (has_met_goal || n_cut++ < n_cut_before_watch || !(line.whole() <= options.largest_rise * line.present()))
           return false;
         watch.emplace(Watch{x, Fx, g, y, Fy, gy, told, error_of_Fx, error_of_Fy, t, line});
         return true;
-      }
-
-      bool may_be_left() const
-      {
-        return line.whole() <= options.longest_leap * line.present();
       }
 
       bool goes_on()
@@ -567,8 +563,8 @@ namespace slipstick::qp
         return line.whole() <= options.least_progress * line.present();
       }
 
-      // To where whole steps began; the next ones have to wait for more steps that are cut. @return how much of the step there is
-      // taken.
+      // To where whole steps began; the next ones have to wait for more steps that are cut. @return how much of the step
+      // there is taken.
       double come_back()
       {
         const double t = watch->t;
@@ -580,7 +576,7 @@ namespace slipstick::qp
         gy             = std::move(watch->gy);
         error_of_Fx    = watch->error_of_Fx;
         error_of_Fy    = watch->error_of_Fy;
-        line.go_back(std::move(watch->line));
+        line           = std::move(watch->line);
         predict(x, watch->told);
         watch.reset();
         n_cut              = 0;
