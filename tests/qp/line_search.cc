@@ -1,10 +1,12 @@
-// The line search of the semismooth Newton method on a residual that is known, and its history of sets.
+// The line search of the semismooth Newton method on a residual that is known, its whole steps and its history of sets.
 #include "support.h"
 
 #include <slipstick/qp/line_search.h>
 #include <slipstick/qp/set_history.h>
+#include <slipstick/qp/watchdog.h>
 
 #include <cmath>
+#include <utility>
 
 using namespace slipstick::qp;
 using namespace slipstick::qp::test;
@@ -24,7 +26,7 @@ namespace
   {
     double to(const double y)
     {
-      return line.search(residual, Vector{0.}, Vector{0.}, Vector{y}, Vector{2 * y});
+      return line.search(residual, {{0.}, {0.}}, {{y}, {2 * y}});
     }
 
     Distance                             residual;
@@ -73,6 +75,78 @@ TEST(LineSearch, ComparesWithTheLargestOfTheLastResiduals)
   search.line.rescale(4);
   EXPECT_EQ(search.line.present(), 4);
   EXPECT_EQ(search.to(3), 1);
+}
+
+namespace
+{
+  /// A line search at 0, whose residual is 1, and whole steps from there.
+  struct WholeSteps : Search
+  {
+    WholeSteps()
+    {
+      options.largest_rise   = 100;
+      options.least_progress = 0.5;
+      line.begin(1);
+    }
+
+    /// A step to @p y is cut to next to nothing. @return do whole steps begin?
+    bool cut(const double y)
+    {
+      const double t = to(y);
+      if (!watchdog.may_begin(line))
+        return false;
+      watchdog.begin({{{0.}, {0.}, {0.}}, {{y}, {2 * y}, {y}}, {3.}, line, t});
+      line.move_to(line.whole());
+      return true;
+    }
+
+    bool goes_on_to(const double y)
+    {
+      to(y);
+      const bool result = watchdog.goes_on(line);
+      if (result)
+        line.move_to(line.whole());
+      return result;
+    }
+
+    detail::Watchdog<Vector, Distance> watchdog{options};
+  };
+} // namespace
+
+TEST(Watchdog, WholeStepsEndBelowTheBoundOfTheLineSearch)
+{
+  WholeSteps steps;
+  ASSERT_TRUE(steps.cut(-49)); // residual 50
+  EXPECT_TRUE(steps.watchdog.is_watching());
+  EXPECT_TRUE(steps.goes_on_to(-19)); // 20, less than half of it
+  EXPECT_TRUE(steps.watchdog.is_watching());
+  EXPECT_TRUE(steps.goes_on_to(1.9)); // 0.9, below the 1 where they began
+  EXPECT_FALSE(steps.watchdog.is_watching());
+}
+
+TEST(Watchdog, StepsWithoutProgressLeadBackAndTheNextOnesWait)
+{
+  WholeSteps steps;
+  for (const unsigned int n_waiting : {0, 1, 3, 7})
+    {
+      for (unsigned int k = 0; k < n_waiting; ++k)
+        EXPECT_FALSE(steps.cut(-49)) << n_waiting;
+      ASSERT_TRUE(steps.cut(-49)) << n_waiting;
+      EXPECT_FALSE(steps.goes_on_to(-29)); // 30 is more than half of 50
+      const auto start = steps.watchdog.give_up();
+      EXPECT_FALSE(steps.watchdog.is_watching());
+      EXPECT_EQ(start.from.x, Vector{0.});
+      EXPECT_EQ(start.to.x, Vector{-49});
+      EXPECT_EQ(start.told, Vector{3.});
+      EXPECT_EQ(start.line.present(), 1);
+      steps.line = start.line;
+    }
+}
+
+TEST(Watchdog, AStepThatRaisesTheResidualTooMuchIsNotTaken)
+{
+  WholeSteps steps;
+  EXPECT_FALSE(steps.cut(-100)); // 101 times the residual
 }
 
 TEST(SetHistory, TellsSetsThatRecur)

@@ -418,6 +418,35 @@ TEST(SemismoothNewton, large_coefficients_never_end_in_a_wrong_solution)
   EXPECT_GT(n_solved, 100u);
 }
 
+// Where the line search would cut steps to next to nothing, whole steps lead on: 265 of these 300 problems are solved with
+// them, 256 without.
+TEST(SemismoothNewton, whole_steps_solve_problems_where_the_line_search_fails)
+{
+  const auto n_solved = [](const double largest_rise) {
+    NewtonOptions options;
+    options.largest_rise = largest_rise;
+    unsigned int n       = 0;
+    for (const double coefficient : {20., 50., 100.})
+      for (unsigned int seed = 0; seed < 100; ++seed)
+        {
+          const Contact p(seed, 6, {0., coefficient});
+          const auto    found = semismooth_newton(p.problem,
+                                               1.,
+                                               p.d,
+                                               p.set,
+                                               NewtonStart<Vector>{Vector(p.d.size(), 0.)},
+                                               Goal(1e-10, 1.),
+                                               options);
+          if (found.status != Status::converged)
+            continue;
+          ++n;
+          EXPECT_LT(p.violation(found.x), 1e-8) << coefficient << ", " << seed;
+        }
+    return n;
+  };
+  EXPECT_GE(n_solved(100), n_solved(0) + 5);
+}
+
 TEST(SemismoothNewton, directions_of_an_earlier_solve_save_multiplications)
 {
   unsigned int n_alone = 0, n_handed = 0;

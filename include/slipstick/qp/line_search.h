@@ -2,6 +2,7 @@
 #pragma once
 
 #include <slipstick/qp/kernels.h>
+#include <slipstick/qp/newton_point.h>
 #include <slipstick/qp/options.h>
 
 #include <algorithm>
@@ -12,16 +13,13 @@
 namespace slipstick::qp::detail
 {
   /// Nonmonotone line search (Grippo, Lampariello, Lucidi 1986): a step must end below the largest natural residual of the
-  /// last points. Points are given with their gradients F x - d + G'a, both linear along a step.
+  /// last points.
   /// @tparam Set with natural_residual(x, gradient), as ActiveSet
   template <typename Vector, typename Set>
   class LineSearch
   {
   public:
-    struct Point
-    {
-      Vector x, gradient;
-    };
+    using Point = PointWithGradient<Vector>;
 
     /// @param options_ is referred to.
     explicit LineSearch(const NewtonOptions &options_)
@@ -65,28 +63,28 @@ namespace slipstick::qp::detail
       return *std::min_element(residuals.begin(), residuals.end());
     }
 
-    /// How far from x (gradient g) towards y (gradient gy) the residual falls below the largest of the last ones: 1, or as
-    /// often as necessary cut; 0: not at all.
-    double search(Set &set, const Vector &x, const Vector &g, const Vector &y, const Vector &gy)
+    /// How far from one point towards the other the residual falls below the largest of the last ones: 1, or as often as
+    /// necessary cut; 0: not at all.
+    double search(Set &set, const Point &from, const Point &to)
     {
-      residual_of_step = residual_of_whole = set.natural_residual(y, gy);
+      residual_of_step = residual_of_whole = set.natural_residual(to.x, to.gradient);
       const double bound                   = most();
       double       t                       = 1;
       while (!(residual_of_step <= (1 - options->sufficient_decrease * t) * bound))
         {
-          nearest_refused = t < 1 ? std::move(end_of_step) : Point{y, gy};
+          nearest_refused = t < 1 ? std::move(end_of_step) : to;
           t *= options->backtracking;
           if (t < least_part_of_step)
             return 0;
-          end_of_step = Point{y, gy};
-          combine(1 - t, x, t, end_of_step->x);
-          combine(1 - t, g, t, end_of_step->gradient);
+          end_of_step = to;
+          combine(1 - t, from.x, t, end_of_step->x);
+          combine(1 - t, from.gradient, t, end_of_step->gradient);
           residual_of_step = set.natural_residual(end_of_step->x, end_of_step->gradient);
         }
       return t;
     }
 
-    /// Natural residual of y in the last search.
+    /// Natural residual of the end of the whole step in the last search.
     double whole() const
     {
       return residual_of_whole;

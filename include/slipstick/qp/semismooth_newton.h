@@ -32,7 +32,10 @@
 #include <slipstick/qp/active_set.h>
 #include <slipstick/qp/face_solver.h>
 #include <slipstick/qp/line_search.h>
+#include <slipstick/qp/newton_point.h>
 #include <slipstick/qp/set_history.h>
+#include <slipstick/qp/stopping_test.h>
+#include <slipstick/qp/watchdog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -62,11 +65,6 @@ namespace slipstick::qp
   /// step, on every process with the same result.
   template <typename Vector>
   using Acceptance = std::function<bool(const Vector &x, const Vector &gradient)>;
-
-  /// Is the estimated error of x, M r of the face, small where it counts? Asked once the goal is reached; else the method
-  /// goes on to smaller residuals. On every process with the same result.
-  template <typename Vector>
-  using ErrorTest = std::function<bool(const Vector &x, const Vector &error)>;
 
   template <typename Vector>
   struct NewtonResult
@@ -107,59 +105,36 @@ namespace slipstick::qp
         , options(options_)
         , observer(observer_)
         , accepts(accepts_)
-        , is_right(is_right_)
         , has_wide_stiffnesses(ratio_of_weights(problem_, d_) > options_.wide_stiffnesses)
         , is_singular(dependent_compliances(problem_, 0) != nullptr)
-        , tolerance(goal_.tolerance)
+        , stop(goal_, norm_, options_, is_right_)
         , set(problem_, norm_, std::move(admissible), options.set_step, noise_of(problem_, d_))
         , directions(start.directions ? std::move(start.directions)
                                       : std::make_shared<DirectionStore<Vector>>(options_.n_directions))
         , store(*directions)
         , line(options_)
-        , solved(options_.n_remembered_sets)
+        , watchdog(options_)
+        , solved(options.n_remembered_sets)
         , refused(most_kinks + 1)
-        , x(std::move(start.x))
-        , Fx(zero_like(d_))
-        , g(start.gradient ? std::move(*start.gradient) : zero_like(d_))
-        , y(zero_like(d_))
-        , Fy(zero_like(d_))
-        , gy(zero_like(d_))
+        , now(std::move(start.x), start.gradient ? std::move(*start.gradient) : zero_like(d_), zero_like(d_))
+        , next(zero_like(d_), zero_like(d_), zero_like(d_))
         , is_rough(start.is_rough)
         , told(zero_like(d_))
       {
-        set.predict(x, g);
+        set.predict(now.x, now.gradient);
       }
 
       NewtonResult<Vector> run()
       {
         const Status status = iterate();
-        if (status != Status::converged && best)
-          {
-            x        = std::move(best->x);
-            g        = std::move(best->gradient);
-            residual = best->residual;
-            set.predict(x, zero_like(x));
-          }
-        set.put_on_bounds(x); // ties to the last bit
-        set.project_on_bounds(x);
-        return {status, std::move(x), set.free(), residual, std::move(g), counts};
+        if (status != Status::converged && go_to_best())
+          set.predict(now.x, zero_like(now.x));
+        set.put_on_bounds(now.x); // ties to the last bit
+        set.project_on_bounds(now.x);
+        return {status, std::move(now.x), set.free(), residual, std::move(now.gradient), counts};
       }
 
     private:
-      struct Found
-      {
-        Vector x, gradient;
-        double residual; // over the reference
-      };
-
-      // Where whole steps began in spite of the residual: the step that was cut there, and what told its set.
-      struct Watch
-      {
-        Vector                                         x, Fx, g, y, Fy, gy, told;
-        double                                         error_of_Fx, error_of_Fy, t;
-        LineSearch<Vector, ActiveSet<Vector, Problem>> line;
-      };
-
       using Face = decltype(std::declval<Problem>().face(std::vector<bool>(), std::vector<Tie>(), std::vector<Turn>()));
 
       // The largest weight of a residual over the least, which is 1.
@@ -193,7 +168,7 @@ namespace slipstick::qp
             if (!face)
               return Status::infeasible;
             if (is_unjudged && solves_already(*face))
-              return converged_at_y();
+              return converged_at_next();
             solve(*face);
             ++counts.outer_iterations;
             const double left = measure();
@@ -201,31 +176,32 @@ namespace slipstick::qp
             if (!std::isfinite(residual))
               return Status::stagnated;
             if (is_accepted() || is_solution(*face, left))
-              return converged_at_y();
-            check_start_of_face(left);
+              return converged_at_next();
+            stop.check_start_of_face(residual, left);
             if (!step())
               return ended(Status::stagnated);
           }
         return ended(Status::iteration_limit);
       }
 
-      // Fills the residual of y. @return it with the violation of the bounds, over the reference.
+      // Fills the residual of `next`. @return it with the violation of the bounds, over the reference.
       double measure()
       {
-        const auto [gradient, violation] = set.residuals(y, gy);
+        const auto [gradient, violation] = set.residuals(next.x, next.gradient);
         residual                         = gradient / goal.reference;
         return residual + violation / goal.reference;
       }
 
-      // x, where it was not found on a face, may be the solution: the start, as that of loads which hardly differ from those before, or
-      // the end of a step that was cut. A step on a face whose matrix is nearly singular could lead far away from it.
+      // Where a point was not found on a face it may be the solution: the start, as that of loads which hardly differ from
+      // those before, or the end of a step that was cut. A step on a face whose matrix is nearly singular could lead far away
+      // from it.
       bool solves_already(const Face &face)
       {
         if (!(line.present() <= goal.tolerance * goal.reference))
           return false;
-        y  = x;
-        Fy = Fx;
-        gradient_on(face, y, Fy, gy);
+        next.x  = now.x;
+        next.Fx = now.Fx;
+        fill_gradient(face, next);
         const double left = measure();
         if (!is_solution(face, left))
           return false;
@@ -233,44 +209,19 @@ namespace slipstick::qp
         return true;
       }
 
-      // y with this residual, x or on the face. If it meets the goal, but is not right, it is kept as the best, and faces
-      // are solved to less from now on.
+      // `next` with this residual, where the method is or on the face.
       bool is_solution(const Face &face, double left)
       {
         if (left <= goal.tolerance)
           left += imbalance(face);
-        if (!(left <= goal.tolerance))
-          return false;
-        best = Found{y, gy, residual};
-        if (left <= options.least_part * goal.tolerance ||
-            (tells_forces(left) && (!is_right || is_right(y, error_on(face)))))
-          return true;
-        has_met_goal = true;
-        tolerance    = options.tightening * left;
-        return false;
+        return left <= goal.tolerance &&
+               stop.accepts(next, residual, left, size_of_forces(next.x), [&] { return error_on(face); });
       }
 
-      Status converged_at_y()
+      Status converged_at_next()
       {
-        std::swap(x, y);
-        std::swap(g, gy);
+        std::swap(now, next);
         return Status::converged;
-      }
-
-      // A face that is solved to the goal, but on a set whose bounds are violated by far more than before. Where that happens again, sets
-      // are told by gradients below the goal (compliances that are far apart), and faces are solved to less.
-      void check_start_of_face(const double natural_residual)
-      {
-        if (residual <= goal.tolerance &&
-            natural_residual > options.astray * std::max(goal.tolerance, last_natural_residual) && ++n_astray > 1)
-          tolerance = std::min(tolerance, options.tightening * residual);
-        last_natural_residual = natural_residual;
-      }
-
-      // Where gaps of open contact make the reference, the forces may be next to nothing beside it.
-      bool tells_forces(const double left) const
-      {
-        return left * goal.reference <= options.gaps_over_forces * goal.tolerance * norm * size_of_forces(y);
       }
 
       // Forces that are left of larger ones, as where loads end, are small beside these.
@@ -282,20 +233,29 @@ namespace slipstick::qp
       // Residuals below the goal that do not fall any more are at rounding.
       Status ended(const Status status)
       {
-        if (!has_met_goal)
+        if (!stop.has_met_goal())
           return status;
-        x        = std::move(best->x);
-        g        = std::move(best->gradient);
-        residual = best->residual;
-        set.predict(x, g);
+        go_to_best();
+        set.predict(now.x, now.gradient);
         return Status::converged;
       }
 
-      // By how much y, put on its bounds, would have to change for G x = e: over the reference, or over y itself, which is
-      // more where the reference is that of gaps, beside which what forces do is next to nothing.
+      // @return is there one?
+      bool go_to_best()
+      {
+        auto best = stop.take_best();
+        if (!best)
+          return false;
+        static_cast<PointWithGradient<Vector> &>(now) = std::move(best->point);
+        residual                                      = best->residual;
+        return true;
+      }
+
+      // By how much `next`, put on its bounds, would have to change for G x = e: over the reference, or over its own size,
+      // which is more where the reference is that of gaps, beside which what forces do is next to nothing.
       double imbalance(const Face &face)
       {
-        Vector at = y;
+        Vector at = next.x;
         set.put_on_bounds(at);
         Vector balanced = at;
         face.balance(balanced);
@@ -305,19 +265,19 @@ namespace slipstick::qp
         return missing > 0 ? missing * std::max(norm / goal.reference, 1 / size) : 0.;
       }
 
-      // M r on the free entries, and how far the others are from their bounds: nearly the error of y.
+      // M r on the free entries, and how far the others are from their bounds: nearly the error of `next`.
       Vector error_on(const Face &face)
       {
-        Vector r(gy), error(gy);
-        combine(-1., gy, 0., r);
+        Vector r(next.gradient), error(r);
+        combine(-1., next.gradient, 0., r);
         face.precondition(static_cast<const Vector &>(r), error);
         ++counts.preconditioner_applications;
         face.project_kernel(error);
-        Vector at = y;
+        Vector at = next.x;
         set.put_on_bounds(at);
         set.project_on_bounds(at);
         for (std::size_t i = 0; i < local_size(at); ++i)
-          error.begin()[i] += at.begin()[i] - y.begin()[i];
+          error.begin()[i] += at.begin()[i] - next.x.begin()[i];
         return error;
       }
 
@@ -339,24 +299,30 @@ namespace slipstick::qp
         return {};
       }
 
-      // x to its bounds and to where G x = e, F x, gradient and set.
+      // The start to its bounds and to where G x = e; F x, gradient and set.
       bool begin()
       {
         auto face = regular_face();
         if (!face)
           return false;
-        set.put_on_bounds(x);
-        face->balance(x);
-        problem.multiply(x, Fx);
+        set.put_on_bounds(now.x);
+        face->balance(now.x);
+        problem.multiply(now.x, now.Fx);
         ++counts.hessian_multiplications;
-        gradient_on(*face, x, Fx, g);
-        line.begin(set.natural_residual(x, g));
-        predict(x, g);
+        fill_gradient(*face, now);
+        line.begin(set.natural_residual(now.x, now.gradient));
+        predict(now);
         return true;
       }
 
-      // The set that a point and its gradient tell. Natural residuals with different s cannot be compared: those of the last steps
-      // are taken for as much larger or smaller with the new one as that of x is.
+      // The set that a point and its gradient tell.
+      void predict(const PointWithGradient<Vector> &at)
+      {
+        predict(at.x, at.gradient);
+      }
+
+      // Natural residuals with different s cannot be compared: those of the last steps are taken for as much larger or smaller
+      // with the new one as the present one is.
       void predict(const Vector &at, const Vector &gradient)
       {
         const double before = set.step_length();
@@ -364,21 +330,20 @@ namespace slipstick::qp
         set.predict(at, gradient);
         if (set.step_length() == before || !(line.present() > 0))
           return;
-        const double factor = set.natural_residual(x, g) / line.present();
+        const double factor = set.natural_residual(now.x, now.gradient) / line.present();
         line.rescale(factor);
-        if (watch)
-          watch->line.rescale(factor);
+        watchdog.rescale(factor);
       }
 
-      // g = F x - d + G'a with the a that makes it, with what the turns of forces add, least on the free entries.
-      void gradient_on(const Face &face, const Vector &at, const Vector &product, Vector &gradient) const
+      // F x - d + G'a with the a that makes it, with what the turns of forces add, least on the free entries.
+      void fill_gradient(const Face &face, NewtonPoint<Vector> &at) const
       {
-        combine(1.0, product, 0.0, gradient);
-        add(-1.0, d, gradient);
-        Vector shift(gradient), left(gradient);
-        add_compliance(set.turns(), at, left);
+        combine(1.0, at.Fx, 0.0, at.gradient);
+        add(-1.0, d, at.gradient);
+        Vector shift(at.gradient), left(at.gradient);
+        add_compliance(set.turns(), at.x, left);
         face.multiplier_shift(static_cast<const Vector &>(left), shift);
-        add(-1.0, shift, gradient);
+        add(-1.0, shift, at.gradient);
       }
 
       // Of the next face, falling with the residual (Levenberg, Marquardt): where forces are not unique the method converges to
@@ -389,13 +354,13 @@ namespace slipstick::qp
         return is_singular ? std::min(options.largest_regularization, line.present() / goal.reference) : 0.;
       }
 
-      // y, F y, and gradient of y: the solution on the face, up to a part of the present residual.
+      // `next`, the solution on the face, up to a part of the present residual.
       void solve(const Face &face)
       {
-        y = x;
-        set.put_on_bounds(y);
-        face.balance(y);
-        const Vector center(y);
+        next.x = now.x;
+        set.put_on_bounds(next.x);
+        face.balance(next.x);
+        const Vector center(next.x);
         step_to_start(face);
         FaceSolver<Vector, Face> solver(
           face,
@@ -405,8 +370,8 @@ namespace slipstick::qp
           options.face,
           set.turns(),
           regularization());
-        const double first  = solver.start(std::move(y), std::move(Fy), error_of_Fx, center);
-        const double target = std::min(std::max(options.last_forcing * tolerance * goal.reference,
+        const double first  = solver.start(std::move(next.x), std::move(next.Fx), now.error_of_Fx, center);
+        const double target = std::min(std::max(options.last_forcing * stop.tolerance_of_faces() * goal.reference,
                                                 (is_singular ? options.singular_forcing : options.forcing) *
                                                   std::min(first, line.present())),
                                        options.sharpening * solved.least_of_earlier(set.sides(), problem.reduction()));
@@ -414,10 +379,10 @@ namespace slipstick::qp
         if (is_singular || has_wide_stiffnesses)
           solved.add(set.sides(), result.residual);
         counts += result.counts;
-        y           = std::move(result.x);
-        Fy          = std::move(result.product);
-        error_of_Fy = result.error;
-        gradient_on(face, y, Fy, gy);
+        next.x           = std::move(result.x);
+        next.Fx          = std::move(result.product);
+        next.error_of_Fx = result.error;
+        fill_gradient(face, next);
       }
 
       // on any process
@@ -426,22 +391,23 @@ namespace slipstick::qp
         return problem.reduction().min(ties.empty() ? 1. : 0.) < 1;
       }
 
-      // F y by the product with the step from x, which is a direction as all others; steps of rounding are none.
+      // F x of `next` by the product with the step to it, which is a direction as all others; steps of rounding are none.
       void step_to_start(const Face &face)
       {
-        constexpr double rounding = 1e-13, no_direction = 1e-6; // over |y|
-        Vector           step(y), product(y);
-        add(-1., x, step);
-        const auto s = problem.reduction().sum(std::array<double, 2>{{local_dot(step, step), local_dot(y, y)}});
-        std::copy(Fx.begin(), Fx.end(), Fy.begin());
+        constexpr double rounding = 1e-13, no_direction = 1e-6; // over |x|
+        Vector           step(next.x), product(next.x);
+        add(-1., now.x, step);
+        const auto s =
+          problem.reduction().sum(std::array<double, 2>{{local_dot(step, step), local_dot(next.x, next.x)}});
+        std::copy(now.Fx.begin(), now.Fx.end(), next.Fx.begin());
         if (s[0] <= rounding * rounding * s[1])
           return;
         descend(face, step);
-        std::copy(x.begin(), x.end(), y.begin());
-        add(1., step, y);
+        std::copy(now.x.begin(), now.x.end(), next.x.begin());
+        add(1., step, next.x);
         problem.multiply(step, product);
         ++counts.hessian_multiplications;
-        add(1., product, Fy);
+        add(1., product, next.Fx);
         if (s[0] > no_direction * no_direction * s[1]) // else G step = 0 holds to few digits
           {
             const double squares = problem.reduction().sum(
@@ -457,8 +423,8 @@ namespace slipstick::qp
       // A short step along the preconditioned residual of the face goes with the one onto its bounds: F is multiplied anyway.
       void descend(const Face &face, Vector &step)
       {
-        Vector r(g), shift(g), p(g);
-        add_compliance(set.turns(), x, r);
+        Vector r(now.gradient), shift(r), p(r);
+        add_compliance(set.turns(), now.x, r);
         face.multiplier_shift(static_cast<const Vector &>(r), shift);
         add(-1., shift, r);
         combine(-1., r, 0., r);
@@ -471,19 +437,26 @@ namespace slipstick::qp
       // Along the step to the next point and set. @return is there one?
       bool step()
       {
-        double t    = line.search(set, x, g, y, gy);
+        double t    = line.search(set, now, next);
         is_unjudged = false;
-        if (watch ? goes_on() : t < options.shortest_step && goes_off(t))
+        if (watchdog.is_watching())
           {
-            refused.clear();
+            if (watchdog.goes_on(line))
+              {
+                go_whole();
+                return true;
+              }
+            t = come_back();
+          }
+        else if (t < options.shortest_step && !stop.has_met_goal() && watchdog.may_begin(line))
+          {
+            watchdog.begin({now, next, told, line, t});
             go_whole();
             return true;
           }
-        if (watch)
-          t = come_back();
         if (t < options.shortest_step)
           {
-            if (has_met_goal)
+            if (stop.has_met_goal())
               return false;
             if (cross_kink() || restart() || leap())
               return true;
@@ -495,37 +468,32 @@ namespace slipstick::qp
         is_stuck    = false;
         refused.clear();
         if (t < options.shortest_step)
-          {
-            predict(line.refused().x, line.refused().gradient);
-            return true;
-          }
-        Vector known(g);
-        if (t == 1)
-          set.clear_solved(x, known);
-        predict(x, known);
+          predict(line.refused());
+        else
+          predict_from_here(t == 1);
         return true;
       }
 
-      // Next to x the natural residual has a kink, where entries come to their bounds or leave them. The set beyond it is that of the
-      // derivative along the step (Pang 1990); its own step may lead across others. @return was it not tried yet from x?
+      // Next to the present point the natural residual has a kink, where entries come to their bounds or leave them. The set beyond it is that of the
+      // derivative along the step (Pang 1990); its own step may lead across others. @return was it not tried yet from here?
       bool cross_kink()
       {
         refused.add(set.sides());
         if (refused.size() > most_kinks)
           return false;
-        predict(line.refused().x, line.refused().gradient);
+        predict(line.refused());
         return !refused.contains(set.sides(), problem.reduction());
       }
 
-      // From the set of x itself, with bodies balanced finely, then also on softer points, where that is possible. @return whether it
+      // From the set of the present point itself, with bodies balanced finely, then also on softer points, where that is possible. @return whether it
       // was not tried yet.
       bool restart()
       {
         const bool is_changed = set.balance_finely() || set.soften(), is_first = !is_stuck;
         is_stuck = true;
         if (is_changed)
-          line.begin(set.natural_residual(x, g));
-        predict(x, g);
+          line.begin(set.natural_residual(now.x, now.gradient));
+        predict(now);
         return is_changed || is_first;
       }
 
@@ -539,94 +507,64 @@ namespace slipstick::qp
         return true;
       }
 
-      // Where a step would be cut to next to nothing, whole ones are taken all the same (watchdog technique: Chamberlain,
-      // Powell, Lemarechal, Pedersen 1982), since the set at their end often is much better than its residual tells. They go
-      // on while each but the first halves the residual, until it is below the bound of the line search where they began;
-      // else the method goes back there.
-      // @param t of the step that is cut. @return is it worth while?
-      bool goes_off(const double t)
-      {
-        if (has_met_goal || n_cut++ < n_cut_before_watch || !(line.whole() <= options.largest_rise * line.present()))
-          return false;
-        watch.emplace(Watch{x, Fx, g, y, Fy, gy, told, error_of_Fx, error_of_Fy, t, line});
-        return true;
-      }
-
-      bool goes_on()
-      {
-        if (line.whole() <= (1 - options.sufficient_decrease) * watch->line.most())
-          {
-            watch.reset();
-            n_cut = n_cut_before_watch = 0;
-            return true;
-          }
-        return line.whole() <= options.least_progress * line.present();
-      }
-
-      // To where whole steps began; the next ones have to wait for more steps that are cut. @return how much of the step
-      // there is taken.
+      // To where whole steps began. @return how much of the step there is taken.
       double come_back()
       {
-        const double t = watch->t;
-        x              = std::move(watch->x);
-        Fx             = std::move(watch->Fx);
-        g              = std::move(watch->g);
-        y              = std::move(watch->y);
-        Fy             = std::move(watch->Fy);
-        gy             = std::move(watch->gy);
-        error_of_Fx    = watch->error_of_Fx;
-        error_of_Fy    = watch->error_of_Fy;
-        line           = std::move(watch->line);
-        predict(x, watch->told);
-        watch.reset();
-        n_cut              = 0;
-        n_cut_before_watch = 2 * n_cut_before_watch + 1;
-        return t;
+        auto start = watchdog.give_up();
+        now        = std::move(start.from);
+        next       = std::move(start.to);
+        line       = std::move(start.line);
+        predict(now.x, start.told);
+        return start.t;
       }
 
       void go_whole()
       {
-        go_to_y(line.whole());
+        go_to_next(line.whole());
         is_stuck = false;
-        Vector known(g);
-        set.clear_solved(x, known);
-        predict(x, known);
+        refused.clear();
+        predict_from_here(true);
       }
 
-      // x to the end of the step that the line search found.
+      // @param is_solved at the end of a whole step nothing is left on the free entries.
+      void predict_from_here(const bool is_solved)
+      {
+        Vector known(now.gradient);
+        if (is_solved)
+          set.clear_solved(now.x, known);
+        predict(now.x, known);
+      }
+
+      // To the end of the step that the line search found.
       void move_by_part(const double t)
       {
         if (t < 1)
           {
-            std::swap(y, line.end().x);
-            std::swap(gy, line.end().gradient);
-            combine(1 - t, Fx, t, Fy);
-            error_of_Fy = std::max(error_of_Fx, error_of_Fy);
+            std::swap(static_cast<PointWithGradient<Vector> &>(next), line.end());
+            combine(1 - t, now.Fx, t, next.Fx);
+            next.error_of_Fx = std::max(now.error_of_Fx, next.error_of_Fx);
           }
-        if (!has_met_goal && line.found() < line.least())
-          best = Found{y, gy, line.found() / goal.reference};
+        if (line.found() < line.least())
+          stop.propose(next, line.found() / goal.reference);
         if (!(line.found() < line.present()) && (t == 1 || !set.balance_finely()))
           set.soften();
-        go_to_y(line.found());
+        go_to_next(line.found());
       }
 
-      void go_to_y(const double merit)
+      void go_to_next(const double merit)
       {
         line.move_to(merit);
         set.approach(merit / goal.reference);
-        std::swap(x, y);
-        std::swap(Fx, Fy);
-        std::swap(error_of_Fx, error_of_Fy);
-        std::swap(g, gy);
+        std::swap(now, next);
       }
 
       bool is_accepted()
       {
         if (!accepts)
           return false;
-        Vector at = y;
+        Vector at = next.x;
         set.put_on_bounds(at);
-        return accepts(at, gy);
+        return accepts(at, next.gradient);
       }
 
       void report() const
@@ -649,34 +587,27 @@ namespace slipstick::qp
       const NewtonOptions      &options;
       const Observer           &observer;
       const Acceptance<Vector> &accepts;
-      const ErrorTest<Vector>  &is_right;
       const bool                has_wide_stiffnesses; // gradients may tell sets that are below the tolerance
       const bool                is_singular;          // F, on some faces
-      double                    tolerance; // that faces are solved to: of the goal, or below it until x is right
-      bool                      has_met_goal = false;
 
+      StoppingTest<Vector>                           stop;
       ActiveSet<Vector, Problem>                     set;
       const std::shared_ptr<DirectionStore<Vector>>  directions;
       DirectionStore<Vector>                        &store;
       std::vector<Tie>                               ties; // of the present face
       LineSearch<Vector, ActiveSet<Vector, Problem>> line;
-      SetHistory                                     solved;  // residuals are those that faces were solved to
-      SetHistory                                     refused; // whose steps do not lower the residual of x
+      Watchdog<Vector, ActiveSet<Vector, Problem>>   watchdog;
+      SetHistory                                     solved; // residuals are those that faces were solved to
+      SetHistory refused; // whose steps do not lower the residual of the present point
 
-      Vector               x, Fx, g;            // where the method is
-      Vector               y, Fy, gy;           // where the present step leads
-      bool                 is_unjudged = false; // x: may it be the solution?
-      std::optional<Found> best;                // where the natural residual is least, or where the goal was met last
-      double               residual              = HUGE_VAL;
-      double               last_natural_residual = std::numeric_limits<double>::infinity(); // over the reference
-      unsigned int         n_astray              = 0;
-      double               error_of_Fx = 0, error_of_Fy = 0; // by rounding, weighted, estimates
-      bool                 is_stuck = false;                 // the last step did not lower the residual
-      bool                 is_rough; // the start, and no step was made yet in spite of the residual
-      Vector               told;     // gradient of the last prediction
-      std::optional<Watch> watch;    // whole steps are being taken
-      unsigned int         n_cut = 0, n_cut_before_watch = 0; // steps since the last ones, and how many there must be
-      Counts               counts;
+      NewtonPoint<Vector> now;                    // where the method is
+      NewtonPoint<Vector> next;                   // where the present step leads
+      bool                is_unjudged = false;    // may `now` be the solution?
+      double              residual    = HUGE_VAL; // of the last face, over the reference
+      bool                is_stuck    = false;    // the last step did not lower the natural residual
+      bool                is_rough;               // the start, and no step was made yet in spite of the residual
+      Vector              told;                   // gradient of the last prediction
+      Counts              counts;
     };
   } // namespace detail
 
