@@ -15,17 +15,18 @@ namespace slipstick::app
 {
   namespace
   {
-    // Cells with this part of the error are refined, unless fewer are sufficient (Doerfler 1996).
+    // The refined cells contribute this fraction of the error, unless fewer cells are sufficient (Doerfler 1996).
     constexpr double most_of_error = 0.6;
-    // Reduction of the additive error of a cell by refinement; for smooth solutions of degree 1 it is 1/9 for nine
-    // quadrilaterals, 1/4 for four triangles and eight tetrahedra, at singular points more.
+    // Factor by which refinement multiplies the additive error of a cell; for smooth solutions of degree 1 it is 1/9
+    // for nine quadrilaterals and 1/4 for four triangles and eight tetrahedra, at singular points it is larger.
     constexpr double left_of_error = 0.25;
-    // Cells whose errors agree up to this part are refined together, so that rounding does not decide.
+    // Cells whose errors differ by less than this fraction are refined together, so that the choice does not depend on
+    // rounding.
     constexpr double alike = 1e-6;
-    // The target is this part of the allowed error, so that the last mesh does not narrowly miss it.
+    // The target is this fraction of the allowed error, so that the last mesh does not narrowly miss it.
     constexpr double aim = 0.9;
 
-    // A vertex coincides with a point if its distance is less than this part of its cell.
+    // A vertex coincides with a point if its distance is less than this fraction of the diameter of its cell.
     constexpr double at_vertex = 1e-6;
 
     using Entry = std::pair<double, mesh::CellKey>;

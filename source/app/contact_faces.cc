@@ -36,7 +36,7 @@ namespace slipstick::app
       for (const auto &[corner, next] : rings)
         {
           std::int64_t first = next.begin()->first;
-          for (const auto &[from, to] : next) // start at the one without predecessor, if there is one
+          for (const auto &[from, to] : next) // start at the midpoint without predecessor, if there is one
             if (std::none_of(next.begin(), next.end(), [from = from](const auto &step) { return step.second == from; }))
               first = from;
           Polygon ring{first};

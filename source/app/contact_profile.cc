@@ -19,20 +19,21 @@ namespace slipstick::app
     using Tensor = dealii::Tensor<1, 3>;
 
     // A nodal pressure is a mean weighted with the shape function of the node, and the maximum may lie between two
-    // nodes: the error of both together is at most this part of the second difference of the pressures.
+    // nodes: the total error is at most this fraction of the second difference of the pressures.
     constexpr double of_second_difference = 1. / 8;
-    // Unresolvable peaks: the largest pressure exceeds the adjacent ones by more than this part of it, or at the end of
-    // a boundary by more than the second value.
+    // A peak is unresolved if its pressure exceeds an adjacent one by more than the first fraction of it, at the end of
+    // a boundary by more than the second.
     constexpr double peak = 0.25, peak_at_end = 0.05;
 
-    // Other peaks of a pair than the largest, at least this part of it: at its other end, for example.
+    // Peaks other than the largest of a pair, for example at its other end, count if they are larger than this fraction
+    // of it.
     constexpr double smallest_peak = 0.1;
 
-    // Stresses closer to such a peak than this part of the size of the contact depend on the mesh.
+    // Stresses closer to such a peak than this fraction of the size of the contact depend on the mesh.
     constexpr double surroundings_of_peak = 0.1;
 
-    // In space pressures are compared with those of this number of nearest nodes; a node is at the edge of the surface
-    // if this number of nearest nodes leaves an angle free.
+    // In space pressures are compared with those of the `n_beside` nearest nodes; a node is at the edge of the surface
+    // if the directions to its `n_around` nearest nodes leave a larger angle than `angle_at_edge` free.
     constexpr unsigned int n_beside = 4, n_around = 8;
     constexpr double       angle_at_edge = 150 * M_PI / 180;
 
@@ -57,7 +58,7 @@ namespace slipstick::app
       });
     }
 
-    /// Smaller pressures are no peaks.
+    /// Lower limit for the pressure of peaks.
     double least_peak(const std::vector<ContactNode> &nodes)
     {
       const auto at = with_largest_pressure(nodes);

@@ -12,12 +12,14 @@ namespace slipstick::app
   {
     using contact::ContactNode;
 
-    // Contributions of cells cancel. If they cancel almost completely the sum is accidental; therefore the error bar is
-    // at least this part of the sum of their magnitudes (measured: doc/error_bars.md).
+    // Contributions of cells partly cancel. If they cancel almost completely, the size of the sum is accidental;
+    // therefore the error bar is at least this fraction of the sum of their magnitudes (measured: doc/error_bars.md).
     constexpr double least_part = 0.1;
-    // A quantity is reproduced if it agrees to this part of the largest one with the same unit.
+    // The value of a goal agrees with the printed one if they differ by less than this fraction of the largest quantity
+    // with the same unit.
     constexpr double same = 1e-5;
-    // Values and error bars below this part of the largest one with the same unit are rounding and not printed.
+    // Values and error bars below this fraction of the largest one with the same unit are rounding errors and are not
+    // printed.
     constexpr double nothing = 1e-9;
 
     bool sticks(const ContactNode &node)
@@ -49,7 +51,7 @@ namespace slipstick::app
         *bar->error += bar->value * surface.norm_resolution(traction);
     }
 
-    /// The printed values by the names of goals.
+    /// The printed values, by names of goals.
     std::map<std::string, double> figures(const output::ResultSummary &results)
     {
       std::map<std::string, double> values = {{"max_displacement", results.max_displacement},
@@ -74,7 +76,7 @@ namespace slipstick::app
       return values;
     }
 
-    /// Largest magnitudes of values and error bars, by unit.
+    /// Largest magnitudes of the values, by unit.
     std::map<std::string, double> largest_of_units(const std::vector<output::ErrorBar> &bars)
     {
       std::map<std::string, double> largest;

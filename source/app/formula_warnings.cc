@@ -24,7 +24,7 @@ namespace slipstick::app
     // Admissible excess between nodes: relative to the largest value on the boundary (slip bounds), to the range of
     // values (displacements), to the smaller of edge length and largest displacement (gaps).
     constexpr double lost_part = 0.1;
-    // Values that differ by less than this part of the largest are constant.
+    // Values that differ by less than this fraction of the largest count as constant.
     constexpr double rounding_of_values = 1e-9;
 
     enum class Scale

@@ -9,16 +9,16 @@ namespace slipstick::app
 {
   namespace
   {
-    // Components of directions below this are rounding.
+    // Smaller components of directions are rounding errors.
     constexpr double along_axis = 1e-9;
 
-    // A pair slides as a whole if sticking nodes carry no more than this part of its friction.
+    // A pair slides as a whole if sticking nodes carry no more than this fraction of its friction.
     constexpr double sticking_part = 0.1;
 
-    // Forces at points below this part of the largest force count as none: most point supports only hold rigid motions.
+    // Point forces below this fraction of the largest force are neglected: most point supports only hold rigid motions.
     constexpr double negligible_reaction = 1e-3;
 
-    // Places that differ by less than this part of their coordinates are the same.
+    // Places that differ by less than this fraction of their coordinates are the same.
     constexpr double same_place = 1e-9;
 
     std::string component(const unsigned int d)

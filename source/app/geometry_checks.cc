@@ -10,15 +10,15 @@ namespace slipstick::app
 {
   namespace
   {
-    // Nodes out of reach must not penetrate by more than this part of the largest displacement, which is far above the
-    // solver's error.
+    // Nodes out of reach must not penetrate by more than this fraction of the largest displacement, which is far above
+    // the solver's error.
     constexpr double allowed_beyond_reach = 1e-3;
-    // Limit for obstacles between nodes and bodies in contact with each other, relative to the smaller of largest
-    // displacement and edge length: curved sides and slip cause about that on coarse meshes.
+    // Limit for obstacles between nodes and for bodies in contact with each other, relative to the smaller of largest
+    // displacement and edge length: on coarse meshes curved sides and slip cause penetrations of about this size.
     constexpr double allowed_between_nodes = 0.1;
     // The same for bodies without a contact pair, relative to the largest displacement.
     constexpr double allowed_without_contact = 1e-3;
-    // Lower limit for all of them, relative to an edge: rounding of coordinates.
+    // Lower bound of all these limits, relative to an edge length: rounding of coordinates.
     constexpr double coordinate_rounding = 1e-9;
     // Margin of the proposed Reach.
     constexpr double reserve = 1.1;

@@ -207,7 +207,7 @@ namespace slipstick::app
   {
     if (rows.size() >= options.max_meshes)
       return "allow more meshes (Adaptivity/Max meshes), or begin with a finer one";
-    // bars that are too small, or not confirmed, tell where the errors are, but not how large
+    // bars that are too small, or not confirmed, show where the errors are but not how large they are
     const double aimed_at = is_accurate ? 0. : bar_over_error * options.accuracy;
     auto         cells =
       options.goals.empty() || !is_known ? errors_of(steps) : errors_of_goals(goals_of(steps), aimed_at, comm);
@@ -217,7 +217,7 @@ namespace slipstick::app
         cells    = errors_of(steps);
         n_marked = mark(steps.mesh(), cells, refinement);
       }
-    // nine quadrilaterals or eight tetrahedra per cell, plus templates around them
+    // nine quadrilaterals or eight tetrahedra per cell, plus transition cells around them
     constexpr double cells_for_one = 12;
     const double     growth        = 1 + cells_for_one * n_marked / summary.problem.cells;
     if (n_marked == 0)

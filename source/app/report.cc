@@ -15,11 +15,11 @@ namespace slipstick::app
 {
   namespace
   {
-    // Residuals below this are rounding in the operators of the solver.
+    // Smaller residuals are rounding errors in the operators of the solver.
     constexpr double residual_rounding = 1e-11;
     // Rounding errors of different ways of computing the same quantity differ by about this factor.
     constexpr double margin_of_rounding = 2;
-    // Changes of gaps below this part of the size of bodies are not worth a line.
+    // Changes of gaps below this fraction of the size of the bodies are not reported.
     constexpr double shown_change_of_gaps = 1e-12;
 
     std::string line(const char *stage, const std::string &text)
@@ -27,7 +27,7 @@ namespace slipstick::app
       return format("%-12s ", stage) + text;
     }
 
-    /// "(1, 2)"; components that are rounding relative to the largest are 0.
+    /// "(1, 2)"; components that are rounding errors compared with the largest are set to 0.
     std::string rounded_place(std::array<double, 3> x, const unsigned int dim)
     {
       constexpr double rounding = 1e-12;

@@ -20,16 +20,16 @@ namespace slipstick::app
   {
     // Strains and rotations [rad] above which the linear theory has errors of a few percent.
     constexpr double largest_strain = 0.1, largest_rotation = 0.1;
-    // Displacement over the diagonal of a body.
+    // Ratio of displacement to the diagonal of a body.
     constexpr double largest_motion = 0.5;
     // Young's modulus above that of any material (diamond: 1.2e6 MPa) ...
     constexpr double largest_modulus = 1e7;
-    // ... which may be intended as rigid; but not for all bodies if all displacements are below this part of the
+    // ... which may be intended as rigid; but not for all bodies if all displacements are below this fraction of the
     // bodies' diagonals.
     constexpr double least_motion = 1e-8;
-    // Contact pressure over the smaller Young's modulus of the two sides.
+    // Ratio of contact pressure to the smaller Young's modulus of the two sides.
     constexpr double largest_pressure = 1;
-    // Overlap and slip over the length of an edge.
+    // Ratio of overlap and slip to the length of an edge.
     constexpr double largest_step = 1;
 
     /// A maximum and its place.

@@ -14,14 +14,14 @@ namespace slipstick::app
 {
   namespace
   {
-    // Maximum number of solves of one step for the tensions of its bolts; about five are needed.
+    // Maximum number of solves of one step to reach the tensions of its bolts; about five are needed.
     constexpr unsigned int max_attempts = 40;
     // Relative error of tensions: the tolerance of the solver, but at most this.
     constexpr double largest_error = 1e-3;
 
-    // Near convergence, where the error of the tension is less than this multiple of the admissible one, an attempt
-    // that does not reduce the error by the second factor was stopped too early by the solver: other loads are larger
-    // than the bolt's, and the solver's errors are relative to these.
+    // Near convergence, where the error of the tension is less than the first multiple of the admissible one, an
+    // attempt that does not reduce the error by the second factor was stopped too early by the solver: other loads are
+    // larger than the bolt's, and the solver's tolerance is relative to these loads.
     constexpr double near_the_end = 100, much_nearer = 0.5;
     // Factor by which the tolerance of the solver is then reduced, and its lower limit.
     constexpr double sharper = 0.1, sharpest = 1e-13;
@@ -40,7 +40,7 @@ namespace slipstick::app
       Eigen::VectorXd          e; // [N], [N mm], of this rank's subdomains
     };
 
-    /// The factor that makes @p before the data of @p dual, if there is one. Collective.
+    /// The factor by which @p before must be multiplied to give the data of @p dual, if there is one. Collective.
     std::optional<double> multiple(const DualData &before, const tfeti::DualProblem &dual)
     {
       const auto   sum = [&dual](const double part) { return dealii::Utilities::MPI::sum(part, dual.communicator()); };
@@ -50,7 +50,7 @@ namespace slipstick::app
       const double factor = dual.d() * before.d / squares;
       auto         rest   = before.d;
       rest.sadd(-factor, 1., dual.d());
-      double total = 0; // what the loads would add up to if they did not balance each other
+      double total = 0; // sum of the loads if they did not balance each other
       for (const auto &system : dual.subdomains())
         total += (system->kernel().cwiseAbs().transpose() * system->load().cwiseAbs()).squaredNorm();
       const bool fits =

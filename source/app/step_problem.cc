@@ -123,7 +123,7 @@ namespace slipstick::app
     return loads;
   }
 
-  // Repeated for every step if a motion is not held: the loads of the step may drive it.
+  // Repeated for every step if a motion is not held, since the loads of the step may drive it.
   template <int dim>
   void StepProblem<dim>::make_dual(const double t)
   {
@@ -200,7 +200,7 @@ namespace slipstick::app
     const bool is_same =
       scene.supports.size() == n_given &&
       dealii::Utilities::MPI::min(rows.active.label == the_dual->constraints().label ? 1 : 0, comm) > 0;
-    if (is_same) // gaps that follow the load factor may prune other nodes
+    if (is_same) // gaps that depend on the load factor may prune other nodes
       {
         pruned = std::move(rows.pruned);
         held   = std::move(rows.held);

@@ -20,10 +20,11 @@ namespace slipstick::app
   namespace
   {
     // Radius of influence of a singular point, in diameters of the cells around the node with the largest stress: nodal
-    // stresses are means over cells, and the largest may be beside the singular point.
+    // stresses are means over cells, so that the largest may be at a node adjacent to the singular point.
     constexpr double cells_of_singularity = 1.5;
 
-    // Forces on supports that hold otherwise unresisted motions are reported if above this part of the largest force.
+    // Forces on supports that hold otherwise unresisted motions are reported if above this fraction of the largest
+    // force.
     constexpr double negligible_held_force = 1e-6;
 
     constexpr double displacement_rounding = 1e-12; // of displacements, relative
@@ -37,8 +38,8 @@ namespace slipstick::app
       return all;
     }
 
-    /// No load acts along motions that nothing resists, but friction across a gap can: its two sides are at different
-    /// places.
+    /// Adds the resultant on the motions that nothing resists. No load acts along them, but friction across a gap may,
+    /// since the two sides of the gap are at different places.
     template <int dim>
     void add_held_motions(const StepSolver<dim>        &solver,
                           const StepSolution           &answer,

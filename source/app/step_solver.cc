@@ -35,17 +35,17 @@ namespace slipstick::app
     // ... at most this number of times, as long as the worst check decreases by this factor.
     constexpr unsigned int max_closings     = 4;
     constexpr double       closing_progress = 0.5;
-    // Tolerance = auto: admissible ratio of algebraic to discretisation error. The two are nearly orthogonal: it adds 2 % to
-    // the total error, 5 % if both estimates are a quarter off.
+    // Tolerance = auto: admissible ratio of algebraic to discretisation error. The two are nearly orthogonal, so that
+    // the algebraic error adds 2 % to the total error, 5 % if both estimates are wrong by a quarter.
     constexpr double allowed_part = 0.2;
-    // And admissible error of the tractions of a pair.
+    // Tolerance = auto: admissible error of the tractions of a pair.
     constexpr double allowed_traction_error = 0.05;
 
     template <int dim>
     scene::SolverOptions resolved_options(const scene::Scene<dim> &scene, const bool solves_adjoints)
     {
       auto options = contact::resolved_options(scene);
-      // these apply K+ more often than a single recovery
+      // these cases apply K+ more often than a single recovery does
       options.dual.keeps_factors = solves_adjoints || scene.load_factors.size() > 1 ||
                                    options.stops_at_discretization_error ||
                                    options.dual.operator_precision == tfeti::Precision::single_precision;

@@ -15,17 +15,18 @@ namespace slipstick::app
 {
   namespace
   {
-    // Stresses closer to a singular point than this part of the body's half diagonal depend on the mesh.
+    // Stresses closer to a singular point than this fraction of the body's half diagonal depend on the mesh.
     constexpr double near_singular_point = 0.1;
 
-    // A singular point whose cell is larger than what is left out around it is not resolved. Refinement may then move
-    // the largest stress elsewhere to it, if the cell bears this part of that stress.
+    // A singular point is not resolved if its cell is larger than the region left out around the point. If the stress
+    // of that cell exceeds this fraction of the largest stress elsewhere, refinement may move the largest stress to
+    // that point.
     constexpr double may_become_largest = 0.5;
 
-    // A probe is at a singular point if it is closer than this part of that distance.
+    // A probe is at a singular point if it is closer than this fraction of the radius left out around the point.
     constexpr double at_singular_point = 1e-6;
 
-    /// A point with its stresses, which several quantities weigh.
+    /// A point with its stresses, of which several quantities are weighted sums.
     template <int dim>
     struct StressesAt
     {
@@ -45,7 +46,8 @@ namespace slipstick::app
         , t(t_)
       {}
 
-      /// The largest over all nodes, and that over nodes away from singular points if it is another or @p is_named.
+      /// Adds the largest von Mises stress over all nodes; and the largest over the nodes away from singular points, if
+      /// the first one is near a singular point or not resolved, or if @p is_named.
       void add_largest(const std::vector<mechanics::Surroundings<dim>> &around,
                        const bool                                       is_named,
                        std::vector<Functional>                         &list) const
@@ -97,7 +99,7 @@ namespace slipstick::app
               list[k].reason = "not resolved, or without limit, at " + singular.what;
       }
 
-      /// Of these points, of corners and of ends of supports.
+      /// Surroundings of these points, of corners and of ends of supports.
       std::vector<mechanics::Surroundings<dim>> surroundings(
         const std::vector<mechanics::SingularPoint<dim>> &acting) const
       {
@@ -118,7 +120,8 @@ namespace slipstick::app
       }
 
     private:
-      /// The largest stress between a node and the surroundings that are left out, minus that of the node.
+      /// Difference between the largest stress on the way from a node to the surroundings that are left out, and the
+      /// stress of the node.
       double increase_towards(const mechanics::Peak<dim>                      &node,
                               const mechanics::StressPoint<dim>               &at_node,
                               const std::vector<mechanics::Surroundings<dim>> &around) const
@@ -136,9 +139,9 @@ namespace slipstick::app
         return dealii::Utilities::MPI::max(increase, solver.mesh().comm);
       }
 
-      /// Gives @p largest a reason to have no bar if it may be found elsewhere once the cells there are smaller than what
-      /// is left out.
-      /// @param cells those at the places @p around. @return whether it has this reason now.
+      /// Sets the reason why @p largest has no error bar, if on a finer mesh the largest stress may be at one of the
+      /// places @p around, whose cells are still larger than the region left out.
+      /// @param cells cells at the places @p around. @return whether this reason has been set.
       bool note_unresolved(const std::vector<mechanics::Surroundings<dim>> &around,
                            const std::vector<mechanics::CellAtPlace>       &cells,
                            Functional                                      &largest) const
@@ -219,7 +222,7 @@ namespace slipstick::app
                                              const double                                      t,
                                              const std::vector<std::string>                   &quantities)
   {
-    const auto names = [&](const std::string &text) { // a quantity, or the beginning of some
+    const auto names = [&](const std::string &text) { // a quantity, or the beginning of the names of several
       return std::any_of(quantities.begin(), quantities.end(), [&](const std::string &quantity) {
         return quantity.rfind(text, 0) == 0;
       });

@@ -14,10 +14,10 @@ namespace slipstick::app
   {
     std::vector<Eigen::VectorXd> of_cells;    // by subdomain of this rank, >= 0
     double                       total   = 0; // over all ranks
-    double                       allowed = 0; // total to be reached
+    double                       allowed = 0; // target of `total`
   };
 
-  /// Surroundings of a point force, where the exact energy is infinite, so that its error does not decrease.
+  /// Surroundings of a point force. The exact energy is infinite there, so that its error does not decrease.
   template <int dim>
   struct LeftOut
   {
@@ -45,7 +45,7 @@ namespace slipstick::app
   CellErrors errors_of_goals(const std::vector<GoalError> &goals, const double accuracy, const MPI_Comm comm);
 
   /// Adds the cells with the largest errors to @p refinement: the fewest that make the error small enough if it
-  /// decreases as for smooth solutions, but at most those with `most_of_error` of it. Collective.
+  /// decreases as for smooth solutions, but at most those that contribute `most_of_error` of the error. Collective.
   /// @return their number.
   template <int dim>
   std::size_t mark(const mesh::Mesh<dim> &mesh, const CellErrors &errors, mesh::Refinement &refinement);

@@ -25,7 +25,8 @@ namespace slipstick::app
 
     explicit ContactLine(std::vector<contact::ContactNode> nodes);
 
-    /// Length of the nodes for which @p is_in holds, and half of the elements between nodes inside and outside.
+    /// Total length of the nodes for which @p is_in holds, and half the length of the elements between one of these
+    /// nodes and another node.
     template <class IsIn>
     std::pair<double, double> size(const IsIn &is_in) const
     {
@@ -42,7 +43,7 @@ namespace slipstick::app
     /// Resolution error of the largest pressure [MPa]; nothing if the nodes do not resolve it.
     std::optional<double> resolution() const;
 
-    /// Error of the L2 norm of a traction that is not constant between the nodes, as a part of the norm.
+    /// Relative error of the L2 norm of a traction that is not constant between the nodes.
     template <class Traction>
     double norm_resolution(const Traction &traction) const
     {
@@ -59,11 +60,12 @@ namespace slipstick::app
       return all > 0 ? differences / (2 * all) : 0.;
     }
 
-    /// Nodes whose pressure is the largest around them, that of the pair or comparable to it, and not resolved.
+    /// Nodes with an unresolved local maximum of the pressure, except maxima far below the largest pressure of the
+    /// pair.
     std::vector<contact::ContactNode> unresolved_peaks() const;
 
   private:
-    /// As resolution(), of the pressure of node @p i.
+    /// As resolution(), for the pressure of node @p i.
     std::optional<double> resolution_at(std::size_t i) const;
 
     std::vector<contact::ContactNode> line;
@@ -77,8 +79,8 @@ namespace slipstick::app
 
     explicit ContactSurface(std::vector<contact::ContactNode> nodes);
 
-    /// Area of the nodes for which @p is_in holds, and half of the area of those adjacent to a node for which it does
-    /// not.
+    /// Total area of the nodes for which @p is_in holds, and half the area of those that are adjacent to a node for
+    /// which it does not.
     template <class IsIn>
     std::pair<double, double> size(const IsIn &is_in) const
     {
@@ -116,7 +118,8 @@ namespace slipstick::app
       return all > 0 ? differences / (2 * all) : 0.;
     }
 
-    /// As of ContactLine; at the edge of the surface only nodes inside are compared, since pressures may be large all along it.
+    /// As for ContactLine; a node at the edge of the surface is compared only with nodes that are not at the edge,
+    /// since the pressure may be large all along the edge.
     std::vector<contact::ContactNode> unresolved_peaks() const;
 
   private:
@@ -136,9 +139,9 @@ namespace slipstick::app
   template <int dim>
   using ContactProfile = std::conditional_t<dim == 2, ContactLine, ContactSurface>;
 
-  /// Peaks of the pressure of every pair that its nodes do not resolve, on both bodies, with a tenth of the size of the
-  /// contact: stresses there grow with every refinement, or need one. Of the nodes of rank 0; the same on all ranks.
-  /// Collective.
+  /// Pressure peaks of every pair that its nodes do not resolve, on both bodies, with a radius of a tenth of the size
+  /// of the contact: stresses there grow with every refinement, or require a finer mesh. Only the nodes of rank 0 are
+  /// used; the result is the same on all ranks. Collective.
   template <int dim>
   std::vector<mechanics::Surroundings<dim>> pressure_peaks(const std::vector<contact::ContactNode>    &nodes,
                                                            const std::vector<scene::ContactPair<dim>> &pairs,

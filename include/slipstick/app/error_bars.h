@@ -20,7 +20,7 @@ namespace slipstick::app
   /// Prints one line per quantity.
   void print_bars(const Log &log, const std::vector<output::ErrorBar> &bars);
 
-  /// Prints which of the quantities @p promised have errors larger than the part @p accuracy of their values, if any.
+  /// Prints which of the quantities @p promised, if any, have relative errors above @p accuracy.
   void print_inaccurate(const Log                           &log,
                         const std::vector<output::ErrorBar> &bars,
                         const std::vector<std::string>      &promised,

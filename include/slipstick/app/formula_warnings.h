@@ -8,8 +8,9 @@
 
 namespace slipstick::app
 {
-  /// Texts of warnings with remedy, keyed by subject, at load factor @p t: between the nodes of an edge or face the
-  /// formula goes far beyond its values at these nodes. Jumps and slopes do not: they are resolved to an edge.
+  /// Texts of warnings with remedy, keyed by subject, at load factor @p t, for formulas whose values between the nodes
+  /// of an edge or face are far outside the range of their nodal values. Jumps and slopes cause no warning: they are
+  /// resolved to an edge.
   /// @param largest displacement [mm], reference for gaps. The same on all ranks. Collective.
   template <int dim>
   std::map<std::string, std::string> formula_warnings(const scene::Scene<dim>      &scene,

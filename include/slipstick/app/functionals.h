@@ -19,7 +19,7 @@ namespace slipstick::app
     std::vector<Eigen::VectorXd> loads;     // for a quantity of displacements
     std::string                  reason;    // why there is no estimate; empty: there is one
     bool                         is_of_multipliers = true;
-    double                       local_error       = 0;     // besides that of the adjoint problem, not negative
+    double                       local_error       = 0;     // in addition to that of the adjoint problem, not negative
     bool                         is_resolvable     = false; // finer cells remove the reason
     std::string                  note              = "";    // what the quantity covers, if its name does not say it
   };
@@ -29,32 +29,32 @@ namespace slipstick::app
   class Functionals
   {
   public:
-    /// All arguments are referred to. @param t load factor of @p answer.
+    /// Keeps references to all arguments except @p t, the load factor of @p answer.
     Functionals(const StepSolver<dim>        &solver,
                 const mechanics::Probes<dim> &probes,
                 const StepSolution           &answer,
                 const double                  t);
 
-    /// Points at which forces act: the energy and the displacement there are infinite.
+    /// Points at which forces act; the energy and the displacement are infinite there.
     const std::vector<mechanics::SingularPoint<dim>> &point_forces() const
     {
       return points;
     }
 
-    /// All except stresses, the strain energy and lengths of contact.
+    /// All quantities except stresses, the strain energy and lengths of contact.
     std::vector<Functional> all() const;
 
   private:
-    /// Of point supports and point loads those that bear something.
+    /// The point supports and point loads whose force is not negligible.
     std::vector<mechanics::SingularPoint<dim>> acting_points(const double t) const;
 
-    /// Is it a node of a contact zone or beside one? Then the support bears the share of a node of the pressure.
+    /// Whether the point is a contact node or adjacent to one; the support then bears a nodal share of the pressure.
     bool is_in_contact(const mechanics::SingularPoint<dim> &point) const;
 
-    /// Why a displacement there has no estimate; empty: it has.
+    /// Why the displacement at this place has no estimate; empty: it has one.
     std::string infinite_at(const unsigned int body, const dealii::Point<dim> &place) const;
 
-    /// Of a node of a subdomain of this rank.
+    /// Position of a node of subdomain @p p of this rank.
     dealii::Point<dim> position_of(const unsigned int p, const unsigned int node) const;
 
     Functional displacement_at(const std::string &name, const unsigned int probe, const unsigned int d) const;
@@ -66,7 +66,7 @@ namespace slipstick::app
 
     Functional normal_force(const std::string &name, const unsigned int pair) const;
 
-    /// Sum of the nodal forces along the tangent, in space of their magnitudes.
+    /// Sum of the nodal forces along the tangent; in space, sum of their magnitudes.
     Functional tangential_force(const std::string &name, const unsigned int pair) const;
 
     /// Magnitude of the tangential force on a node in space [N].
@@ -78,12 +78,12 @@ namespace slipstick::app
 
     Functional pressure(const std::string &name, const unsigned int pair) const;
 
-    /// L2 norms over the contact of the pressure, of the tangential traction; in the plane and for bodies of revolution over
-    /// the true area.
+    /// L2 norms of the pressure and of the tangential traction over the contact; in the plane and for bodies of
+    /// revolution over the true area.
     Functional pressure_norm(const std::string &name, const unsigned int pair) const;
     Functional traction_norm(const std::string &name, const unsigned int pair) const;
 
-    /// Divides by the norm what is still its square.
+    /// Turns the functional of the squared norm into that of the norm.
     Functional as_norm(Functional square) const;
 
     Functional reaction(const std::string &name, const unsigned int support, const unsigned int d) const;

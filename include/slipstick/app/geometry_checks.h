@@ -13,7 +13,8 @@ namespace slipstick::app
     /// a remedy.
     std::optional<std::string> failure;
 
-    /// Texts of warnings with remedy, keyed by subject: obstacles between nodes, bodies that are not joined by a pair.
+    /// Texts of warnings with remedy, keyed by subject: obstacles that protrude between nodes, overlapping bodies that
+    /// are not joined by a pair.
     std::map<std::string, std::string> warnings;
   };
 

@@ -21,7 +21,7 @@ namespace slipstick::app
     double                       value         = 0;     // of the quantity
     double                       signed_       = 0;     // sum over the cells: the correction to be added to the value
     double                       absolute      = 0;     // sum of the magnitudes
-    double                       local         = 0;     // error besides that of the cells (Functional::local_error)
+    double                       local         = 0;     // in addition to the cells: Functional::local_error
     std::string                  note;                  // Functional::note
     std::vector<Eigen::VectorXd> cells;                 // by subdomain of this rank: contributions of the cells
   };
@@ -30,11 +30,11 @@ namespace slipstick::app
   /// the errors of the solution and of the adjoint displacement, which solves a linear problem on the active set of the
   /// solution (contact::Adjoint); the effect of the gaps between the nodes is added (interface::gap_defects). Both
   /// errors in energy products are those of recovered stresses, as in the estimate of the energy norm. Friction bounds
-  /// are fixed in the adjoint problem; only for the tangential force of a pair that slides as a whole they follow the
-  /// pressure. In space the friction forces of slipping nodes also keep their directions, and the tangential force is
-  /// the sum of their magnitudes.
-  /// @param peaks of contact where stresses are not resolved. @param quantities whose errors are requested;
-  /// empty: all.
+  /// are fixed in the adjoint problem; only for the tangential force of a pair that slides as a whole do they follow
+  /// the pressure. In space the friction forces of slipping nodes also keep their directions, and the tangential force
+  /// is the sum of their magnitudes.
+  /// @param peaks peaks of the contact pressure, where stresses are not resolved.
+  /// @param quantities quantities whose errors are requested; empty: all.
   /// Changes the dual problem of @p solver, which is set to the last load step. Collective.
   template <int dim>
   std::vector<GoalError> goal_errors(StepSolver<dim>                                 &solver,

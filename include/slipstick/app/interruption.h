@@ -12,13 +12,13 @@ namespace slipstick::app
   /// From now on these signals end the process without a message again.
   void do_not_tell_when_interrupted();
 
-  /// Holds an interruption back while it lives, as files that agree with each other are written. Not nested; without effect
-  /// where tell_when_interrupted() is not in force.
+  /// Defers interruptions during its lifetime, while files that must be consistent with each other are written. Must
+  /// not be nested; has no effect unless tell_when_interrupted() has been called.
   class HeldInterruption
   {
   public:
     HeldInterruption();
-    ~HeldInterruption(); // interrupts now if a signal came in between
+    ~HeldInterruption(); // raises a signal that arrived in the meantime
     HeldInterruption(const HeldInterruption &)            = delete;
     HeldInterruption &operator=(const HeldInterruption &) = delete;
   };

@@ -26,7 +26,7 @@ namespace slipstick::app
     ExitStatus run(std::optional<Run<dim>> &steps);
 
   private:
-    /// Description of the quantities that must be accurate.
+    /// Description of the quantities to which the accuracy applies.
     std::string what() const;
 
     void leave_out(std::vector<LeftOut<dim>> places);
@@ -39,19 +39,19 @@ namespace slipstick::app
 
     std::vector<GoalError> goals_of(const Run<dim> &steps) const;
 
-    /// The largest relative change of the counted goals from the mesh before, which bars of coarse meshes may miss by far;
-    /// nothing if one has no value there. On rank 0.
+    /// The largest relative change of the counted goals from the previous mesh, which bars on coarse meshes may
+    /// underestimate by far; nothing if a goal has no value on that mesh. On rank 0.
     std::optional<double> change_of_counted(const std::vector<output::ErrorBar> &bars);
 
-    /// Marks the cells of the next mesh. @return why there is no next mesh although the accuracy is missed; empty: there is
-    /// one, or none is needed.
+    /// Marks the cells to be refined for the next mesh. @return why there is no next mesh although the accuracy has not
+    /// been reached; empty: there is one, or none is needed.
     std::string why_to_stop(const Run<dim> &steps, const output::Summary &summary);
 
-    /// Marks the cells of the next mesh. @return why there is none.
+    /// Marks the cells to be refined for the next mesh. @return why there is no next mesh; empty: there is one.
     std::string mark_next(const Run<dim> &steps, const output::Summary &summary);
 
-    /// Errors in the energy norm; as long as a goal has no estimate, with an allowed error that is useful for reaching
-    /// one.
+    /// Errors in the energy norm. With goals the allowed error is 0, so that cells are marked until the goals have
+    /// estimates.
     CellErrors errors_of(const Run<dim> &steps) const;
 
     const scene::Scene<dim>        &scene;
@@ -61,7 +61,7 @@ namespace slipstick::app
     const Log                       quiet;
     const MPI_Comm                  comm;
     mesh::Refinement                refinement;
-    contact::ContactOfMesh          contact; // on the mesh before
+    contact::ContactOfMesh          contact; // on the previous mesh
     std::vector<output::MeshRow>    rows;
     std::vector<LeftOut<dim>>       left_out;
     std::vector<std::string>        notes;
@@ -69,11 +69,11 @@ namespace slipstick::app
     std::vector<std::string>        unknown;          // ... and on rank 0 why the others have none
     std::string                     without_estimate; // a counted goal and the reason; empty: none
     unsigned int                    n_without = 0;    // consecutive meshes
-    std::map<std::string, double>   values;           // on rank 0, of the mesh before
+    std::map<std::string, double>   values;           // on rank 0, on the previous mesh
     double                          bar_over_error = 1;
     bool                            is_known       = false; // the error
     bool                            is_accurate    = false; // that error ...
-    bool                            is_confirmed   = false; // ... and there is a mesh before to compare with
+    bool                            is_confirmed   = false; // ... and there is a previous mesh to compare with
     bool                            reached        = false;
   };
 } // namespace slipstick::app

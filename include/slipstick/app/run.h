@@ -51,7 +51,7 @@ namespace slipstick::app
                 const std::vector<std::string>     &notes,
                 const std::string                  &missed);
 
-    /// After a step without equilibrium: writes the results of the previous steps, marked as such.
+    /// After a step without equilibrium: writes the results of the previous steps, with the status "no equilibrium".
     void write_without_equilibrium();
 
     /// Stresses of the last load step.
@@ -97,7 +97,7 @@ namespace slipstick::app
     /// Called after the last load step.
     void estimate_errors(const double t, output::Summary &summary);
 
-    /// Tables and summary.json, which agree whenever the run is interrupted.
+    /// Writes tables and summary.json, which are consistent with each other whenever the run is interrupted.
     void write(const output::Summary &summary) const;
 
     void write_fields(const unsigned int step, const StepSolution &answer) const;
@@ -114,8 +114,8 @@ namespace slipstick::app
     StepSolver<dim>                         solver;
     const scene::Scene<dim>                &scene; // including the contact pairs found by the search
     mechanics::Probes<dim>                  probes;
-    std::unique_ptr<StepSolution>           last;   // load step
-    std::vector<GoalError>                  errors; // of its figures
+    std::unique_ptr<StepSolution>           last;   // of the last load step
+    std::vector<GoalError>                  errors; // of its quantities
     std::vector<output::ContactStep>        contact_steps;
     TotalSlip                               total_slip;
     std::vector<std::string>                warnings;

@@ -9,7 +9,7 @@
 namespace slipstick::app
 {
   // A check may exceed the solver's tolerance by this factor (checks refer to displacements and forces, the tolerance
-  // to |Pd|), but never this part of the solution.
+  // to |Pd|), but never this fraction of the solution.
   constexpr double check_factor  = 1000;
   constexpr double largest_limit = 0.05;
 

@@ -133,11 +133,11 @@ namespace slipstick::app
 
     /// Whether the algebraic error of an iterate is a small part of its discretisation error, and the iterate passes
     /// the checks. The last estimate of the step, which errors of earlier iterates can only have increased, is tested
-    /// first; a displacement is recovered only if that is not conclusive.
+    /// first; a displacement is recovered only if this test is inconclusive.
     bool is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t);
 
     /// Solves the current step, adding rows for more contact nodes as long as pruned ones penetrate.
-    /// @param goes_on start from the solution of this step.
+    /// @param goes_on whether to start from the present solution of this step.
     std::unique_ptr<Answer> solve_step(const unsigned int  step,
                                        const std::uint64_t multiplications_before,
                                        const bool          goes_on);

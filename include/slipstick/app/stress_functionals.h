@@ -5,11 +5,14 @@
 
 namespace slipstick::app
 {
-  /// The largest von Mises stress and the stresses at point probes, linearised at the solution of the last load step. What
-  /// the adjoint problem sees is the mean stress of the cells at a point (an infinite load otherwise); the rest of the
-  /// error of the recovered stress is Functional::local_error.
-  /// @param acting point supports and point loads that bear something. @param peaks of contact. @param quantities those that
-  /// are needed; empty: all that differ. Collective.
+  /// The largest von Mises stress and the stresses at point probes, linearised at the solution of the last load step.
+  /// The adjoint problem is that of the mean stress of the cells at a point, since the load of a point value has
+  /// infinite energy; the rest of the error of the recovered stress is Functional::local_error.
+  /// @param acting point supports and point loads whose force is not negligible.
+  /// @param peaks peaks of the contact pressure.
+  /// @param quantities the quantities needed; empty: all, but max_regular_von_mises only if max_von_mises has no error
+  /// bar because of a singular point.
+  /// Collective.
   template <int dim>
   std::vector<Functional> stress_functionals(const StepSolver<dim>                            &solver,
                                              const mechanics::Probes<dim>                     &probes,
