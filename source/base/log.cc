@@ -99,7 +99,7 @@ namespace slipstick
 
   double peak_memory_mb()
   {
-    // deal.II's reader of this file never returns if /proc is missing
+    // deal.II's function that reads this file never returns if /proc is missing
     std::ifstream status("/proc/self/status");
     std::string   word;
     double        kilobytes;

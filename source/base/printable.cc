@@ -27,7 +27,7 @@ namespace slipstick
       for (unsigned int i = 1; i < n; ++i)
         if ((byte(k + i) & 0xC0) != 0x80)
           return 0;
-      const unsigned char second = byte(k + 1); // excludes overlong forms, surrogates, code points above the last plane
+      const unsigned char second = byte(k + 1); // rejects overlong forms, surrogates, code points above the last plane
       if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) || (first == 0xF0 && second < 0x90) ||
           (first == 0xF4 && second > 0x8F))
         return 0;

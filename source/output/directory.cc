@@ -76,7 +76,7 @@ namespace slipstick::output
               }
             catch (const std::exception &)
               {
-                if (out) // the failure has another cause than lack of space
+                if (out) // the failure has a cause other than lack of space
                   throw;
               }
             const bool failed = !out.flush();
@@ -111,8 +111,7 @@ namespace slipstick::output
                          "free space there or " + other_directory);
     }
 
-    // Permission bits are not sufficient (root ignores them; read-only or full disks do not show in them): write a
-    // file.
+    // Permission bits are not sufficient (root ignores them; they do not reveal read-only or full disks): write a file.
     void try_a_file(const std::filesystem::path &directory)
     {
       NewFile           probe(temporary_name((directory / ".slipstick-probe").string()));

@@ -51,7 +51,7 @@ namespace slipstick::output
 
     constexpr std::uint8_t vtk_triangle = 5, vtk_quadrilateral = 9, vtk_tetrahedron = 10, vtk_hexahedron = 12;
 
-    /// A hexahedron of degree 2 is drawn as eight between its nodes.
+    /// A hexahedron of degree 2 is drawn as eight hexahedra between its nodes.
     template <int dim>
     std::vector<std::vector<unsigned int>> parts_of_hexahedron(const dealii::FiniteElement<dim> &scalar)
     {
@@ -73,8 +73,8 @@ namespace slipstick::output
       return parts;
     }
 
-    /// A tetrahedron of degree 2 is drawn as four at its corners and four around an axis of the octahedron between
-    /// them.
+    /// A tetrahedron of degree 2 is drawn as eight: four at its corners and four around an axis of the octahedron
+    /// between them.
     template <int dim>
     std::vector<std::vector<unsigned int>> parts_of_tetrahedron(const dealii::FiniteElement<dim> &scalar)
     {

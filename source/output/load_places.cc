@@ -13,7 +13,7 @@ namespace slipstick::output
 {
   namespace
   {
-    // Places are rounded to this part of the size of their body, so that they do not depend on the decomposition.
+    // Places are rounded to this fraction of the size of their body, so that they do not depend on the decomposition.
     constexpr double grain = 0x1p-30;
 
     template <int dim, class F>
@@ -25,7 +25,7 @@ namespace slipstick::output
             f(cell);
     }
 
-    /// Smallest and largest of some numbers, over all ranks.
+    /// Smallest and largest of a set of numbers over all ranks.
     struct Range
     {
       double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
@@ -75,7 +75,7 @@ namespace slipstick::output
       return box;
     }
 
-    /// Rounds to a multiple of a power of 2, which most coordinates are.
+    /// Rounds to a multiple of a power of 2; most coordinates are such multiples.
     double rounded(const double x, const double size)
     {
       const double unit = std::exp2(std::floor(std::log2(size * grain)));

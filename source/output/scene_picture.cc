@@ -258,7 +258,7 @@ namespace slipstick::output
       Conditions<dim> draw(scene, mesh, outlines, view, picture);
       for (const auto &pair : scene.contacts)
         {
-          if (pair.master) // drawn below the slave, since the two often coincide
+          if (pair.master) // drawn beneath the slave, since the two often coincide
             draw.boundary("contact, master", pair.name, *pair.master);
           draw.boundary("contact, slave", pair.name, pair.slave);
         }

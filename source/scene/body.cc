@@ -124,7 +124,7 @@ namespace slipstick::scene
     : name(own_name)
   {
     for (unsigned int d = 0; d < dim; ++d)
-      body.size[d] = 1; // displayed in the listing; a scene must set it
+      body.size[d] = 1; // shown in the listing; a scene must set it
     rotation_axis[dim - 1] = 1;
   }
 

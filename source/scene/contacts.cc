@@ -11,7 +11,7 @@ namespace slipstick::scene
   namespace
   {
 
-    /// A formula; if it is a number, it must not be negative.
+    /// Reads a formula; if it is a number, it must not be negative.
     template <int dim>
     std::optional<LawNumber<dim>> read_number(const LawParameter &parameter,
                                               const std::string  &text,

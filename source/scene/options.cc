@@ -239,8 +239,8 @@ namespace slipstick::scene
       return number && std::isfinite(*number) ? std::vector<double>{*number} : std::vector<double>();
     }
 
-    /// "FIRST:STEP:LAST"; LAST is included if a whole number of steps leads to it within rounding. Empty if the text is
-    /// not a range of increasing numbers.
+    /// The numbers of "FIRST:STEP:LAST"; LAST is included if a whole number of steps leads to it, up to rounding. Empty
+    /// if the text is not a range of increasing numbers.
     std::vector<double> range(const std::string &text)
     {
       std::vector<double> ends;

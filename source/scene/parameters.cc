@@ -15,7 +15,7 @@ namespace slipstick::scene
 {
   namespace
   {
-    // Used instead of a name for every body, or the whole outline.
+    // Stand for all bodies and for the whole outline; not allowed as names.
     const std::vector<std::string> reserved_names = {"all", "*"};
     // Maximum length of lists in remedies.
     constexpr std::size_t longest_list = 400;
@@ -278,7 +278,7 @@ namespace slipstick::scene
           }
       }
 
-    // Names without a subsection come last: a misspelt subsection has already been reported as such.
+    // Names without a subsection are checked last, so that a misspelt subsection has already been reported as such.
     for (const NamedKind &kind : kinds)
       for (const std::string &name : names(kind))
         {

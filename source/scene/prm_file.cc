@@ -13,8 +13,9 @@ namespace slipstick::scene
 {
   namespace
   {
-    constexpr unsigned int most_levels = 10;  // of nested subsections, and of nested includes
-    constexpr unsigned int most_files  = 100; // included in total: files that include others several times multiply
+    constexpr unsigned int most_levels = 10; // of nested subsections, and of nested includes
+    constexpr unsigned int most_files =
+      100; // included in total: the number multiplies if files include others several times
 
     const std::string encoding_remedy = "save the file as UTF-8 (iconv -f latin1 -t utf-8), or remove the character";
 

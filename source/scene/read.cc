@@ -67,7 +67,7 @@ namespace slipstick::scene
       void declare_top_level(const Names &names);
 
       std::string                          variables;
-      Scene<dim>                           options; // sections that refer to no names
+      Scene<dim>                           options; // sections that do not refer to names
       std::vector<MaterialSection>         materials;
       std::vector<BodySection<dim>>        bodies;
       std::vector<ObstacleSection<dim>>    obstacles;

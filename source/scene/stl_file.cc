@@ -130,7 +130,7 @@ namespace slipstick::scene
     if (!in)
       throw InputError("STL file " + file + " cannot be read, or is empty", "check its path and permissions");
     const std::string text = content.str();
-    // detected by the size, since some programs begin binary files with "solid", too
+    // detected by the size, since some programs also begin binary files with "solid"
     if (text.size() >= head && (text.size() - head) % record == 0 &&
         (text.size() - head) / record == bits_at(text, header))
       return read_binary(file, text);

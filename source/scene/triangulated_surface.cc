@@ -15,8 +15,8 @@ namespace slipstick::scene
     using Tensor   = dealii::Tensor<1, 3>;
     using Triangle = TriangulatedSurface::Triangle;
 
-    // Points nearer than this part of the extent are on the surface, at an edge or at a vertex: the direction to the
-    // foot and the choice of the nearest triangle are then dominated by rounding.
+    // Points nearer than this fraction of the extent count as on the surface, at an edge or at a vertex: the direction
+    // to the foot and the choice of the nearest triangle are then dominated by rounding.
     constexpr double on_surface = 1e-10;
 
     Tensor unit_or_zero(const Tensor &v)
@@ -165,7 +165,7 @@ namespace slipstick::scene
   {
     const Tensor &n = normals_of_triangles[t];
     Foot          foot;
-    bool          is_above = n.norm() > 0; // x is above the inside of the triangle
+    bool          is_above = n.norm() > 0; // x projects into the interior of the triangle
     for (unsigned int k = 0; k < 3; ++k)
       {
         const Point  a     = corner(t, k);

@@ -116,7 +116,7 @@ namespace slipstick::scene
                      settings.end());
     }
 
-    /// Whether an operator is adjacent to the braces at @p open and @p close: a negative value needs parentheses then
+    /// Whether an operator is adjacent to the braces at @p open and @p close; a negative value then needs parentheses
     /// (two signs, or -2 and ^2).
     bool is_operand(const std::string &text, const std::size_t open, const std::size_t close)
     {

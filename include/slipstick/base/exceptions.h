@@ -54,8 +54,8 @@ namespace slipstick
     using NoEquilibrium::NoEquilibrium;
   };
 
-  /// A numerical method failed although the theory excludes it (e.g. a breakdown of a factorisation, a kernel larger
-  /// than the rigid motions).
+  /// A numerical method failed in a way that theory excludes (e.g. a breakdown of a factorisation, a kernel larger than
+  /// the rigid motions).
   class NumericalError : public Error
   {
   public:

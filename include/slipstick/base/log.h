@@ -25,7 +25,7 @@ namespace slipstick
     /// A line at normal verbosity.
     void line(const std::string &text) const;
 
-    /// A line at verbose only.
+    /// A line at verbose verbosity only.
     void detail(const std::string &text) const;
 
     /// "warning: TEXT" on standard error, at every verbosity.

@@ -5,10 +5,11 @@
 
 namespace slipstick
 {
-  /// Whether an error says that memory ran out: std::bad_alloc, or deal.II's exception for it.
+  /// Whether an error means that memory ran out: std::bad_alloc, or the corresponding exception of deal.II.
   bool is_out_of_memory(const std::exception &error);
 
-  /// The error reported then: the scene is too large for the machine, or for the memory limit of this process.
+  /// The error reported when memory runs out: the scene is too large for the machine, or for the memory limit of this
+  /// process.
   InputError out_of_memory();
 
   /// Free memory of this machine in MB, limited by the control groups and resource limits of the @p n_ranks processes

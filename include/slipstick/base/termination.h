@@ -5,8 +5,9 @@
 
 namespace slipstick
 {
-  /// METIS takes a SIGTERM that arrives while it works for an error of its own (gk_sigtrap in its sources). The program
-  /// repeats the signal after METIS has @p failed without another reason, so that it ends as at any other time.
+  /// METIS mistakes a SIGTERM that arrives while it is running for an error of its own (gk_sigtrap in its sources).
+  /// This function raises the signal again after METIS has @p failed without another reason, so that the program ends
+  /// as it does at any other time.
   inline void raise_termination(const bool failed)
   {
     if (failed)

@@ -8,8 +8,8 @@
 
 namespace slipstick::output
 {
-  /// Displacement of every node [mm], on rank 0. @param nodes only those on rank 0 are used. @param u of the subdomains
-  /// of this rank. Collective.
+  /// Displacement of every node [mm], on rank 0. @param nodes only those on rank 0 are used. @param u displacement of
+  /// the subdomains of this rank. Collective.
   template <int dim>
   std::vector<std::array<double, 3>> contact_displacement(const mesh::Mesh<dim>                 &mesh,
                                                           const mechanics::Spaces<dim>          &spaces,

@@ -36,9 +36,9 @@ namespace slipstick::output
     /// Collective.
     void write_from_root(const std::string &name, const std::function<void(std::ostream &)> &content) const;
 
-    /// Files that agree with each other: those that @p write_files writes with write_from_root() of the directory it is
-    /// given get their names together, when all are complete; a run that is killed before leaves the former ones. If one
-    /// cannot be completed, none is replaced. Collective.
+    /// Writes files that must be consistent with each other. @p write_files writes them with write_from_root() of the
+    /// directory that it receives; they get their final names together, when all are complete. If one of them cannot be
+    /// completed or the run is killed before, the previous files are kept. Collective.
     void write_together(const std::function<void(const OutputDirectory &)> &write_files) const;
 
     /// Removes the directories created by the constructor if they are empty, so that a rejected scene leaves nothing
@@ -50,7 +50,7 @@ namespace slipstick::output
     MPI_Comm                 communicator;
     std::vector<std::string> created; // by the constructor, outermost first; rank 0
 
-    /// Each gives a complete file its final name; null: files get it at once.
+    /// Each function gives a complete file its final name; null: files get their final names immediately.
     std::shared_ptr<std::vector<std::function<void()>>> waiting;
   };
 } // namespace slipstick::output

@@ -56,7 +56,7 @@ namespace slipstick::output
     std::vector<std::vector<dealii::Point<2>>> cells, edges; // in the plane
   };
 
-  /// @return whether it was drawn; surfaces from files and height functions in space are not.
+  /// Draws an obstacle. @return whether it was drawn; surfaces from files and height functions in space are not.
   bool draw_obstacle(std::ostream &out, const View &view, const scene::Obstacle<2> &obstacle, const double t);
   bool draw_obstacle(std::ostream &out, const View &view, const scene::Obstacle<3> &obstacle, const double t);
 } // namespace slipstick::output

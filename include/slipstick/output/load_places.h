@@ -1,4 +1,4 @@
-// Places at which loads are drawn that do not act on a boundary: inside bodies, at axes, at sections.
+// Places at which loads that do not act on a boundary are drawn: inside bodies, at axes, at sections.
 #pragma once
 
 #include <slipstick/mesh/mesh.h>

@@ -1,4 +1,4 @@
-// summary.json: counts and results of a run, in numbers. Keys and units: doc/interface.md.
+// summary.json: counts and numerical results of a run. Keys and units: doc/interface.md.
 #pragma once
 
 #include <slipstick/contact/result.h>
@@ -138,7 +138,7 @@ namespace slipstick::output
     double                   max_displacement = 0; // [mm]
     double                   max_von_mises    = 0; // [MPa]
     Place                    max_von_mises_at;
-    std::string              singular; // why stress is infinite there: "a re-entrant corner", ..; empty: finite
+    std::string              singular; // why the stress there is infinite: "a re-entrant corner", ..; empty: finite
     std::vector<ProbeResult> probes;
     double                   strain_energy = 0;       // [N mm]
     std::optional<std::array<double, 2>> hoop_stress; // smallest and largest, of bodies of revolution [MPa]

@@ -15,7 +15,7 @@ namespace slipstick::scene
   /// The individual parameters set by a preset, with their values: {"Solver/Tolerance", "1e-3"}.
   std::vector<std::pair<std::string, std::string>> knobs_of_accuracy(const std::string &preset);
 
-  /// Sets the parameters of the preset named in @p parameters; if meshes of solids are refined, degree 2 in any case.
+  /// Sets the parameters of the preset named in @p parameters; if meshes of solids are refined, the degree is always 2.
   /// Must be called before Parameters::apply(), so that parameters set by the file or an override take precedence.
   /// @throws InputError when there is no such preset.
   void apply_accuracy(const Parameters &parameters, const unsigned int dim, dealii::ParameterHandler &prm);

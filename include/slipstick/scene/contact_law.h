@@ -1,4 +1,4 @@
-// Contact law between two sides: a set of numbers that fully defines it; there is no other distinction between laws.
+// Contact law between two sides. It is fully defined by a set of numbers; laws do not differ in anything else.
 #pragma once
 
 #include <slipstick/qp/node_set.h>

@@ -17,19 +17,19 @@ namespace slipstick::scene
   /// Component names used in parameters.
   inline const std::array<std::string, 3> axes = {{"x", "y", "z"}};
 
-  /// The largest magnitude of numbers in a scene, and the smallest of those that must be positive: products of four of
-  /// them are far from overflow, and no system of units needs more.
+  /// The smallest value of numbers that must be positive, and the largest magnitude of all numbers in a scene: products
+  /// of four of them are far from overflow, and no system of units needs a larger range.
   constexpr double smallest_number = 1e-30, largest_number = 1e30;
 
-  /// Limits of moduli [MPa] and thicknesses [mm]: in no system of units do materials exceed them (diamond has 1.2e12
-  /// Pa, 1.2e18 N/km^2), and beyond them the rounding of coordinates (1e-16 of an edge) in a gap would cause pressures
-  /// above the loads.
+  /// Limits of moduli [MPa] and thicknesses [mm]: materials do not exceed them in any system of units (diamond has
+  /// 1.2e12 Pa, 1.2e18 N/km^2), and beyond them rounding errors of coordinates (1e-16 of an edge) in a gap would cause
+  /// pressures larger than those of the loads.
   constexpr double least_of_material = 1e-20, most_of_material = 1e20;
 
   /// Whether a number is finite and within the largest magnitude.
   bool is_usable(const double value);
 
-  /// Numbers between two limits; an open limit is excluded. Infinite numbers are never inside.
+  /// Numbers between two limits; an open limit is excluded. Infinite numbers are never contained.
   struct Interval
   {
     double lower      = -std::numeric_limits<double>::infinity();

@@ -28,6 +28,6 @@ namespace slipstick::scene
   /// Writes all parameters declared in @p prm with value, unit, range and meaning. Throws no exceptions of its own.
   void write_parameters(std::ostream &out, const dealii::ParameterHandler &prm, const ListFormat format);
 
-  /// Only the values in @p prm, in a form that gives the same values when read again.
+  /// The values in @p prm alone, in a form that gives the same values when read again.
   std::string print_values(const dealii::ParameterHandler &prm);
 } // namespace slipstick::scene

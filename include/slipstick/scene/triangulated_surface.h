@@ -53,7 +53,7 @@ namespace slipstick::scene
     void check_closed(const std::string &name);
     void find_normals();
     Foot foot_on(const unsigned int triangle, const dealii::Point<3> &x) const;
-    /// Normal at the foot; if it is within @p distance of a vertex or an edge, the mean over all triangles there.
+    /// Normal at the foot; if the foot is within @p distance of a vertex or an edge, the mean over all triangles there.
     dealii::Tensor<1, 3> normal_around(const Foot &foot, const double distance) const;
     dealii::Point<3>     corner(const unsigned int triangle, const unsigned int k) const;
 
