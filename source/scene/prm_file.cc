@@ -13,9 +13,8 @@ namespace slipstick::scene
 {
   namespace
   {
-    constexpr unsigned int most_levels = 10; // of nested subsections, and of nested includes
-    constexpr unsigned int most_files =
-      100; // included in total: the number multiplies if files include others several times
+    constexpr unsigned int most_levels = 10;  // of nested subsections, and of nested includes
+    constexpr unsigned int most_files  = 100; // included in total: nested includes may multiply their number
 
     const std::string encoding_remedy = "save the file as UTF-8 (iconv -f latin1 -t utf-8), or remove the character";
 
