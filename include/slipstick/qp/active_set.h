@@ -40,7 +40,7 @@ namespace slipstick::qp
     class ActiveSet
     {
     public:
-      /// @param problem is kept as a reference. @param norm |PFP|. @param noise gradients below it are ignored.
+      /// @param problem is kept by reference. @param norm |PFP|. @param noise gradients below it are ignored.
       ActiveSet(const Problem        &problem_,
                 const double          norm_,
                 AdmissibleSet<Vector> set_,

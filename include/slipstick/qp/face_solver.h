@@ -39,7 +39,7 @@ namespace slipstick::qp
   class FaceSolver
   {
   public:
-    /// @param face, d, store, options are kept as references. @param conditions as in admissible_combinations().
+    /// @param face, d, store, options are kept by reference. @param conditions as in admissible_combinations().
     /// @param turns_ of the face; their compliances C are added to F.
     /// @param regularization_ eps >= 0; > 0 only with dependent_compliances() of the face
     template <typename Conditions>

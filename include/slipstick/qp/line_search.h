@@ -21,7 +21,7 @@ namespace slipstick::qp::detail
   public:
     using Point = PointWithGradient<Vector>;
 
-    /// @param options_ is kept as a reference.
+    /// @param options_ is kept by reference.
     explicit LineSearch(const NewtonOptions &options_)
       : options(&options_)
     {}

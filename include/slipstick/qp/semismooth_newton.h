@@ -8,9 +8,9 @@
 // operations only.
 //
 // In addition to the members of the Problem of types.h it needs
+//   `auto face(const std::vector<bool> &free, const std::vector<Tie> &ties, const std::vector<Turn> &turns) const`
 //       the problem on the free (owned) entries, with others tied to them; entries of nodes that slip in space are
 //       meant as turned (pressure_bounds.h; vectors are not turned). It has multiply and reduction as the Problem, and
-//       as turned (pressure_bounds.h; vectors are not turned). It has multiply and reduction as the Problem, and
 //       `project_range(x, y)`   y = Q_f x on the free entries, y = x on the others, so that P_f = I - Q_f keeps G x
 //       `balance(x)`            makes G x = e by the smallest change of the free entries (the tied ones follow)
 //       `project_kernel(p)`     the same for G p = 0; then sets the tied entries to factor times the free ones

@@ -27,7 +27,7 @@ namespace slipstick::qp::detail
       double                  t;        // part of the step that the line search left
     };
 
-    /// @param options_ is kept as a reference.
+    /// @param options_ is kept by reference.
     explicit Watchdog(const NewtonOptions &options_)
       : options(&options_)
     {}
