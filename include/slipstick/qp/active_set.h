@@ -94,8 +94,7 @@ namespace slipstick::qp
         return set.box;
       }
 
-      /// Rotations of the slipping nodes in space on faces of the set; comments on single entries apply to rotated
-      /// ones.
+      /// The turns of slipping nodes in space on faces of the set; comments on single entries apply to turned ones.
       const std::vector<Turn> &turns() const
       {
         return turned;
@@ -111,8 +110,8 @@ namespace slipstick::qp
           put_within(radius_of(disc), x.begin()[disc.first], x.begin()[disc.second]);
       }
 
-      /// Clears the free entries of g, the gradient at x, after a face was solved: the remainder does not tell anything
-      /// about the set. The component that turns the force of a slipping node is kept.
+      /// Clears the free entries of g, the gradient at x, after a face was solved: the remainder says nothing about the
+      /// set. The component that turns the force of a slipping node is kept.
       void clear_solved(const Vector &x, Vector &g) const
       {
         turn(turned, g);
@@ -354,8 +353,8 @@ namespace slipstick::qp
         return {std::hypot(std::max(0., c * g1 + s * g2), c * g2 - s * g1), size - radius};
       }
 
-      // Determines the rotations of the slipping nodes of a new set; g is the gradient with which it was predicted. A
-      // force that turns by more than 90 degrees becomes free first.
+      // Determines the turns of the slipping nodes of a new set; g is the gradient with which it was predicted. A force
+      // that turns by more than 90 degrees becomes free first.
       void find_turns(const Sides &before, const std::vector<Turn> &discs_before, const Vector &g)
       {
         turned.clear();

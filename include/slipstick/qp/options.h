@@ -20,7 +20,7 @@ namespace slipstick::qp
     double       step_length    = 1.5;   // alpha times |A|, in (0, 2]; see doc/decisions/0005
     unsigned int max_iterations = 10000; // per call
 
-    double sufficient_decrease = 0.01;   // least decrease over the largest on the way, or the step is cut (own choice)
+    double sufficient_decrease = 0.01;   // projected steps below this part of the best decrease are cut (own choice)
     double norm_growth         = 1.1;    // >= 1: |A| becomes this times a Rayleigh quotient found above it (own choice)
     double rounding           = 2.2e-16; // a gradient below this times (|A||x| + |b|) is noise; unit roundoff of double
     double smallest_curvature = 1e-15;   // A is singular along p if p'Ap <= this times |A| p'p; a few roundoffs
@@ -92,7 +92,7 @@ namespace slipstick::qp
     double       last_forcing     = 0.6;  // lower bound of this residual, over the tolerance
     double       tightening = 0.1;  // next tolerance over the residual, if the goal is met but x is not accurate ...
     double       least_part = 1e-5; // ... down to this part of the goal
-    double       astray     = 1e3;  // or if faces that meet the goal twice raise the natural residual by this factor
+    double       astray     = 1e3;  // or if natural residuals grow by this factor after faces that meet the goal, twice
     double sharpening = 0.01; // target over the residual of an earlier face with the same set but others in between ...
     unsigned int n_remembered_sets = 10;  // ... among this number of the latest faces, ...
     double       wide_stiffnesses  = 1e6; // ... if stiffnesses of rows differ by more than this, or F may be singular
