@@ -17,15 +17,15 @@ namespace slipstick::tfeti
     // Below this estimate of 1 / condition number (square of the ratio of extreme pivots) the factor is only rounding
     // error.
     constexpr double smallest_reciprocal_condition = 1e-15;
-    // Entries that differ by less than this part of the diagonal are the same: rounding of coordinates. A factorisation
-    // has no less.
+    // Entries that differ by less than this part of the diagonal are equal up to rounding of coordinates. The error of
+    // a factorisation is not smaller.
     constexpr double equal_entries = 1e-13;
     // Factors kept for matrices with the same pattern.
     constexpr std::size_t max_factors = 4;
     // Cached analyses: the blocks of a rectangle have about ten patterns; each METIS part has its own.
     constexpr std::size_t max_analyses = 32;
 
-    /// Of matrices with the same pattern.
+    /// For matrices with the same pattern.
     bool are_equal(const cholmod_sparse &A, const std::vector<double> &entries)
     {
       const auto         *columns = static_cast<const int *>(A.p), *rows = static_cast<const int *>(A.i);
@@ -228,7 +228,8 @@ namespace slipstick::tfeti
     cholmod_sparse  A      = Eigen::viewAsCholmod(lower.selfadjointView<Eigen::Lower>());
     if (last.empty() && (factor = session->factor_of(A, last)))
       return;
-    // The session keeps a weak pointer, with which the deleter lives: it must not own the session, as every user does.
+    // The session keeps a weak pointer, and the deleter lives as long as that: it must not own the session. Every user
+    // of the factor does.
     factor                  = std::shared_ptr<cholmod_factor>(cholmod_copy_factor(session->analysis(A, last), &common),
                                              [owner = session.get()](cholmod_factor *unused) {
                                                cholmod_free_factor(&unused, &owner->common);

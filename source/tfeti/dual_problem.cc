@@ -86,7 +86,7 @@ namespace slipstick::tfeti
     cost.multiplications = F->n_applications();
   }
 
-  // Rows without a compliance of their own: that of others determines their forces.
+  // Rows without a compliance of their own; the forces of the others are determined by their compliance.
   std::vector<bool> DualProblem::rigid_rows() const
   {
     std::vector<bool> result(rows.kind.size(), true);
@@ -95,9 +95,9 @@ namespace slipstick::tfeti
     return result;
   }
 
-  // Node positions that were rounded leave gaps that contradict each other where bodies form a loop around a point: no
-  // displacements close all of them, and forces without effect would grow without limit. The least change of these gaps that
-  // makes them consistent is within that rounding.
+  // Rounded node positions may lead to gaps that contradict each other where bodies form a loop around a point: no
+  // displacements close all of them, and forces without effect would grow without limit. The smallest change of these
+  // gaps that makes them consistent is within that rounding.
   void DualProblem::make_gaps_consistent()
   {
     contradiction = 0;

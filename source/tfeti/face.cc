@@ -179,7 +179,7 @@ namespace slipstick::tfeti
         M.apply(*weights, at, z);
         soften(z);
       }
-    for (std::size_t row = 0; row < compliance_factors.size(); ++row) // their own stiffness also bears smooth loads
+    for (std::size_t row = 0; row < compliance_factors.size(); ++row) // their own stiffness also carries smooth loads
       z.local_element(row) += (1 - compliance_factors[row] * compliance_factors[row]) * metric.weights()[row] *
                               metric.least() * r.local_element(row);
     z *= problem.norm();
@@ -195,7 +195,7 @@ namespace slipstick::tfeti
     return *copy;
   }
 
-  // Square root of the effect that the compliance of rows and of turned rows has on M.
+  // Applies the square root of the effect that the compliances of rows and of turned rows have on M.
   void Face::soften(DistributedVector &x) const
   {
     const std::vector<double> &compliance_factors = metric.compliance_factors();

@@ -15,8 +15,8 @@ namespace slipstick::tfeti
     // without the other.
     constexpr double rounding_of_rates = 1e-10;
 
-    /// The t > 0 that minimises the sum of squares of the negative entries of values + t rates. Its slope is negative at
-    /// t = 0.
+    /// The t > 0 that minimises the sum of squares of the negative entries of values + t rates. Its slope is negative
+    /// at t = 0.
     double least_violation_along(const Eigen::VectorXd &values, const Eigen::VectorXd &rates)
     {
       const auto slope = [&](const double t) { return (values + t * rates).cwiseMin(0).dot(rates); };

@@ -44,7 +44,8 @@ namespace slipstick::tfeti
       }
     };
 
-    /// The motion of which the rows bear the least part of the loads: sum r |S a| is least among all a with e'a = -1.
+    /// The motion along which the rows bear the smallest part of the loads: the a with e'a = -1 that minimises sum r |S
+    /// a|.
     class WeakestMotion
     {
     public:

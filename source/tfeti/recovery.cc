@@ -51,8 +51,8 @@ namespace slipstick::tfeti
         u[p] -= dual.body_motions().displacements(p, amplitudes);
     }
 
-    /// The conditions at rows at a bound for a position of loose bodies: jumps on the side that the force tells and, at nodes that
-    /// slip in space, no slip across the force. An equation counts as two conditions.
+    /// Conditions on the position of loose bodies at rows at a bound: jumps on the side given by the force and, at
+    /// nodes that slip in space, no slip across the force. An equation counts as two conditions.
     class SlidingConditions
     {
     public:

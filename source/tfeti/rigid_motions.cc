@@ -22,7 +22,7 @@ namespace slipstick::tfeti
     constexpr double rounding_of_vectors = 1e-6;
     // Resultants below this part of the sum of magnitudes are rounding of zero.
     constexpr double rounding_of_loads = 1e-13;
-    // Rigid rows resist by so many times what the best held motion meets.
+    // Resistance of rigid rows, relative to the resistance to the best held motion.
     constexpr double weight_of_rigid_rows = 1e6;
 
     /// Frames of all bodies, each taken from a rank that has a subdomain of the body.

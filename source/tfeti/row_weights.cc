@@ -162,8 +162,8 @@ namespace slipstick::tfeti
     return part;
   }
 
-  // e_k - W^- W e_k is 0 unless the factorisation skipped row k; each of those belongs to one null vector, and these are
-  // all.
+  // e_k - W^- W e_k is 0 unless the factorisation skipped row k; the vectors of the skipped rows are a basis of the
+  // null space.
   Eigen::SparseMatrix<double> RowWeights::null_vectors(const Eigen::SparseMatrix<double> &matrix)
   {
     const SemidefiniteFactor            factor(matrix);

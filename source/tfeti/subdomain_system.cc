@@ -14,7 +14,8 @@ namespace slipstick::tfeti
   {
     // Pivots below this mean that the touched unknowns do not hold the subdomain well (1 = perfectly).
     constexpr double smallest_good_pivot = 0.1;
-    // Candidates whose squared pivots differ by less than this part are as good: rounding of coordinates must not tell.
+    // Candidates whose squared pivots differ by less than this part are equivalent: rounding of coordinates must not
+    // decide.
     constexpr double equal_pivots = 1e-8;
     // |K R| over |K| |R| above this means that R is not the kernel.
     constexpr double kernel_tolerance = 1e-8;

@@ -25,7 +25,7 @@ namespace
     return set;
   }
 
-  /// |x - projection of x - g|: 0 at the solution alone, whatever the method.
+  /// |x - projection of x - g|: 0 only at the solution, for every method.
   double natural_residual(const DiscBox<Vector> &set, const Vector &x, const Vector &g)
   {
     Vector moved = x;
@@ -93,7 +93,7 @@ TEST_P(Discs, smalbe_meets_the_conditions_of_the_solution)
       const double      norm = spectral_norm(problem.F);
       const Vector      b    = problem.kernel(random.vector(n));
       auto              set  = random_set(random, n, 4, 0.3);
-      for (std::size_t i = 8; i < n; ++i) // a point within with G x = 0: all discs and bounds are about 0
+      for (std::size_t i = 8; i < n; ++i) // there is a feasible point with G x = 0: all discs and bounds are around 0
         {
           set.box.lower[i] = std::min(set.box.lower[i], -0.1);
           set.box.upper[i] = std::max(set.box.upper[i], 0.1);
@@ -106,7 +106,7 @@ TEST_P(Discs, smalbe_meets_the_conditions_of_the_solution)
       Vector Qx(n), g(n);
       problem.project_range(result.x, Qx);
       EXPECT_LT(length(Qx), 1e-8) << seed;
-      problem.multiply(result.x, g); // F x - b and some G'a are -g of the set
+      problem.multiply(result.x, g); // g becomes P F x - b + G'mu
       g = problem.kernel(g);
       add(-1., b, g);
       add(1., result.shift, g);
@@ -116,7 +116,7 @@ TEST_P(Discs, smalbe_meets_the_conditions_of_the_solution)
 
 TEST(DiscBox, an_infeasible_set_is_told)
 {
-  // x0 + x1 = 0 cannot be with x0 in a disc about (2, 0) of radius 1/2 and x1 its partner
+  // x0 + x1 = 0 is impossible if (x0, x1) is in a disc about (2, 0) of radius 1/2
   struct Problem
   {
     static void multiply(const Vector &x, Vector &y)

@@ -1,4 +1,4 @@
-// The examples of the headers, each a test: extract_examples.py.
+// Tests made of the examples in the headers by extract_examples.py.
 #include "faced_problem.h"
 
 #include <slipstick/qp/feasible_point.h>

@@ -1,4 +1,4 @@
-// Linear problems of faces by directions of earlier ones: dense systems, the store, both solvers.
+// Linear problems of faces with directions of earlier faces: dense systems, the store, both solvers.
 #include "faced_problem.h"
 
 #include <slipstick/qp/active_set.h>
@@ -9,7 +9,7 @@ using namespace slipstick::qp::test;
 
 namespace
 {
-  /// A random problem, some entries of which a face holds where the start has them, or ties to others.
+  /// A random problem. A face holds some of its entries at their values in the start, and ties some to others.
   struct Held
   {
     Held(const unsigned int seed, const std::size_t n, const std::size_t m)
@@ -18,7 +18,7 @@ namespace
       , d(random.vector(n))
     {}
 
-    /// F of a lower rank; d in its range.
+    /// F of lower rank, with d in its range.
     static Held singular(const unsigned int seed, const std::size_t n, const std::size_t m, const std::size_t rank)
     {
       Held result(seed, n, m);
@@ -29,7 +29,7 @@ namespace
       return result;
     }
 
-    /// x0 with its product, G x0 = e, held and tied entries as they are
+    /// Starts from an x0 with G x0 = e, with its product; held entries and ties remain as there.
     FaceSolution<Vector> solve(const std::vector<std::size_t> &at_bounds,
                                const std::vector<Tie>         &ties,
                                DirectionStore<Vector>         &store,
@@ -70,7 +70,7 @@ namespace
       return x;
     }
 
-    /// The force that does not strain the regularisation.
+    /// The force at which the regularisation has no strain.
     Vector center() const
     {
       Vector x(d.size());
@@ -79,8 +79,8 @@ namespace
       return x;
     }
 
-    /// The same by elimination: held and tied rows say how entries are bound, the others F x + G'a = d, with the regularisation; then
-    /// G x = e.
+    /// The same by a direct solve: equations of held and tied entries state how these are bound, those of the others
+    /// are F x + G'a = d with the regularisation; then G x = e.
     Vector exact(const std::vector<std::size_t> &at_bounds,
                  const std::vector<Tie>         &ties,
                  const double                    regularization = 0) const
@@ -194,7 +194,7 @@ TEST(DirectionStore, as_many_combinations_as_the_rank_allows_vanish_on_the_condi
         const auto conditions = [n_conditions](const Vector &p) { return Vector(p.begin(), p.begin() + n_conditions); };
         const auto found      = admissible_combinations(store, conditions, SerialReduction());
         EXPECT_EQ(found.size(), n - n_conditions) << seed;
-        Matrix gram(found.size(), found.size()); // of coefficients: regular when they are independent
+        Matrix gram(found.size(), found.size()); // of coefficients: regular if they are independent
         for (std::size_t a = 0; a < found.size(); ++a)
           {
             Vector p(12, 0.);
@@ -242,8 +242,8 @@ TEST(FaceSolver, a_regularised_singular_face_has_one_solution)
 
 TEST(FaceSolver, products_are_those_of_F_where_that_is_nearly_singular)
 {
-  // Forces that F hardly tells from none, as on rows that nearly depend on each other: directions made orthogonal to those
-  // before lose digits of their products, and the next faces start with them.
+  // Forces that F hardly distinguishes from zero, as on rows that nearly depend on each other: when directions are made
+  // orthogonal to earlier ones, they lose digits of their products, and the next faces start with them.
   unsigned int n_converged = 0;
   for (unsigned int seed = 0; seed < 8; ++seed)
     {
@@ -267,7 +267,7 @@ TEST(FaceSolver, products_are_those_of_F_where_that_is_nearly_singular)
           EXPECT_LT(drift, target) << seed << ", face " << k;
         }
     }
-  EXPECT_GT(n_converged, 40u); // of 96; without residual replacement all, 44 of them with other residuals than they say
+  EXPECT_GT(n_converged, 40u); // of 96; without residual replacement all, but 44 with wrong residuals
 }
 
 TEST(FaceSolver, the_same_face_again_costs_no_multiplication)
@@ -320,7 +320,7 @@ TEST(FaceSolver, directions_of_a_face_with_slightly_other_turns_save_multiplicat
     }
 }
 
-// What is left of them is rounding, in energies too.
+// What remains of such combinations is rounding, also in the energies.
 TEST(FaceSolver, combinations_that_cancel_do_no_harm)
 {
   for (unsigned int seed = 0; seed < 20; ++seed)
@@ -330,7 +330,7 @@ TEST(FaceSolver, combinations_that_cancel_do_no_harm)
         DirectionStore<Vector> store(100);
         p.solve({0, 7}, ties, store);
         const std::size_t n = store.size();
-        for (std::size_t k = 0; k < n; ++k) // parts of them again, as cut steps leave them
+        for (std::size_t k = 0; k < n; ++k) // parts of them again, as left by cut steps
           {
             Vector part = store[k].p;
             for (double &entry : part)
@@ -372,7 +372,7 @@ TEST(ActiveSet, natural_residual_is_zero_at_solutions_alone)
   for (std::size_t i = 0; i < x.size(); ++i)
     {
       Vector moved = x, pulled = g;
-      moved[i] += i == 0 || i == 3 ? 0. : i == 2 ? -0.1 : 0.1; // those without g may be anywhere
+      moved[i] += i == 0 || i == 3 ? 0. : i == 2 ? -0.1 : 0.1; // those with zero gradient may have any value
       pulled[i] += i == 1 || i == 4 ? -4. : i == 2 ? 4. : 0.1;
       EXPECT_TRUE(i == 0 || i == 3 || set.natural_residual(moved, g) > 0.01) << i;
       EXPECT_GT(set.natural_residual(x, pulled), 0.01) << i;

@@ -1,4 +1,4 @@
-// Dense problems with equalities that can be looked at on their free and tied entries, as the Newton method needs them.
+// Dense problems with equalities that can be restricted to free and tied entries, as the Newton method requires.
 #pragma once
 
 #include "support.h"
@@ -7,7 +7,7 @@
 
 namespace slipstick::qp::test
 {
-  /// A dense problem with G x = e that can be looked at on its free and tied entries.
+  /// A dense problem with G x = e that can be restricted to free and tied entries.
   struct FacedProblem : DenseProblem
   {
     FacedProblem(const Matrix &F_, const Matrix &G_, const Vector &e_)
@@ -125,7 +125,7 @@ namespace slipstick::qp::test
         return x;
       }
 
-      // column i of G with what is tied to it
+      // column i of G, with those of the entries tied to it
       double column(const std::size_t k, const std::size_t i, const bool with_ties) const
       {
         double value = G(k, i);
@@ -159,7 +159,7 @@ namespace slipstick::qp::test
         return y;
       }
 
-      // x += T y with the least y that changes G x by c
+      // x += T y with the smallest y that changes G x by c
       void move_by(const Vector &c, Vector &x) const
       {
         const Vector a = *solve(gram(true), c);
@@ -176,7 +176,7 @@ namespace slipstick::qp::test
       std::vector<bool>   free;
       std::vector<Tie>    ties;
       std::vector<Turn>   turns;
-      Matrix              G; // of turned entries
+      Matrix              G; // for the turned entries
     };
 
     Face face(const std::vector<bool> &free, const std::vector<Tie> &ties, const std::vector<Turn> &turns = {}) const
@@ -194,7 +194,7 @@ namespace slipstick::qp::test
       return *this;
     }
 
-    /// The entries with the least gaps become free until the face is regular.
+    /// Frees the entries with the smallest gaps until the face is regular.
     std::vector<bool> hold(std::vector<bool>          free,
                            const std::vector<double> &gaps,
                            const bool,

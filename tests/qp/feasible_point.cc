@@ -13,7 +13,7 @@ namespace
     return diagonal(Vector(n, 1.0));
   }
 
-  // r in the range of Q, r'x_e > max r'x over the box but for entries without bound, where r is tiny.
+  // r is in the range of Q, and r'x_e > max r'x over the box, except for unbounded entries, where r is tiny.
   void expect_certificate(const DenseProblem &problem, const Box<Vector> &box, const Vector &x_e, const Vector &r)
   {
     const double size = length(r);
@@ -99,7 +99,7 @@ TEST(FeasiblePoint, larger_problems_hold_bounds_and_equalities)
       Random             random(seed);
       const DenseProblem problem(identity(80), random.orthonormal(12, 80));
       const auto         box = random.box(80, false);
-      Vector             inside(80); // a point that is feasible, with many entries on their bounds
+      Vector             inside(80); // a feasible point with many entries at their bounds
       for (std::size_t i = 0; i < 80; ++i)
         inside[i] = clip(random.uniform(-1, 1), box.lower[i], box.upper[i]);
       const auto result = feasible_point(problem, inside, box);
@@ -260,7 +260,8 @@ TEST(ForceSet, derivative_is_that_of_the_projection)
 
 namespace
 {
-  // Nodes in space, n/3: cones, discs with cohesion, discs that follow no normal force (their third entry has no bounds).
+  // n/3 nodes in space: cones, discs with cohesion, discs that follow no normal force (their third entry has no
+  // bounds).
   ForceSet<Vector> random_discs(Random &random, const std::size_t n)
   {
     ForceSet<Vector> set{{Vector(n, -infinity), Vector(n, infinity)}, {}};
@@ -288,7 +289,7 @@ TEST(ForceSet, discs_are_projected_on_and_differentiated_as_nearest_points)
       for (const auto &node : set.nodes)
         EXPECT_LE(std::hypot(x[node.tangential], x[node.second]),
                   node.forces.closed_radius(node.normal == no_entry ? 0. : x[node.normal]) + 1e-14);
-      EXPECT_LE(inner(minus(y, x), minus(other, x)), 1e-13); // the angle is not acute: the set is convex, x nearest
+      EXPECT_LE(inner(minus(y, x), minus(other, x)), 1e-13); // not acute: the set is convex, x is the nearest point
       const double h = 1e-6;
       Vector       forward(y), backward(y), derivative(p);
       for (std::size_t i = 0; i < 18; ++i)
@@ -306,7 +307,7 @@ TEST(ForceSet, discs_are_projected_on_and_differentiated_as_nearest_points)
 
 TEST(FeasiblePoint, in_discs_is_found_or_refuted)
 {
-  unsigned int n_infeasible = 0, n_undecided = 0; // near the border of what is feasible
+  unsigned int n_infeasible = 0, n_undecided = 0; // close to the border of feasibility
   for (unsigned int seed = 0; seed < 60; ++seed)
     {
       Random             random(seed);
@@ -349,7 +350,8 @@ TEST(FeasiblePoint, in_friction_cones_is_the_nearest)
 TEST(FeasiblePoint, body_that_tips_over_its_edge_is_certified_also_near_the_limit)
 {
   unsigned int n_undecided = 0;
-  // Three rows balance a body on 20 points of a floor, at 0 .. 19; twelve others those of its parts, which ten free entries glue.
+  // Three rows balance a body on 20 points of a floor, at 0 .. 19; twelve others balance its parts, which ten free
+  // entries glue together.
   for (unsigned int seed = 0; seed < 100; ++seed)
     {
       Random       random(seed);
@@ -381,7 +383,7 @@ TEST(FeasiblePoint, body_that_tips_over_its_edge_is_certified_also_near_the_limi
       EXPECT_NE(result.status, beyond > 0 ? Status::converged : Status::infeasible) << seed;
       EXPECT_LT(length(result.x), 100 * length(x_e)) << seed;
     }
-  EXPECT_LE(n_undecided, 4u); // of 100, at 1e-3 and 1e-4
+  EXPECT_LE(n_undecided, 4u); // of 100; their |beyond| is 1e-3 or 1e-4
 }
 
 TEST(FeasiblePoint, outside_of_friction_cones_is_certified)
@@ -447,7 +449,7 @@ TEST(ForceSet, projection_is_the_nearest_point_of_a_node_and_has_its_derivative)
           ++n_parts[int(node.forces.part(y[t], y[n]))];
           EXPECT_GE(x[n], 0);
           EXPECT_LE(std::abs(x[t]), node.forces.closed_radius(x[n]) + 1e-14);
-          for (unsigned int i = 0; i < 50; ++i) // an obtuse angle with the way to any other point
+          for (unsigned int i = 0; i < 50; ++i) // an obtuse angle with the direction to any other point
             {
               double other_t = random.uniform(-3, 3), other_n = random.uniform(-1, 6);
               node.forces.project(other_t, other_n);

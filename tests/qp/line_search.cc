@@ -1,4 +1,4 @@
-// The line search of the semismooth Newton method on a residual that is known, its whole steps and its history of sets.
+// The line search of the semismooth Newton method for a known residual, its whole steps and its history of sets.
 #include "support.h"
 
 #include <slipstick/qp/line_search.h>
@@ -79,7 +79,7 @@ TEST(LineSearch, ComparesWithTheLargestOfTheLastResiduals)
 
 namespace
 {
-  /// A line search at 0, whose residual is 1, and whole steps from there.
+  /// A line search at 0, where the residual is 1, and whole steps from there.
   struct WholeSteps : Search
   {
     WholeSteps()
@@ -89,7 +89,7 @@ namespace
       line.begin(1);
     }
 
-    /// A step to @p y is cut to next to nothing. @return do whole steps begin?
+    /// A step to @p y that is cut to almost nothing. @return whether whole steps begin.
     bool cut(const double y)
     {
       const double t = to(y);

@@ -14,7 +14,7 @@ namespace slipstick::qp::test
     return options;
   }
 
-  /// Until |gP| <= tolerance.
+  /// Runs MPGP until |gP| <= tolerance.
   inline MpgpResult<Vector> run_mpgp(const Matrix      &A,
                                      const Vector      &b,
                                      const Box<Vector> &box,

@@ -59,7 +59,7 @@ TEST_P(MpgpRandom, solution_does_not_depend_on_the_start)
 
 TEST_P(MpgpRandom, iterates_do_not_depend_on_the_unit_of_the_objective)
 {
-  const double unit = 1048576; // a power of two: no rounding of its own
+  const double unit = 1048576; // a power of two, so that scaling causes no rounding
   for (unsigned int seed = 0; seed < 20; ++seed)
     {
       Random       random(seed);

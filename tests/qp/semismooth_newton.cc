@@ -50,7 +50,7 @@ namespace
         }
     }
 
-    /// By how much x and F x - d + G'a miss the laws of contact and friction, a from the entries without bounds.
+    /// Violation of the laws of contact and friction by x and F x - d + G'a, with a from the entries without bounds.
     double violation(const Vector &x) const
     {
       std::vector<bool> unbounded(x.size());
@@ -145,7 +145,7 @@ namespace
         }
     }
 
-    /// By how much x and F x - d + G'a miss the laws of contact and friction, a from the entries without bounds.
+    /// Violation of the laws of contact and friction by x and F x - d + G'a, with a from the entries without bounds.
     double violation(const Vector &x) const
     {
       std::vector<bool> unbounded(x.size());
@@ -162,7 +162,7 @@ namespace
           const double slip = std::hypot(g[k + 2], g[k + 3]);
           worst             = std::max({worst, std::abs(g[k]), -n, size - radius});
           worst             = std::max(worst, n > 0 ? std::abs(g[k + 1]) : -g[k + 1]);
-          if (radius > 0) // the force is against the slip
+          if (radius > 0) // the force is opposite to the slip
             worst =
               std::max(worst,
                        size < (1 - 1e-9) * radius ? slip : slip + (x[k + 2] * g[k + 2] + x[k + 3] * g[k + 3]) / size);
@@ -211,7 +211,7 @@ TEST(SemismoothNewton, friction_in_space_is_against_the_slip)
           EXPECT_GE(n_solved, 90u);
           EXPECT_TRUE(n_slip > 20u || coefficient + fixed == 0) << n_slip;
           n_stick_of_all += n_stick;
-          EXPECT_LT(n_steps, 6 * n_solved); // directions and slopes of the bounds are followed by derivatives
+          EXPECT_LT(n_steps, 6 * n_solved); // the derivatives include those of directions and bounds
         }
   EXPECT_GT(n_stick_of_all, 30u);
 }
@@ -279,7 +279,7 @@ TEST(SemismoothNewton, ends_where_the_caller_accepts_and_returns_what_it_saw)
       EXPECT_EQ(n_asked, 2u) << seed;
       EXPECT_EQ(found.counts.outer_iterations, 2u) << seed;
       for (std::size_t i = 0; i < found.x.size(); ++i)
-        if (found.free[i] && i % 3 == 0) // entries with bounds are moved to them
+        if (found.free[i] && i % 3 == 0) // entries with bounds are moved onto them
           {
             EXPECT_EQ(found.x[i], asked.back()[i]) << seed;
           }
@@ -298,7 +298,7 @@ TEST(SemismoothNewton, a_start_that_is_the_solution_ends_at_once)
   Vector g = minus(p.problem.F * found.x, p.d), w = g;
   p.problem.face(unbounded, {}).multiplier_shift(g, w);
   add(-1., w, g);
-  Vector near = found.x; // not the solution to the goal
+  Vector near = found.x; // not accurate enough for the goal
   for (double &force : near)
     force *= 1 + 1e-6;
   const auto again = semismooth_newton(p.problem, 1., p.d, p.set, NewtonStart<Vector>{near, g}, Goal(1e-9, 1.));
@@ -348,7 +348,7 @@ namespace
     AdmissibleSet<Vector> set;
   };
 
-  /// The set of positive normal forces that a full step from one set leads to, as bits.
+  /// The set of positive normal forces to which a full step from one set leads, as bits.
   unsigned int full_step(const Cycle &cycle, const double coefficient, const unsigned int from)
   {
     Matrix M(3, 3), A(3, 3);
@@ -400,7 +400,7 @@ TEST(SemismoothNewton, converges_where_full_steps_cycle)
     }
 }
 
-// Equilibria need not be unique, nor be there at all; what is called one has to be one.
+// Equilibria need not exist or be unique; a result that is reported as one must be one.
 TEST(SemismoothNewton, large_coefficients_never_end_in_a_wrong_solution)
 {
   unsigned int n_solved = 0;
@@ -418,8 +418,8 @@ TEST(SemismoothNewton, large_coefficients_never_end_in_a_wrong_solution)
   EXPECT_GT(n_solved, 100u);
 }
 
-// Where the line search would cut steps to next to nothing, whole steps lead on: 265 of these 300 problems are solved with
-// them, 256 without.
+// Where the line search would cut steps to almost nothing, whole steps are taken: 265 of these 300 problems are solved
+// with them, 256 without.
 TEST(SemismoothNewton, whole_steps_solve_problems_where_the_line_search_fails)
 {
   const auto n_solved = [](const double largest_rise) {
@@ -491,7 +491,7 @@ namespace
     return F;
   }
 
-  /// How many of some problems with F of that kind are solved; each solution is checked.
+  /// Number of solved problems among some with such an F; each solution is checked.
   template <typename Problem, typename... Arguments>
   unsigned int n_solved_of_nearly_singular(const double least, const NodeSet &forces, const Arguments &...arguments)
   {
@@ -511,8 +511,9 @@ namespace
   }
 } // namespace
 
-// Steps on nearly singular faces are far too long, and are cut where single entries come to their bounds. Without sets beyond
-// kinks and without short steps 7, 4, 14 and 14 of the 20 problems with 1e-6 are solved, and 2, 0, 4 and 2 of those with 1e-8.
+// Steps on nearly singular faces are far too long, and are cut where single entries reach their bounds. Without sets
+// beyond kinks and without short steps, 7, 4, 14 and 14 of the 20 problems with 1e-6 are solved, and 2, 0, 4 and 2 of
+// those with 1e-8.
 TEST(SemismoothNewton, nearly_singular_faces_lead_to_the_solution)
 {
   for (const auto &[least, most_unsolved] : {std::pair(1e-6, 3u), std::pair(1e-8, 11u)})

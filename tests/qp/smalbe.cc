@@ -87,7 +87,7 @@ TEST_P(Smalbe, bounds_and_equalities_and_gradient_hold_to_the_tolerance)
         ASSERT_EQ(result.status, Status::converged) << seed;
         EXPECT_TRUE(is_within(p.box, result.x)) << seed;
         EXPECT_LE(length(p.problem.range(result.x)), (1 + 1e-9) * tolerance * length(p.b)) << seed;
-        // the gradient anew: P F P x + rho Q x - b + shift
+        // the gradient recomputed: P F P x + rho Q x - b + shift
         Vector g = p.problem.kernel(p.problem.F * p.problem.kernel(result.x));
         add(result.penalty, p.problem.range(result.x), g);
         add(1.0, result.shift, g);
@@ -124,7 +124,7 @@ TEST_P(Smalbe, entries_fixed_at_zero_drop_out)
 
 TEST_P(Smalbe, iterates_do_not_depend_on_the_unit_of_the_objective)
 {
-  const double unit = 1048576; // a power of two: no rounding of its own
+  const double unit = 1048576; // a power of two, so that scaling causes no rounding
   for (unsigned int seed = 0; seed < 10; ++seed)
     {
       const Instance p(seed, 30, 4);

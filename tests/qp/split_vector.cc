@@ -1,4 +1,5 @@
-// The entries shared out among threads that meet in reductions: same result on each, and the serial one.
+// Entries distributed over threads that meet in reductions: each thread obtains the same result, which is the serial
+// one.
 #include "support.h"
 
 #include <slipstick/qp/smalbe.h>
@@ -79,7 +80,7 @@ namespace
   /// The entries [first, first + size) of a dense problem.
   struct SplitProblem
   {
-    // All entries from the parts; the team waits for its members, so the serial problem is only read.
+    // All entries, gathered from the parts; the team waits for its members, so that the serial problem is only read.
     Vector whole(const Vector &x) const
     {
       Vector padded(serial.F.n, 0.0);

@@ -227,7 +227,7 @@ namespace slipstick::qp::test
       return orthonormalized(std::move(G));
     }
 
-    /// Two-sided bounds; around 0 if asked for.
+    /// Two-sided bounds, on request around 0.
     Box<Vector> box(const std::size_t n, const bool around_zero, const double size = 1.0)
     {
       Box<Vector> box{Vector(n), Vector(n)};
@@ -266,7 +266,7 @@ namespace slipstick::qp::test
     return minus(A * x, b);
   }
 
-  /// |gP|, from the gradient computed anew.
+  /// |gP|, from a recomputed gradient.
   inline double kkt_residual(const Matrix &A, const Vector &x, const Vector &b, const Box<Vector> &box)
   {
     return projected_gradient_norm(box, x, gradient(A, x, b), SerialReduction());

@@ -1,5 +1,5 @@
-// Which entries are at their bounds, where these are when they follow the solution, and by how much a point misses the
-// conditions of the solution. How the sets are used: semismooth_newton.h.
+// The active set, bounds that follow the solution, and the residuals of the optimality conditions. How the sets are
+// used: semismooth_newton.h.
 #pragma once
 
 #include <slipstick/qp/admissible_set.h>
@@ -16,29 +16,31 @@ namespace slipstick::qp
 {
   namespace detail
   {
-    /// Of every owned entry: -1 at the lower bound, 1 at the upper, 0 free.
+    /// For every owned entry: -1 at the lower bound, 1 at the upper bound, 0 free.
     using Sides = std::vector<signed char>;
 
-    // Forces out of balance by less than this part of all of them move no body: faces tell what is left, better than points on
-    // springs (doc/decisions/0091). ...
+    // An imbalance below this part of all forces moves no body: the face problem determines the rest more accurately
+    // than points on springs do (doc/decisions/0091). ...
     constexpr double tolerated_imbalance = 0.1;
-    // ... Once a step was cut in vain less is tolerated, and no more than the natural residual.
+    // ... Once a step was cut in vain, the limit is this part or, if that is less, the natural residual.
     constexpr double fine_imbalance = 0.01;
 
-    // Across a slipping force that yields by more than this times what its entry does, over the norm of F, the entry is held.
+    // If the compliance across a slipping force times the weight of its entry exceeds this (for |F| = 1), the entry is
+    // held.
     constexpr double rigid_compliance = 1e3;
 
-    /// The natural map x -> proj(x - s g) of an admissible set, and the set of entries that it puts on bounds. s: `step`
-    /// over the norm of F, times the weight of the entry, so that s g is a force of the size that closes g: the stiffness of
-    /// a point. The residual then counts a force beyond its bound as the gap that it closes. Bodies that
-    /// contact alone holds move until s g balances their loads. How far they move depends on s, which should then be the
-    /// stiffness of the points that touch: the norm of F on these entries grows with their number. On stiff points bodies rest on
-    /// few, so s falls where that leads astray, never below that of all entries.
+    /// The natural map x -> proj(x - s g) of an admissible set, and the active set that it determines. s is `step` over
+    /// the norm of F, times the weight of the entry, so that s g is about the force that closes g: s is the stiffness
+    /// of a point. A force beyond its bound and the gap that it closes then contribute equally to the residual.
+    /// Bodies that are held by contact alone move until s g balances their loads. How far they move depends on s, which
+    /// should then be the stiffness of the points in contact: the norm of F on these entries grows with their number.
+    /// If s is too stiff, bodies rest on few points. Therefore s is halved after steps that do not lower the residual,
+    /// but never below the value for all entries.
     template <typename Vector, typename Problem>
     class ActiveSet
     {
     public:
-      /// @param problem is referred to. @param norm |PFP|. @param noise of gradients: smaller ones move nothing.
+      /// @param problem is kept by reference. @param norm |PFP|. @param noise gradients below it are ignored.
       ActiveSet(const Problem        &problem_,
                 const double          norm_,
                 AdmissibleSet<Vector> set_,
@@ -68,7 +70,7 @@ namespace slipstick::qp
           }
       }
 
-      /// s times the norm of F, of an entry of weight 1.
+      /// s times the norm of F, for an entry of weight 1.
       double step_length() const
       {
         return step;
@@ -92,13 +94,13 @@ namespace slipstick::qp
         return set.box;
       }
 
-      /// How a face of the set sees slipping nodes in space; all that is said of single entries holds for turned ones.
+      /// The turns of slipping nodes in space on faces of the set; comments on single entries apply to turned ones.
       const std::vector<Turn> &turns() const
       {
         return turned;
       }
 
-      /// x := nearest point within the bounds as they were set last.
+      /// x := nearest point within the bounds, as they were last set.
       void project_on_bounds(Vector &x) const
       {
         for (std::size_t i = 0; i < active.size(); ++i)
@@ -108,8 +110,8 @@ namespace slipstick::qp
           put_within(radius_of(disc), x.begin()[disc.first], x.begin()[disc.second]);
       }
 
-      /// g, the gradient at x, is cleared where a face was solved: what is left on free entries says nothing of the set. What
-      /// turns the force of a slipping node stays.
+      /// Clears the free entries of g, the gradient at x, after a face was solved: the remainder says nothing about the
+      /// set. The component that turns the force of a slipping node is kept.
       void clear_solved(const Vector &x, Vector &g) const
       {
         turn(turned, g);
@@ -121,7 +123,7 @@ namespace slipstick::qp
         turn_back(turned, g);
       }
 
-      /// From now on bodies move until their loads are balanced finely. @return whether they were not before.
+      /// From now on, bodies move until their loads are balanced to the fine limit. @return whether this is a change.
       bool balance_finely()
       {
         if (!balances || is_fine)
@@ -130,7 +132,7 @@ namespace slipstick::qp
         return true;
       }
 
-      /// Halve s where bodies rest on s g. @return whether it is smaller.
+      /// Halves s if bodies are balanced with it. @return whether s has changed.
       bool soften()
       {
         if (!balances || step <= 1)
@@ -140,14 +142,15 @@ namespace slipstick::qp
         return true;
       }
 
-      /// Near the solution a fine balance is finer: what is left may decide which of a few small forces reach their bounds.
-      /// @param residual the natural one, over that of no forces at all.
+      /// Reduces the fine limit near the solution, where the imbalance may decide which of a few small forces reach
+      /// their bounds.
+      /// @param residual the natural residual over that of zero forces
       void approach(const double residual)
       {
         finest_imbalance = std::min(finest_imbalance, residual);
       }
 
-      /// The set becomes that of x - s g. @return whether it is another one, on any process.
+      /// Sets the active set to that of x - s g. @return whether it has changed on any process.
       bool predict(const Vector &x, const Vector &g)
       {
         const Sides             before       = active;
@@ -157,14 +160,15 @@ namespace slipstick::qp
         });
         for (std::size_t i = 0; i < active.size(); ++i)
           if (active[i] * before[i] < 0 && set.box.lower.begin()[i] < set.box.upper.begin()[i])
-            active[i] = 0; // from one bound to the other by way of the inside: s g is cut to the width
+            active[i] = 0; // an entry reaches the opposite bound only after being free: s g is cut to the width
         find_turns(before, discs_before, g);
         if (balances)
           adapt_step();
         return problem.reduction().min(active == before ? 1. : 0.) < 1;
       }
 
-      /// |x - proj(x - s g)| / s of the entries with bounds and |g| of the others, weighted: a residual as those of faces.
+      /// Weighted norm of (x - proj(x - s g)) / s for entries with bounds and of g for the others, like residuals of
+      /// faces.
       double natural_residual(const Vector &x, const Vector &g)
       {
         const Sides             before       = active;
@@ -185,8 +189,8 @@ namespace slipstick::qp
         return std::sqrt(problem.reduction().sum(std::array<double, 1>{{sum}})[0]);
       }
 
-      /// |gP| (weighted), and |PFP| times the distance of x from its bounds, or from the bound that it should be at: as
-      /// much, at most, does |gP| rise when x is moved there.
+      /// |gP| (weighted), and |PFP| times the distance of x from its bounds, or from the bound at which it is held:
+      /// this limits the increase of |gP| when x is moved there.
       std::array<double, 2> residuals(const Vector &x, const Vector &g)
       {
         move_bounds(x);
@@ -200,7 +204,7 @@ namespace slipstick::qp
             const double gp = active[i] == 0 ? gi : !(l < u) ? 0. : active[i] < 0 ? std::min(gi, 0.) : std::max(gi, 0.);
             const double out = xi - (active[i] < 0 ? l : active[i] > 0 ? u : clip(xi, l, u));
             sum[0] += weight(i) * weight(i) * gp * gp;
-            sum[1] += out * out; // F out is as much smaller as the weight is larger
+            sum[1] += out * out; // without weight: F out decreases as the weight increases
           }
         for (const Turn &disc : discs)
           {
@@ -212,7 +216,7 @@ namespace slipstick::qp
         return {{std::sqrt(sum[0]), norm * std::sqrt(sum[1])}};
       }
 
-      /// Entries at their lower bounds, at their upper ones; over all processes.
+      /// Numbers of entries at their lower and upper bounds, over all processes.
       std::array<double, 2> count() const
       {
         std::array<double, 2> n{{0, 0}};
@@ -224,7 +228,7 @@ namespace slipstick::qp
         return problem.reduction().sum(n);
       }
 
-      /// Slipping entries whose bound moves with a free one.
+      /// Slipping entries whose bound follows a free entry.
       std::vector<Tie> ties() const
       {
         std::vector<Tie> result;
@@ -240,7 +244,7 @@ namespace slipstick::qp
         return problem.reduction().min(ties().empty() ? 1. : 0.) < 1;
       }
 
-      /// The values of p that vanish for steps on the present face: entries at bounds, and what ties are missed by.
+      /// The values that must vanish for a step p on the present face: entries at bounds and violations of ties.
       std::vector<double> conditions(const Vector &p, const std::vector<Tie> &ties) const
       {
         std::vector<double> result;
@@ -261,13 +265,13 @@ namespace slipstick::qp
         return result;
       }
 
-      /// By how much, in units of g, the entries at bounds are beyond them in the prediction made last.
+      /// Distances of the entries at bounds beyond these bounds in the last prediction, in units of g.
       const std::vector<double> &gaps() const
       {
         return beyond;
       }
 
-      /// Entries leave their bounds where @p free says so.
+      /// Frees the entries for which @p free is true.
       void release(const std::vector<bool> &free)
       {
         for (std::size_t i = 0; i < active.size(); ++i)
@@ -276,10 +280,10 @@ namespace slipstick::qp
         turned.erase(std::remove_if(turned.begin(),
                                     turned.end(),
                                     [this](const Turn &of) { return active[of.first] == 0 && active[of.second] == 0; }),
-                     turned.end()); // they stick
+                     turned.end()); // these nodes stick now
       }
 
-      /// x to the bounds of the set, which follow x.
+      /// Moves x to the bounds of the set, which follow x.
       void put_on_bounds(Vector &x)
       {
         move_bounds(x);
@@ -296,10 +300,10 @@ namespace slipstick::qp
         return weights ? weights[i] : 1.;
       }
 
-      // s from how many of the one-sided entries, those of contact, are off their bounds.
+      // Sets s from the ratio of all one-sided entries, those of contact, to those that are off their bounds.
       void adapt_step()
       {
-        std::array<double, 2> n{{0, 0}}; // all, off their bounds
+        std::array<double, 2> n{{0, 0}}; // all; those off their bounds
         for (std::size_t i = 0; i < active.size(); ++i)
           if (set.box.lower.begin()[i] > -HUGE_VAL && set.box.upper.begin()[i] == HUGE_VAL)
             {
@@ -311,8 +315,8 @@ namespace slipstick::qp
           step = std::max(1., softening * n[0] / n[1]);
       }
 
-      // Bounds that follow the normal entries, to those of x; 0 where the set is open, and where it is closed without the
-      // jump to 0 that the law has where the normal entry vanishes.
+      // Updates the bounds that follow normal entries to those at x: 0 if the normal entry is at its bound; otherwise
+      // without the jump to 0 that the law has where the normal entry vanishes.
       void move_bounds(const Vector &x)
       {
         for (const PressureBound &bound : set.pressure_bounds)
@@ -336,7 +340,7 @@ namespace slipstick::qp
         x2 *= radius / size;
       }
 
-      // The parts of g that count, and how far x is from where it should be, as in residuals().
+      // |gP| and the distance of x from where it should be, as in residuals(), for a disc.
       std::pair<double, double> residuals_on(const Turn &disc, const Vector &x, const Vector &g) const
       {
         const double radius = radius_of(disc), x1 = x.begin()[disc.first], x2 = x.begin()[disc.second],
@@ -349,8 +353,8 @@ namespace slipstick::qp
         return {std::hypot(std::max(0., c * g1 + s * g2), c * g2 - s * g1), size - radius};
       }
 
-      // The turns of the slipping nodes of a new set, g the gradient that it was told with. A force that turns round goes by
-      // way of the inside.
+      // Determines the turns of the slipping nodes of a new set; g is the gradient with which it was predicted. A force
+      // that turns by more than 90 degrees becomes free first.
       void find_turns(const Sides &before, const std::vector<Turn> &discs_before, const Vector &g)
       {
         turned.clear();
@@ -388,10 +392,10 @@ namespace slipstick::qp
         set.box.upper.begin()[bound.second] = is_held ? 0. : HUGE_VAL;
       }
 
-      // moved -= stiffness times the jumps of the motions of bodies at which the forces, cut to their bounds, balance the loads.
-      // An entry that its gradient takes off its bound does not count as more than the bound there: what it will bear the face
-      // tells, and it must not push a body off the others that bear its loads. For the same reason motions close one-sided entries, but
-      // open none, until they are asked for finely.
+      // moved -= stiffness times the jumps of the body motions for which the projected forces balance the loads. An
+      // entry at its bound that the gradient moves inwards counts with at most the value of the bound: its force is
+      // determined by the face problem, and it must not push a body off the other entries that carry its loads. For the
+      // same reason, motions close one-sided entries but open none, unless a fine balance is requested.
       void move_bodies(const Vector &x, const std::vector<double> &stiffness, std::vector<double> &moved) const
       {
         std::vector<double> forces(moved);
@@ -414,8 +418,8 @@ namespace slipstick::qp
           }
       }
 
-      // The set, and action(i, x_i, proj(x - s g)_i, (x - s g)_i) for all entries with bounds. Normal entries come first: bounds of
-      // others follow the projected ones.
+      // Determines the set and calls action(i, x_i, proj(x - s g)_i, (x - s g)_i) for all entries with bounds. Normal
+      // entries come first, since bounds of others follow the projected ones.
       template <typename Action>
       void map(const Vector &x, const Vector &g, const Action &action)
       {
@@ -468,15 +472,15 @@ namespace slipstick::qp
       const double               norm, noise;
       const bool                 balances;
       double                     step;
-      double                     softening        = 1;              // of s, <= 1
-      double                     finest_imbalance = fine_imbalance; // of forces that moves no body, ...
-      bool                       is_fine          = false;          // ... once a step was cut in vain
+      double                     softening        = 1;              // factor on s, <= 1
+      double                     finest_imbalance = fine_imbalance; // fine limit of imbalances that move no body, ...
+      bool                       is_fine          = false;          // ... used once a step was cut in vain
       AdmissibleSet<Vector>      set;
       const double              *weights;
       std::vector<bool>          bounded;
       std::vector<bool>          in_disc;
       std::vector<PressureBound> bounds_of_discs;
-      std::vector<Turn>          discs;  // all, in that order
+      std::vector<Turn>          discs;  // all, in the order of bounds_of_discs
       std::vector<Turn>          turned; // those that slip
       Sides                      active;
       std::vector<double>        beyond;

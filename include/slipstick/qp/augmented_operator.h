@@ -48,7 +48,7 @@ namespace slipstick::qp
         rho = penalty;
       }
 
-      /// Q x from the updates.
+      /// Q x as updated by the steps.
       const Vector &range_part() const
       {
         return Qx;

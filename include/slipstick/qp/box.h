@@ -105,7 +105,7 @@ namespace slipstick::qp
     return false;
   }
 
-  /// Owned entries that a step along p has moved to or beyond their bounds.
+  /// Number of owned entries that a step along p has moved to or beyond their bounds.
   template <typename Vector>
   std::size_t n_leaving(const Box<Vector> &box, const Vector &p, const Vector &x)
   {
@@ -158,7 +158,7 @@ namespace slipstick::qp
         }
   }
 
-  /// Owned entries at their bounds.
+  /// Numbers of owned entries at their bounds.
   template <typename Vector>
   ActiveEntries own_active(const Box<Vector> &box, const Vector &x)
   {
@@ -174,7 +174,7 @@ namespace slipstick::qp
     return active;
   }
 
-  /// Entries at their bounds, over all processes. One reduction.
+  /// Numbers of entries at their bounds, over all processes. One reduction.
   template <typename Vector, typename Reduction>
   ActiveEntries count_active(const Box<Vector> &box, const Vector &x, const Reduction &reduction)
   {
@@ -212,7 +212,7 @@ namespace slipstick::qp
         pi[i] = 0;
   }
 
-  /// Owned entries with lower > upper.
+  /// Number of owned entries with lower > upper.
   template <typename Vector>
   double n_contradictions(const Box<Vector> &box)
   {

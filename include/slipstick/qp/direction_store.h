@@ -1,8 +1,8 @@
-// Directions of all solves so far with their products, of which every face uses the combinations that it admits: total
-// reuse of Krylov spaces (Gosselet, Rey, Pebay 2013), with the bounds of contact as conditions on the combinations.
+// Directions of all solves so far with their products. Every face uses the combinations that it admits: total reuse of
+// Krylov spaces (Gosselet, Rey, Pebay 2013), with the bounds of contact as conditions on the combinations.
 //
-// A product F p holds for every face: only which p a face admits depends on it. So a face that differs from those before
-// by a few entries at bounds loses a few combinations, and starts with all else that is known of F.
+// A product F p is valid for every face; only the admissible p depend on the face. A face that differs from earlier
+// ones by a few entries at bounds loses only a few combinations and keeps the rest of what is known about F.
 #pragma once
 
 #include <slipstick/qp/kernels.h>
@@ -15,21 +15,21 @@
 
 namespace slipstick::qp
 {
-  /// What rounding leaves wrong of a product F p in the norm of residuals, of the sum of the squares of p and of that norm of F p:
-  /// |F| is near 1, and a product is right to a few times the unit roundoff.
+  /// Estimated rounding error of a product F p in the norm of residuals. @p squares is |p|^2 plus the square of that
+  /// norm of F p: |F| is near 1, and a product is accurate to a few unit roundoffs.
   inline double rounding_of_product(const double squares)
   {
     return 1e-15 * std::sqrt(squares);
   }
 
-  /// Those squares, of the owned entries. @param weights of the norm of residuals.
+  /// The argument of rounding_of_product(), for the owned entries. @param weights of the norm of residuals.
   template <typename Vector>
   double local_squares(const double *weights, const Vector &p, const Vector &Fp)
   {
     return local_dot(p, p) + local_weighted_dot(weights, Fp, Fp);
   }
 
-  /// Directions p, G p = 0, with F p, the latest ones; and of all pairs p'F p, and p'D p where there is a D.
+  /// The latest directions p, G p = 0, with F p; also p'F p of all pairs, and p'D p if there is a D.
   template <typename Vector>
   class DirectionStore
   {
@@ -37,11 +37,11 @@ namespace slipstick::qp
     struct Direction
     {
       Vector              p, Fp;
-      std::vector<double> pFp, pDp; // with all directions that were there when this one came, itself the last
-      double              error;    // of Fp by rounding, an estimate in the norm of residuals
+      std::vector<double> pFp, pDp; // with all directions present when this one was added, itself last
+      double              error;    // of Fp by rounding, estimated in the norm of residuals
     };
 
-    /// @param capacity the oldest directions go when there are more.
+    /// @param capacity if it is exceeded, the oldest directions are dropped.
     explicit DirectionStore(const std::size_t capacity_)
       : capacity(capacity_)
     {}
@@ -88,19 +88,19 @@ namespace slipstick::qp
     std::deque<Direction> directions;
   };
 
-  /// Combinations of directions that obey the linear conditions of a face: coefficients, one vector a combination.
+  /// Combinations of directions that satisfy the linear conditions of a face: one vector of coefficients for each.
   using Combinations = std::vector<std::vector<double>>;
 
-  /// The combinations for which conditions(p), the values of this process that must vanish, do so up to rounding. The
-  /// latest directions come first: they were made for a face like this one.
+  /// The combinations for which conditions(p), the values on this process that must vanish, are zero up to rounding.
+  /// The latest directions are processed first, since they were made for a similar face.
   template <typename Vector, typename Conditions, typename Reduction>
   Combinations admissible_combinations(const DirectionStore<Vector> &store,
                                        const Conditions             &conditions,
                                        const Reduction              &reduction)
   {
-    // A remainder below this part of the directions that were summed is what their rounding leaves of none ...
+    // A remainder below this part of the summed directions is zero up to rounding ...
     constexpr double rounding = 1e-13;
-    // ... and one below this part is too small to correct others with.
+    // ... and one below this part of the original violation is too small for a pivot.
     constexpr double least_pivot = 1e-4;
 
     const std::size_t                n = store.size();
@@ -115,7 +115,7 @@ namespace slipstick::qp
     sum_all(squares, reduction);
     struct Pivot
     {
-      std::vector<double> direction, coefficients; // unit violation, of that combination
+      std::vector<double> direction, coefficients; // normalised violation, and its combination
     };
     std::vector<Pivot> pivots;
     Combinations       result;

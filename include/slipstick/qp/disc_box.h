@@ -20,7 +20,7 @@ namespace slipstick::qp
     std::array<double, 2> center{{0, 0}};
   };
 
-  /// Entries of discs have no bounds in the box.
+  /// The entries of discs have no bounds in the box.
   template <typename Vector>
   struct DiscBox
   {
@@ -30,7 +30,7 @@ namespace slipstick::qp
 
   namespace detail
   {
-    // Points are on the circle if they are inside it by at most this part of the radius.
+    // Points inside the circle by at most this part of the radius count as on it.
     constexpr double on_circle = 1e-12;
 
     /// The pair of entries of a disc.
@@ -196,7 +196,7 @@ namespace slipstick::qp
         detail::put(set.discs[k], ends[k], x);
   }
 
-  /// Active owned entries; both entries of a node on its circle count as active at the upper bound.
+  /// Numbers of active owned entries; both entries of a node on its circle count as active at the upper bound.
   template <typename Vector>
   ActiveEntries own_active(const DiscBox<Vector> &set, const Vector &x)
   {
@@ -222,7 +222,7 @@ namespace slipstick::qp
         const double       of_center = disc.center[0] * along.first + disc.center[1] * along.second;
         const double       support   = of_center + disc.radius * along.size();
         s[0] -= support;
-        s[1] -= dot(along, along); // the box treated both as unbounded
+        s[1] -= dot(along, along); // farkas_sums() treated both entries as unbounded
         s[2] += std::abs(of_center) + disc.radius * along.size();
       }
     s = reduction.sum(s);

@@ -1,11 +1,11 @@
-// The linear problem of a face: P(d - F x) = 0 on the free entries, bounds, ties and G x as in the start. Directions of
-// all earlier faces are used as far as this one admits them (direction_store.h).
+// The linear problem of a face: P(d - F x) = 0 on the free entries, while bounds, ties and G x remain as at the start.
+// Directions of all earlier faces are used as far as this one admits them (direction_store.h).
 //
-// A face may be regularised: a compliance eps D of dependent entries is added to F, which a given force does not strain. So
-// a singular F has one solution, the nearest to that force (proximal point).
+// A face may be regularised: a compliance eps D of dependent entries, without strain at a given force, is added to F.
+// If F is singular, the solution is then unique: the one nearest to that force (proximal point).
 //
-// Without ties conjugate gradients (Farhat, Crivelli, Roux 1994, with full orthogonalisation); ties make the operator
-// unsymmetric, and generalised conjugate residuals take their place (Eisenstat, Elman, Schultz 1983).
+// Faces without ties are solved by conjugate gradients (Farhat, Crivelli, Roux 1994, with full orthogonalisation). Ties
+// make the operator unsymmetric; then generalised conjugate residuals are used (Eisenstat, Elman, Schultz 1983).
 #pragma once
 
 #include <slipstick/qp/direction_store.h>
@@ -30,17 +30,17 @@ namespace slipstick::qp
     Status status;
     Vector x, product; // F x
     double residual;   // weighted |P(d - F x)|, of the regularised problem
-    double error;      // of the product, by rounding: an estimate in the norm of the residual
+    double error;      // of the product by rounding: an estimate in the norm of the residual
     Counts counts;
   };
 
-  /// Solves a face by directions made and stored on the way.
+  /// Solves a face with directions from the store, and adds new ones to it.
   template <typename Vector, typename Face>
   class FaceSolver
   {
   public:
-    /// @param face, d, store, options are referred to. @param conditions as in admissible_combinations().
-    /// @param turns_ those of the face, whose compliances C count as part of F.
+    /// @param face, d, store, options are kept by reference. @param conditions as in admissible_combinations().
+    /// @param turns_ of the face; their compliances C are added to F.
     /// @param regularization_ eps >= 0; > 0 only with dependent_compliances() of the face
     template <typename Conditions>
     FaceSolver(const Face              &face_,
@@ -74,7 +74,8 @@ namespace slipstick::qp
           violations.push_back(conditions(store[j].p));
     }
 
-    /// @param product F x. @param error_of_product by rounding, weighted. @param center force that does not strain eps D.
+    /// @param product F x. @param error_of_product by rounding, weighted. @param center force at which eps D has no
+    /// strain.
     /// @return the weighted residual |P(d - F x - eps D (x - center))|.
     double start(Vector x_, Vector product, const double error_of_product, const Vector &center)
     {
@@ -88,13 +89,13 @@ namespace slipstick::qp
       return norm_r;
     }
 
-    /// Without regularisation.
+    /// The same without regularisation.
     double start(Vector x_, Vector product, const double error_of_product = 0)
     {
       return start(std::move(x_), std::move(product), error_of_product, given);
     }
 
-    /// By conjugate gradients from the start until the weighted residual is at most @p target. For faces without ties.
+    /// Conjugate gradients from the start until the weighted residual is at most @p target. For faces without ties.
     FaceSolution<Vector> solve_symmetric(const double target)
     {
       std::optional<PivotedCholesky> known;
@@ -157,11 +158,11 @@ namespace slipstick::qp
       return ended(Status::converged);
     }
 
-    /// The same by generalised conjugate residuals, for any face.
+    /// The same by generalised conjugate residuals, for all faces.
     FaceSolution<Vector> solve_unsymmetric(const double target)
     {
       std::vector<Vector>            images;        // weighted P (F + C) p of the directions of the store
-      std::optional<PivotedCholesky> known, nearly; // of admissible combinations; of all directions
+      std::optional<PivotedCholesky> known, nearly; // for admissible combinations; for all directions
       if (n_recycled > 0 && norm_r > target)
         {
           for (std::size_t j = 0; j < n_recycled; ++j)
@@ -262,7 +263,7 @@ namespace slipstick::qp
       return {status, std::move(x), std::move(Fx), norm_r, error, counts};
     }
 
-    // x moves along directions of the store.
+    // Moves x along directions of the store.
     void move(const std::vector<double> &coefficients)
     {
       recycled.add_combination(
@@ -279,7 +280,7 @@ namespace slipstick::qp
       update_residual();
     }
 
-    // By rounding, of the products of a combination of the store.
+    // Rounding error of the products of a combination of directions of the store.
     double error_of(const std::vector<double> &coefficients) const
     {
       double square = 0;
@@ -288,8 +289,8 @@ namespace slipstick::qp
       return std::sqrt(square);
     }
 
-    // Is the residual that of F x, as far as the target tells? Where it may not be F is multiplied once more (residual replacement:
-    // van der Vorst, Ye 2000), if that is more accurate.
+    // Whether the residual is that of F x, as accurately as the target requires. If not, F x is computed anew (residual
+    // replacement: van der Vorst, Ye 2000), provided that this is more accurate.
     bool is_true(const double target)
     {
       const double trusted = options.accuracy * target;
@@ -306,7 +307,7 @@ namespace slipstick::qp
       return norm_r <= target;
     }
 
-    // Into the store at the end: until then its numbering is that of the combinations.
+    // Directions are stored at the end; until then the combinations refer to the numbering of the store.
     void keep(Vector p, Vector Fp, const double error_of_Fp)
     {
       made.push_back({std::move(p), std::move(Fp), error_of_Fp});
@@ -332,7 +333,7 @@ namespace slipstick::qp
         add_diagonal(regularization, *D, v, y);
     }
 
-    // r = P(d - (F + C + eps D) x), where d contains what the start adds
+    // r = P(d - (F + C + eps D) x), where d contains the term added by start()
     void update_residual()
     {
       std::copy(d.begin(), d.end(), r.begin());
@@ -357,8 +358,8 @@ namespace slipstick::qp
       return p;
     }
 
-    // Factors of the least squares for all directions of the store, in which the violation of the conditions of the face counts as a
-    // residual.
+    // Factors of the least squares problem for all directions of the store, in which violations of the conditions of
+    // the face count as residuals.
     PivotedCholesky regularized(SmallSymmetric images, const SmallSymmetric &of_violations) const
     {
       std::vector<double> sizes;
@@ -371,8 +372,8 @@ namespace slipstick::qp
       return PivotedCholesky(std::move(images), sizes, detail::dependent_direction);
     }
 
-    // What the directions of the store, moved onto the face, reduce the residual by (their products are then only near those of the
-    // moved ones), and M times what they leave.
+    // The combination of directions of the store that reduces the residual most, moved onto the face (where the stored
+    // products are only approximate), plus M times the residual that it leaves.
     Vector preconditioned(const PivotedCholesky &nearly, const std::vector<Vector> &images)
     {
       Vector     left = weighted(r), p = zero_like(r);
@@ -502,7 +503,7 @@ namespace slipstick::qp
     unsigned int      n_stuck     = 0;
     std::vector<Made> made;
 
-    std::vector<std::vector<double>> violations; // of the conditions of a turned face by the directions of the store
+    std::vector<std::vector<double>> violations; // of the conditions of a turned face, for the directions of the store
     Counts                           counts;
   };
 } // namespace slipstick::qp

@@ -3,11 +3,11 @@
 //
 // min 1/2 |x|^2 over the set and Q x = Q x_e. Dual: x = proj(y), y in the range of Q, maximise the concave
 //   theta(y) = 1/2 |proj(y)|^2 - y'proj(y) + y'x_e,   grad theta = r = Q(x_e - proj(y)),
-// by a semismooth Newton method (Newton matrix Q D Q, D = derivative of the projection at y) with line search. Where it stagnates, by the
-// proximal point method (Rockafellar 1976): y_k+1 maximises theta(y) - eps/2 |y - y_k|^2, which has one maximum whether or not there is such a
-// point x; the same Newton method finds it, with Q D Q + eps Q. There r = eps (y_k+1 - y_k). If
-// there is no point x, theta is unbounded and r tends to the shortest Q(x_e - x) over the set, a Farkas certificate:
-// r'x <= r'x_e - |r|^2 for all x of the set, while Q x = Q x_e requires r'x = r'x_e.
+// by a semismooth Newton method (matrix Q D Q, D = derivative of the projection at y) with line search. If that
+// stagnates, the proximal point method is used (Rockafellar 1976): y_k+1 maximises theta(y) - eps/2 |y - y_k|^2, whose
+// maximum exists and is unique even if there is no such point x. The same Newton method finds it, with Q D Q + eps Q;
+// there r = eps (y_k+1 - y_k). If there is no point x, theta is unbounded, and r tends to the shortest Q(x_e - x) over
+// the set, a Farkas certificate: r'x <= r'x_e - |r|^2 for all x of the set, while Q x = Q x_e requires r'x = r'x_e.
 #pragma once
 
 #include <slipstick/qp/force_set.h>
@@ -102,10 +102,10 @@ namespace slipstick::qp
         add(eps, center, gradient);
       }
 
-      // Newton's method for theta itself, which may have no maximum: then it stagnates.
+      // Newton's method for theta itself. It stagnates if theta has no maximum.
       Status newton()
       {
-        constexpr double regularization = 1e-8; // of its matrix only
+        constexpr double regularization = 1e-8; // of the Newton matrix only
         StagnationWatch  stagnates(options.stagnation_window, options.stagnation_progress);
         for (;; ++newton_steps)
           {
@@ -126,11 +126,12 @@ namespace slipstick::qp
           }
       }
 
-      // eps falls while the residual does; then y moves by r / eps with every point, and its rounding should stay small beside r.
+      // eps is reduced only while the residual decreases: y moves by r / eps per point, and its rounding error should
+      // remain small beside r.
       Status proximal_points()
       {
         StagnationWatch stagnates(options.stagnation_window, options.stagnation_progress);
-        double          before   = HUGE_VAL; // |r| of the last point
+        double          before   = HUGE_VAL; // |r| of the previous point
         double          accuracy = options.maximum_tolerance;
         eps                      = options.first_regularization;
         for (;;)
@@ -158,8 +159,8 @@ namespace slipstick::qp
           }
       }
 
-      // Newton's method for the maximum with the present eps and y_k. @return converged or infeasible as soon as the question
-      // is decided, iteration_limit at the maximum, nothing if that was not found (eps is too small then).
+      // Newton's method for the maximum with the present eps and y_k. @return converged or infeasible as soon as either
+      // is certain, iteration_limit at the maximum, nothing if the maximum was not found (eps is then too small).
       // @param accuracy of the gradient, over |r|.
       std::optional<Status> maximum(const double accuracy)
       {
@@ -284,9 +285,9 @@ namespace slipstick::qp
     };
   } // namespace detail
 
-  /// The point nearest to zero of the set (a Box, ForceSet) with Q x = Q x_e. Uses only `problem.project_range` and
-  /// `problem.reduction`.
-  /// status: infeasible with a certificate, see FeasiblePoint (without, if some lower > upper); iteration_limit or
+  /// The point of the set (Box or ForceSet) with Q x = Q x_e that is nearest to zero. Uses only `problem.project_range`
+  /// and `problem.reduction`.
+  /// status: infeasible with a certificate, see FeasiblePoint (without one if some lower > upper); iteration_limit or
   /// stagnated if neither a point nor a certificate was found.
   /// @code
   /// using Vector = std::vector<double>;

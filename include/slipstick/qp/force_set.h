@@ -10,12 +10,12 @@
 
 namespace slipstick::qp
 {
-  /// Entries of nodes have no bounds in the box.
+  /// The entries of nodes have no bounds in the box.
   template <typename Vector>
   struct ForceSet
   {
     Box<Vector>                box;
-    std::vector<PressureBound> nodes; // for discs that follow no normal force only the radius is used
+    std::vector<PressureBound> nodes; // discs without a normal entry: only the radius is used
   };
 
   namespace detail
@@ -129,7 +129,7 @@ namespace slipstick::qp
         const double n       = node.normal == no_entry ? 0. : ri[node.normal];
         const auto   support = node.forces.support(t, n);
         s[0] -= support.value;
-        s[1] += support.unbounded - (t * t + n * n); // the box treated both as unbounded
+        s[1] += support.unbounded - (t * t + n * n); // farkas_sums() treated both entries as unbounded
         s[2] += std::abs(support.value);
       }
     s = reduction.sum(s);

@@ -61,8 +61,8 @@ namespace slipstick::qp
     return sum;
   }
 
-  /// Weights of the entries of a residual in its norm: `residual_weights()` of the problem, for the owned entries; null
-  /// if the problem has none or they are empty: all 1.
+  /// Weights of the entries of a residual in its norm, for the owned entries: `residual_weights()` of the problem;
+  /// null, all 1, if the problem has none or they are empty.
   template <typename Problem>
   auto residual_weights(const Problem &problem, int) -> decltype(problem.residual_weights(), (const double *)nullptr)
   {
@@ -89,8 +89,9 @@ namespace slipstick::qp
     return sum;
   }
 
-  /// A compliance D of the entries that F does not determine, for the owned ones: `dependent_compliances()` of the problem, near
-  /// the diagonal of F, and 0 where entries are determined; null if the problem has none on any process.
+  /// Compliances D of the entries that F does not determine, for the owned entries: `dependent_compliances()` of the
+  /// problem. They are close to the diagonal of F, and 0 for entries that F determines. Null if the problem has none on
+  /// any process.
   template <typename Problem>
   auto dependent_compliances(const Problem &problem, int)
     -> decltype(problem.dependent_compliances(), (const std::vector<double> *)nullptr)
@@ -151,11 +152,11 @@ namespace slipstick::qp
     return std::sqrt(dot(x, x, reduction));
   }
 
-  /// Sums over all processes of any number of values, `batch` in a reduction.
+  /// Sums any number of values over all processes, `batch` per reduction.
   template <typename Reduction>
   void sum_all(std::vector<double> &values, const Reduction &reduction)
   {
-    constexpr std::size_t batch = 32; // latency against wasted length
+    constexpr std::size_t batch = 32; // compromise between latency and message length
     for (std::size_t first = 0; first < values.size(); first += batch)
       {
         const std::size_t         n = std::min(batch, values.size() - first);

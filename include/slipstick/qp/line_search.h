@@ -1,4 +1,4 @@
-// Line search of the semismooth Newton method on the natural residual, whose value along a step costs no multiplication.
+// Line search of the semismooth Newton method on the natural residual, which costs no multiplication along a step.
 #pragma once
 
 #include <slipstick/qp/kernels.h>
@@ -12,8 +12,8 @@
 
 namespace slipstick::qp::detail
 {
-  /// Nonmonotone line search (Grippo, Lampariello, Lucidi 1986): a step must end below the largest natural residual of the
-  /// last points.
+  /// Nonmonotone line search (Grippo, Lampariello, Lucidi 1986): a step must end below the largest natural residual of
+  /// the last points.
   /// @tparam Set with natural_residual(x, gradient), as ActiveSet
   template <typename Vector, typename Set>
   class LineSearch
@@ -21,24 +21,24 @@ namespace slipstick::qp::detail
   public:
     using Point = PointWithGradient<Vector>;
 
-    /// @param options_ is referred to.
+    /// @param options_ is kept by reference.
     explicit LineSearch(const NewtonOptions &options_)
       : options(&options_)
     {}
 
-    /// From a first point, or from one whose residuals cannot be compared with those before.
+    /// Starts from a first point, or from one whose residual cannot be compared with earlier ones.
     void begin(const double residual)
     {
       residuals = {residual};
     }
 
-    /// The method has come to a point with this residual.
+    /// Adds the residual of the point to which the method has moved.
     void move_to(const double residual)
     {
       residuals.push_back(residual);
     }
 
-    /// Residuals so far become those in another measure.
+    /// Converts the residuals so far to another measure.
     void rescale(const double factor)
     {
       for (double &residual : residuals)
@@ -51,7 +51,7 @@ namespace slipstick::qp::detail
       return residuals.back();
     }
 
-    /// What a step must end below.
+    /// The largest of the last residuals, below which a step must end.
     double most() const
     {
       const std::size_t n = std::min<std::size_t>(residuals.size(), options->memory);
@@ -63,8 +63,8 @@ namespace slipstick::qp::detail
       return *std::min_element(residuals.begin(), residuals.end());
     }
 
-    /// How far from one point towards the other the residual falls below the largest of the last ones: 1, or as often as
-    /// necessary cut; 0: not at all.
+    /// Length t <= 1 of a step from one point towards the other, found by backtracking, for which the residual falls
+    /// below the largest of the last ones; 0 if there is none.
     double search(Set &set, const Point &from, const Point &to)
     {
       residual_of_step = residual_of_whole = set.natural_residual(to.x, to.gradient);
@@ -84,25 +84,25 @@ namespace slipstick::qp::detail
       return t;
     }
 
-    /// Natural residual of the end of the whole step in the last search.
+    /// Natural residual at the end of the whole step of the last search.
     double whole() const
     {
       return residual_of_whole;
     }
 
-    /// Natural residual of the end of the step found last.
+    /// Natural residual at the end of the last step found.
     double found() const
     {
       return residual_of_step;
     }
 
-    /// That end, if the step was cut.
+    /// The end of that step, if it was cut.
     Point &end()
     {
       return *end_of_step;
     }
 
-    /// The point nearest to x that was refused in the last search that cut a step.
+    /// The point nearest to x that the last search that cut a step refused.
     const Point &refused() const
     {
       return *nearest_refused;

@@ -1,4 +1,4 @@
-// Points of the semismooth Newton method, with what is known of them.
+// Points of the semismooth Newton method with their gradients and products.
 #pragma once
 
 #include <utility>
@@ -12,7 +12,7 @@ namespace slipstick::qp::detail
     Vector x, gradient;
   };
 
-  /// The same with F x, so that another point between two of them costs no multiplication.
+  /// The same with F x, so that points between two of them cost no multiplication.
   template <typename Vector>
   struct NewtonPoint : PointWithGradient<Vector>
   {
@@ -22,6 +22,6 @@ namespace slipstick::qp::detail
     {}
 
     Vector Fx;
-    double error_of_Fx = 0; // by rounding, weighted, an estimate
+    double error_of_Fx = 0; // by rounding, weighted, estimated
   };
 } // namespace slipstick::qp::detail

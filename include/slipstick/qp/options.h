@@ -1,4 +1,4 @@
-// Tunable numbers of the quadratic programming solvers, each with its source.
+// Parameters of the quadratic programming solvers, each with its source.
 #pragma once
 
 #include <limits>
@@ -20,10 +20,10 @@ namespace slipstick::qp
     double       step_length    = 1.5;   // alpha times |A|, in (0, 2]; see doc/decisions/0005
     unsigned int max_iterations = 10000; // per call
 
-    double sufficient_decrease = 0.01;   // of a projected step, over the most on its way; else it is cut (own choice)
+    double sufficient_decrease = 0.01;   // projected steps below this part of the best decrease are cut (own choice)
     double norm_growth         = 1.1;    // >= 1: |A| becomes this times a Rayleigh quotient found above it (own choice)
     double rounding           = 2.2e-16; // a gradient below this times (|A||x| + |b|) is noise; unit roundoff of double
-    double smallest_curvature = 1e-15;   // p'Ap over |A| p'p: below it A counts as singular along p; a few roundoffs
+    double smallest_curvature = 1e-15;   // A is singular along p if p'Ap <= this times |A| p'p; a few roundoffs
 
     unsigned int stagnation_window   = 1000; // iterations in which the least |gP| so far must fall ... (own choice)
     double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
@@ -32,10 +32,10 @@ namespace slipstick::qp
   struct SmalbeOptions
   {
     double initial_balance   = 1.0; // M_0 > 0 (Hessian scaled to norm 1)
-    double balance_reduction = 1.5; // beta > 1: M is divided by it; the paper's 10 buys inner precision too dearly
+    double balance_reduction = 1.5; // beta > 1: M is divided by it; with the paper's 10, inner solves are too accurate
     double regularization    = 1.0; // rho over |PFP|
     unsigned int max_outer_iterations = 400;
-    unsigned int max_multiplications  = std::numeric_limits<unsigned int>::max(); // by the Hessian, of one solve
+    unsigned int max_multiplications  = std::numeric_limits<unsigned int>::max(); // by the Hessian, per solve
     MpgpOptions  inner;
 
     unsigned int penalty_window   = 15;   // outer steps in which the least |Gx| so far must fall ... (own choice)
@@ -47,12 +47,12 @@ namespace slipstick::qp
     double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
   };
 
-  /// Which directions PCPG makes a new one F-orthogonal to.
+  /// The previous directions to which PCPG makes a new one F-orthogonal.
   enum class Reorthogonalization
   {
-    automatic, // full with a preconditioner, else none: Farhat, Crivelli, Roux 1994
-    full,      // to all so far; two vectors are kept for each
-    none       // to the last one
+    automatic, // full with a preconditioner, otherwise none: Farhat, Crivelli, Roux 1994
+    full,      // all previous ones; two vectors are stored for each
+    none       // only the last one
   };
 
   struct PcpgOptions
@@ -61,7 +61,7 @@ namespace slipstick::qp
     Reorthogonalization reorthogonalization = Reorthogonalization::automatic;
 
     double rounding           = 2.2e-16; // a residual below this times (|Fx| + |b|) is noise; unit roundoff of double
-    double smallest_curvature = 1e-15;   // p'Fp over p'p and the largest such quotient so far: below it F is singular
+    double smallest_curvature = 1e-15;   // F counts as singular if p'Fp / p'p is below this part of its maximum so far
 
     unsigned int stagnation_window   = 200;  // iterations in which the least residual so far must fall ... (own choice)
     double       stagnation_progress = 0.99; // ... below this times its old value (own choice)
@@ -71,70 +71,70 @@ namespace slipstick::qp
   struct FaceSolverOptions
   {
     unsigned int max_iterations = 300;
-    double smallest_curvature   = 1e-15; // p'Fp over p'p and the largest such quotient so far: below it F is singular
-    double rounding       = 1e-14; // a new direction below this part of itself after orthogonalisation is in the span
-    double progress       = 0.999; // a step that leaves more than this part of the residual ...
-    unsigned int patience = 10;    // ... this many times in a row ends the solve
-    double       accuracy = 0.3;   // products are trusted up to this part of the target
+    double smallest_curvature   = 1e-15; // F counts as singular if p'Fp / p'p is below this part of its maximum so far
+    double rounding             = 1e-14; // a direction reduced to less than this part by orthogonalisation is dependent
+    double progress             = 0.999; // if a step leaves more than this part of the residual ...
+    unsigned int patience       = 10;    // ... this many times in a row, the solve ends
+    double       accuracy       = 0.3; // products are trusted if their rounding error is below this part of the target
     double       violation_weight =
-      1; // of the conditions of a turned face, as a residual: |F| is 1 and local stiffnesses are larger
+      1; // weight of violated conditions of a turned face in the residual; |F| is 1, local stiffnesses are larger
   };
 
   /// Options of the semismooth Newton method (own choice; doc/method.md).
   struct NewtonOptions
   {
-    double       start_tolerance       = 0.3; // of the SMALBE steps that give the first active set, ...
-    unsigned int start_multiplications = 20;  // ... the most that they may take (they have no preconditioner) ...
+    double       start_tolerance       = 0.3; // tolerance of the SMALBE steps that predict the first active set, ...
+    unsigned int start_multiplications = 20;  // ... their largest number of multiplications (no preconditioner) ...
     unsigned int start_multiplications_with_friction = 100; // ... and the same where bounds follow the pressure
-    double       set_step                            = 3;   // least s of the natural residual, times norm over weight
-    double       forcing          = 0.1;  // residual that faces are solved to, over the natural residual, ...
+    double       set_step         = 3;    // lower bound of s in the natural residual, times |PFP| / weight
+    double       forcing          = 0.1;  // residual to which faces are solved, over the natural residual, ...
     double       singular_forcing = 0.03; // ... and the same where F may be singular
-    double       last_forcing     = 0.6;  // times the tolerance: never below
-    double       tightening       = 0.1;  // of the residual reached, where the goal is met and x is not right ...
-    double       least_part       = 1e-5; // ... down to this part of the goal
-    double       astray = 1e3; // or where faces that meet the goal lead twice to so much larger a natural residual
-    double sharpening = 0.01;  // of the residual of an earlier face with the same set, where others came in between ...
-    unsigned int n_remembered_sets = 10;  // ... among so many of the last faces, ...
+    double       last_forcing     = 0.6;  // lower bound of this residual, over the tolerance
+    double       tightening = 0.1;  // next tolerance over the residual, if the goal is met but x is not accurate ...
+    double       least_part = 1e-5; // ... down to this part of the goal
+    double       astray     = 1e3;  // or if natural residuals grow by this factor after faces that meet the goal, twice
+    double sharpening = 0.01; // target over the residual of an earlier face with the same set but others in between ...
+    unsigned int n_remembered_sets = 10;  // ... among this number of the latest faces, ...
     double       wide_stiffnesses  = 1e6; // ... if stiffnesses of rows differ by more than this, or F may be singular
     double       largest_regularization = 1e-4; // over the diagonal of F
-    double       gaps_over_forces     = 10; // |gP| may be at most this times the tolerance times |PFP| times the forces
-    unsigned int memory               = 6;  // a step must end below the largest natural residual of so many ...
-    double       sufficient_decrease  = 1e-2; // ... by this part times its length, ...
-    double       backtracking         = 0.5;  // ... or is cut by this factor ...
-    double       shortest_step        = 1e-3; // ... before whole steps and other sets are tried
-    double       largest_rise         = 100;  // residual after such a whole step over that before, ...
-    double       least_progress       = 0.5;  // ... and of those that follow it
-    double       longest_leap         = 1e4;  // the same of the one from a rough start
+    double       gaps_over_forces       = 10;   // largest |gP| over tolerance times |PFP| times the forces
+    unsigned int memory = 6; // a step must end below the largest of this number of last natural residuals ...
+    double       sufficient_decrease  = 1e-2; // ... by this part times the step length; ...
+    double       backtracking         = 0.5;  // ... otherwise the length is multiplied by this, ...
+    double       shortest_step        = 1e-3; // ... down to this; then whole steps and other sets are tried
+    double       largest_rise         = 100;  // residual after the first whole step over that before, ...
+    double       least_progress       = 0.5;  // ... and the same for those that follow it
+    double       longest_leap         = 1e4;  // the same for the single step from a rough start
     unsigned int max_outer_iterations = 100;
-    unsigned int n_directions         = 200; // kept with their products
+    unsigned int n_directions         = 200; // number of directions stored with their products
     FaceSolverOptions face;
   };
 
-  /// Options of the point nearest to zero within the bounds and the equalities (own choice).
+  /// Options of the search for the point nearest to zero within the bounds and the equalities (own choice).
   struct FeasiblePointOptions
   {
-    double       tolerance = 1e-12; // |Q(x - x_e)| over max(|Q x_e|, |projection of 0 on the bounds|) at most ...
-    double       rounding  = 1e-15; // ... and as small as it gets, down to this; or this times |y|, ...
-    double       largest_rounding     = 1e-10; // ... which may be at most this times that length
-    unsigned int max_plain_steps      = 100;   // of Newton's method before the proximal points
-    unsigned int max_newton_steps     = 300;   // of all proximal points
-    double       first_regularization = 1e-3;  // eps of the first proximal point, over the norm of Q, which is 1 ...
-    double       reduction            = 0.1; // ... times this from one point to the next while the residual falls, ...
-    double       least_regularization = 1e-10; // ... not below this
-    double maximum_tolerance = 1e-3;  // of a proximal point: gradient over Q(x - x_e), less where that has settled, ...
-    double least_gradient    = 1e-13; // ... or over the reference length
-    double progress          = 0.5;   // a residual that falls by less has settled
-    unsigned int newton_steps_per_maximum = 20;   // more than these: eps is too small
+    double tolerance = 1e-12; // of |Q(x - x_e)| over the reference length max(|Q x_e|, |projection of 0|); ...
+    double rounding  = 1e-15; // ... proximal points go on until it settles or is below this, or this times |y|, ...
+    double largest_rounding           = 1e-10; // ... which may be at most this times the reference length
+    unsigned int max_plain_steps      = 100;   // Newton steps before the proximal points
+    unsigned int max_newton_steps     = 300;   // Newton steps for all proximal points
+    double       first_regularization = 1e-3;  // eps of the first proximal point (the norm of Q is 1), ...
+    double       reduction            = 0.1; // ... multiplied by this for the next point while the residual falls, ...
+    double       least_regularization = 1e-10; // ... but not below this
+    double       maximum_tolerance = 1e-3; // gradient over |Q(x - x_e)| of proximal points, less once that settles, ...
+    double       least_gradient    = 1e-13;       // ... or gradient over the reference length
+    double       progress          = 0.5;         // a residual above this part of the one before has settled
+    unsigned int newton_steps_per_maximum = 20;   // if more are needed, eps is too small
     unsigned int max_cg_iterations        = 200;  // per Newton step
-    double       cg_tolerance             = 1e-2; // at most: residual of the Newton equation over its right-hand side
-    double       least_cg_tolerance       = 1e-6; // at least; in between it is the residual over the reference length
-    unsigned int max_line_search_steps    = 40;
-    double       line_search_slope        = 0.1; // accepted slope of the dual function over the slope at the start
-    double       line_search_growth       = 4.0; // > 1: factor on the step length while the dual function rises
-    double       longest_step             = 1e4; // times the Newton step
+    double       cg_tolerance             = 1e-2; // largest residual of the Newton equation over its right-hand side
+    double       least_cg_tolerance    = 1e-6; // smallest one; in between it is the gradient over the reference length
+    unsigned int max_line_search_steps = 40;
+    double       line_search_slope     = 0.1; // accepted slope of the dual function over the slope at the start
+    double       line_search_growth    = 4.0; // > 1: factor on the step length while the dual function increases
+    double       longest_step          = 1e4; // over the Newton step
 
     double certificate_radius = 1e4;  // a certificate excludes all points up to this times the reference length
-    double certificate_margin = 1e-9; // ... with this margin relative to the numbers that are summed
+    double certificate_margin = 1e-9; // ... with this margin relative to the summed terms
 
     unsigned int stagnation_window   = 20; // steps or proximal points in which the least residual so far must fall ...
     double       stagnation_progress = 0.99; // ... below this times its old value

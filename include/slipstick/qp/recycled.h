@@ -12,7 +12,7 @@ namespace slipstick::qp
 {
   namespace detail
   {
-    // Directions are skipped if their squared energy (residual) without the part in the span of others is below this
+    // Directions are skipped if their squared energy (residual), without the part in the span of others, is below this
     // part of its original value.
     constexpr double dependent_direction = 1e-12;
 
@@ -31,7 +31,7 @@ namespace slipstick::qp
         return combinations.size();
       }
 
-      /// of[j] of the directions, summed for every combination.
+      /// Values of[j] of the directions, summed for every combination.
       std::vector<double> combined(const std::vector<double> &of) const
       {
         std::vector<double> result;

@@ -1,32 +1,33 @@
-// Semismooth Newton on the natural residual of bounds and equalities, with a line search on its norm.
+// Semismooth Newton method for the natural residual of bounds and equalities, with a line search on its norm.
 //
-// The solution is where x = proj(x - s g), g = F x - d + G'a, G x = e, on the entries with bounds, and g = 0 on the others
-// (Hintermueller, Ito, Kunisch 2003; bounds that follow the solution, Coulomb friction: Alart, Curnier 1991). A Newton step
-// solves the linear problem of the face that the projection tells: entries at bounds held there, slipping ones tied to
-// their normal force. F x is known at both ends of a step, so the norm of the residual is known along it without a
-// multiplication: the line search (nonmonotone: Grippo, Lampariello, Lucidi 1986) costs vector operations only.
+// The solution satisfies x = proj(x - s g), g = F x - d + G'a, G x = e, on the entries with bounds, and g = 0 on the
+// others (Hintermueller, Ito, Kunisch 2003; bounds that follow the solution, Coulomb friction: Alart, Curnier 1991). A
+// Newton step solves the linear problem of the face that the projection determines: entries at bounds are held there,
+// slipping ones are tied to their normal force. F x is known at both ends of a step, so that the norm of the residual
+// along the step costs no multiplication: the line search (nonmonotone: Grippo, Lampariello, Lucidi 1986) takes vector
+// operations only.
 //
-// Besides the Problem of types.h it needs
+// In addition to the members of the Problem of types.h it needs
 //   `auto face(const std::vector<bool> &free, const std::vector<Tie> &ties, const std::vector<Turn> &turns) const`
-//       the problem on the free entries (owned ones) with others tied to them, where entries of nodes that slip in space count
-//       as turned (pressure_bounds.h; vectors are not turned), which has multiply, reduction as the Problem, and
+//       the problem on the free (owned) entries, with others tied to them; entries of nodes that slip in space are
+//       meant as turned (pressure_bounds.h; vectors are not turned). It has multiply and reduction as the Problem, and
 //       `project_range(x, y)`   y = Q_f x on the free entries, y = x on the others, so that P_f = I - Q_f keeps G x
-//       `balance(x)`            moves the free entries (the tied ones with them) by the least that makes G x = e
-//       `project_kernel(p)`     the same for G p = 0; then sets the tied entries to factor times theirs
-//       `multiplier_shift(v, y)` y = G'a on ALL entries, with a such that v - G'a is least on the free ones
+//       `balance(x)`            makes G x = e by the smallest change of the free entries (the tied ones follow)
+//       `project_kernel(p)`     the same for G p = 0; then sets the tied entries to factor times the free ones
+//       `multiplier_shift(v, y)` y = G'a on ALL entries, with the a that minimises v - G'a on the free ones
 //       `precondition(r, z)`    z = M r on the free entries, 0 on the others; symmetric positive semidefinite
+//       `is_regular()`          false if the free entries alone do not determine a
 //       the Problem and its faces may have residual_weights (kernels.h)
-//       `is_regular()`          false when the free entries alone do not determine a
 //   `loose_bodies() const`   an object with
-//       `hold(free, gaps, well, turns)`   the free entries and as many others, with small gaps, as make the face regular if
-//           that can be; or, if that is asked for, far from singular
-//       and, if there are bodies that nothing but entries with bounds holds,
-//       `predict_active_sets()` is it worth while to move them?
-//       `balance(stiffness, set, tolerated, moved)`   moves them, moved -= stiffness times their jumps, so that proj(moved)
-//           balances their loads, up to the part `tolerated` of all forces: the least of the potential of the projected
-//           forces. So sets are predicted that can bear the loads.
-// It may have `point_stiffness() const`, |PFP| times the stiffness of an entry of weight 1 whose neighbours are held (active_set.h),
-// and, as its faces, `dependent_compliances() const` (kernels.h).
+//       `hold(free, gaps, well, turns)`   the free entries and as many others, with small gaps, as make the face
+//           regular, if possible; with `well`, far from singular
+//       and, if there are bodies that are held by entries with bounds only,
+//       `predict_active_sets()` whether it is worthwhile to move them
+//       `balance(stiffness, set, tolerated, moved)`   moves them, moved -= stiffness times their jumps, such that
+//           proj(moved) balances their loads up to the part `tolerated` of all forces (the minimum of the potential of
+//           the projected forces). The predicted sets can then carry the loads.
+// It may have `point_stiffness() const`, |PFP| times the stiffness of an entry of weight 1 whose neighbours are held
+// (active_set.h), and, like its faces, `dependent_compliances() const` (kernels.h).
 #pragma once
 
 #include <slipstick/qp/active_set.h>
@@ -46,23 +47,23 @@
 
 namespace slipstick::qp
 {
-  /// The point that tells the first active set: entries at their bounds, or, with the gradient F x - d + G'a, those that
-  /// a step along it takes there.
+  /// The point that determines the first active set: entries at their bounds or, given the gradient F x - d + G'a,
+  /// those that a step along it moves there.
   template <typename Vector>
   struct NewtonStart
   {
     Vector                x;
     std::optional<Vector> gradient = std::nullopt;
 
-    /// Directions of earlier solves with the same F and G, and where this one leaves its own; none: its own.
+    /// Directions of earlier solves with the same F and G, to which this solve adds its own; null: none.
     std::shared_ptr<DirectionStore<Vector>> directions = nullptr;
 
-    /// Far from the solution? Then a step may once raise the residual.
+    /// Whether the start is far from the solution. If so, one step may raise the residual.
     bool is_rough = false;
   };
 
-  /// Ends the method before its goal is reached: called with x on its bounds and its gradient F x - d + G'a after every
-  /// step, on every process with the same result.
+  /// Ends the method before its goal is reached. Called after every step with x on its bounds and its gradient F x - d
+  /// + G'a; must return the same on every process.
   template <typename Vector>
   using Acceptance = std::function<bool(const Vector &x, const Vector &gradient)>;
 
@@ -70,18 +71,19 @@ namespace slipstick::qp
   struct NewtonResult
   {
     Status            status;
-    Vector            x;                  // free entries within their bounds when converged, the others at them
+    Vector            x;                  // when converged: free entries within their bounds, the others at them
     std::vector<bool> free;               // owned entries
     double            projected_gradient; // |gP| over the reference of the goal
-    Vector gradient; // F x - d + G'a, before x was put on its bounds: tells the first set of a similar problem
+    Vector gradient; // F x - d + G'a, before x was put on its bounds; predicts the first set of a similar problem
     Counts counts;
   };
 
   namespace detail
   {
-    // Of a step along M r: eigenvalues of F M are 1 to some 5 (first steps of conjugate gradients there: 0.15 to 0.5).
+    // Length of a step along M r: eigenvalues of F M are 1 to about 5 (first steps of conjugate gradients: 0.15 to
+    // 0.5).
     constexpr double descent_step = 0.3;
-    // So many kinks of the natural residual are crossed from one point.
+    // Largest number of kinks of the natural residual that are crossed from one point.
     constexpr std::size_t most_kinks = 10;
 
     template <typename Vector, typename Problem>
@@ -129,7 +131,7 @@ namespace slipstick::qp
         const Status status = iterate();
         if (status != Status::converged && go_to_best())
           set.predict(now.x, zero_like(now.x));
-        set.put_on_bounds(now.x); // ties to the last bit
+        set.put_on_bounds(now.x); // makes ties exact to the last bit
         set.project_on_bounds(now.x);
         return {status, std::move(now.x), set.free(), residual, std::move(now.gradient), counts};
       }
@@ -137,7 +139,7 @@ namespace slipstick::qp
     private:
       using Face = decltype(std::declval<Problem>().face(std::vector<bool>(), std::vector<Tie>(), std::vector<Turn>()));
 
-      // The largest weight of a residual over the least, which is 1.
+      // The largest weight of a residual over the smallest, which is 1.
       static double ratio_of_weights(const Problem &problem, const Vector &d)
       {
         const double *weights = residual_weights(problem, 0);
@@ -147,7 +149,7 @@ namespace slipstick::qp
         return -problem.reduction().min(-largest);
       }
 
-      // Gradients are differences of entries of d and F x.
+      // Rounding level of gradients, which are differences of entries of d and F x.
       static double noise_of(const Problem &problem, const Vector &d)
       {
         constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
@@ -184,7 +186,7 @@ namespace slipstick::qp
         return ended(Status::iteration_limit);
       }
 
-      // Fills the residual of `next`. @return it with the violation of the bounds, over the reference.
+      // Computes the residual of `next`. @return its sum with the violation of the bounds, over the reference.
       double measure()
       {
         const auto [gradient, violation] = set.residuals(next.x, next.gradient);
@@ -192,9 +194,8 @@ namespace slipstick::qp
         return residual + violation / goal.reference;
       }
 
-      // Where a point was not found on a face it may be the solution: the start, as that of loads which hardly differ from
-      // those before, or the end of a step that was cut. A step on a face whose matrix is nearly singular could lead far away
-      // from it.
+      // A point that was not found on a face may be the solution: the start, if the loads hardly differ from the
+      // previous ones, or the end of a step that was cut. A step on a nearly singular face could lead far away from it.
       bool solves_already(const Face &face)
       {
         if (!(line.present() <= goal.tolerance * goal.reference))
@@ -209,7 +210,8 @@ namespace slipstick::qp
         return true;
       }
 
-      // `next` with this residual, where the method is or on the face.
+      // Whether `next`, with this residual, is the solution. It is either the present point or the solution on the
+      // face.
       bool is_solution(const Face &face, double left)
       {
         if (left <= goal.tolerance)
@@ -224,13 +226,14 @@ namespace slipstick::qp
         return Status::converged;
       }
 
-      // Forces that are left of larger ones, as where loads end, are small beside these.
+      // The norm of the forces, or the scale given by the goal if that is larger: what remains of larger forces, for
+      // instance after unloading, is small beside these.
       double size_of_forces(const Vector &forces) const
       {
         return std::max(std::isfinite(goal.forces) ? goal.forces : 0., qp::norm(forces, problem.reduction()));
       }
 
-      // Residuals below the goal that do not fall any more are at rounding.
+      // Residuals that are below the goal and no longer decrease are at rounding level.
       Status ended(const Status status)
       {
         if (!stop.has_met_goal())
@@ -240,7 +243,7 @@ namespace slipstick::qp
         return Status::converged;
       }
 
-      // @return is there one?
+      // @return whether there is one.
       bool go_to_best()
       {
         auto best = stop.take_best();
@@ -251,8 +254,8 @@ namespace slipstick::qp
         return true;
       }
 
-      // By how much `next`, put on its bounds, would have to change for G x = e: over the reference, or over its own size,
-      // which is more where the reference is that of gaps, beside which what forces do is next to nothing.
+      // The change of `next`, put on its bounds, that G x = e requires: relative to the reference or to its own size,
+      // whichever gives more. The latter does if gaps determine the reference and the forces are negligible beside it.
       double imbalance(const Face &face)
       {
         Vector at = next.x;
@@ -265,7 +268,7 @@ namespace slipstick::qp
         return missing > 0 ? missing * std::max(norm / goal.reference, 1 / size) : 0.;
       }
 
-      // M r on the free entries, and how far the others are from their bounds: nearly the error of `next`.
+      // M r on the free entries, and the distances of the others from their bounds: nearly the error of `next`.
       Vector error_on(const Face &face)
       {
         Vector r(next.gradient), error(r);
@@ -281,8 +284,8 @@ namespace slipstick::qp
         return error;
       }
 
-      // The face of the set. Where that leaves a motion open, the entries at bounds that come nearest to leaving them hold
-      // it; where a step failed, motions that the free entries hardly hold count as open.
+      // The face of the set. If it leaves a motion open, the entries at bounds that are closest to leaving them hold
+      // it; after a failed step, motions that the free entries hardly resist count as open.
       std::optional<Face> regular_face()
       {
         if (is_stuck)
@@ -299,7 +302,7 @@ namespace slipstick::qp
         return {};
       }
 
-      // The start to its bounds and to where G x = e; F x, gradient and set.
+      // Moves the start to its bounds and to G x = e; computes F x, the gradient and the set.
       bool begin()
       {
         auto face = regular_face();
@@ -315,14 +318,14 @@ namespace slipstick::qp
         return true;
       }
 
-      // The set that a point and its gradient tell.
+      // Sets the active set to the one predicted from a point and its gradient.
       void predict(const PointWithGradient<Vector> &at)
       {
         predict(at.x, at.gradient);
       }
 
-      // Natural residuals with different s cannot be compared: those of the last steps are taken for as much larger or smaller
-      // with the new one as the present one is.
+      // Natural residuals with different s cannot be compared. Those of the last steps are therefore scaled by the
+      // factor by which the residual of the present point changes with s.
       void predict(const Vector &at, const Vector &gradient)
       {
         const double before = set.step_length();
@@ -335,7 +338,7 @@ namespace slipstick::qp
         watchdog.rescale(factor);
       }
 
-      // F x - d + G'a with the a that makes it, with what the turns of forces add, least on the free entries.
+      // F x - d + G'a, with the a that minimises it on the free entries, including the gradient of turned forces.
       void fill_gradient(const Face &face, NewtonPoint<Vector> &at) const
       {
         combine(1.0, at.Fx, 0.0, at.gradient);
@@ -346,15 +349,15 @@ namespace slipstick::qp
         add(-1.0, shift, at.gradient);
       }
 
-      // Of the next face, falling with the residual (Levenberg, Marquardt): where forces are not unique the method converges to
-      // the nearest ones, as fast as elsewhere (Fan, Yuan 2005). What a face leaves of the residual, over this, is how far forces
-      // wander that F does not determine.
+      // Regularisation of the next face, which decreases with the residual (Levenberg, Marquardt): where forces are not
+      // unique, the method converges to the nearest ones, as fast as elsewhere (Fan, Yuan 2005). The residual that a
+      // face leaves, divided by this, is the distance by which forces may drift that F does not determine.
       double regularization() const
       {
         return is_singular ? std::min(options.largest_regularization, line.present() / goal.reference) : 0.;
       }
 
-      // `next`, the solution on the face, up to a part of the present residual.
+      // `next` becomes the solution on the face, up to a part of the present residual.
       void solve(const Face &face)
       {
         next.x = now.x;
@@ -385,16 +388,17 @@ namespace slipstick::qp
         fill_gradient(face, next);
       }
 
-      // on any process
+      // Whether any process has ties.
       bool has_ties() const
       {
         return problem.reduction().min(ties.empty() ? 1. : 0.) < 1;
       }
 
-      // F x of `next` by the product with the step to it, which is a direction as all others; steps of rounding are none.
+      // F x of `next`, from the product with the step to it, which is stored as a direction. Steps at rounding level
+      // are ignored.
       void step_to_start(const Face &face)
       {
-        constexpr double rounding = 1e-13, no_direction = 1e-6; // over |x|
+        constexpr double rounding = 1e-13, no_direction = 1e-6; // relative to |x|
         Vector           step(next.x), product(next.x);
         add(-1., now.x, step);
         const auto s =
@@ -408,7 +412,7 @@ namespace slipstick::qp
         problem.multiply(step, product);
         ++counts.hessian_multiplications;
         add(1., product, next.Fx);
-        if (s[0] > no_direction * no_direction * s[1]) // else G step = 0 holds to few digits
+        if (s[0] > no_direction * no_direction * s[1]) // otherwise G step = 0 holds only to a few digits
           {
             const double squares = problem.reduction().sum(
               std::array<double, 1>{{local_squares(residual_weights(problem, 0), step, product)}})[0];
@@ -420,7 +424,8 @@ namespace slipstick::qp
           }
       }
 
-      // A short step along the preconditioned residual of the face goes with the one onto its bounds: F is multiplied anyway.
+      // Adds a short step along the preconditioned residual of the face to the step onto its bounds: F is multiplied
+      // anyway.
       void descend(const Face &face, Vector &step)
       {
         Vector r(now.gradient), shift(r), p(r);
@@ -434,7 +439,7 @@ namespace slipstick::qp
         add(descent_step, p, step);
       }
 
-      // Along the step to the next point and set. @return is there one?
+      // Moves along the step to the next point and set. @return whether there is one.
       bool step()
       {
         double t    = line.search(set, now, next);
@@ -474,8 +479,9 @@ namespace slipstick::qp
         return true;
       }
 
-      // Next to the present point the natural residual has a kink, where entries come to their bounds or leave them. The set beyond it is that of the
-      // derivative along the step (Pang 1990); its own step may lead across others. @return was it not tried yet from here?
+      // The natural residual has a kink next to the present point, where entries reach or leave their bounds. The
+      // derivative along the step determines the set beyond it (Pang 1990); the step of that set may cross other kinks.
+      // @return whether that set was not tried from here yet.
       bool cross_kink()
       {
         refused.add(set.sides());
@@ -485,8 +491,8 @@ namespace slipstick::qp
         return !refused.contains(set.sides(), problem.reduction());
       }
 
-      // From the set of the present point itself, with bodies balanced finely, then also on softer points, where that is possible. @return whether it
-      // was not tried yet.
+      // Restarts from the set of the present point, with bodies balanced finely or, if they are already, on softer
+      // points. @return whether this was not tried yet.
       bool restart()
       {
         const bool is_changed = set.balance_finely() || set.soften(), is_first = !is_stuck;
@@ -497,7 +503,7 @@ namespace slipstick::qp
         return is_changed || is_first;
       }
 
-      // Once from a rough start the whole step all the same, wherever it leads. @return whether there was such a step left.
+      // Once, from a rough start, takes the whole step although it raises the residual. @return whether it was taken.
       bool leap()
       {
         if (!is_rough || !(line.whole() <= options.longest_leap * line.present()))
@@ -507,7 +513,7 @@ namespace slipstick::qp
         return true;
       }
 
-      // To where whole steps began. @return how much of the step there is taken.
+      // Returns to the point where whole steps began. @return the part of the step from there that is taken.
       double come_back()
       {
         auto start = watchdog.give_up();
@@ -526,7 +532,8 @@ namespace slipstick::qp
         predict_from_here(true);
       }
 
-      // @param is_solved at the end of a whole step nothing is left on the free entries.
+      // @param is_solved whether this is the end of a whole step, so that the gradient on the free entries is
+      // meaningless
       void predict_from_here(const bool is_solved)
       {
         Vector known(now.gradient);
@@ -535,7 +542,7 @@ namespace slipstick::qp
         predict(now.x, known);
       }
 
-      // To the end of the step that the line search found.
+      // Moves to the end of the step found by the line search.
       void move_by_part(const double t)
       {
         if (t < 1)
@@ -587,8 +594,8 @@ namespace slipstick::qp
       const NewtonOptions      &options;
       const Observer           &observer;
       const Acceptance<Vector> &accepts;
-      const bool                has_wide_stiffnesses; // gradients may tell sets that are below the tolerance
-      const bool                is_singular;          // F, on some faces
+      const bool                has_wide_stiffnesses; // sets may depend on gradients below the tolerance
+      const bool                is_singular;          // whether F is singular on some faces
 
       StoppingTest<Vector>                           stop;
       ActiveSet<Vector, Problem>                     set;
@@ -597,26 +604,26 @@ namespace slipstick::qp
       std::vector<Tie>                               ties; // of the present face
       LineSearch<Vector, ActiveSet<Vector, Problem>> line;
       Watchdog<Vector, ActiveSet<Vector, Problem>>   watchdog;
-      SetHistory                                     solved; // residuals are those that faces were solved to
-      SetHistory refused; // whose steps do not lower the residual of the present point
+      SetHistory                                     solved; // with the residuals to which faces were solved
+      SetHistory refused; // sets whose steps do not lower the residual of the present point
 
-      NewtonPoint<Vector> now;                    // where the method is
-      NewtonPoint<Vector> next;                   // where the present step leads
-      bool                is_unjudged = false;    // may `now` be the solution?
+      NewtonPoint<Vector> now;                    // present point
+      NewtonPoint<Vector> next;                   // end of the present step
+      bool                is_unjudged = false;    // whether `now` may be the solution
       double              residual    = HUGE_VAL; // of the last face, over the reference
       bool                is_stuck    = false;    // the last step did not lower the natural residual
-      bool                is_rough;               // the start, and no step was made yet in spite of the residual
-      Vector              told;                   // gradient of the last prediction
+      bool                is_rough; // whether the start is, and no step has raised the residual deliberately yet
+      Vector              told;     // gradient of the last prediction
       Counts              counts;
     };
   } // namespace detail
 
-  /// Minimise 1/2 x'Fx - x'd over the admissible set and G x = e; with bounds that follow the solution the equilibrium
-  /// in place of the minimum. `norm` is |PFP|; goal.reference must be given (|P(d - F x~)|). Converged: x is within its
-  /// bounds, |gP| and |PFP| |G x - e| are at most goal.tolerance times goal.reference, or @p accepts said so, and @p is_right
-  /// agrees or nothing more can be done.
-  /// status: infeasible if no entry at a bound leaves the equalities singular all the same; stagnated if the natural
-  /// residual does not fall along a step.
+  /// Minimises 1/2 x'Fx - x'd over the admissible set and G x = e; with bounds that follow the solution, finds the
+  /// equilibrium instead of the minimum. `norm` is |PFP|; goal.reference must be given (|P(d - F x~)|).
+  /// status: converged if @p accepts returned true, or if x is within its bounds, |gP| and |PFP| |G x - e| are at most
+  /// goal.tolerance times goal.reference, and @p is_right returned true or the residual cannot be reduced further;
+  /// infeasible if the equalities remain singular when entries leave their bounds; stagnated if the natural residual
+  /// does not decrease along a step.
   /// @code
   /// using namespace test; // FacedProblem: a dense problem with faces, tests/qp/faced_problem.h
   /// Matrix G(1, 2);

@@ -1,4 +1,4 @@
-// Active sets that a method has met, compared over all processes.
+// History of the active sets of a method, compared over all processes.
 #pragma once
 
 #include <slipstick/qp/active_set.h>
@@ -12,11 +12,11 @@
 
 namespace slipstick::qp::detail
 {
-  /// The last sets, each with a residual.
+  /// The latest sets, each with a residual.
   class SetHistory
   {
   public:
-    /// @param most_ so many are kept.
+    /// @param most_ largest number of sets that are kept.
     explicit SetHistory(const std::size_t most_)
       : most(most_)
     {}
@@ -45,7 +45,7 @@ namespace slipstick::qp::detail
       return std::find(equal.begin(), equal.end(), true) != equal.end();
     }
 
-    /// The least residual of a set if another one came in between; infinite: none.
+    /// The smallest residual of this set, if it occurred before but not last; otherwise infinity.
     template <typename Reduction>
     double least_of_earlier(const Sides &sides, const Reduction &reduction) const
     {
@@ -65,7 +65,7 @@ namespace slipstick::qp::detail
       double residual;
     };
 
-    // On all processes.
+    // Which of the sets are equal to this one on all processes.
     template <typename Reduction>
     std::vector<bool> equal_to(const Sides &sides, const Reduction &reduction) const
     {

@@ -247,8 +247,8 @@ namespace slipstick::qp
   /// |PFP|. A start outside the box is projected onto it; from 0 there is no multiplication before the first step. The
   /// observer is called after every outer step, on every process; so is @p accepts, with x and the gradient, which may
   /// end the solve before the goal is reached (it must return the same on every process).
-  /// status: infeasible if bounds contradict each other (x is then meaningless) or the equalities (proved; without
-  /// proof the status is stagnated), or if the objective is unbounded from below.
+  /// status: infeasible if the bounds contradict each other (x is then meaningless) or the equalities (with proof;
+  /// without proof the status is stagnated), or if the objective is unbounded from below.
   /// @code
   /// using Vector = std::vector<double>;
   /// struct Problem // F = diag(1, 3), G = (1, 1) / sqrt(2)

@@ -1,4 +1,4 @@
-// When the semismooth Newton method may end.
+// The stopping test of the semismooth Newton method.
 #pragma once
 
 #include <slipstick/qp/kernels.h>
@@ -15,14 +15,14 @@
 
 namespace slipstick::qp
 {
-  /// Is the estimated error of x, M r of the face, small where it counts? Asked once the goal is reached; else the method
-  /// goes on to smaller residuals. On every process with the same result.
+  /// Whether the estimated error of x (M r of the face) is small in the quantities that matter. Called once the goal is
+  /// reached; if false, the method continues to smaller residuals. Must return the same on every process.
   template <typename Vector>
   using ErrorTest = std::function<bool(const Vector &x, const Vector &error)>;
 
   namespace detail
   {
-    /// Whether a point is the solution, the best point so far, and how far faces must be solved for that.
+    /// Decides whether a point is the solution, keeps the best point so far, and sets the tolerance of faces.
     template <typename Vector>
     class StoppingTest
     {
@@ -30,10 +30,10 @@ namespace slipstick::qp
       struct Best
       {
         PointWithGradient<Vector> point;
-        double                    residual; // over the reference
+        double                    residual; // relative to the reference
       };
 
-      /// All but the goal is referred to. @param norm_ |PFP|
+      /// Keeps references to all arguments except the goal. @param norm_ |PFP|
       StoppingTest(const Goal              &goal_,
                    const double             norm_,
                    const NewtonOptions     &options_,
@@ -45,22 +45,23 @@ namespace slipstick::qp
         , tolerance(goal_.tolerance)
       {}
 
-      /// Residual that faces are solved to, over the reference: the goal's, or less until its point is right.
+      /// Relative residual to which faces are solved: the tolerance of the goal, or less if a point that met it was
+      /// refused.
       double tolerance_of_faces() const
       {
         return tolerance;
       }
 
-      /// Was the goal met at a point that was not right?
+      /// Whether a point met the goal but was refused.
       bool has_met_goal() const
       {
         return is_met;
       }
 
-      /// Is this point, which meets the goal, the solution? Else it is kept as the best, and faces are solved to less from now
-      /// on.
-      /// @param residual of the face, @param left of everything, over the reference. @param size of forces at that point.
-      /// @param error returns its estimated error
+      /// Whether this point, which meets the goal, is the solution. If not, it is kept as the best, and faces are
+      /// solved to a smaller residual from now on.
+      /// @param residual of the face, over the reference. @param left all residuals together, over the reference.
+      /// @param size of the forces at that point. @param error returns the estimated error of that point
       template <typename Error>
       bool accepts(const PointWithGradient<Vector> &at,
                    const double                     residual,
@@ -77,9 +78,10 @@ namespace slipstick::qp
         return false;
       }
 
-      /// After a face that was solved to @p residual and ended with this natural residual, both over the reference: faces
-      /// may meet the goal on sets whose bounds are violated by far more than before. Where that happens again, sets are told
-      /// by gradients below the goal (compliances that are far apart), and faces are solved to less.
+      /// Called after a face that was solved to @p residual and ended with this natural residual, both over the
+      /// reference. Faces may meet the goal on sets whose bounds are violated by far more than before. If that happens
+      /// again, gradients below the goal determine the sets (very different compliances), and faces are solved to a
+      /// smaller residual.
       void check_start_of_face(const double residual, const double natural_residual)
       {
         if (residual <= goal.tolerance &&
@@ -88,21 +90,22 @@ namespace slipstick::qp
         last_natural_residual = natural_residual;
       }
 
-      /// The natural residual is the least so far.
+      /// Keeps the point as the best one; its natural residual is the smallest so far.
       void propose(const PointWithGradient<Vector> &at, const double residual)
       {
         if (!is_met)
           best = Best{at, residual};
       }
 
-      /// Where the natural residual is least, or where the goal was met last.
+      /// The point with the smallest natural residual, or the one that met the goal last.
       std::optional<Best> take_best()
       {
         return std::exchange(best, std::nullopt);
       }
 
     private:
-      // Where gaps of open contact make the reference, the forces may be next to nothing beside it.
+      // Whether the residual is small compared with the forces, too: if open gaps determine the reference, the forces
+      // may be negligible beside it.
       bool tells_forces(const double left, const double size) const
       {
         return left * goal.reference <= options.gaps_over_forces * goal.tolerance * norm * size;

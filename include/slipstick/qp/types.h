@@ -14,7 +14,7 @@
 //             `const Reduction &reduction() const`.
 //             All are collective. F is best scaled such that |P F P| is about 1.
 //
-// Units: solvers are invariant under x -> s x, b -> t b; nothing compares a length with a force.
+// Units: the solvers are invariant under x -> s x, b -> t b; nothing compares a length with a force.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ namespace slipstick::qp
   {
     converged,       // the required residuals are reached
     iteration_limit, // an iteration limit of the options was reached
-    stagnated,       // residuals at rounding level, or not decreasing for a long time, or not numbers
+    stagnated,       // residuals are at rounding level, have not decreased for a long time, or are not numbers
     infeasible       // no solution: contradictory constraints, or unbounded from below
   };
 
@@ -62,14 +62,14 @@ namespace slipstick::qp
     unsigned int hessian_multiplications = 0; // so far
     double       projected_gradient      = 0; // |gP| over the reference of the Goal
     double       equality_residual       = 0; // |PFP| |Gx| over the reference of the Goal
-    std::size_t  active_lower            = 0; // entries at their lower bound, all processes
+    std::size_t  active_lower            = 0; // entries at their lower bound, over all processes
     std::size_t  active_upper            = 0; // entries at their upper bound only
   };
 
   using Observer = std::function<void(const OuterStep &)>;
 
   /// Required accuracy: residuals <= tolerance * reference; reference 0 means |b|. If gaps determine the reference,
-  /// forces have a scale of their own.
+  /// errors of forces are limited by a scale of their own.
   struct Goal
   {
     Goal(const double tolerance_, const double reference_ = 0, const double forces_ = HUGE_VAL)
@@ -80,7 +80,7 @@ namespace slipstick::qp
 
     double tolerance;
     double reference;
-    double forces; // magnitude of the forces that balance the loads, for limiting their errors; infinite: unknown
+    double forces; // magnitude of the forces that balance the loads, to limit their errors; infinite: unknown
   };
 
   /// Reduction of a single process.

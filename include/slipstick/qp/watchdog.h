@@ -1,4 +1,4 @@
-// Whole steps of the semismooth Newton method where its line search would cut them to next to nothing.
+// Whole steps of the semismooth Newton method where its line search would cut them to almost nothing.
 #pragma once
 
 #include <slipstick/qp/line_search.h>
@@ -10,35 +10,35 @@
 
 namespace slipstick::qp::detail
 {
-  /// Watchdog technique (Chamberlain, Powell, Lemarechal, Pedersen 1982): the set at the end of a whole step is often much
-  /// better than its residual tells. Whole steps go on while each but the first lowers the residual by a fixed part, until
-  /// it is below the bound of the line search where they began; else the method goes back there. So convergence remains
-  /// that of the line search. See doc/decisions/0128.
+  /// Watchdog technique (Chamberlain, Powell, Lemarechal, Pedersen 1982): the set at the end of a whole step is often
+  /// much better than its residual suggests. Whole steps continue while each but the first reduces the residual by a
+  /// fixed factor, until it is below the bound of the line search where they began. Otherwise the method returns to
+  /// that point, so that it converges as with the line search alone. See doc/decisions/0128.
   template <typename Vector, typename Set>
   class Watchdog
   {
   public:
-    /// Where whole steps began.
+    /// State of the method where whole steps began.
     struct Start
     {
       NewtonPoint<Vector>     from, to; // the step that was cut
-      Vector                  told;     // gradient that told its set
-      LineSearch<Vector, Set> line;     // as it was there
-      double                  t;        // what was left of the step
+      Vector                  told;     // gradient that determined its set
+      LineSearch<Vector, Set> line;     // its state there
+      double                  t;        // part of the step that the line search left
     };
 
-    /// @param options_ is referred to.
+    /// @param options_ is kept by reference.
     explicit Watchdog(const NewtonOptions &options_)
       : options(&options_)
     {}
 
-    /// Are whole steps being taken?
+    /// Whether whole steps are being taken.
     bool is_watching() const
     {
       return start.has_value();
     }
 
-    /// Are they worth while from here? Asked where a step is cut to next to nothing.
+    /// Whether whole steps may begin here. Called where a step is cut to almost nothing.
     bool may_begin(const LineSearch<Vector, Set> &line)
     {
       return n_cut++ >= n_to_wait && line.whole() <= options->largest_rise * line.present();
@@ -49,7 +49,8 @@ namespace slipstick::qp::detail
       start.emplace(std::move(at));
     }
 
-    /// May the next one be taken? Where the residual is low enough they end here, and the line search goes on.
+    /// Whether the next whole step may be taken. If the residual is low enough, it is the last one, and the line search
+    /// takes over.
     bool goes_on(const LineSearch<Vector, Set> &line)
     {
       if (!(line.whole() <= (1 - options->sufficient_decrease) * start->line.most()))
@@ -59,7 +60,8 @@ namespace slipstick::qp::detail
       return true;
     }
 
-    /// They ended in vain: where they began. The next ones wait for more steps that are cut.
+    /// Ends whole steps without success. @return where they began. The next ones have to wait for more steps that are
+    /// cut.
     Start give_up()
     {
       Start at = std::move(*start);
@@ -69,7 +71,7 @@ namespace slipstick::qp::detail
       return at;
     }
 
-    /// Residuals so far become those in another measure.
+    /// Converts the residuals so far to another measure.
     void rescale(const double factor)
     {
       if (start)
@@ -79,6 +81,6 @@ namespace slipstick::qp::detail
   private:
     const NewtonOptions *options;
     std::optional<Start> start;
-    unsigned int         n_cut = 0, n_to_wait = 0; // steps that were cut since the last whole ones
+    unsigned int         n_cut = 0, n_to_wait = 0; // steps that were cut since the last whole ones; number to wait for
   };
 } // namespace slipstick::qp::detail

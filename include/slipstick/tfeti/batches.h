@@ -9,8 +9,8 @@ namespace slipstick::tfeti
   /// Columns solved at once: a factor is read from memory once for all of them, and they stay in the cache.
   constexpr unsigned int largest_batch = 16;
 
-  /// The numbers 0 .. n - 1 in groups of the same @p identity (a pointer), in order of their first member, of at most
-  /// largest_batch; where it is null, alone.
+  /// The numbers 0 .. n - 1 in groups of the same @p identity (a pointer), ordered by their first members, of at most
+  /// largest_batch numbers; numbers whose identity is null are not grouped.
   template <typename Identity>
   std::vector<std::vector<unsigned int>> batches(const unsigned int n, const Identity &identity)
   {

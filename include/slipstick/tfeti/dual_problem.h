@@ -108,15 +108,15 @@ namespace slipstick::tfeti
       return row_metric.weights();
     }
 
-    /// Of the owned rows: 1 over the weight of those that depend linearly on others (redundant supports, corners where several pairs
-    /// meet), 0 for others; null if there are none on any rank, and without a preconditioner.
+    /// For the owned rows: 1 over the weight of rows that depend linearly on others (redundant supports, corners where
+    /// several pairs meet), 0 for others. Null if there are none on any rank, and without a preconditioner.
     const std::vector<double> *dependent_compliances() const
     {
       return has_dependent_rows ? &of_dependent_rows : nullptr;
     }
 
-    /// By how much gaps were changed because they contradicted each other where rows depend on each other, as far as
-    /// positions of nodes are rounded [mm].
+    /// The largest change of a gap that was made because gaps contradicted each other where rows depend on each other,
+    /// within the rounding of node positions [mm].
     double contradiction_of_gaps() const
     {
       return contradiction;

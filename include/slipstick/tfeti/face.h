@@ -75,7 +75,8 @@ namespace slipstick::tfeti
     std::unique_ptr<RowWeights::Inverse> weights;
   };
 
-  /// A projected residual below this part of the residual is rounding, as when supports move bodies without deforming them.
+  /// A projected residual below this part of the residual is rounding, for instance if supports move bodies without
+  /// deforming them.
   constexpr double rounding_of_projection = 1e-14;
 
   /// Norm with the weights of residuals. Collective.

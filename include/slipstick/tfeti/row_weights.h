@@ -11,12 +11,12 @@
 
 namespace slipstick::tfeti
 {
-  /// What may be done to c of a row where c is made consistent.
+  /// How c of a row may be changed to make c consistent.
   enum class RowChange
   {
     ignored,   // the row does not count, since it has a compliance
     stays,     // c stays
-    forbidden, // c stays, and that of rows that depend on this one
+    forbidden, // c stays, also in rows that depend on this one
     may_change
   };
 
@@ -66,8 +66,9 @@ namespace slipstick::tfeti
     /// nonzero entry in this row. The result does not depend on the partition.
     std::vector<bool> ambiguous(const std::vector<bool> &active) const;
 
-    /// The least change of c after which displacements u with B u = c are not excluded by linear dependences of rows:
-    /// x'c = 0 for the x with B'x = 0, as far as x has no row whose c must not change and |x'c| is at most @p limit, with 1 as
+    /// The smallest change of c after which linear dependences of rows do not exclude displacements u with B u = c: x'c
+    /// = 0 for all x with B'x = 0, except those x that involve a row with RowChange::forbidden or for which |x'c|
+    /// exceeds @p limit, with 1 as the largest entry of x. Owned rows.
     /// the largest entry of x. Owned rows.
     std::vector<double> least_correction(const std::vector<double>    &c,
                                          const std::vector<RowChange> &change,

@@ -97,12 +97,12 @@ namespace slipstick::tfeti
       return inner ? inner->identity() : nullptr;
     }
 
-    /// Schur complements of K on the touched unknowns times x, in their order, without forming the matrices, for subdomains
-    /// with the same inner_factor(). @param x by subdomain, becomes the products.
+    /// Products of the Schur complements of K on the touched unknowns with x, in their order, without forming the
+    /// matrices, for subdomains with the same inner_factor(). @param x by subdomain; replaced by the products.
     static void apply_schur_complements(const std::vector<const SubdomainSystem *> &subdomains,
                                         std::vector<Eigen::VectorXd>               &x);
 
-    /// Whether the touched unknowns are so many that their dense blocks would have far more entries than K.
+    /// Whether there are so many touched unknowns that their dense blocks would have far more entries than K.
     static bool prefers_factors(const SubdomainMatrices &matrices, const std::size_t n_touched);
 
     /// Diagonal of K at the touched unknowns.
@@ -170,7 +170,8 @@ namespace slipstick::tfeti
   };
 
   /// As many of the @p candidates as R has columns, chosen by pivoting so that the rows of R are as independent as
-  /// possible; of candidates whose squared pivots differ by no more than the part @p equal, the first. @return the unknowns, and the smallest pivot (about 1 if they hold all motions well, 0 if they do not).
+  /// possible; of candidates whose squared pivots differ by no more than the part @p equal, the first.
+  /// @return the unknowns, and the smallest pivot (about 1 if they hold all motions well, 0 if they do not).
   std::pair<std::vector<unsigned int>, double> fixing_unknowns(const Eigen::MatrixXd           &kernel,
                                                                const std::vector<unsigned int> &candidates,
                                                                const double                     equal = 0);
