@@ -19,9 +19,9 @@ namespace slipstick::interface
     constexpr unsigned int n_places = 33, n_places_across = 9;
     // The same for height functions, which may have narrow peaks.
     constexpr unsigned int n_places_below_function = 257, n_places_across_function = 33;
-    // The search ends at steps of this part of an edge.
+    // The search ends at steps of this fraction of an edge.
     constexpr double least_step = 1e-6;
-    // Points of surfaces coincide within this part of an edge.
+    // Points of surfaces coincide within this fraction of an edge.
     constexpr double same_place = 1e-3;
 
     /// Local coordinates of an edge, or of a face in the unit square (triangles are folded into it).

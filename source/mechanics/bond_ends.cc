@@ -11,7 +11,7 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // The other body is at the end of a bond if it is nearer than this part of an edge.
+    // The other body is at the end of a bond if it is nearer than this fraction of an edge.
     constexpr double reached = 0.1;
 
     /// Whether a boundary is bonded or supported.

@@ -11,7 +11,7 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // Points determine a coefficient if their spread is more than this part of that of all of its degree.
+    // Points determine a coefficient if their spread is more than this fraction of that of all of its degree.
     constexpr double least_spread = 1e-3;
 
     /// Symmetric matrix that maps points with this covariance to points with covariance 1; directions without extent are

@@ -13,11 +13,12 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // A cell contains the point if it is no farther from it than from the nearest cell, up to this part of its diameter.
+    // A cell contains the point if it is no farther from it than from the nearest cell, up to this fraction of its
+    // diameter.
     constexpr double same_place = 1e-6;
     // Centres of cells are half a cell inside the end of their layer; half of that is left for distortion.
     constexpr double margin_of_layers = 0.25;
-    // The points determine a polynomial if no pivot of the least squares problem is below this part of the largest.
+    // The points determine a polynomial if no pivot of the least squares problem is below this fraction of the largest.
     constexpr double independent = 1e-3;
     // For derivatives of the mapping at the middle of a reference cell.
     constexpr double step_in_cell = 0.1;

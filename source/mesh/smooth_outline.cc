@@ -24,7 +24,7 @@ namespace slipstick::mesh
     // Conditions for a cubic instead of a parabola: its mid node is off the middle of the chord by at most this part,
     // and the speed at the ends differs by at most this part from that of an arc.
     constexpr double off_middle = 0.05, other_speed = 0.25;
-    // Mid nodes are on the chord if their distance from it is at most this part of its length.
+    // Mid nodes are on the chord if their distance from it is at most this fraction of its length.
     constexpr double on_edge_chord = 1e-9;
 
     dealii::Tensor<1, 2> turned(const dealii::Tensor<1, 2> &v, const double angle)

@@ -32,7 +32,7 @@ namespace slipstick::contact
   private:
     // Progress: the change falls below the smallest change so far by this part, times the relaxation factor, ...
     static constexpr double cycling_progress = 0.1;
-    // ... within this number of updates.
+    // Progress: the change falls below the smallest change so far by this fraction of it times the relaxation factor ...
     static constexpr unsigned int cycling_window = 5;
     // Lower limit of the relaxation factor.
     static constexpr double least_relaxation = 0.1;
