@@ -8,7 +8,7 @@ namespace slipstick::contact
 {
   namespace
   {
-    // Tolerance relative to the initial residual: down to 1e-4 error bars change by about 1 % (decision 0124).
+    // Tolerance relative to the initial residual: with 1e-4 error bars differ by only about 1 % (decision 0124).
     constexpr double tolerance = 1e-2;
     // Residuals below this fraction of the numbers that are summed are rounding: the loads alone determine the forces.
     constexpr double rounding = 1e-12;

@@ -141,7 +141,7 @@ namespace slipstick::contact
           continue;
         from = *near;
         set_bounds(bounds);
-        qp::project(box, from); // exactly
+        qp::project(box, from); // exactly within the bounds
         return true;
       }
     return false;

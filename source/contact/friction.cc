@@ -117,7 +117,7 @@ namespace slipstick::contact
       {
         if (is_no_overload || !law.depends_on_pressure() || !weakest_motion(dual, law, solution.multipliers, 1))
           return;
-        is_no_overload = true; // unless one of the problems below throws
+        is_no_overload = true; // unless an error is thrown below
         for (const double more : more_friction)
           {
             const auto held = held_by(more, feasible, start);
@@ -203,7 +203,7 @@ namespace slipstick::contact
             return feasible;
           }
         set_bounds(std::move(bounds));
-        qp::project(box, *near); // exactly
+        qp::project(box, *near); // exactly within the bounds
         return *std::move(near);
       }
 

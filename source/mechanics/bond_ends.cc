@@ -43,7 +43,7 @@ namespace slipstick::mechanics
       return edge.point(s).distance(x);
     }
 
-    /// Angle of the outline on a boundary at a point; nothing if it does not reach it.
+    /// Angle of the outline on a boundary at a point; nothing if the boundary does not reach the point.
     template <int dim>
     std::optional<double> angle_at(const mesh::Mesh<dim>                 &mesh,
                                    const std::vector<OutlineVertex<dim>> &vertices,
@@ -63,7 +63,7 @@ namespace slipstick::mechanics
       return result;
     }
 
-    /// Of an edge at the end of a boundary that of its sides which is not on it; nothing for other edges.
+    /// For an edge at the end of a boundary: the one of its sides that is not on the boundary. Nothing for other edges.
     std::optional<unsigned int> side_beyond(const mesh::Mesh<3>       &mesh,
                                             const Crease              &crease,
                                             const scene::BoundaryName &where)

@@ -193,7 +193,7 @@ namespace slipstick::mesh
     MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
     const unsigned int on_node = dealii::Utilities::MPI::n_mpi_processes(node);
     MPI_Comm_free(&node);
-    const double free = dealii::Utilities::MPI::sum(free_memory_mb(on_node) / on_node, comm); // each node by its ranks
+    const double free = dealii::Utilities::MPI::sum(free_memory_mb(on_node) / on_node, comm); // each rank adds a share
     collectively(comm, [&] {
       if (dealii::Utilities::MPI::this_mpi_process(comm) != 0)
         return;

@@ -30,9 +30,9 @@ namespace slipstick::contact
     }
 
   private:
-    // Progress: the change falls below the smallest change so far by this part, times the relaxation factor, ...
+    // Progress: the change falls below its smallest value so far by this fraction, times the relaxation factor, ...
     static constexpr double cycling_progress = 0.1;
-    // Progress: the change falls below the smallest change so far by this fraction of it times the relaxation factor ...
+    // ... within this number of updates.
     static constexpr unsigned int cycling_window = 5;
     // Lower limit of the relaxation factor.
     static constexpr double least_relaxation = 0.1;

@@ -26,7 +26,7 @@ namespace slipstick::contact
     void follow_bounds_to_the_end(const Vector &from, const Vector &feasible);
 
     const scene::FrictionOptions &friction;
-    unsigned long long            multiplications_beside = 0; // of auxiliary problems; not limited
+    unsigned long long            multiplications_beside = 0; // of auxiliary problems; they raise the limit
 
   private:
     /// Fixed-point iteration on the bounds; with bounds that do not depend on the pressure a single solve.
