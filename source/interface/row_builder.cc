@@ -12,9 +12,9 @@ namespace slipstick::interface
 {
   namespace
   {
-    // In space a tangent is held if supports leave less than this of its row (the slave's part is 1): where the edge of
-    // a pair is on a plane of symmetry, the weights of master nodes off the plane nearly vanish, and such rows nearly
-    // depend on those of the supports.
+    // In space a tangent is held if supports leave less than this fraction of its row (the slave's part is 1): where
+    // the edge of a pair is on a plane of symmetry, the weights of master nodes off the plane nearly vanish, and such
+    // rows nearly depend on those of the supports.
     template <int dim>
     constexpr double held_tangent = dim == 2 ? held_direction_tolerance : 0.05;
 

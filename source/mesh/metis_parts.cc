@@ -76,7 +76,7 @@ namespace slipstick::mesh
     }
 
     /// Adds the edges of a cell, weighted by the smaller of the two faces there times its ratio to the larger one, and
-    /// weights the faces anew, so that a face together with its edges counts by its size.
+    /// reweights the faces, so that a face together with its edges counts by its size.
     template <class Faces>
     void add_edges(const MeshPiece<3> &piece, Faces &faces_of_cell, std::vector<Side<2>> &edges)
     {

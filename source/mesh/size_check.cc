@@ -30,7 +30,7 @@ namespace slipstick::mesh
     constexpr double many_subdomains     = 1e4;   // above this the message mentions them
     constexpr double bytes_of_a_cell     = 40;    // in a mesh file
     constexpr double around_an_edge      = 13;    // cells added per edge refined by 3, all levels together
-    constexpr double around_a_face       = 6;     // the same in space per face: layers of 27 and 22 for one
+    constexpr double around_a_face       = 6;     // the same in space per face: a cell becomes 27, the next one 22
     constexpr double usable              = 0.9;   // part of the free memory
     constexpr double finest = 1e-8; // edge length of cells over their distance from the origin: 8 digits remain
 

@@ -293,7 +293,7 @@ namespace slipstick::mesh
                             mesh.piece.vertices[edge.to]);
     }
 
-    /// Whether edges of equal lengths meet at equal angles, at least two of which make a corner of 90 degrees.
+    /// Whether edges of about equal lengths meet at about equal angles, which are clearly less than 90 degrees.
     bool Reconstruction::is_coarse_circle(const Edge &edge) const
     {
       if (edge.last < 0 || edge.next < 0)

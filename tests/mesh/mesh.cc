@@ -401,7 +401,7 @@ TEST(Cut, flat_cells_make_no_flat_parts)
   const double of_hexahedra  = most_slender(block, 16);
   const double of_tetrahedra = most_slender(mesh::in_tetrahedra(block, block.vertices), 16);
 
-  // 26, 14 and 14 where all faces count alike
+  // 26, 14 and 14 if all faces have the same weight
   EXPECT_LT(of_plate, 8);
   EXPECT_LT(of_hexahedra, 4);
   EXPECT_LT(of_tetrahedra, 8);

@@ -400,7 +400,7 @@ TEST(MeshFiles, broken_files_are_refused)
         text += c == '\n' ? std::string("\r\n") : std::string(1, c);
       EXPECT_SAYS(refusal([&] { body_of_text(text); }), "corrupt");
     }
-  // a header with the wrong format
+  // a binary file whose header declares ASCII
   std::string text = content_of(formats[3]);
   text.replace(text.find("4.1 1 8"), 7, "4.1 0 8");
   EXPECT_SAYS(refusal([&] { body_of_text(text); }), "corrupt");

@@ -298,8 +298,8 @@ TEST(Refinement, towards_a_boundary_conforms_and_keeps_area_lengths_and_quality)
 
 TEST(Refinement, every_template_conforms)
 {
-  // A boundary id for every pattern of marked corners is not possible; the marks therefore come from single cells cut
-  // out of the lattice.
+  // All patterns of marked corners occur on a lattice whose vertices are marked at random. A boundary id for every
+  // pattern is not possible; the marks therefore come from single cells cut out of the lattice.
   for (unsigned int pattern = 1; pattern < 512; pattern += 7)
     {
       mesh::MeshPiece<2> piece;

@@ -31,7 +31,7 @@ namespace
                                                    : mesh::parse_unv("typed.unv", text));
     }
 
-    /// Middles of the faces of a boundary.
+    /// Centres of the faces of a boundary.
     static std::vector<Place> faces(const mesh::BodyMesh<3> &mesh, const std::string &name)
     {
       const auto         id = mesh.boundary_ids.at(name);

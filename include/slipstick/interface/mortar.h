@@ -31,9 +31,9 @@ namespace slipstick::interface
 
   /// The same in space, with areas instead of lengths. Every slave facet is paired in the plane through its centre
   /// normal to the mean normal of its nodes: both sides are projected onto it, and the overlap polygons are clipped and
-  /// integrated (Puso, Laursen 2004; Popp, Gitterle, Gee, Wall 2010). Of several master facets one behind the other the
-  /// nearest counts. If the covered part of a facet is so small that its biorthogonal functions would be nearly
-  /// dependent, phi_i are the shape functions themselves.
+  /// integrated (Puso, Laursen 2004; Popp, Gitterle, Gee, Wall 2010). If several master facets lie one behind the
+  /// other, the nearest counts. If the covered part of a facet is so small that its biorthogonal functions would be
+  /// nearly dependent, phi_i are the shape functions themselves.
   std::vector<MortarRow<3>> mortar_rows(const std::vector<mechanics::SurfaceFacet> &slave,
                                         const std::vector<mechanics::SurfaceFacet> &master,
                                         const Reach                                &reach,
