@@ -8,9 +8,9 @@ namespace slipstick::contact
 {
   namespace
   {
-    // Residual over that of the start: bars change by about a hundredth down to 1e-4 (decision 0124).
+    // Tolerance relative to the initial residual: with 1e-4 error bars differ by only about 1 % (decision 0124).
     constexpr double tolerance = 1e-2;
-    // What is below this part of the numbers that are summed is rounding: forces that the loads alone determine.
+    // Residuals below this fraction of the numbers that are summed are rounding: the loads alone determine the forces.
     constexpr double rounding = 1e-12;
   } // namespace
 
@@ -32,7 +32,7 @@ namespace slipstick::contact
     d /= dual.norm();
     face.balance(x);
     dual.multiply(x, product);
-    const auto held = [this](const Vector &p) { // a direction of another face may move rows that are held in this one
+    const auto held = [this](const Vector &p) { // directions of other faces may move rows that are held in this one
       std::vector<double> moved;
       for (std::size_t r = 0; r < free.size(); ++r)
         if (!free[r])

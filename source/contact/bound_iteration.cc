@@ -12,19 +12,19 @@ namespace slipstick::contact
 {
   namespace
   {
-    // Slip bounds are followed at residuals below this times their last relative change (SMALBE).
+    // Problems with given bounds are solved to this times the last relative change of the bounds (SMALBE), ...
     constexpr double bound_accuracy = 0.1;
-    // ... at this one at first ...
+    // ... to this residual at first, ...
     constexpr double first_accuracy = 1e-2;
-    // ... then at most this part of the one before, for the noise of a solution hides how the bounds change ...
+    // ... then to at most this fraction of the previous one, since errors of solutions hide the change of bounds, ...
     constexpr double accuracy_reduction = 0.5;
-    // ... and never below this part of the tolerance.
+    // ... and never below this fraction of the tolerance.
     constexpr double least_accuracy = 1e-3;
-    // SMALBE-M is taken over by Newton's method at this residual, ...
+    // Newton's method takes over from SMALBE-M at this residual, ...
     constexpr double first_takeover = 0.1;
-    // ... or at so much smaller ones, ...
+    // ... then at residuals smaller by this factor each time, ...
     constexpr double takeover_reduction = 0.3;
-    // ... down to this one: where Newton's method fails even there, rounding is in its way.
+    // ... down to this one: if Newton's method fails even there, rounding prevents its convergence.
     constexpr double last_takeover = 1e-3;
     // Blends of old and new bounds that are tried when the new ones admit no equilibrium.
     constexpr unsigned int max_blends = 20;
@@ -43,7 +43,7 @@ namespace slipstick::contact
   void BoundIteration::follow_bounds_to_the_end(const Vector &from, const Vector &feasible)
   {
     follow_bounds(from);
-    const bool follows = law.depends_on_pressure() && solution.friction_iterations > 0; // not a limit of SMALBE alone
+    const bool follows = law.depends_on_pressure() && solution.friction_iterations > 0; // not SMALBE's own limit
     if (solution.status != qp::Status::stagnated && !(solution.status == qp::Status::iteration_limit && follows))
       return;
     ++solution.fallbacks;
@@ -141,7 +141,7 @@ namespace slipstick::contact
           continue;
         from = *near;
         set_bounds(bounds);
-        qp::project(box, from); // to the last bit
+        qp::project(box, from); // exactly within the bounds
         return true;
       }
     return false;

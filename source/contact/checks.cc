@@ -82,7 +82,7 @@ namespace slipstick::contact
                     const unsigned int                  n_bodies,
                     Largest                            &on_node)
     {
-      DistributedVector outside = multipliers; // only forces that are not between subdomains of a body
+      DistributedVector outside = multipliers; // without forces between subdomains of a body
       for (unsigned int r = 0; r < dual.constraints().kind.size(); ++r)
         if (dual.constraints().kind[r] == tfeti::RowKind::gluing)
           outside.local_element(r) = 0;
@@ -249,7 +249,7 @@ namespace slipstick::contact
         return energies;
       }
 
-      /// Errors of normal forces change the bounds of slipping nodes.
+      /// Adds the errors of the bounds of slipping nodes, which follow from the errors of their normal forces.
       void add_errors_of_bounds(DistributedVector &errors) const
       {
         for (const qp::PressureBound &bound : law.pressure_bounds())
@@ -330,7 +330,7 @@ namespace slipstick::contact
       {
         const double way    = std::max(largest_gap, result.checks.max_displacement);
         const double before = part_of_history * history.displacement;
-        // supports may bear all loads at their points of attack: only rounding is left then
+        // supports may carry all loads right where these act: then only rounding remains
         const double rounding  = tfeti::force_rounding * largest_force;
         const double no_length = std::max(negligible_part * way, before);
         Scales       scales;

@@ -13,8 +13,8 @@ namespace slipstick::contact
   {
     using Vector = tfeti::DistributedVector;
 
-    // In the plane one of Newton's steps for so many bodies, if that is more than usual: an arch of 400 stones takes 44, one of
-    // 1000 127.
+    // Newton's method may take one step per this many bodies, if that is more than its usual limit: in the plane an
+    // arch of 400 stones takes 44 steps, one of 1000 stones 127.
     constexpr unsigned int bodies_per_step = 5;
 
     const Box &bounds_of(const Box &set)
@@ -109,7 +109,7 @@ namespace slipstick::contact
     auto how = options.smalbe;
     if (options.algorithm == scene::Algorithm::semismooth_newton)
       how.max_multiplications = most_multiplications;
-    // at lower accuracy it goes on all the same
+    // solves of lower accuracy are continued in any case
     const double forces = tolerance <= options.tolerance && size_of_forces > 0 ? size_of_forces : qp::infinity;
     const auto   result = qp::smalbe(dual,
                                    1.,

@@ -11,7 +11,7 @@ namespace slipstick::contact
 {
   namespace
   {
-    // Loads along a motion below this part of the largest force are rounding of zero.
+    // Loads along a motion below this fraction of the largest force are rounding of zero.
     constexpr double rounding_of_drive = 1e-10;
     // Maximum number of decimals in messages.
     constexpr int most_decimals = 12;

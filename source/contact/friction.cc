@@ -22,17 +22,18 @@ namespace slipstick::contact
   {
     using Vector = tfeti::DistributedVector;
 
-    // Loads below this part of those of earlier steps are what rounding leaves of none.
+    // Loads below this fraction of those of earlier steps are zero up to rounding.
     constexpr double rounding_of_loads = 1e-12;
-    // Newton's steps on solids that slide after which it is asked whether friction bears the loads at all: where it does not,
-    // more of them find nothing.
+    // Newton steps on sliding solids after which the solver checks whether friction can bear the loads at all: if it
+    // cannot, more steps find nothing.
     constexpr unsigned int steps_before_overload = 30;
-    // That is told by the normal forces that hold them with so many times the friction, the first that does, ...
+    // The check uses the normal forces of the problem with this many times the friction (the first that has
+    // a solution), ...
     constexpr std::array<double, 3> more_friction{{4, 64, 1024}};
-    // ... and with so many times the friction that these need.
+    // ... and then with this many times the friction that those normal forces require.
     constexpr double margin_of_friction = 1.1;
 
-    /// Bonded pairs alone leave a linear problem, whatever algorithm is asked for.
+    /// Whether any pair is not bonded. Bonded pairs alone make a linear problem, whatever algorithm is selected.
     template <int dim>
     bool has_bounds(const scene::Scene<dim> &scene)
     {
@@ -42,7 +43,7 @@ namespace slipstick::contact
              });
     }
 
-    /// @param unbalanced the part of the loads that the forces found do not balance.
+    /// @param unbalanced fraction of the loads that the forces found do not balance.
     [[noreturn]] void no_equilibrium(const tfeti::DualProblem &dual, const Vector &certificate, const double unbalanced)
     {
       throw NoEquilibrium(
@@ -57,7 +58,7 @@ namespace slipstick::contact
         "contact");
     }
 
-    /// From the loads to the solution, or to the reason why there is none.
+    /// Computes the solution, or finds the reason why there is none.
     class ContactSolver : BoundIteration
     {
     public:
@@ -109,13 +110,14 @@ namespace slipstick::contact
         return std::move(point.x);
       }
 
-      /// Where no solution was found: is friction too weak for the loads along a motion that nothing else resists? The
-      /// normal forces that the search came to only raise the question: those count that hold the loads with more friction.
+      /// After no solution was found: throws if friction is too weak for the loads along a motion that nothing else
+      /// resists. The normal forces of the failed search only raise the suspicion; those of a solution with more
+      /// friction decide.
       void refuse_overload(const Vector &feasible, const DualSolution *start)
       {
         if (is_no_overload || !law.depends_on_pressure() || !weakest_motion(dual, law, solution.multipliers, 1))
           return;
-        is_no_overload = true; // unless an error says the opposite
+        is_no_overload = true; // unless an error is thrown below
         for (const double more : more_friction)
           {
             const auto held = held_by(more, feasible, start);
@@ -125,7 +127,7 @@ namespace slipstick::contact
             if (!overload)
               return;
             const double least = margin_of_friction / overload->held;
-            if (least < more) // nearer to sliding the normal forces are more nearly its own
+            if (least < more) // closer to sliding, the normal forces are closer to those of this problem
               if (const auto nearer = held_by(least, feasible, start))
                 overload = weakest_motion(dual, law, *nearer, 1);
             if (!overload)
@@ -138,7 +140,7 @@ namespace slipstick::contact
           }
       }
 
-      /// The forces with so many times the friction, if the algorithm finds them.
+      /// The forces with @p more times the friction, if the algorithm finds them.
       std::optional<Vector> held_by(const double more, const Vector &feasible, const DualSolution *start)
       {
         const SlipLaw          with_more = law.scaled(more);
@@ -166,7 +168,8 @@ namespace slipstick::contact
         return solution.weighted_reference > 0 && newton(from, true, !start);
       }
 
-      /// A few steps of SMALBE-M, or the load step before, tell the first set.
+      /// The start from which the first set is predicted: that of the previous load step, or else a few steps of
+      /// SMALBE-M.
       Vector newton_start(const Vector &feasible, const DualSolution *start)
       {
         solution.directions = start && start->directions
@@ -188,8 +191,8 @@ namespace slipstick::contact
         return from;
       }
 
-      /// The forces nearest to those from which Newton's method began that balance the loads within the bounds there, which
-      /// become the present ones; where none do, the feasible ones.
+      /// The forces nearest to the start of Newton's method that balance the loads within the bounds at that start,
+      /// which become the present bounds; if there are none, the feasible forces with theirs.
       Vector fallback_start(const Vector &from, const Vector &feasible)
       {
         auto bounds = law.bounds(from);
@@ -200,11 +203,11 @@ namespace slipstick::contact
             return feasible;
           }
         set_bounds(std::move(bounds));
-        qp::project(box, *near); // to the last bit
+        qp::project(box, *near); // exactly within the bounds
         return *std::move(near);
       }
 
-      /// Newton's method from a start; in space loads that friction cannot bear end it early, with an error.
+      /// Newton's method from a start. In space it ends early, with an error, if friction cannot bear the loads.
       bool newton_from(const Vector &from, const Vector &feasible, const DualSolution *start)
       {
         if (!law.has_discs())
@@ -221,7 +224,7 @@ namespace slipstick::contact
         return is_solved;
       }
 
-      bool is_no_overload = false; // problems with more friction did not say that it is too weak
+      bool is_no_overload = false; // problems with more friction did not show that friction is too weak
     };
   } // namespace
 
@@ -240,7 +243,7 @@ namespace slipstick::contact
       options.algorithm = scene.has_contact() ? scene::Algorithm::semismooth_newton : scene::Algorithm::pcg;
     if (options.algorithm == scene::Algorithm::smalbe && !has_bounds(scene))
       preconditioner = tfeti::Preconditioner::dirichlet;
-    else if (options.algorithm == scene::Algorithm::smalbe) // would change the bounds; but it tells energies of errors
+    else if (options.algorithm == scene::Algorithm::smalbe) // would transform the bounds, but estimates errors
       preconditioner =
         options.stops_at_discretization_error ? tfeti::Preconditioner::dirichlet : tfeti::Preconditioner::none;
     else if (preconditioner == tfeti::Preconditioner::automatic)

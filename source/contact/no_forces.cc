@@ -9,7 +9,7 @@ namespace slipstick::contact
 {
   namespace
   {
-    // Overlaps below this part of the initial ones are rounding of zero.
+    // Overlaps below this fraction of the initial ones are rounding of zero.
     constexpr double negligible_overlap = 1e-10;
 
     double largest_of(const std::vector<double> &values, const MPI_Comm comm)

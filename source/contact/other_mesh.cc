@@ -14,9 +14,9 @@ namespace slipstick::contact
   {
     using Triple = std::array<double, 3>;
 
-    // A node closer to a point than this part of the distance of the others is all that counts there.
+    // A node closer to a point than this fraction of the distance of the farthest one determines the value alone.
     constexpr double same_place = 1e-12;
-    constexpr double smallest   = 1e-200; // whose inverses can be summed
+    constexpr double smallest   = 1e-200; // distance whose inverse can be summed
 
     dealii::Point<3> point_of(const Triple &x)
     {

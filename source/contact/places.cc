@@ -31,7 +31,7 @@ namespace slipstick::contact
       return {true, subdomain.body(), subdomain.position(unknown), true, pair.has_value(), pair.value_or(0)};
     }
 
-    /// Whether this is the first rank with true. Collective.
+    /// Whether this is the first rank where @p says_so is true. Collective.
     bool is_first(const bool says_so, const MPI_Comm comm)
     {
       const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(comm);

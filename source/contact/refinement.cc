@@ -52,7 +52,7 @@ namespace slipstick::contact
       return result;
     }
 
-    /// A step that closes gaps, and what it took.
+    /// A step that closes gaps, and the counts of its solve.
     struct Closing
     {
       Vector     step;

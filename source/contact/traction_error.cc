@@ -14,14 +14,14 @@ namespace slipstick::contact
     constexpr double traction_error = 50;
     // ... and at most this.
     constexpr double largest_traction_error = 0.05;
-    // Lower limits of the reference of an error: this part of all tractions of the pair, ...
+    // Lower limits of the reference of an error: this fraction of all tractions of the pair, ...
     constexpr double negligible_component = 1e-2;
-    // ... this part of the largest tractions of any pair, ...
+    // ... this fraction of the largest tractions of any pair, ...
     constexpr double negligible_pair = 1e-3;
-    // ... this part of the largest in any earlier step, so that the admissible error is at least the tolerance times
-    // that, ...
+    // ... this fraction of the largest in any earlier step, so that the admissible error is at least the tolerance
+    // times that, ...
     constexpr double negligible_remainder = 1 / traction_error;
-    // ... and this part of the forces that balance the loads, on one contact node, for pairs without load.
+    // ... and this fraction of the forces that balance the loads, on one contact node, for pairs without load.
     constexpr double negligible_force = 1e-6;
 
     double norm(const PairTractions &pair)

@@ -14,7 +14,7 @@ namespace slipstick::interface
   {
     // Parts of an edge shorter than this (relative to its length) are ignored.
     constexpr double smallest_segment = 1e-12;
-    // Crossings whose distances differ by at most this part of an edge are the same: at a node of the master.
+    // Crossings whose distances differ by at most this fraction of an edge are the same: at a node of the master.
     constexpr double same_place = 1e-9;
 
     // absolute, for a zero in [0, 1]: rounding of the coordinates

@@ -10,7 +10,7 @@ namespace slipstick::interface
   {
     // Number of points along an edge, and along each direction of a facet.
     constexpr unsigned int n_points_along = 3;
-    // Nodes whose shape functions have less than this part of the mean integral have no tributary area.
+    // Nodes whose shape functions have less than this fraction of the mean integral have no tributary area.
     constexpr double least_share = 1e-6;
 
     /// A point of an edge or facet.

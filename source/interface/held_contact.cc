@@ -13,7 +13,7 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Support and contact agree if they differ by less than this part of the larger of both displacements ...
+    // Support and contact agree if they differ by less than this fraction of the larger of both displacements ...
     constexpr double same_gap = 1e-6;
     // ... or, without displacements, of the tributary length of the node: files give coordinates with about seven
     // digits.

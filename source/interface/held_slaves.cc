@@ -18,7 +18,7 @@ namespace slipstick::interface
 
     // A normal is held if its part in free directions is below this.
     constexpr double held_normal = 1e-6;
-    // Neighbours are equally near if their distances differ by less than this part.
+    // Neighbours are equally near if their distances differ by less than this fraction.
     constexpr double equally_near = 1e-6;
 
     /// Components prescribed by supports, by node of the body.

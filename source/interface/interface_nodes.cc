@@ -122,8 +122,7 @@ namespace slipstick::interface
       for (unsigned int k = 0; k < scene.contacts.size(); ++k)
         if (const auto &pair = scene.contacts[k]; !pair.master && here(pair.slave))
           for (unsigned int i = 0; i < on_face.size(); ++i)
-            // a bond also acts at nodes without equivalent nodal force of a uniform pressure; their tractions need an
-            // area
+            // a bond also acts at nodes where a uniform pressure has no nodal force; their tractions need an area
             add_area(*on_face[i],
                      k,
                      pair.law.is_bonded && areas[i].area == 0 ? Tributary{mean_of(areas), 0.} : areas[i]);

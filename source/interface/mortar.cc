@@ -12,7 +12,7 @@ namespace slipstick::interface
   {
     // An edge is fully covered if at most this fraction is missing.
     constexpr double whole_edge = 1e-9;
-    // Nodes are on their curve if their distance is at most this part of the edge.
+    // Nodes are on their curve if their distance is at most this fraction of the edge.
     constexpr double       on_curve = 1e-12;
     constexpr unsigned int n_gauss  = 5; // per segment; exact between straight parallel edges of both degrees
 

@@ -11,9 +11,9 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Two supports agree if their values differ by less than this part of the larger.
+    // Two supports agree if their values differ by less than this fraction of the larger.
     constexpr double same_value_tolerance = 1e-12;
-    // Spring stiffnesses below this part of the larger principal one are rounding.
+    // Spring stiffnesses below this fraction of the larger principal one are rounding.
     constexpr double smallest_stiffness = 1e-12;
 
     template <int dim>

@@ -37,7 +37,7 @@ namespace slipstick::interface
     {
       const unsigned int n         = points.size() - 1; // segments
       const bool         is_closed = n > 2 && points.front().distance(points.back()) == 0;
-      const auto         left      = [&](const unsigned int k) { // of segment k: side of the bodies
+      const auto         left      = [&](const unsigned int k) { // normal of segment k on the side of the bodies
         const Tensor along = points[k + 1] - points[k];
         return unit(-along[1], along[0]);
       };

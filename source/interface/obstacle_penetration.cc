@@ -13,15 +13,15 @@ namespace slipstick::interface
   namespace
   {
     // Number of sampling points on an edge, and along each direction of a face, from which the search for the deepest
-    // point in an obstacle starts. It finds the point where depths rise towards it: balls, cylinders and planes of any
-    // size, and corners of polylines and triangulated surfaces; for height functions, peaks that are not much narrower
-    // than the spacing of these points.
+    // point in an obstacle starts. The search finds it if depths increase towards it, as for balls, cylinders and
+    // planes of any size, and corners of polylines and triangulated surfaces; for height functions, peaks that are not
+    // much narrower than the spacing of these points.
     constexpr unsigned int n_places = 33, n_places_across = 9;
     // The same for height functions, which may have narrow peaks.
     constexpr unsigned int n_places_below_function = 257, n_places_across_function = 33;
-    // The search ends at steps of this part of an edge.
+    // The search ends at steps of this fraction of an edge.
     constexpr double least_step = 1e-6;
-    // Points of surfaces coincide within this part of an edge.
+    // Points of surfaces coincide within this fraction of an edge.
     constexpr double same_place = 1e-3;
 
     /// Local coordinates of an edge, or of a face in the unit square (triangles are folded into it).
@@ -177,7 +177,7 @@ namespace slipstick::interface
         };
         auto         best = deepest_of_lattice<dim>(n, depth_at);
         const double step = 1. / (n - 1);
-        if (is_function || best.depth > -2 * step * slave[e].chord()) // a move changes distances by no more
+        if (is_function || best.depth > -2 * step * slave[e].chord()) // depths change by no more than the step
           climb<dim>(best, step, depth_at);
         take_deeper(deepest, best.depth, at_place(slave[e], best.place), slave[e].chord(), 0.);
       }

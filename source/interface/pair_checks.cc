@@ -20,9 +20,9 @@ namespace slipstick::interface
 
   namespace
   {
-    // A master is behind its slave if it is deeper than this part of a mean slave edge.
+    // A master is behind its slave if it is deeper than this fraction of a mean slave edge.
     constexpr double deep = 0.1;
-    // Sides touch if they are nearer than this part of their extent.
+    // Sides touch if they are nearer than this fraction of their extent.
     constexpr double corner_on_corner = 1e-9;
     // Number of normals per side that are compared for a message.
     constexpr unsigned int n_compared = 500;

@@ -12,9 +12,9 @@ namespace slipstick::interface
 {
   namespace
   {
-    // In space a tangent is held if supports leave less than this of its row (the slave's part is 1): where the edge of
-    // a pair is on a plane of symmetry, the weights of master nodes off the plane nearly vanish, and such rows nearly
-    // depend on those of the supports.
+    // In space a tangent is held if supports leave less than this fraction of its row (the slave's part is 1): where
+    // the edge of a pair is on a plane of symmetry, the weights of master nodes off the plane nearly vanish, and such
+    // rows nearly depend on those of the supports.
     template <int dim>
     constexpr double held_tangent = dim == 2 ? held_direction_tolerance : 0.05;
 
@@ -47,7 +47,7 @@ namespace slipstick::interface
     // Distinguishes the labels of the rows along the two tangents of a node.
     constexpr std::uint64_t second_tangent = std::uint64_t(1) << 48;
 
-    // Sums below this part of their terms are rounding.
+    // Sums below this fraction of their terms are rounding.
     constexpr double rounding_of_sums = 1e-12;
   } // namespace
 
@@ -125,7 +125,7 @@ namespace slipstick::interface
         add_reaction(i, row, direction, held.by);
         ++constraints.counts.prescribed;
       }
-    // the contact nodes just found here share these
+    // the contact nodes just found at this node share these
     std::vector<unsigned int> reactions(constraints.reactions.size() - first_reaction);
     std::iota(reactions.begin(), reactions.end(), first_reaction);
     for (auto point = held.points.rbegin(); point != held.points.rend() && point->contact.key == node.key; ++point)

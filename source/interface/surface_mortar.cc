@@ -42,7 +42,7 @@ namespace slipstick::interface
       return twist <= smallest_cover * facet.chord() && !facet.is_bent();
     }
 
-    // Nodes are on their surface if their distance is at most this part of the facet.
+    // Nodes are on their surface if their distance is at most this fraction of the facet.
     constexpr double on_surface = 1e-12;
 
     /// The shape functions of degree 1 of a facet as combinations of its own shape functions.

@@ -9,11 +9,11 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Points outside a facet by at most this part of its size are on its edge.
+    // Points outside a facet by at most this fraction of its size are on its edge.
     constexpr double on_edge = 1e-9;
     // Parts of a facet smaller than this (relative to its area) are ignored.
     constexpr double smallest_part = 1e-12;
-    // Search boxes are enlarged by this part of a facet: touching parts are on the border.
+    // Search boxes are enlarged by this fraction of a facet: touching parts are on the border.
     constexpr double margin = 0.05;
     // Newton's method for a place on a quadrilateral: maximum number of steps, and length of the last one.
     constexpr unsigned int max_steps = 50;

@@ -12,10 +12,10 @@ namespace slipstick::interface
   {
     // Normals are parallel if their scalar product is above this.
     constexpr double parallel_cosine = 1 - 1e-8;
-    // The reference area of tractions is at least this part of the tributary area: a node at the end of a boundary has
-    // half the tributary length of the others.
+    // The reference area of tractions is at least this fraction of the tributary area: a node at the end of a boundary
+    // has half the tributary length of the others.
     constexpr double smallest_covered_part = 0.5;
-    // Geometric gaps below this part of the coordinates are rounding.
+    // Geometric gaps below this fraction of the coordinates are rounding.
     constexpr double rounding_of_gaps = 16 * std::numeric_limits<double>::epsilon();
 
     /// Gap of a pair at a node: geometric or prescribed, plus the offset.
@@ -83,7 +83,7 @@ namespace slipstick::interface
         touches.push_back(touch_body(i, pair, *row));
     for (auto &touch : touches)
       complete(i, touch);
-    // of obstacles in the same direction the nearest
+    // of obstacles in the same direction only the nearest counts
     std::vector<ContactCandidate<dim>> kept;
     for (unsigned int a = 0; a < touches.size(); ++a)
       {

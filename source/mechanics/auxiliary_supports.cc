@@ -12,9 +12,10 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // Nodes on an outline are used only if the amount at interior nodes is less than this part of theirs.
+    // Nodes on an outline are used only if the amount at interior nodes is less than this fraction of theirs.
     constexpr double least_part_inside = 0.1;
-    // Amounts that differ by less than this part are equal: then the place decides, independent of the number of ranks.
+    // Amounts that differ by less than this fraction are equal: then the place decides, independent of the number of
+    // ranks.
     constexpr double same_amount = 1e-9;
 
     /// One displacement component of one node.

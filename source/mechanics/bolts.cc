@@ -8,7 +8,7 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // Nodes within this part of the bolt's length from the section count as below it, on all subdomains alike.
+    // Nodes within this fraction of the bolt's length from the section count as below it, on all subdomains.
     constexpr double on_section = 1e-9;
 
     template <int dim>

@@ -11,7 +11,7 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // The other body is at the end of a bond if it is nearer than this part of an edge.
+    // The other body is at the end of a bond if it is nearer than this fraction of an edge.
     constexpr double reached = 0.1;
 
     /// Whether a boundary is bonded or supported.
@@ -43,7 +43,7 @@ namespace slipstick::mechanics
       return edge.point(s).distance(x);
     }
 
-    /// Angle of the outline on a boundary at a point; nothing if it does not reach it.
+    /// Angle of the outline on a boundary at a point; nothing if the boundary does not reach the point.
     template <int dim>
     std::optional<double> angle_at(const mesh::Mesh<dim>                 &mesh,
                                    const std::vector<OutlineVertex<dim>> &vertices,
@@ -63,7 +63,7 @@ namespace slipstick::mechanics
       return result;
     }
 
-    /// Of an edge at the end of a boundary that of its sides which is not on it; nothing for other edges.
+    /// For an edge at the end of a boundary: the one of its sides that is not on the boundary. Nothing for other edges.
     std::optional<unsigned int> side_beyond(const mesh::Mesh<3>       &mesh,
                                             const Crease              &crease,
                                             const scene::BoundaryName &where)

@@ -6,7 +6,7 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // Faces of a vertex are on the same side of the body if their normals differ by less than some 35 degrees:
+    // Faces of a vertex are on the same side of the body if their normals differ by less than about 35 degrees:
     // tan^2(35 / 2) = 0.1.
     constexpr double same_side = 0.1;
 

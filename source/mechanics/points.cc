@@ -19,7 +19,7 @@ namespace slipstick::mechanics
     // an equilateral triangle farthest from its vertices has 1 / sqrt(3).
     constexpr double reach_of_point = 0.6;
 
-    // Nodes whose distances differ by less than this part of a cell's diameter are equally near.
+    // Nodes whose distances differ by less than this fraction of a cell's diameter are equally near.
     constexpr double same_distance = 1e-9;
 
     template <int dim>

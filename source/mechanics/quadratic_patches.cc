@@ -11,11 +11,12 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // Points determine a coefficient if their spread is more than this part of that of all of its degree.
+    // Points determine a coefficient if their spread exceeds this fraction of the mean spread of all coefficients of
+    // its degree.
     constexpr double least_spread = 1e-3;
 
-    /// Symmetric matrix that maps points with this covariance to points with covariance 1; directions without extent are
-    /// scaled as the longest.
+    /// Symmetric matrix that maps points with this covariance to points with covariance 1; directions without extent
+    /// are scaled like the longest one.
     template <int dim>
     Eigen::Matrix<double, dim, dim> to_unit_covariance(const PointMoments<dim> &moments)
     {
@@ -37,8 +38,8 @@ namespace slipstick::mechanics
       return axes.eigenvectors() * inverses.asDiagonal() * axes.eigenvectors().transpose();
     }
 
-    /// Coefficients that minimise the sum of squares. Where the points do not determine all, lower degrees come first: the
-    /// smallest slopes that fit best, then the smallest coefficients of degree 2.
+    /// Coefficients that minimise the sum of squares. Where the points do not determine all of them, lower degrees come
+    /// first: the smallest slopes that fit best, then the smallest coefficients of degree 2.
     template <int dim>
     Eigen::MatrixXd least_squares(const Eigen::MatrixXd &matrix, const Eigen::MatrixXd &right)
     {
@@ -69,7 +70,7 @@ namespace slipstick::mechanics
       std::vector<unsigned int> points(element.stress.size());
       std::iota(points.begin(), points.end(), 0);
       if (element.cell.is_simplex())
-        return points; // all: the fit remains
+        return points; // all points, so that the fit is unchanged
       const auto vertex = element.cell.template vertex<dim>(v);
       return {*std::min_element(points.begin(), points.end(), [&](const unsigned int a, const unsigned int b) {
         return element.stress.point(a).distance(vertex) < element.stress.point(b).distance(vertex);
@@ -184,7 +185,7 @@ namespace slipstick::mechanics
     for (const auto &cell : dof_handler.active_cell_iterators())
       {
         element.nodes_of(cell, dofs, nodes);
-        at_nodes.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell)); // points alone
+        at_nodes.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell)); // only for the points
         for (unsigned int i = 0; i < nodes.size(); ++i)
           {
             Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(n_components);
@@ -201,8 +202,8 @@ namespace slipstick::mechanics
     return result;
   }
 
-  /// 1, x, y, xx, r xy, yy in the coordinates of the vertex; r is the root of 2, so that rotations preserve the sum of the
-  /// squares of coefficients.
+  /// 1, x, y, xx, r xy, yy in the coordinates of the vertex; r is the square root of 2, so that rotations preserve the
+  /// sum of the squares of the coefficients.
   template <int dim>
   typename QuadraticPatches<dim>::Monomials QuadraticPatches<dim>::monomials(const unsigned int vertex,
                                                                              const Vector      &from_vertex) const

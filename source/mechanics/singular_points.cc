@@ -242,7 +242,7 @@ namespace slipstick::mechanics
                                     const StressResult                   &stress,
                                     const std::vector<Surroundings<dim>> &places)
   {
-    // distance, size, minus the stress: of equally near cells the small, loaded one
+    // distance, size, minus the stress: of equally near cells the smallest, then the one with the largest stress
     using Entry = std::array<double, 3>;
     std::vector<Entry> nearest(places.size(), {{std::numeric_limits<double>::infinity(), 0, 0}});
     std::vector<dealii::types::global_dof_index> dofs;

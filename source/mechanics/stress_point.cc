@@ -13,13 +13,14 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // A cell contains the point if it is no farther from it than from the nearest cell, up to this part of its diameter.
+    // A cell contains the point if it is no farther from it than from the nearest cell, up to this fraction of its
+    // diameter.
     constexpr double same_place = 1e-6;
-    // Centres of cells are half a cell inside the end of their layer; half of that is left for distortion.
+    // Centres of cells are half a cell inside the end of their layer; half of that is a margin for distortion.
     constexpr double margin_of_layers = 0.25;
-    // The points determine a polynomial if no pivot of the least squares problem is below this part of the largest.
+    // The points determine a polynomial if no pivot of the least squares problem is below this fraction of the largest.
     constexpr double independent = 1e-3;
-    // For derivatives of the mapping at the middle of a reference cell.
+    // Step for the derivatives of the mapping at the middle of a reference cell.
     constexpr double step_in_cell = 0.1;
   } // namespace
 
@@ -107,7 +108,7 @@ namespace slipstick::mechanics
     using Rows           = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const Eigen::Map<const Rows> points(all.data(), all.size() / n, n);
 
-    const dealii::PolynomialSpace<dim> polynomials( // of complete degree; the constant is the first
+    const dealii::PolynomialSpace<dim> polynomials( // complete polynomials; the first is the constant
       dealii::Polynomials::Monomial<double>::generate_complete_basis(spaces.degree + 1));
     const unsigned int                 n_monomials = polynomials.n();
     if (points.rows() < n_monomials)
@@ -118,7 +119,7 @@ namespace slipstick::mechanics
         dealii::Point<dim> place;
         for (unsigned int d = 0; d < dim; ++d)
           place[d] = points(r, d);
-        const double weight = 1 / (1 + place.square()); // the nearer, the more
+        const double weight = 1 / (1 + place.square()); // nearer points count more
         for (unsigned int k = 0; k < n_monomials; ++k)
           monomials(r, k) = weight * polynomials.compute_value(k, place);
         values.row(r) *= weight;

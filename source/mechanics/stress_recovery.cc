@@ -30,7 +30,7 @@ namespace slipstick::mechanics
         {
           element.nodes_of(cell, dofs, nodes);
           samples.stresses.middleRows(samples.points.size(), n) = stress.reinit(cell, displacement_at<dim>(nodes, u));
-          places.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell)); // points alone
+          places.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell)); // only for the points
           for (unsigned int q = 0; q < n; ++q)
             samples.points.push_back(places.quadrature_point(q));
         }

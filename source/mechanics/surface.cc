@@ -14,8 +14,8 @@ namespace slipstick::mechanics
     // Gauss, three points on [0, 1]: exact for straight edges of both degrees
     const std::array<double, 3> gauss_points  = {{0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)}};
     const std::array<double, 3> gauss_weights = {{5. / 18, 8. / 18, 5. / 18}};
-    // Shares below this part of an edge count as zero: the end of a quadratic edge on the axis of revolution has none
-    // if the edge is straight and almost none if it is curved; other nodes have a ninth or more.
+    // Shares below this fraction of an edge count as zero: the end of a quadratic edge on the axis of revolution has
+    // none if the edge is straight and almost none if it is curved; other nodes have a ninth or more.
     constexpr double smallest_edge_share = 0.01;
 
     /// Unit normal to the right of a direction.

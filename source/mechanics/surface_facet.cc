@@ -18,10 +18,10 @@ namespace slipstick::mechanics
   {
     using Corner = std::pair<NodeKey, dealii::Point<3>>; // also used for other nodes
 
-    // Shares below this part of a facet count as zero: the corners of a triangle of degree 2 have none if it is plane;
-    // other nodes have a thirty-sixth or more.
+    // Shares below this fraction of a facet count as zero: the corners of a triangle of degree 2 have none if it is
+    // plane; other nodes have a thirty-sixth or more.
     constexpr double smallest_facet_share = 0.01;
-    // Nodes of bent facets deviate by more than this part of an edge from those of straight-sided ones.
+    // Nodes of bent facets deviate by more than this fraction of an edge from those of straight-sided ones.
     constexpr double bent = 1e-9;
 
     bool by_key(const Corner &a, const Corner &b)

@@ -9,7 +9,7 @@ namespace slipstick::mechanics
   {
     // Initial guess of the stiffness of bolt and clamped parts in series, relative to that of the bolt.
     constexpr double first_part = 0.5;
-    // A bolt with less than this part of the prescribed tension is loose: its response is not used to update
+    // A bolt with less than this fraction of the prescribed tension is loose: its response is not used to update
     // stiffnesses.
     constexpr double loose_part = 1e-3;
     // Factor by which the shortening of a loose bolt is increased in every attempt.

@@ -11,11 +11,12 @@ namespace slipstick::mesh
     using Point  = dealii::Point<3>;
     using Tensor = dealii::Tensor<1, 3>;
 
-    // Mid nodes at most this part of the length away from the chord belong to straight edges: files give coordinates
-    // with seven digits, and coordinates may be a hundred times as large as the edge. The same for plane faces.
+    // Mid nodes at most this fraction of the length away from the chord belong to straight edges: files give
+    // coordinates with seven digits, and coordinates may be a hundred times as large as the edge. The same for plane
+    // faces.
     constexpr double straight = 1e-5;
     // A first-order face belongs to a curved surface if the angles to its neighbours at all of its corners are more
-    // than this part of the largest angle; smaller angles [rad] are those of plane surfaces.
+    // than this fraction of the largest angle; smaller angles [rad] are those of plane surfaces.
     constexpr double share_of_turn = 1. / 3, smallest_turn = 1e-4;
 
     /// The vertices of the boundary faces, in cyclic order.

@@ -32,8 +32,8 @@ namespace slipstick::mesh
 
     // Limits for two bodies that probably have different units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus):
     // ratio of the larger to the smaller size or modulus. Parts of one assembly differ less in size; steel and rubber
-    // differ by 1e5 in modulus. A warning requires both: the smaller of the two bodies is the stiffer one, as with
-    // metres and pascal beside mm and MPa.
+    // differ by 1e5 in modulus. The lower limits must be exceeded together, by a smaller body that is also the stiffer
+    // one, as with metres and pascal beside mm and MPa.
     constexpr double doubtful_size_ratio    = 300;
     constexpr double doubtful_modulus_ratio = 3e5;
     constexpr double doubtful_together_size = 30, doubtful_together_modulus = 3e4;
@@ -73,7 +73,7 @@ namespace slipstick::mesh
                                                    scene.decomposition.method == DecompositionMethod::none);
     }
 
-    /// A warning about the two bodies that exceed the limits most; empty if there are none.
+    /// Adds a warning about the two bodies that exceed the limits most, if there are any.
     /// @param size diagonals of the bounding boxes of the bodies [mm].
     template <int dim>
     void remark_on_units(const scene::Scene<dim>   &scene,

@@ -11,15 +11,15 @@ namespace slipstick::mesh
 {
   namespace
   {
-    // In the plane larger numbers of parts are cut k-way, which keeps each part connected. Bisection gives rounder parts
-    // (METIS manual, section 5.1); parts of solids that are not connected become several.
+    // In the plane larger numbers of parts are cut k-way, which keeps each part connected. Bisection gives rounder
+    // parts (METIS manual, section 5.1); parts of solids that are not connected become several.
     constexpr unsigned int most_bisected_in_plane = 8;
 
     // METIS uses integer weights and sums them in 32 bits.
     constexpr double weight_of_mean_face = 100, largest_sum = 1e9;
 
-    // Bisection: by how much the largest part may exceed the mean, in thousandths, as METIS allows where it cuts k-way. With
-    // METIS' own limit (1) more cells stick out of the parts.
+    // Bisection: allowed excess of the largest part over the mean, in thousandths; METIS' default for k-way partitions.
+    // With METIS' default for bisection (1) more cells protrude from the parts.
     constexpr idx_t imbalance_of_solids = 30;
 
     /// Part of the surface of a cell.
@@ -76,7 +76,7 @@ namespace slipstick::mesh
     }
 
     /// Adds the edges of a cell, weighted by the smaller of the two faces there times its ratio to the larger one, and
-    /// weights the faces anew, so that a face together with its edges counts by its size.
+    /// reweights the faces, so that a face together with its edges counts by its size.
     template <class Faces>
     void add_edges(const MeshPiece<3> &piece, Faces &faces_of_cell, std::vector<Side<2>> &edges)
     {
@@ -99,8 +99,8 @@ namespace slipstick::mesh
       faces_of_cell = std::move(weighted);
     }
 
-    /// Adds a link for every pair of cells that share a side. In a lattice one other cell is opposite an edge; where there
-    /// are more they share its weight.
+    /// Adds a link for every pair of cells that share a side. In a lattice one other cell is opposite an edge; if there
+    /// are more, they share its weight.
     template <std::size_t n>
     void add_links(std::vector<Side<n>> sides, std::vector<Link> &links)
     {
@@ -136,7 +136,7 @@ namespace slipstick::mesh
       if constexpr (dim == 3)
         {
           add_links(std::move(edges), links);
-          // once per pair of cells: a face weighs at least as much as its edges
+          // one link per pair of cells: a face weighs at least as much as its edges
           std::sort(links.begin(), links.end(), [](const Link &s, const Link &t) {
             return std::tie(s.a, s.b, t.weight) < std::tie(t.a, t.b, s.weight);
           });

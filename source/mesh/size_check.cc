@@ -30,7 +30,7 @@ namespace slipstick::mesh
     constexpr double many_subdomains     = 1e4;   // above this the message mentions them
     constexpr double bytes_of_a_cell     = 40;    // in a mesh file
     constexpr double around_an_edge      = 13;    // cells added per edge refined by 3, all levels together
-    constexpr double around_a_face       = 6;     // the same in space per face: layers of 27 and 22 for one
+    constexpr double around_a_face       = 6;     // the same in space per face: a cell becomes 27, the next one 22
     constexpr double usable              = 0.9;   // part of the free memory
     constexpr double finest = 1e-8; // edge length of cells over their distance from the origin: 8 digits remain
 
@@ -193,7 +193,7 @@ namespace slipstick::mesh
     MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
     const unsigned int on_node = dealii::Utilities::MPI::n_mpi_processes(node);
     MPI_Comm_free(&node);
-    const double free = dealii::Utilities::MPI::sum(free_memory_mb(on_node) / on_node, comm); // each node by its ranks
+    const double free = dealii::Utilities::MPI::sum(free_memory_mb(on_node) / on_node, comm); // each rank adds a share
     collectively(comm, [&] {
       if (dealii::Utilities::MPI::this_mpi_process(comm) != 0)
         return;

@@ -16,15 +16,15 @@ namespace slipstick::mesh
     constexpr double in_line = 1e-6;
     // A node is a corner if the edges meet at more than this factor times the angle at the neighbouring nodes.
     constexpr double outstanding = 3;
-    // Coarse circles: neighbouring angles are below the limit [rad], and lengths differ by at most this part.
+    // Coarse circles: neighbouring angles are below the limit [rad], and lengths differ by at most this fraction.
     constexpr double coarse_limit = 65 * M_PI / 180, regular = 0.1;
     // Parabolas through mid nodes that meet at this angle [rad] or more form a corner: those of a circle of eight edges
     // meet at 2 degrees.
     constexpr double corner_of_parabolas = 10 * M_PI / 180;
-    // Conditions for a cubic instead of a parabola: its mid node is off the middle of the chord by at most this part,
-    // and the speed at the ends differs by at most this part from that of an arc.
+    // Conditions for a cubic instead of a parabola: its mid node is off the middle of the chord by at most this
+    // fraction of it, and the speed at the ends differs by at most this fraction from that of an arc.
     constexpr double off_middle = 0.05, other_speed = 0.25;
-    // Mid nodes are on the chord if their distance from it is at most this part of its length.
+    // Mid nodes are on the chord if their distance from it is at most this fraction of its length.
     constexpr double on_edge_chord = 1e-9;
 
     dealii::Tensor<1, 2> turned(const dealii::Tensor<1, 2> &v, const double angle)
@@ -293,7 +293,7 @@ namespace slipstick::mesh
                             mesh.piece.vertices[edge.to]);
     }
 
-    /// Whether edges of equal lengths meet at equal angles, at least two of which make a corner of 90 degrees.
+    /// Whether edges of about equal lengths meet at about equal angles, which are clearly less than 90 degrees.
     bool Reconstruction::is_coarse_circle(const Edge &edge) const
     {
       if (edge.last < 0 || edge.next < 0)

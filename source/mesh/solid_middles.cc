@@ -12,8 +12,8 @@ namespace slipstick::mesh
     using Point  = dealii::Point<3>;
     using Tensor = dealii::Tensor<1, 3>;
 
-    // Midpoints at most this part of the length away from the chord belong to straight edges, e.g. along the axis of a
-    // cylinder.
+    // Midpoints at most this fraction of the length away from the chord belong to straight edges, e.g. along the axis
+    // of a cylinder.
     constexpr double on_chord = 1e-12;
 
     /// Jacobian of the mapping of degree 2 with three nodes per direction, at one of the nodes.

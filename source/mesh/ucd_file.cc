@@ -1,4 +1,5 @@
-// AVS' unstructured cell data, ASCII: https://dav.lbl.gov/archive/NERSC/Software/express/help6.1/help/reference/dvmac/UCD_Form.htm
+// AVS' unstructured cell data, ASCII:
+// https://dav.lbl.gov/archive/NERSC/Software/express/help6.1/help/reference/dvmac/UCD_Form.htm
 #include <slipstick/mesh/mesh_file.h>
 #include <slipstick/mesh/word_reader.h>
 

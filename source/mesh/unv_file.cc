@@ -1,4 +1,5 @@
-// I-deas' universal file format: http://www.sdrl.uc.edu/sdrl/referenceinfo/universalfileformats, data sets 2411, 2412, 2467.
+// I-deas' universal file format: http://www.sdrl.uc.edu/sdrl/referenceinfo/universalfileformats, data sets 2411, 2412,
+// 2467.
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/mesh_file.h>
 #include <slipstick/mesh/solid_nodes.h>

@@ -32,7 +32,7 @@ namespace
     return scene;
   }
 
-  /// A soft block pressed on a stiff one, both cut.
+  /// A soft block pressed on a stiff one, both cut into subdomains.
   Scene soft_on_stiff()
   {
     Scene scene = cut({}, metis(6));
@@ -49,7 +49,7 @@ namespace
     return scene;
   }
 
-  /// By body.
+  /// u'K u of every body.
   Eigen::VectorXd energies(const tfeti::DualProblem &dual, const std::vector<Eigen::VectorXd> &u)
   {
     Eigen::VectorXd sums = Eigen::VectorXd::Zero(dual.body_motions().names().size());
@@ -224,7 +224,7 @@ TEST(TractionErrors, are_relative_to_pressures_and_to_tangential_tractions)
   EXPECT_NEAR(errors(x, parts(x, 0.02, 0), 10 * norm).pressure,
               0.002 * contact::TractionErrors(*problem.dual, parts(x, 1, 0), x).largest_norm() / norm,
               1e-12);
-  // without tangential tractions a part of the pressures takes their place
+  // without tangential tractions a fraction of the pressures is the reference
   const double ratio = contact::TractionErrors(*problem.dual, parts(x, 0, 1), x).largest_norm() /
                        contact::TractionErrors(*problem.dual, parts(x, 1, 0), x).largest_norm();
   EXPECT_NEAR(errors(parts(x, 1, 0), parts(x, 0, 1e-4), 0).tangential, 1e-2 * ratio, 1e-12);

@@ -52,7 +52,7 @@ TEST(SlipBounds, follow_the_load_factor)
 
 TEST(SlipBounds, negative_ones_are_refused_on_all_ranks)
 {
-  // negative at the right end alone, which one rank owns
+  // negative only at the right end, which a single rank owns
   for (const Cut &how : cuts)
     {
       const Torn        torn(cut(box_on_circle(8, "9.9-x"), how));

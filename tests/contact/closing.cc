@@ -12,9 +12,9 @@ namespace slipstick::test
 {
   namespace
   {
-    // Of the largest multiplier.
+    // Relative to the largest multiplier.
     constexpr double disturbance = 0.03;
-    // Gaps are closed to 1e-4 of themselves.
+    // Admissible remainder of gaps and errors; gaps are closed to 1e-4.
     constexpr double left = 1e-2;
 
     double largest_difference(const std::vector<Eigen::VectorXd> &a, const std::vector<Eigen::VectorXd> &b)
@@ -25,7 +25,7 @@ namespace slipstick::test
       return dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD);
     }
 
-    /// The same for any number of ranks.
+    /// Disturbs the free multipliers, in the same way for any number of ranks.
     tfeti::DistributedVector disturbed(const contact::DualSolution &accurate, const tfeti::DualProblem &dual)
     {
       tfeti::DistributedVector x    = accurate.multipliers;

@@ -6,9 +6,9 @@
 
 namespace slipstick::test
 {
-  /// A rough solution, the free multipliers off by some percent, is led to the accurate one: displacements, and slip
-  /// forces that follow the pressures.
-  /// @return number of entries that slip at bounds which follow a pressure, of all ranks.
+  /// Expects that closing the gaps of a rough solution, whose free multipliers are off by a few per cent, gives the
+  /// accurate one: displacements, and slip forces that follow the pressures.
+  /// @return number of entries that slip at bounds which follow a pressure, over all ranks.
   unsigned int expect_closing_leads_to(const contact::DualSolution &accurate,
                                        const tfeti::DualProblem    &dual,
                                        const contact::SlipLaw      &law);

@@ -104,7 +104,7 @@ namespace
         }
   }
 
-  /// Converged, checks passed, and under `pressure` everywhere with this status and shear traction.
+  /// Expects convergence, passed checks, and this status and shear traction everywhere under `pressure`.
   void expect_uniform(const Answer &answer, const contact::ContactStatus status, const double traction)
   {
     EXPECT_EQ(answer.solution.status, qp::Status::converged);

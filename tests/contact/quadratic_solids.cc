@@ -82,7 +82,7 @@ TEST(QuadraticSolids, bending_is_exact)
     }
 }
 
-// Uniform stress between meshes that do not match, flat and turned, either side the slave.
+// Uniform stress between meshes that do not match, flat and turned, with either side as the slave.
 TEST(QuadraticSolids, patch_test_between_meshes_that_do_not_match)
 {
   for (const auto &[poisson_ratio, degrees] : {std::pair(0., 0.), std::pair(0.3, 37.)})

@@ -51,7 +51,7 @@ TEST(Solids, cube_on_sphere_agrees_with_getfem)
         }
       EXPECT_LT(solved.checked.checks.worst().second, 1e-5) << solved.checked.checks.worst().first;
       for (const auto &node : solved.nodes)
-        if (node.status == contact::ContactStatus::slip && node.slip > 1e-9) // friction is against the slip
+        if (node.status == contact::ContactStatus::slip && node.slip > 1e-9) // friction opposes the slip
           {
             double product = 0;
             for (unsigned int d = 0; d < 3; ++d)
@@ -137,7 +137,8 @@ TEST(Solids, plane_strain_between_planes_of_symmetry)
 
 namespace
 {
-  /// A block that rests on a half space in space by friction alone, weighed down along a direction that the mesh knows nothing of.
+  /// A block that rests on a half space in space by friction alone; its weight acts along a direction oblique to the
+  /// mesh.
   scene::Scene<3> resting_block(const double angle, const double friction)
   {
     scene::Scene<3> scene = pressed_cube<3>(2, 2);
@@ -157,7 +158,7 @@ namespace
   }
 } // namespace
 
-// Slides when the tangent of the angle is above the coefficient, whatever the direction.
+// The block slides if the tangent of the angle exceeds the friction coefficient.
 TEST(Solids, block_rests_on_an_oblique_incline_up_to_the_angle_of_friction)
 {
   const double    angle = 0.2;

@@ -113,7 +113,8 @@ namespace slipstick::test
     scene.contacts[0].law   = scene::make_law<dim>(law, {number});
   }
 
-  /// Two blocks of 10 x 5 x 10 mm, one on the other, with meshes that do not match, between planes of symmetry, pressed by 100 MPa.
+  /// Two blocks of 10 x 5 x 10 mm, one on the other, with meshes that do not match, between planes of symmetry, pressed
+  /// by 100 MPa.
   inline scene::Scene<3> two_blocks(const std::string &law, const std::string &number, const double poisson_ratio)
   {
     scene::Scene<3> scene            = pressed_cube<3>(1, 1);
@@ -149,7 +150,8 @@ namespace slipstick::test
     return scene;
   }
 
-  /// Writes a block of n cells a direction from (0, 0, 0) to @p size in Gmsh's format: hexahedra, or six tetrahedra for each.
+  /// Writes a block of n cells per direction from (0, 0, 0) to @p size in Gmsh's format: hexahedra, or six tetrahedra
+  /// for each.
   inline void write_block(const std::string                 &file,
                           const dealii::Point<3>            &size,
                           const std::array<unsigned int, 3> &n,
@@ -181,7 +183,7 @@ namespace slipstick::test
             const auto                        v = [&](const unsigned int corner) {
               return node(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2));
             };
-            if (in_tetrahedra) // along the six ways from corner 0 to corner 7
+            if (in_tetrahedra) // along the six paths from corner 0 to corner 7
               for (const auto &[a, b] :
                    std::vector<std::pair<int, int>>{{1, 3}, {3, 2}, {2, 6}, {6, 4}, {4, 5}, {5, 1}})
                 add(4, 7, {v(0), v(a), v(b), v(7)});
@@ -194,7 +196,7 @@ namespace slipstick::test
                   for (unsigned int c = 0; c < 8; ++c)
                     if ((c >> (f / 2) & 1) == f % 2)
                       of.push_back(v(c));
-                  if (in_tetrahedra) // all diagonals run from the least corner to the largest
+                  if (in_tetrahedra) // all diagonals run from the smallest corner to the largest
                     for (const unsigned int other : {1, 2})
                       add(2, f + 1, {of[0], of[other], of[3]});
                   else
@@ -220,7 +222,7 @@ namespace slipstick::test
            (1 - std::cos(angle)) * (axis * x) * axis;
   }
 
-  /// Everything as the turned scene.
+  /// Turns all bodies of the scene.
   inline void turn(scene::Scene<3> &scene, const double degrees, const dealii::Point<3> &axis)
   {
     for (auto &body : scene.bodies)
@@ -243,7 +245,8 @@ namespace slipstick::test
     MPI_Barrier(MPI_COMM_WORLD);
   }
 
-  /// Solves two_blocks(), turned by @p degrees about (1, 2, 2): pressures, forces and displacements are those of uniaxial stress.
+  /// Expects the pressures, forces and displacements of uniaxial stress for two_blocks(), turned by @p degrees about
+  /// (1, 2, 2).
   inline void expect_uniform_stress(const scene::Scene<3> &scene, const double degrees, const unsigned int n_nodes)
   {
     const Solved<3> solved(scene);

@@ -11,7 +11,7 @@ namespace
 {
   const std::vector<Cut> four_cuts = {whole(), blocks(2), blocks(4), metis(6)};
 
-  /// The box pressed on the circle, pushed sideways too.
+  /// The box pressed on the circle and pushed sideways.
   Scene pushed_box(const std::string &slip_bound, const unsigned int degree = 1)
   {
     Scene scene            = box_on_circle(8, slip_bound, degree);
@@ -20,7 +20,7 @@ namespace
     return scene;
   }
 
-  /// The box on the circle that nothing else holds, pressed on it askew.
+  /// A box that only the circle holds, pressed on it obliquely.
   Scene floating_box(const std::string &traction_x, const std::string &traction_y)
   {
     Scene scene            = box(8);
@@ -30,7 +30,7 @@ namespace
     return scene;
   }
 
-  /// Contact forces (normal, tangential) by the place of the node.
+  /// Contact forces (normal, tangential) by the position of the node.
   using Forces = std::map<std::array<long long, 2>, std::array<double, 2>>;
 
   Forces contact_forces(const Solved &solved)
@@ -210,7 +210,7 @@ TEST(ContactSolve, contact_forces_of_degree_two_agree_with_those_of_the_untorn_b
 
 TEST(ContactSolve, some_nodes_slip_some_stick_some_are_open)
 {
-  // or the tests above compare less than they claim
+  // otherwise the tests above compare less than they claim
   const Solved solved(cut(pushed_box("100"), blocks(2)));
   const auto   bounds = contact::slip_bounds(solved.torn.scene, *solved.dual, 1.);
   unsigned int n[4]   = {0, 0, 0, 0};
@@ -284,7 +284,7 @@ TEST(ContactSolve, observer_sees_every_outer_step_on_every_rank)
                                            contact::slip_bounds(scene, *dual, 1.),
                                            contact::resolved_options(scene),
                                            [&](const qp::OuterStep &step) { EXPECT_EQ(step.outer, ++n); });
-      // projected conjugate gradients are one outer step and report every step within
+      // projected conjugate gradients are one outer step, of which every inner step is reported
       EXPECT_EQ(n, solution.algorithm == "pcg" ? solution.counts.cg_steps : solution.counts.outer_iterations);
       EXPECT_GT(n, 0u);
     }
@@ -450,7 +450,7 @@ TEST(Solve, operator_in_single_precision_gives_the_solution_of_double)
         const auto refined = solve(*in_single, true);
         EXPECT_LE(refined.projected_gradient, scene.solver.tolerance);
         EXPECT_LT(relative_difference(at(refined), exact), 1e-8);
-        EXPECT_GT(relative_difference(rough, exact), 1e-8); // else this test says nothing
+        EXPECT_GT(relative_difference(rough, exact), 1e-8); // otherwise this test says nothing
       }
 }
 

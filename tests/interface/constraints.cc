@@ -18,7 +18,7 @@ namespace
 
   const std::vector<Cut> cuts = {whole(), blocks(2), blocks(4), metis(3), metis(7), metis(64)};
 
-  /// The box that touches with its whole bottom and is held at its top: no contact node has a support.
+  /// A box that touches with its whole bottom and is held at its top: no contact node has a support.
   Scene hanging_box(const unsigned int n, const unsigned int degree = 1)
   {
     Scene scene               = box(n, degree);
@@ -68,7 +68,7 @@ namespace
     return sum;
   }
 
-  /// What names a row and what it says, of all ranks: label, kind, c, places and values of its entries, sorted.
+  /// Identity and content of a row: label, kind, c, places and values of its entries. Sorted, of all ranks.
   using Row = std::tuple<std::uint64_t, unsigned int, double, std::vector<std::array<double, 4>>>;
 
   std::vector<Row> rows(const Scene &scene, const MPI_Comm comm)
@@ -177,7 +177,7 @@ TEST(Constraints, rows_are_independent)
 
 TEST(Constraints, gluing_and_supports_hold_the_torn_bodies_as_the_untorn_ones)
 {
-  // the kernel of the equality rows has as many unknowns as the untorn body has free ones
+  // the kernel of the equality rows has as many dimensions as the untorn body has free unknowns
   for (const Cut &how : cuts)
     {
       const Dense                  dense(Torn(cut(hanging_box(8), how)));

@@ -1,4 +1,4 @@
-// Gaps between edges that stand for curves.
+// Gaps between edges that represent curves.
 #include "curves.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(CurvedGap, between_concentric_circles_converges)
 
 TEST(CurvedGap, sees_curves_over_straight_edges_of_degree_two)
 {
-  // mid nodes on the chords, as of cells too thin to be bent
+  // mid nodes on the chords, as for cells too thin to be bent
   auto slave = with_arcs(arc(1, 200, 340, 9, 1, 0)), master = with_arcs(arc(1.01, 340, 200, 9, 1, 1000));
   for (auto *side : {&slave, &master})
     for (auto &edge : *side)

@@ -1,4 +1,4 @@
-// Gaps, weights and areas between facets that stand for curved surfaces.
+// Gaps, weights and areas between facets that represent curved surfaces.
 #include <slipstick/interface/mortar.h>
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace
     static constexpr std::uint64_t of_master = 100000;
     static constexpr double        half      = 0.4; // of the angles [rad]
 
-    /// Part of a ball around the origin, or of a cylinder around z, on its top; seen from outside s, t run counter-clockwise.
+    /// Top of a ball around the origin, or of a cylinder around z; s, t are counter-clockwise as seen from outside.
     static Place on(const double radius, const bool is_ball)
     {
       return [=](const double s, const double t) {
@@ -152,7 +152,7 @@ TEST(CurvedSurface, areas_of_bent_facets_are_those_of_the_ball)
                                                {1., 1.},
                                                ContactDiscretization::mortar,
                                                "pair");
-      // no corners of triangles: all facets count as covered
+      // corners of triangles have no rows: all facets count as covered
       EXPECT_EQ(rows.size(), is_split ? 11u * 11u - 6u * 6u : 11u * 11u);
       for (const auto &row : rows)
         sum += row.measure;
@@ -183,7 +183,7 @@ TEST(FaceSurface, patch_of_a_mesh_file_is_met_along_lines_and_divided)
       const Tensor normal({-0.1 * 2 * 0.3 - 0.1 * 0.4, 0.4 * 0.4 - 0.1 * 0.3, 1});
       EXPECT_LT((patch.normal(on, -1. * along) + normal / normal.norm()).norm(), 1e-13);
       for (unsigned int part = 0; part < 4; ++part)
-        EXPECT_NEAR(patch.quarter(part).distance_along(on - 0.07 * along, along), 0.07, 1e-12); // continued
+        EXPECT_NEAR(patch.quarter(part).distance_along(on - 0.07 * along, along), 0.07, 1e-12); // extrapolated
       EXPECT_LT(patch.quarter(0).points[n].distance(place(0.25, 0)), 1e-13);
     }
 }

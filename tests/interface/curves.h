@@ -1,4 +1,4 @@
-// Curves by hand, as outlines of bodies.
+// Hand-made curves as outlines of bodies.
 #pragma once
 
 #include <slipstick/interface/mortar.h>

@@ -52,7 +52,7 @@ TEST(EdgeTree, edges_come_by_distance_each_once)
   for (const auto &edges : {closed, flat, std::vector<Edge>{flat[0]}, std::vector<Edge>()})
     {
       const interface::EdgeTree tree(edges);
-      // from the centre of the circle many are as far
+      // many edges are equally far from the centre of the circle
       for (const dealii::Point<2> &x : {dealii::Point<2>(0, 0), dealii::Point<2>(0.3, 0.2), dealii::Point<2>(-2, 0)})
         for (const double radius : {0., 0.5, 1., 1.2, 10.})
           EXPECT_EQ(order(tree, x, radius), expected(edges, x, radius)) << x << ' ' << radius;

@@ -1,4 +1,4 @@
-// What gaps at nodes leave out of the gap between them.
+// Differences between the gaps interpolated from the nodes and the gaps between the surfaces.
 #include "torn.h"
 
 #include <slipstick/interface/gap_defect.h>
@@ -10,8 +10,8 @@ namespace
 {
   struct GapDefect
   {
-    /// Mean of the interpolated gap less the gap over the hat function of a node at distance @p at from the lowest point of the gap,
-    /// to a circle or ball beside a plane, by the midpoint rule.
+    /// Mean of the interpolated gap minus the gap, weighted with the hat function of a node at distance @p at from the
+    /// place of the smallest gap, for a circle or ball beside a plane, by the midpoint rule.
     static double between(const double at, const double h, const double radius)
     {
       constexpr unsigned int n   = 2000;
@@ -118,7 +118,7 @@ TEST(GapDefect, in_space_is_that_of_both_directions)
       ASSERT_EQ(defects.size(), 121u);
       unsigned int n_inside = 0;
       for (const auto &entry : defects)
-        n_inside += std::abs(entry.second - 1. / 6000) < 1e-3 / 6000; // in squares and triangles with these edges alike
+        n_inside += std::abs(entry.second - 1. / 6000) < 1e-3 / 6000; // for squares and triangles alike
       EXPECT_GE(n_inside, 81u);
     }
 }

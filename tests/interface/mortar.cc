@@ -58,7 +58,7 @@ namespace
     return at;
   }
 
-  /// Force of multipliers equal to the length at all nodes (pressure 1), by node of either side.
+  /// Nodal forces of a uniform pressure 1, i.e. of multipliers equal to the lengths, on either side.
   std::map<mechanics::NodeKey, double> forces_of_pressure(const Rows &all, const bool of_slave)
   {
     std::map<mechanics::NodeKey, double> force;
@@ -304,7 +304,7 @@ TEST(Mortar, corner_of_the_slave_has_a_row_for_each_side)
   EXPECT_EQ(at_corner, 2u);
 }
 
-// along their own normals both curves lean by x / radius, so that closing the gap would look like slip
+// with their own normals, both curves would be inclined by x / radius, and closing the gap would look like slip
 TEST(Mortar, equal_arcs_touch_along_their_plane_of_symmetry)
 {
   const auto lower = arc(1, 50, 130, 32, 1, 0);
@@ -318,7 +318,7 @@ TEST(Mortar, equal_arcs_touch_along_their_plane_of_symmetry)
       for (const auto &row : all)
         if (const double x = std::abs(row.position[0]); x > 0.05 && x < 0.4)
           {
-            // the ray along the slave's own normal meets the master 2 gap x / radius aside
+            // the ray along the slave's own normal meets the master 2 gap x / radius to the side
             const double gap = 2 * (1 - std::sqrt(1 - x * x));
             EXPECT_LT(std::abs(row.normal[0]), 1.2 * gap * x);
             ++n;
@@ -333,7 +333,7 @@ TEST(Mortar, normals_are_means_of_both_sides)
     {
       unsigned int n = 0;
       for (const auto &row : rows(arc(1, 200, 340, 40, degree, 0), line({3, -1}, {-3, -1}, 7, degree, 1000), 4))
-        if (std::abs(row.position[0]) < 0.9) // the nodes at the ends have one edge, whose normal leans more
+        if (std::abs(row.position[0]) < 0.9) // the nodes at the ends have one edge, whose normal is more inclined
           {
             const auto sum = row.position + dealii::Tensor<1, 2>({0, -1});
             EXPECT_LT((row.normal - sum / sum.norm()).norm(), 1e-3) << row.position;

@@ -16,7 +16,7 @@ namespace
   using Tensor = dealii::Tensor<1, 3>;
   using Rows   = std::vector<interface::MortarRow<3>>;
 
-  /// Two bodies apart: keys of the second start here.
+  /// Keys of the second of two bodies start here.
   constexpr std::uint64_t of_master = 100000;
 
   /// n x m quadrilaterals, or twice as many triangles, whose corners are at @p place of (0..1, 0..1); normals are along
@@ -94,7 +94,7 @@ namespace
     return s;
   }
 
-  /// What holds for plane surfaces a distance apart, however their meshes cover each other.
+  /// Properties of the rows of parallel plane surfaces, however their meshes cover each other.
   void expect_consistent(const std::vector<Facet> &slave,
                          const std::vector<Facet> &master,
                          const double              gap,
@@ -115,7 +115,7 @@ namespace
         Tensor x;
         for (const auto &[key, weight] : row.slave_weights)
           x += weight * Tensor(at.at(key));
-        // a field that is linear over both surfaces jumps nowhere
+        // a field that is linear over both surfaces has no jump
         EXPECT_NEAR(x[0], row.master_position[0], 1e-10);
         EXPECT_NEAR(x[1], row.master_position[1], 1e-10);
         total += row.measure;
@@ -174,7 +174,7 @@ TEST(SurfaceMortar, of_layers_the_nearest_counts)
       both.insert(both.end(), far_first ? near.begin() : far.begin(), far_first ? near.end() : far.end());
       expect_consistent(slave, both, 0.1, 1, Point(0.5, 0.5, 0));
     }
-  // of two layers in one place one counts
+  // of two layers at the same place only one counts
   auto       twice = near;
   const auto again = surface(4, 4, rectangle(0, 1, 0, 1, -0.1), false, 2 * of_master);
   twice.insert(twice.end(), again.begin(), again.end());
@@ -184,7 +184,7 @@ TEST(SurfaceMortar, of_layers_the_nearest_counts)
 TEST(SurfaceMortar, sides_face_each_other)
 {
   const auto slave = surface(3, 3, rectangle(0, 1, 0, 1, 0), true, 0);
-  EXPECT_TRUE(rows(slave, surface(3, 3, rectangle(0, 1, 0, 1, -0.1), true, of_master)).empty());  // looks away
+  EXPECT_TRUE(rows(slave, surface(3, 3, rectangle(0, 1, 0, 1, -0.1), true, of_master)).empty());  // faces away
   EXPECT_TRUE(rows(slave, surface(3, 3, rectangle(0, 1, 0, 1, -1.1), false, of_master)).empty()); // out of reach
   EXPECT_TRUE(rows(slave, surface(3, 3, rectangle(2, 3, 0, 1, -0.1), false, of_master)).empty()); // beside it
   EXPECT_EQ(rows(slave, surface(3, 3, rectangle(0, 1, 0, 1, 0.1), false, of_master)).size(), 16); // overlaps

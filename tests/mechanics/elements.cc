@@ -50,7 +50,7 @@ namespace
     return grid;
   }
 
-  /// The unit square with its inner vertices moved about.
+  /// The unit square with displaced inner vertices.
   std::function<Point(double, double)> distorted()
   {
     return [](const double s, const double t) {
@@ -59,7 +59,7 @@ namespace
     };
   }
 
-  /// Tractions that belong to a uniform stress of the unit square.
+  /// Applies the tractions of a uniform stress of the unit square.
   void load_uniformly(Scene &scene, const Eigen::Vector4d &s)
   {
     const auto pull = [&](const std::string &boundary, const double x, const double y) {
@@ -312,7 +312,8 @@ TEST(Elements, linear_change_of_temperature_is_free_of_stress_with_degree_two)
           support(scene, 0, "bottom", "", "0");
           heat(scene, "100*(x+0)*0 + 40"); // uniform part
           heat(scene, "70*(x-0.3)");
-          // u_x = c (40 x + 35 x^2 - 21 x - 35 y^2), u_y = c (40 + 70 (x - 0.3)) y: left and bottom bend, so hold them so
+          // u_x = c (40 x + 35 x^2 - 21 x - 35 y^2), u_y = c (40 + 70 (x - 0.3)) y: left and bottom bend and are held
+          // accordingly
           const double c      = 1e-3 * (state == PlaneState::plane_strain ? 1 + scene.materials[0].poisson_ratio : 1);
           const auto   expect = [&](const Point &x) {
             return Eigen::Vector2d(c * (19 * x[0] + 35 * x[0] * x[0] - 35 * x[1] * x[1]), c * (19 + 70 * x[0]) * x[1]);
@@ -355,7 +356,7 @@ namespace
   /// Relative error of the displacement of a thick-walled cylinder under inner pressure (Lame), plane strain.
   double cylinder_error(const Kind &kind, const double nu, const unsigned int n)
   {
-    // all diagonals alike: triangles whose diagonals alternate lock less
+    // all diagonals have the same direction: triangles whose diagonals alternate lock less
     const double a = 1, b = 2, pressure = 10;
     Scene        scene               = sheet(kind);
     scene.materials[0].poisson_ratio = nu;

@@ -118,7 +118,7 @@ namespace slipstick::test
     return mesh;
   }
 
-  /// Strips in equal shares over the ranks; no rank without one is needed.
+  /// Distributes the strips equally among the ranks.
   inline mesh::Mesh<2> mesh_of(const Grid &grid, const MPI_Comm comm = MPI_COMM_WORLD)
   {
     const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm),
@@ -184,7 +184,7 @@ namespace slipstick::test
       return tfeti::recover(dual, solution.multipliers, solution.free).u;
     }
 
-    /// Displacements of a function of position.
+    /// Nodal values of a function of position, by subdomain.
     std::vector<Eigen::VectorXd> nodal(const std::function<Eigen::Vector2d(const Point &)> &function) const
     {
       std::vector<Eigen::VectorXd> u;
@@ -198,7 +198,7 @@ namespace slipstick::test
       return u;
     }
 
-    /// Root of the mean square of the nodes' differences to a function over that of the function.
+    /// Root mean square of the nodal differences from a function, relative to that of the function.
     double difference(const std::vector<Eigen::VectorXd>                  &u,
                       const std::function<Eigen::Vector2d(const Point &)> &function) const
     {
@@ -213,7 +213,7 @@ namespace slipstick::test
       return std::sqrt(sums[0] / sums[1]);
     }
 
-    /// Largest difference of the nodal stresses xx, yy, xy, zz to a function.
+    /// Largest difference of the nodal stresses xx, yy, xy, zz from a function.
     double stress_difference(const mechanics::StressResult                       &stress,
                              const std::function<Eigen::Vector4d(const Point &)> &function) const
     {
@@ -253,7 +253,7 @@ namespace slipstick::test
     tfeti::Constraints                    constraints;
   };
 
-  /// Quarter of a ring between radii a and b, the first direction around; its arcs on circles.
+  /// Quarter of a ring between radii a and b, the first direction along the circumference; its arcs are on circles.
   inline Grid quarter_ring(const double                       a,
                            const double                       b,
                            const std::array<unsigned int, 2> &n,

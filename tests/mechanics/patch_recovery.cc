@@ -55,7 +55,8 @@ namespace
   }
 } // namespace
 
-/// Also at corners, and on slender oblique cells, where x and y of the points around a node nearly depend on each other.
+/// Also at corners, and on slender oblique cells, where x and y of the points around a node are nearly linearly
+/// dependent.
 TEST(PatchRecovery, linear_stresses_of_degree_one)
 {
   const std::function<Point(double, double)> maps[] = {
@@ -72,7 +73,7 @@ TEST(PatchRecovery, linear_stresses_of_degree_one)
     }
 }
 
-/// Inside the body; at its boundary the slope across is that of the cells there.
+/// Inside the body; at its boundary the slope across it is that of the cells there.
 TEST(PatchRecovery, quadratic_stresses_of_degree_two)
 {
   const auto cubic = [](const Point &x) {
@@ -96,7 +97,7 @@ TEST(PatchRecovery, quadratic_stresses_of_degree_two)
   EXPECT_LT(error(grid, scene, u, gradient), 0.002);
 }
 
-/// The slope across is not known; along the layer it is, also where cells are much higher than long.
+/// The slope across the layer is unknown; the slope along it is not, even where cells are much higher than long.
 TEST(PatchRecovery, one_layer_of_cells)
 {
   const auto u = [](const Point &x) { return Eigen::Vector2d(1e-3 * x[0] * x[0], 0); };

@@ -92,7 +92,7 @@ TEST(Revolution, uniform_radial_hoop_and_axial_stress_pass_the_patch_test)
             << name(kind);
           EXPECT_LT(stress.error_squared, 1e-22 * stress.energy_squared) << name(kind);
         }
-        // torn, with the rows of the axis alone: u_y is held at the bottom
+        // torn, with only the rows of the axis: u_y is held at the bottom
         scene.tractions.erase(scene.tractions.end() - 2);
         support(scene, 0, "bottom", "", "2e-4");
         const OnGrid torn(scene, section(kind, {{8, 4}}, a, 1.5, 4));

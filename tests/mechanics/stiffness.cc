@@ -23,7 +23,7 @@ namespace
     return sigma;
   }
 
-  /// Tractions on all four edges of the box that belong to a uniform stress.
+  /// Applies the tractions of a uniform stress on all four edges of the box.
   void load_uniformly(Scene &scene, const Eigen::Matrix2d &sigma)
   {
     const auto pull = [&](const std::string &boundary, const Eigen::Vector2d &normal) {
@@ -50,7 +50,7 @@ namespace
     return matrices.stiffness.selfadjointView<Eigen::Lower>() * u;
   }
 
-  /// A box with its inner vertices moved about.
+  /// A box with displaced inner vertices.
   mesh::MeshPiece<2> distorted_piece(const Scene &scene, const unsigned int n)
   {
     auto       piece = mesh::rectangle_piece<2>(scene.bodies[0], {{n, n}}, {{1, 1}}, {{0, 0}});

@@ -73,8 +73,8 @@ TEST(StressPoint, uniform_stress)
       }
 }
 
-/// Stresses one degree higher than those of the element are fitted exactly, at boundaries, too. Recovered ones of degree 1
-/// are exact as well; of degree 2 those at boundaries are extrapolated linearly.
+/// Stresses one degree higher than those of the element are fitted exactly, at boundaries, too. Recovered ones of
+/// degree 1 are exact as well; of degree 2 those at boundaries are extrapolated linearly.
 TEST(StressPoint, stresses_at_boundaries)
 {
   const auto at_inside = [](const Point &x) { return x[0] > 0 && x[0] < 1 && x[1] > 0 && x[1] < 1; };

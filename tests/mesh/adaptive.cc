@@ -19,7 +19,7 @@ namespace
     double             least_angle, greatest_angle;
   };
 
-  /// The unit squares, or their halves.
+  /// A lattice of unit squares, or of their halves.
   mesh::MeshPiece<2> lattice(const bool in_triangles)
   {
     auto piece = unit_cells(4, 3);

@@ -1,4 +1,4 @@
-// Hexahedra divided into tetrahedra, tetrahedra refined where it is wanted.
+// Hexahedra divided into tetrahedra, and local refinement of tetrahedra.
 #include <slipstick/base/exceptions.h>
 #include <slipstick/mesh/make_body.h>
 #include <slipstick/mesh/refinement.h>
@@ -53,7 +53,7 @@ namespace
       return sum;
     }
 
-    /// The least of volume over that of the regular tetrahedron with the longest edge.
+    /// Smallest ratio of the volume of a cell to that of the regular tetrahedron with its longest edge.
     static double shape(const Piece &piece)
     {
       double least = 1;
@@ -67,7 +67,7 @@ namespace
       return least;
     }
 
-    /// Two cells behind every face or one and a boundary face.
+    /// Expects two cells, or one cell and a boundary face, at every face.
     static void expect_conforming(const Piece &piece)
     {
       std::map<Piece::Face, unsigned int> behind;
@@ -127,7 +127,7 @@ TEST(AdaptiveSolid, six_tetrahedra_fill_a_hexahedron_whatever_its_numbers)
       for (const auto &cell : whole.cells)
         EXPECT_GT(AdaptiveSolid::volume(whole, cell), 0.1);
       AdaptiveSolid::expect_conforming(whole);
-      std::set<Corners> cells; // so that surfaces of bodies that match still do
+      std::set<Corners> cells; // independent of the numbers, so that matching surfaces of bodies still match
       for (const auto &cell : whole.cells)
         {
           Corners corners;

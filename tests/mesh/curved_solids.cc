@@ -20,13 +20,14 @@ namespace
     using Piece  = mesh::MeshPiece<3>;
     using Map    = std::function<Point(const Point &)>;
 
-    /// Nodes of the unit cube or the unit tetrahedron in the order of a program: corners, and between which of them the others are.
+    /// Nodes of the unit cube or the unit tetrahedron in the order of a program: corners, and for every other node the
+    /// corners between which it lies.
     struct Cell
     {
       std::string                            kind; // of Abaqus, Gmsh's number, or number in .vtk or .unv
       std::vector<Point>                     corners;
       std::vector<std::vector<unsigned int>> between;
-      std::vector<unsigned int>              order = {}; // of the nodes in the file, from 1; empty: this
+      std::vector<unsigned int>              order = {}; // of the nodes in the file, from 1; empty: this order
     };
 
     static std::vector<Cell> cells()
@@ -139,7 +140,7 @@ namespace
       return {x[0] + 0.1 * x[1] * x[1], x[1] - 0.1 * x[2] * x[0], x[2] + 0.1 * x[0] * x[0] - 0.05 * x[1] * x[1]};
     }
 
-    /// Distance of the middles of all edges, and those of quadrilaterals, from where a map of degree 2 has them.
+    /// Largest distance of the midpoints of curved edges from where a map of degree 2 places them.
     static double off(const Piece &piece, const Map &map, const Map &inverse)
     {
       const auto               boundary = mesh::boundary_by_vertices(piece);
@@ -196,7 +197,7 @@ TEST(CurvedSolid, nodes_of_second_order_are_where_the_programs_have_them)
     }
 }
 
-// A quarter of a ring of radii 1 and 2: what lies between two nodes of a rim lies on it.
+// A quarter of a ring of radii 1 and 2: mid nodes between two nodes of a rim lie on the rim.
 TEST(CurvedSolid, mid_nodes_of_other_formats_of_gmsh)
 {
   using S = CurvedSolid;
@@ -225,8 +226,8 @@ TEST(CurvedSolid, mid_nodes_of_other_formats_of_gmsh)
     }
 }
 
-// Refined twice as a whole, or of hexahedra and tetrahedra cells at one side, all new nodes lie on the surface z = x^2 / 10 and the
-// edges follow it.
+// Refined twice, as a whole or towards one side: all new nodes lie on the surface z = x^2 / 10, and the edges follow
+// it.
 TEST(CurvedSolid, refinement_stays_on_the_surface)
 {
   using S            = CurvedSolid;

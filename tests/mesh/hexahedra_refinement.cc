@@ -1,4 +1,4 @@
-// Hexahedra refined where it is wanted: templates, boundaries, curves.
+// Local refinement of hexahedra: templates, boundaries, curves.
 #include <slipstick/mesh/adaptive_refinement.h>
 #include <slipstick/mesh/make_body.h>
 #include <slipstick/mesh/refinement.h>
@@ -44,7 +44,7 @@ namespace
       return piece;
     }
 
-    /// Of the trilinear map, derivatives by the coordinates.
+    /// Jacobian of the trilinear map, from derivatives by the coordinates.
     static double jacobian(const Piece &piece, const Piece::Cell &cell, const std::array<double, 3> &at)
     {
       std::array<Tensor, 3> along;
@@ -92,7 +92,7 @@ namespace
       return {worst, std::accumulate(volumes.begin(), volumes.end(), 0.)};
     }
 
-    /// No face hangs, and the given boundary is all of it: what has one cell only.
+    /// Expects that no face hangs and that the boundary faces are exactly the faces with one cell.
     static void expect_conforming(const Piece &piece)
     {
       std::map<Piece::Face, unsigned int> n_cells;
@@ -115,7 +115,7 @@ namespace
       EXPECT_EQ(given.size(), piece.boundary_faces.size());
     }
 
-    /// Of every boundary id, from the diagonals of its faces.
+    /// Area of every boundary id, from the diagonals of its faces.
     static std::map<unsigned int, double> areas(const Piece &piece)
     {
       const auto                     boundary = mesh::boundary_by_vertices(piece);
@@ -153,7 +153,7 @@ namespace
   };
 } // namespace
 
-// Every set of marked cells: those of single cells, edges, faces and what bends inwards.
+// Random marks that need every template: neighbours at corners, edges and faces, and concave sets.
 TEST(HexahedraRefinement, conforms_for_all_marks_and_keeps_volumes_and_angles)
 {
   using H                   = Hexahedra;
@@ -190,7 +190,7 @@ TEST(HexahedraRefinement, conforms_for_all_marks_and_keeps_volumes_and_angles)
   EXPECT_EQ(n_parts, (std::set<unsigned>{1, 4, 11, 22, 27}));
 }
 
-// A slab at one side; slabs at two sides that meet: alike on a coarse lattice, on a finer one the second does not spread.
+// A slab at one side; slabs at two sides that meet: on a coarse lattice the marks spread, on a finer one they do not.
 TEST(HexahedraRefinement, towards_boundaries)
 {
   using H              = Hexahedra;
@@ -216,7 +216,8 @@ TEST(HexahedraRefinement, towards_boundaries)
   EXPECT_EQ(n, 16u * 9 * 9 * 9);
 }
 
-// Balls, cylinders and tubes: all vertices and middles of the boundary lie on it, and volumes between plane faces converge to those of the body.
+// Balls, cylinders and tubes: all vertices and midpoints of the boundary lie on it, and volumes between plane faces
+// converge to those of the body.
 TEST(HexahedraRefinement, follows_built_in_curves)
 {
   using H = Hexahedra;

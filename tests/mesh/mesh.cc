@@ -47,7 +47,7 @@ namespace
     return sum;
   }
 
-  /// Number of parts that hang together through faces.
+  /// Number of parts that are connected through faces.
   unsigned int n_face_connected_parts(const dealii::Triangulation<2> &triangulation)
   {
     std::vector<bool> seen(triangulation.n_active_cells(), false);
@@ -163,7 +163,7 @@ TEST(Mesh, global_vertex_means_one_place)
           all.insert(std::array<double, 2>{{x, y}});
         }
       for (const auto &[vertex, at] : places)
-        EXPECT_EQ(at.size(), 1u) << vertex; // to the last bit
+        EXPECT_EQ(at.size(), 1u) << vertex; // bitwise equal
       EXPECT_EQ(all.size(), places.size());
     }
 }
@@ -337,7 +337,7 @@ TEST(Cut, metis_gives_a_part_to_every_cell)
 
 namespace
 {
-  /// Of the parts of a piece: the largest ratio of the edges of their boxes, mean of some seeds.
+  /// Largest ratio of the edges of the bounding boxes of the parts of a piece, mean over some seeds.
   template <int dim>
   double most_slender(const mesh::MeshPiece<dim> &piece, const unsigned int n)
   {
@@ -359,7 +359,8 @@ namespace
   }
 } // namespace
 
-// By the number of faces, a cut across the bar is as large as one along the lattice, which is longer by the square root of 2.
+// Counted by the number of faces, a cut across the bar is as large as one along the lattice, which is longer by the
+// square root of 2.
 TEST(Cut, interfaces_of_solids_count_by_their_area)
 {
   scene::Body<3> body;
@@ -400,7 +401,7 @@ TEST(Cut, flat_cells_make_no_flat_parts)
   const double of_hexahedra  = most_slender(block, 16);
   const double of_tetrahedra = most_slender(mesh::in_tetrahedra(block, block.vertices), 16);
 
-  // 26, 14 and 14 where all faces count alike
+  // 26, 14 and 14 if all faces have the same weight
   EXPECT_LT(of_plate, 8);
   EXPECT_LT(of_hexahedra, 4);
   EXPECT_LT(of_tetrahedra, 8);

@@ -384,7 +384,7 @@ TEST(MeshFiles, broken_files_are_refused)
   for (const std::string &format : formats)
     {
       const std::string whole_text = content_of(format);
-      // cut off anywhere
+      // truncated at any place
       for (std::size_t n = 0; n + 20 < whole_text.size(); n += 37)
         {
           const std::string text = refusal([&] { body_of_text(whole_text.substr(0, n)); });
@@ -400,7 +400,7 @@ TEST(MeshFiles, broken_files_are_refused)
         text += c == '\n' ? std::string("\r\n") : std::string(1, c);
       EXPECT_SAYS(refusal([&] { body_of_text(text); }), "corrupt");
     }
-  // a header that lies about the kind
+  // a binary file whose header declares ASCII
   std::string text = content_of(formats[3]);
   text.replace(text.find("4.1 1 8"), 7, "4.1 0 8");
   EXPECT_SAYS(refusal([&] { body_of_text(text); }), "corrupt");
@@ -458,7 +458,7 @@ TEST(MeshFiles, subdomains_are_shared_by_cost)
           cells[subdomain->body] += subdomain->triangulation.n_active_cells() * (subdomain->body == 0 ? 1 : .5);
         }
       EXPECT_EQ(mesh.n_subdomains(), n);
-      // no other share would make the dearest subdomain cheaper
+      // no other share would make the most expensive subdomain cheaper
       const double dearest = std::max(cells[0] / count[0], cells[1] / count[1]);
       for (unsigned int k = 1; k < n; ++k)
         EXPECT_GE(std::max(cells[0] / k, cells[1] / (n - k)), dearest - 1e-12);
@@ -639,7 +639,7 @@ TEST(MeshFiles, cells_on_top_of_each_other_and_nodes_that_are_not_joined_are_ref
 {
   EXPECT_EQ(body_of_text(plate({}, plate_cells)).piece.cells.size(), 4u);
   auto cells = plate_cells;
-  cells.push_back("3 2 10 0 1 3 9 7"); // over all others
+  cells.push_back("3 2 10 0 1 3 9 7"); // on top of all others
   EXPECT_SAYS(refusal([&] { body_of_text(plate({}, cells)); }),
               "cells on top of each other at (1, 0): cell 10 at (1, 1)");
   cells    = plate_cells;
@@ -649,12 +649,12 @@ TEST(MeshFiles, cells_on_top_of_each_other_and_nodes_that_are_not_joined_are_ref
                 body_of_text(plate({}, {"3 2 10 0 1 3 6 4", plate_cells[2], plate_cells[3]}));
               }),
               "node inside an edge at (1, 1)");
-  // folded along an edge, without any node in common but its own
+  // folded along an edge, whose nodes are the only common ones
   EXPECT_SAYS(refusal([&] {
                 body_of_text(gmsh_2(grid, {"2 2 1 1 1 3 7", "2 2 1 1 1 3 8"}));
               }),
               "lie on the same side of their edge");
-  // two strips that cross and hang together at a corner
+  // two strips that cross and are joined at a corner
   const std::vector<std::array<double, 3>> strips =
     {{{0, 0, 0}}, {{3, 0, 0}}, {{3, 1, 0}}, {{0, 1, 0}}, {{1, -1, 0}}, {{2, -1, 0}}, {{2, 3, 0}}, {{1, 3, 0}}};
   EXPECT_SAYS(refusal([&] {

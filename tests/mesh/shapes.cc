@@ -185,7 +185,7 @@ TEST(Shapes, disc_and_half_disc_have_a_vertex_at_the_lowest_point)
 
 TEST(Shapes, degree_two_follows_the_arc)
 {
-  // the area by an isoparametric mapping of degree 2, whatever the cut, is far more accurate than that of straight edges
+  // whatever the cut, the area by an isoparametric mapping of degree 2 is far more accurate than that of straight edges
   for (const Cut &how : {whole(), metis(7)})
     for (const Shape shape : round_shapes)
       {
@@ -298,8 +298,8 @@ TEST(Refinement, towards_a_boundary_conforms_and_keeps_area_lengths_and_quality)
 
 TEST(Refinement, every_template_conforms)
 {
-  // all patterns of marked corners occur on a lattice whose vertices are marked at random: a boundary id per pattern is
-  // not to be had, so the marks come from single cells cut out of the lattice
+  // All patterns of marked corners occur on a lattice whose vertices are marked at random. A boundary id for every
+  // pattern is not possible; the marks therefore come from single cells cut out of the lattice.
   for (unsigned int pattern = 1; pattern < 512; pattern += 7)
     {
       mesh::MeshPiece<2> piece;

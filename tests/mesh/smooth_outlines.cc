@@ -41,7 +41,7 @@ namespace
     return body;
   }
 
-  /// n points on the circle, with distances that differ by 1 to 3.
+  /// n points on the circle, whose distances differ by a factor of up to 3.
   std::vector<Point> uneven_circle(const double radius, const unsigned int n)
   {
     std::vector<double> angles = {0};
@@ -106,7 +106,7 @@ TEST(SmoothOutline, nodes_of_a_circle_give_the_circle)
 
 TEST(SmoothOutline, straight_sides_and_corners_stay)
 {
-  // square with several edges a side; a kink of 15 degrees between straight sides; hexagon
+  // square with several edges per side; a kink of 15 degrees between straight sides; hexagon
   std::vector<Point> square, kinked, hexagon;
   for (unsigned int k = 0; k < 20; ++k)
     {
@@ -212,7 +212,7 @@ TEST(SmoothOutline, mid_nodes_of_files_are_kept)
             EXPECT_LT(face.curve.point(0.5).distance(Point(10, -1)), 1e-13);
           }
       EXPECT_EQ(n_curves, 1u);
-      // of the cells of degree 2 too: area of the cell and of the segment of a parabola
+      // of the cells of degree 2, too: area of the cell and of the segment of a parabola
       mesh::Mesh<2> whole;
       whole.comm                 = MPI_COMM_SELF;
       whole.first_subdomain      = {0, 1};

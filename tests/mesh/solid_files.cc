@@ -31,7 +31,7 @@ namespace
                                                    : mesh::parse_unv("typed.unv", text));
     }
 
-    /// Middles of the faces of a boundary.
+    /// Centres of the faces of a boundary.
     static std::vector<Place> faces(const mesh::BodyMesh<3> &mesh, const std::string &name)
     {
       const auto         id = mesh.boundary_ids.at(name);
@@ -54,7 +54,7 @@ namespace
       return result;
     }
 
-    /// Of tetrahedra, or of hexahedra with plane faces.
+    /// Volume of tetrahedra, or of hexahedra with plane faces.
     static double volume(const mesh::MeshPiece<3> &piece)
     {
       double sum = 0;
@@ -82,7 +82,7 @@ namespace
       for (const auto &face : piece.boundary_faces)
         if (face.id == mesh.boundary_ids.at(name))
           {
-            // vertices in any order: of a quadrilateral the largest of the three parallelograms is its own
+            // vertices in any order: of the three parallelograms of a quadrilateral the largest is the right one
             const auto &v = face.vertices;
             const auto  x = [&](const unsigned int k) { return piece.vertices[v[k]]; };
             if (v[3] == mesh::MeshPiece<3>::no_vertex)
@@ -226,7 +226,7 @@ TEST(SolidFiles, elements_of_second_order_have_the_cells_of_their_corners)
 
 TEST(SolidFiles, vtk_ucd_and_unv)
 {
-  // a cube and a tetrahedron upon it
+  // a cube and a tetrahedron on top of it
   const std::string places = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n0.5 0.5 2\n0.5 0.5 -1\n";
   const auto        vtk =
     SolidFile::body("# vtk DataFile Version 2.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 10 double\n" + places +

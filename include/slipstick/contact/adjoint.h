@@ -17,7 +17,7 @@ namespace slipstick::contact
   public:
     using Store = qp::DirectionStore<tfeti::DistributedVector>;
 
-    /// @param directions of earlier solves, to which all solves add theirs; none: an empty store.
+    /// @param directions store of directions of earlier solves, which every solve uses and extends; null: a new store.
     Adjoint(tfeti::DualProblem &dual, const std::vector<bool> &free, std::shared_ptr<Store> directions = nullptr);
 
     /// Whether the free rows hold all bodies; otherwise there is no solution.

@@ -30,7 +30,7 @@ namespace slipstick::contact
     }
 
   private:
-    // Progress: the change falls below the smallest change so far by this part, times the relaxation factor, ...
+    // Progress: the change falls below its smallest value so far by this fraction, times the relaxation factor, ...
     static constexpr double cycling_progress = 0.1;
     // ... within this number of updates.
     static constexpr unsigned int cycling_window = 5;

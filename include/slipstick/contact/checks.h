@@ -25,7 +25,7 @@ namespace slipstick::contact
     double force_balance     = 0; // worst body: loads + supports + contact
     double moment_balance    = 0;
     double algebraic_error   = 0; // upper bound in the energy norm: root of error_energy over u'K u
-    double body_error        = 0; // worst body: the same over its own u'K u, or algebraic_error
+    double body_error        = 0; // worst body: the same over its own u'K u; at least algebraic_error
     double error_energy      = 0; // tfeti::jump_energies of all violated jumps [N mm]
     double max_displacement  = 0; // magnitude [mm]
     double energy            = 0; // u'K u, twice the strain energy [N mm]
@@ -40,7 +40,7 @@ namespace slipstick::contact
     {
       const char *name;
       double      value;
-      bool        is_balance; // of forces: holds to rounding, whatever the tolerance of the solver
+      bool        is_balance; // a balance of forces, which holds to rounding whatever the tolerance of the solver
       Place       place;
     };
     static constexpr unsigned int n_entries = 9;
@@ -83,8 +83,8 @@ namespace slipstick::contact
   /// @param u displacements of this rank's subdomains [mm].
   /// @param multipliers [N], in equilibrium with u, as returned by tfeti::recover.
   /// @param slip_bound of every owned row [N].
-  /// @param initial_strain_energies of this rank's bodies: contribution of initial strains that is added to u'K u to give twice
-  /// the strain energy [N mm]; empty: none.
+  /// @param initial_strain_energies of this rank's bodies: contribution of initial strains that is added to u'K u to
+  /// give twice the strain energy [N mm]; empty: none.
   /// @param free owned rows whose multiplier is strictly inside its bounds; this distinguishes closed from open and
   /// stick from slip.
   /// Collective.

@@ -8,38 +8,41 @@
 
 namespace slipstick::contact
 {
-  /// Multiplications after which Newton's method and its fallback give up.
+  /// Number of multiplications by F after which Newton's method with its fallback gives up.
   constexpr unsigned int longest_fallback = 5000;
 
-  /// Each fills status, counts and residuals of the iterate. All functions are collective.
+  /// Every algorithm sets status, counts and residuals of the iterate. All functions are collective.
   class ContactAlgorithms : protected ContactIterate
   {
   public:
     using ContactIterate::ContactIterate;
 
   protected:
-    /// Where SMALBE-M came to with the same bounds and the same point that balances the loads.
+    /// State that SMALBE-M reached earlier with the same bounds and the same point that balances the loads.
     using Reached = std::optional<qp::SmalbeStart<Vector>>;
 
-    /// Semismooth Newton, with bounds that follow the solution or (a Tresca problem) as they are. @return convergence.
-    /// @param is_rough is the start far from the solution? @param most_steps at most, if given.
+    /// Semismooth Newton method. @return convergence.
+    /// @param bounds_follow whether the bounds follow the solution; otherwise they are fixed (a Tresca problem).
+    /// @param is_rough whether the start is far from the solution. @param most_steps maximum number; 0: default.
     bool newton(const Vector      &from,
                 const bool         bounds_follow,
                 const bool         is_rough   = false,
                 const unsigned int most_steps = 0);
 
-    /// Newton's method from the present point, which stays when that does not converge. @return convergence.
+    /// Newton's method from the present iterate, which is restored if the method does not converge. @return
+    /// convergence.
     bool try_newton();
 
-    /// SMALBE-M (with discs SMALSE-M) from a point that balances the loads within the present bounds, or from where it came
-    /// to; fills status and residuals.
+    /// SMALBE-M (with discs SMALSE-M) from a point that balances the loads within the present bounds, or from the state
+    /// @p reached earlier; sets status and residuals.
     Vector smalbe(const Vector       &from,
                   const double        tolerance,
                   const qp::Observer &progress,
                   const bool          may_end_early = false,
                   Reached            *reached       = nullptr);
 
-    /// A few steps, in space with squares around the discs: they tell the first set as well.
+    /// A few steps of SMALBE-M, from which Newton's method predicts its first set. In space the discs are replaced by
+    /// the squares around them, which serve this purpose as well.
     Vector start_by_smalbe(const Vector &feasible);
 
   private:

@@ -1,5 +1,5 @@
-// A contact problem on its way to the solution, which the algorithms share: the law with its present bounds, the present
-// forces, and all that is counted.
+// State of a contact problem during the solution, shared by the algorithms: the law with its present bounds, the
+// present forces, and all counts.
 #pragma once
 
 #include <slipstick/contact/dual_solution.h>
@@ -16,7 +16,7 @@ namespace slipstick::contact
   class ContactIterate
   {
   public:
-    /// All arguments are referred to.
+    /// All arguments are kept by reference.
     ContactIterate(const tfeti::DualProblem   &dual,
                    const SlipLaw              &law,
                    const scene::SolverOptions &options,
@@ -26,26 +26,27 @@ namespace slipstick::contact
   protected:
     using Vector = tfeti::DistributedVector;
 
-    /// Scales of forces and tractions, from the loads and the load step before.
+    /// Sets the scales of forces and tractions from the loads and the previous load step.
     void set_scales(const Vector &loads, const DualSolution *start);
 
-    /// Slip bounds of all owned rows [N] become the present ones.
+    /// Sets the present slip bounds [N], one per owned row.
     void set_bounds(std::vector<double> bounds);
 
-    /// Counts of finished parts are added to what the observer is told of a part under way.
+    /// Observer of an algorithm: passes its steps on with the counts of the parts already finished, and @p before_step
+    /// multiplications, added.
     qp::Observer counted(const unsigned int before_step = 0) const;
 
-    /// Relative change from the present bounds to those of x, over all ranks, of rows that feel it: x strictly inside both
-    /// solves with either.
+    /// Relative change from the present bounds to @p next, over all ranks. Rows where x is strictly inside both bounds
+    /// do not count, since x solves the problem with either.
     double change_of_bounds(const std::vector<double> &next, const Vector &x) const;
 
-    /// Ends an algorithm where the present forces are accurate enough, if that is asked for.
+    /// Callback that ends an algorithm when the present forces are accurate enough; empty if there is no accuracy test.
     qp::Acceptance<Vector> acceptance();
 
-    /// Asks whether x, moved to its bounds, is accurate enough. @p g: gradient F x - d + G'a (scaled).
+    /// Whether x, projected onto its bounds, is accurate enough. @p g: gradient F x - d + G'a (scaled).
     bool accepts(const Vector &x, const Vector &g);
 
-    /// Fills which inequality rows are at a bound, or as near as rounding.
+    /// Completes the solution and moves it out. Rows within rounding of a bound are not free.
     DualSolution finished();
 
     const tfeti::DualProblem   &dual;
@@ -55,15 +56,15 @@ namespace slipstick::contact
     const AccuracyTest         &is_accurate;
 
     Box                   box;      // of the present bounds
-    std::optional<Vector> gradient; // that tells Newton's method its first set: where SMALBE-M or the step before ended
+    std::optional<Vector> gradient; // at the end of SMALBE-M or the previous step: predicts the first set
     DualSolution          solution;
 
-    double                      size_of_forces = 0; // of the least forces found that balance the loads [N]
-    double                      forces_before  = 0; // as DualSolution::largest_forces
+    double                      size_of_forces = 0; // norm of the smallest forces found that balance the loads [N]
+    double                      forces_before  = 0; // DualSolution::largest_forces of the previous steps
     std::optional<TractionTest> tractions;
 
   private:
-    /// Of every owned row the size of its multiplier; in space tangential ones have that of both.
+    /// Magnitudes of the multipliers of the owned rows; tangential rows in space have that of both components together.
     std::vector<double> sizes(const Vector &x) const;
   };
 } // namespace slipstick::contact

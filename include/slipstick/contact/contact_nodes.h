@@ -6,10 +6,10 @@
 
 namespace slipstick::contact
 {
-  /// A contact node with the data that the rows do not contain: its place.
+  /// A contact node with the data that do not depend on the solution: pair, position, normal, areas and initial gap.
   ContactNode node_at(const tfeti::ContactPoint &point);
 
-  /// One contact node from the contact force and the displacement jump.
+  /// A contact node from its contact force and displacement jump.
   ContactNode contact_node(const tfeti::DualProblem       &dual,
                            const tfeti::ContactPoint      &point,
                            const tfeti::DistributedVector &multipliers,
@@ -17,7 +17,7 @@ namespace slipstick::contact
                            const std::vector<double>      &slip_bound,
                            const std::vector<bool>        &free);
 
-  /// One node of a bonded pair: it sticks whatever the tractions; a row that is implied by others carries no traction.
+  /// A node of a bonded pair: it sticks whatever its tractions; a row that is implied by others carries no traction.
   ContactNode bonded_node(const tfeti::DualProblem       &dual,
                           const tfeti::ContactPoint      &point,
                           const tfeti::DistributedVector &multipliers,

@@ -9,12 +9,13 @@
 
 namespace slipstick::contact
 {
-  /// If friction or the admissible forces miss or exceed the loads by less than this part of them, the solution is at
-  /// the limit of equilibrium: whether equilibrium exists may then depend on the tolerance.
+  /// If friction or the admissible forces fall short of or exceed the loads by less than this fraction of them, the
+  /// solution is at the limit of equilibrium: whether equilibrium exists may then depend on the tolerance.
   constexpr double nearness_of_limit = 1e-3;
 
   /// Among the motions that nothing but friction resists, the one that friction, at the normal forces of x, resists
-  /// least, if it bears less than @p below of the load along it. Nothing if that load is rounding. Collective.
+  /// least, if friction bears less than @p below of the load along it. Nothing if that load is at rounding level.
+  /// Collective.
   std::optional<tfeti::Overload> weakest_motion(const tfeti::DualProblem       &dual,
                                                 const SlipLaw                  &law,
                                                 const tfeti::DistributedVector &x,

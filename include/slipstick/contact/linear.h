@@ -6,8 +6,8 @@
 
 namespace slipstick::contact
 {
-  /// d - F x~ with the scaling of the solvers, projected on the kernel of G; 0 where only rounding is left of it, as if gaps
-  /// close by motions of whole bodies. One multiplication by F; collective.
+  /// d - F x~ with the scaling of the solvers, projected onto the kernel of G. Set to 0 if only rounding remains, e.g.
+  /// if rigid motions of the bodies alone close the gaps. One multiplication by F; collective.
   tfeti::DistributedVector homogenised_load(const tfeti::DualProblem &dual, const tfeti::DistributedVector &start);
 
   /// Energy norm of closing the jumps r of displacements [mm]; sqrt(N mm). Collective.

@@ -17,8 +17,9 @@ namespace slipstick::contact
     std::vector<ContactNode> nodes;
   };
 
-  /// What tells Newton's method its first active set: tractions, gaps and slip, interpolated between the nodes of the other
-  /// mesh. The multipliers of other rows are zero; the first face problem finds them. Nothing if a pair has no nodes there.
+  /// Multipliers and gradient from which Newton's method predicts its first active set: tractions, gaps and slip,
+  /// interpolated between the nodes of the other mesh. The multipliers of all other rows are zero; the first face
+  /// problem finds them. Nothing if a pair has no nodes there.
   /// @param pairs names by tfeti::ContactPoint::pair. Collective.
   std::optional<DualSolution> start_from(const ContactOfMesh            &other,
                                          const tfeti::DualProblem       &dual,

@@ -22,9 +22,9 @@ namespace slipstick::contact
   /// Closes the remaining jumps of the free rows of a recovered solution by a separate linear solve, with a tolerance
   /// relative to these jumps: u is corrected, not recomputed from x. This avoids the effect of the last digit of x,
   /// which in slender subdomains causes displacements far larger than the required accuracy (a strip of length L and
-  /// height h is at least (L/h)^2 times as compliant in bending as in tension). The active set is unchanged, and slip forces
-  /// follow the normal forces as the law says; in space their directions are kept. Bodies that slide on all their contacts
-  /// are not corrected.
+  /// height h is at least (L/h)^2 times as compliant in bending as in tension). The active set is unchanged, and slip
+  /// forces follow the normal forces according to the law; in space their directions are kept. Bodies that slide on all
+  /// their contacts are not corrected.
   /// Collective.
   /// @return counts of the solve.
   qp::Counts close_gaps(const tfeti::DualProblem &dual,

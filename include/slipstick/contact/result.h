@@ -32,11 +32,12 @@ namespace slipstick::contact
   {
     unsigned int          pair = 0;            // index into Scene::contacts
     std::array<double, 3> position{{0, 0, 0}}; // reference configuration [mm]
-    std::array<double, 3> acts_at{{0, 0, 0}};  // the force on the slave body: mean of nodes near the position [mm]
+    std::array<double, 3> acts_at{{0, 0, 0}};  // point of action of the force on the slave body: mean of nodes near
+                                               // the position [mm]
     std::array<double, 3> normal{{0, 0, 0}};
     double                arc_length          = 0; // along the slave boundary from its first node [mm]
     double                area                = 0; // reference area of tractions, see tfeti::ContactPoint [mm^2]
-    double                length              = 0; // tributary length; in space area [mm], [mm^2]
+    double                length              = 0; // tributary length [mm]; in space area [mm^2]
     double                gap                 = 0; // [mm]
     double                initial_gap         = 0; // before loading [mm]
     double                pressure            = 0; // [MPa]
@@ -59,7 +60,7 @@ namespace slipstick::contact
     }
   };
 
-  /// Two norms or errors of the tractions of a pair.
+  /// Norms or errors of the pressures and the tangential tractions of a pair.
   struct PairTractions
   {
     double pressure = 0, tangential = 0;
@@ -71,16 +72,15 @@ namespace slipstick::contact
     Resultant             on_slave;                   // of the tractions, at the slave nodes
     double                normal_force     = 0;       // sum of pressure times area [N]
     double                tangential_force = 0;       // [N]
-    std::array<double, 3> moment_mismatch{{0, 0, 0}}; // sum of the moments on both sides [N mm]: with a
-                                                      // linearised gap, gap times force remains if a node and
-                                                      // its mean on the other side are not on one normal;
-                                                      // in the plane about z
+    std::array<double, 3> moment_mismatch{{0, 0, 0}}; // sum of the moments on both sides [N mm]: with a linearised
+                                                      // gap, gap times force remains if a node and its mean on the
+                                                      // other side do not lie on one normal; in the plane about z
     double       max_pressure    = 0;                 // [MPa]
-    double       contact_length  = 0; // of the nodes that are not open; in space their area [mm], [mm^2]
-    unsigned int contact_nodes   = 0; // closed
-    unsigned int open_nodes      = 0; // not closed
-    unsigned int stick_nodes     = 0; // closed and not slipping
-    unsigned int open_slip_nodes = 0; // of these, not closed
+    double       contact_length  = 0;                 // of the nodes that are not open [mm]; in space their area [mm^2]
+    unsigned int contact_nodes   = 0;                 // closed
+    unsigned int open_nodes      = 0;                 // not closed
+    unsigned int stick_nodes     = 0;                 // closed and not slipping
+    unsigned int open_slip_nodes = 0;                 // slipping, but not closed
     unsigned int slip_nodes      = 0; // slip bound reached, see ContactNode on nodes that are not closed
 
     PairTractions norm;            // L2 norms of the tractions [N/mm]

@@ -8,7 +8,7 @@
 
 namespace slipstick::contact
 {
-  /// Estimates of what the solver has left of the exact tractions of the discrete problem.
+  /// Estimates of the errors of tractions relative to the exact solution of the discrete problem.
   class TractionErrors
   {
   public:
@@ -17,8 +17,9 @@ namespace slipstick::contact
     /// Collective. @param x multipliers of the owned rows [N]. @param error their estimated error [N].
     TractionErrors(const tfeti::DualProblem &dual, const Vector &x, const Vector &error);
 
-    /// For each pair the L2 norms of the errors over those of pressures and of tangential tractions, each at least 1 % of
-    /// both together, 0.1 % of those of the pair that bears most, and @p least [sqrt(N MPa)].
+    /// For each pair the L2 norms of the errors of pressures and of tangential tractions over those of these tractions
+    /// themselves. The latter are taken as at least 1 % of the norm of both together, 0.1 % of the largest such norm of
+    /// any pair, and @p least [sqrt(N MPa)].
     std::vector<PairTractions> relative(const double least) const;
 
     /// The largest L2 norm of a pair's tractions [sqrt(N MPa)].
@@ -28,7 +29,7 @@ namespace slipstick::contact
     std::vector<PairTractions> norms, errors; // [sqrt(N MPa)], the same on all ranks
   };
 
-  /// Tells a solver whether the tractions of every pair are accurate enough. (The residual alone does not tell: it is
+  /// Decides whether the tractions of every pair are accurate enough. (The residual alone does not show this: it is
   /// relative to all loads and gaps.)
   class TractionTest
   {
@@ -42,7 +43,7 @@ namespace slipstick::contact
                  const double              balance,
                  const double              largest_before);
 
-    /// Whether the errors are below a given part of the tractions. Collective. @p error: estimated error of x.
+    /// Whether the errors are below a given fraction of the tractions. Collective. @p error: estimated error of x.
     bool accepts(const Vector &x, const Vector &error) const;
 
     /// The largest L2 norm of a pair's tractions, in x and in earlier steps [sqrt(N MPa)]. Collective.

@@ -14,7 +14,6 @@ namespace slipstick::interface
   /// Bischoff 2011). On curved or quadratic edges that are covered in part phi_i are those of the linear shape
   /// functions: their midside nodes have no row. Equal pressures at all nodes then mean a uniform pressure on both
   /// sides, the weights add up to 1 and forces balance; moments balance where the gap is closed, otherwise up to the
-  /// sides, the weights add up to 1 and forces balance; moments balance where the gap is closed, otherwise up to the
   /// square of the mesh size. The gap is n_i . (sum_j m_ij y_j - sum_k d_ik x_k), that of the edges, plus the rise of
   /// the true curves (SurfaceEdge::curve) above the edges: n_i . <phi_i (rise of the master - rise of the slave) n> /
   /// D_i. The gap is thus that of the curves, while the weights, and with them the forces, are those of the edges. The
@@ -32,9 +31,9 @@ namespace slipstick::interface
 
   /// The same in space, with areas instead of lengths. Every slave facet is paired in the plane through its centre
   /// normal to the mean normal of its nodes: both sides are projected onto it, and the overlap polygons are clipped and
-  /// integrated (Puso, Laursen 2004; Popp, Gitterle, Gee, Wall 2010). Of several master facets one behind the other the
-  /// nearest counts. If the covered part of a facet is so small that its biorthogonal functions would be nearly
-  /// dependent, phi_i are the shape functions themselves.
+  /// integrated (Puso, Laursen 2004; Popp, Gitterle, Gee, Wall 2010). If several master facets lie one behind the
+  /// other, the nearest counts. If the covered part of a facet is so small that its biorthogonal functions would be
+  /// nearly dependent, phi_i are the shape functions themselves.
   std::vector<MortarRow<3>> mortar_rows(const std::vector<mechanics::SurfaceFacet> &slave,
                                         const std::vector<mechanics::SurfaceFacet> &master,
                                         const Reach                                &reach,

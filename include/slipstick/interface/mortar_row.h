@@ -2,7 +2,7 @@
 //
 // Notation: N_k shape functions of a slave edge, phi_i its test functions, y(x) the point of the master that the ray
 // from x along the normal field of the pairing meets, <.> the integral over that part of the slave that has such a
-// point, with the measure of the kinematics (of bodies of revolution the slave's circumference). A row says
+// point, with the measure of the kinematics (of bodies of revolution the slave's circumference). A row states
 // n_i . (sum_k d_ik u_k - sum_j m_ij u_j) <= gap
 // with d_ik = <phi_i N_k> / D_i, m_ij = <phi_i N_j(y)> / D_i, D_i = <phi_i>.
 #pragma once

@@ -99,7 +99,7 @@ namespace slipstick::interface
     return 0;
   }
 
-  // Master nodes are opposite slave nodes if their lateral distance is at most this part of the tributary length ...
+  // Master nodes are opposite slave nodes if their lateral distance is at most this fraction of the tributary length:
   constexpr double across_automatic = 1e-6; // ... for meshes to be recognised as matching
   constexpr double across_asked_for = 0.1;  // ... if node to node is required
   // Matching nodes are not sufficient: an edge may face two or three, a quadrilateral two triangles. The weight of the

@@ -14,11 +14,11 @@
 
 namespace slipstick::mechanics
 {
-  /// What the stresses of one subdomain depend on besides its displacement.
+  /// The data on which the stresses of one subdomain depend, except its displacement.
   template <int dim>
   struct StressModel
   {
-    /// Refers to all arguments. @param p subdomain of this rank. @param t load factor.
+    /// Keeps references to all arguments. @param p subdomain of this rank. @param t load factor.
     StressModel(const scene::Scene<dim> &scene,
                 const mesh::Mesh<dim>   &mesh,
                 const Spaces<dim>       &spaces,
@@ -63,7 +63,8 @@ namespace slipstick::mechanics
 
     double hoop_strain_at(const CellValues<dim> &at, const unsigned int q, const Eigen::MatrixXd &u) const;
 
-    /// As in the stiffness: projected from the points of its rule, then evaluated at the points of this rule.
+    /// Projects the dilatation as in the stiffness: from the points of the stiffness rule, evaluated at those of this
+    /// rule.
     void project_dilatation(const typename CellValues<dim>::Cell &cell, const Eigen::MatrixXd &u);
 
     const StressModel<dim>         &on;

@@ -10,11 +10,12 @@ namespace slipstick::mechanics
   /// Superconvergent patch recovery (Zienkiewicz, Zhu 1992): around every vertex a linear function is fitted to the
   /// stresses at the points of Element::stress of the adjacent cells.
   ///
-  /// The cells of a vertex on the boundary of the body do not determine the slope towards it. The mean slope of those
-  /// vertices of its cells is taken that are on the fewest sides of the body, if fewer than the vertex itself: inside on
-  /// none; on the face of a plate of one layer of cells on one, at its edges on two. The mean over its own cells remains,
-  /// except on triangles and tetrahedra, where only means over whole patches are superconvergent: there the mean of the
-  /// functions of these vertices is taken. Other slopes that the points do not determine are zero.
+  /// The cells of a vertex on the boundary of the body do not determine the slope towards it. Its slope is therefore
+  /// the mean slope of those vertices of its cells that are on the fewest sides of the body, if fewer than the vertex
+  /// itself: vertices inside are on no side; in a plate of one layer of cells, those on a face are on one, those at its
+  /// edges on two. The mean over the vertex's own cells is kept, except on triangles and tetrahedra, where only means
+  /// over whole patches are superconvergent: there the mean of the functions of these vertices is used. Other slopes
+  /// that the points do not determine are zero.
   template <int dim>
   class LinearPatches
   {
@@ -25,11 +26,11 @@ namespace slipstick::mechanics
                   const unsigned int               n_components,
                   const std::vector<unsigned int> &shared);
 
-    /// The functions around all vertices, once sums.finish() was called.
+    /// First step: fits the functions around all vertices; complete after sums.finish().
     void start_fit(const StressSamples<dim> &samples);
 
-    /// Then, for @p sides from 0 to dim - 1: vertices on more sides take the functions of those on this number, if they have
-    /// not taken any yet.
+    /// Next steps, for @p sides from 0 to dim - 1: vertices on more sides take the functions of those on this number of
+    /// sides, unless they have already taken some.
     void start_taking(const unsigned int sides);
 
     /// Recovered stresses, nodes x components.

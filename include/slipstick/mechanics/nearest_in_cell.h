@@ -14,8 +14,8 @@ namespace slipstick::mechanics
     double             distance = 0; // from the given point [mm]
   };
 
-  /// Approximately the point of @p cell nearest to @p x; nothing if x is farther from the cell's bounding box than a fifth
-  /// of its diameter, or too far outside a distorted cell.
+  /// The point of @p cell nearest to @p x, approximately; nothing if x is farther from the bounding box of the cell
+  /// than a fifth of its diameter, or too far outside a distorted cell.
   template <int dim>
   std::optional<PointOfCell<dim>> nearest_in_cell(const Element<dim>                                           &element,
                                                   const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,

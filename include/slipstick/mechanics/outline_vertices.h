@@ -10,8 +10,8 @@ namespace slipstick::mechanics
 {
   // An outline is re-entrant where its direction turns by this angle or more; it is also the default corner angle.
   constexpr double least_turn = 35 * M_PI / 180;
-  // Smallest angles with infinite stress at the end of a support. Both displacements held: from 63 (nu = 0) to 51 degrees
-  // (nu = 0.5), plane strain (Williams 1952); one displacement held: above a right angle.
+  // Smallest angles with infinite stress at the end of a support. Both displacements held: from 63 (nu = 0) to 51
+  // degrees (nu = 0.5), plane strain (Williams 1952); one displacement held: above a right angle.
   constexpr double least_angle_of_clamp = 63 * M_PI / 180, least_angle_of_roller = 95 * M_PI / 180;
 
   /// Where one edge of an outline ends and the next begins.

@@ -19,8 +19,9 @@ namespace slipstick::mechanics
     Eigen::MatrixXd                 stresses; // points x components [MPa]
   };
 
-  /// Sums by vertex. Those of vertices of this subdomain alone are used at once; those of vertices that it shares are kept
-  /// and used after the caller has added the rows of all copies. Large sums are thus held for one subdomain at a time.
+  /// Sums by vertex. Those of vertices of this subdomain alone are used at once; those of vertices that it shares are
+  /// kept and used after the caller has added the rows of all copies. Large sums are thus held for one subdomain at a
+  /// time.
   template <int dim>
   class PatchSums
   {
@@ -99,8 +100,8 @@ namespace slipstick::mechanics
       return result;
     }
 
-    /// Variance below which the points have no extent in a direction, where @p longest is the largest: aspect ratios of 1e6,
-    /// and what rounding leaves where the points are far from the vertex.
+    /// Variance below which the points count as having no extent in a direction, where @p longest is the largest: it
+    /// allows for aspect ratios of 1e6 and for rounding where the points are far from the vertex.
     double least_variance(const double longest) const
     {
       return std::max(1e-12 * longest, 1e-14 * mean.squaredNorm());

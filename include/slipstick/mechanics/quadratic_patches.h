@@ -5,12 +5,12 @@
 
 namespace slipstick::mechanics
 {
-  /// Superconvergent patch recovery (Zienkiewicz, Zhu 1992): around every vertex a polynomial of degree 2 is fitted to the
-  /// stresses at the points of Element::stress of the adjacent cells. Where the points do not determine it, as across a
-  /// boundary, the slopes that fit come first, then the smallest coefficients of degree 2. On quadrilaterals and hexahedra
-  /// the constant is then fitted to the point of each cell that is nearest to the vertex, so that peaks are not smoothed; on
-  /// triangles and tetrahedra single points are not superconvergent. Other nodes take the mean of the polynomials of the
-  /// vertices of their edge, face or cell.
+  /// Superconvergent patch recovery (Zienkiewicz, Zhu 1992): around every vertex a polynomial of degree 2 is fitted to
+  /// the stresses at the points of Element::stress of the adjacent cells. Where the points do not determine it, e.g.
+  /// across a boundary, slopes are fitted first, then the smallest coefficients of degree 2. On quadrilaterals and
+  /// hexahedra the constant is then fitted to the point of each cell that is nearest to the vertex, so that peaks are
+  /// not smoothed; on triangles and tetrahedra single points are not superconvergent. Other nodes take the mean of the
+  /// polynomials of the vertices of their edge, face or cell.
   template <int dim>
   class QuadraticPatches
   {
@@ -21,11 +21,11 @@ namespace slipstick::mechanics
                      StressSamples<dim>               samples,
                      const std::vector<unsigned int> &shared);
 
-    /// First: coordinates in which the covariance of the points around a vertex is 1, so that slender and oblique cells are
-    /// as good as others. Effective once sums.finish() was called.
+    /// First step: finds coordinates around every vertex in which the covariance of the points is 1, so that slender
+    /// and oblique cells are treated like others; complete after sums.finish().
     void start_metrics();
 
-    /// Then: the polynomials.
+    /// Second step: fits the polynomials.
     void start_fit();
 
     /// Recovered stresses, nodes x components.

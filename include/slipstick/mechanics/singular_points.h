@@ -58,7 +58,7 @@ namespace slipstick::mechanics
     Peak<dim> error;     // the centre of a cell [sqrt(N mm)]
   };
 
-  /// A singular point and the distance up to which stresses count as its own [mm].
+  /// A singular point, and the radius within which stresses are attributed to it [mm].
   template <int dim>
   struct Surroundings
   {
@@ -66,7 +66,8 @@ namespace slipstick::mechanics
     double             radius = 0;
   };
 
-  /// If values are equal, the place with the smallest x, then y, independent of the number of ranks. Collective.
+  /// The places of the largest stress and error; of equal values that with the smallest x, then y, independent of the
+  /// number of ranks. Collective.
   /// @param left_out nodes there are not examined for the largest stress.
   template <int dim>
   StressPlaces<dim> stress_places(const mesh::Mesh<dim>                &mesh,
@@ -74,7 +75,7 @@ namespace slipstick::mechanics
                                   const StressResult                   &stress,
                                   const std::vector<Surroundings<dim>> &left_out = {});
 
-  /// The cell at a place, that whose centre is nearest to it.
+  /// The cell at a place: the one whose centre is nearest to it.
   struct CellAtPlace
   {
     double size      = 0; // mean length of its edges [mm]

@@ -26,9 +26,9 @@ namespace slipstick::mechanics
     double error_squared  = 0; // sum of the squares of the cells' errors [N mm]
   };
 
-  /// Nodal stress (recover_nodal) for the displacements @p u, by subdomain of this rank, at load factor @p t. Thermal strain
-  /// is subtracted; where the element projects the dilatation, its stress uses the projected one. The error indicator is
-  /// that of Zienkiewicz, Zhu 1987. Collective.
+  /// Nodal stress (recover_nodal) for the displacements @p u, by subdomain of this rank, at load factor @p t. Thermal
+  /// strain is subtracted; where the element projects the dilatation, its stress uses the projected one. The error
+  /// indicator is that of Zienkiewicz, Zhu 1987. Collective.
   template <int dim>
   StressResult recover_stress(const scene::Scene<dim>            &scene,
                               const mesh::Mesh<dim>              &mesh,

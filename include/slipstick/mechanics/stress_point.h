@@ -1,4 +1,4 @@
-// Stresses at one point of a body, and the loads that weigh them.
+// Stresses at one point of a body, and loads whose work is a weighted sum of them.
 #pragma once
 
 #include <slipstick/mechanics/elasticity.h>
@@ -29,9 +29,9 @@ namespace slipstick::mechanics
     /// Recovered stress, interpolated between the nodes. Collective.
     Stress<dim> recovered(const StressResult &stress) const;
 
-    /// Value of the polynomial, of one degree more than the elements, that fits the computed stresses at the superconvergent
-    /// points of three layers of cells around best. Nothing if the cells do not determine it. @param u displacements by
-    /// subdomain of this rank. Collective.
+    /// Value at the point of the polynomial of one degree more than the elements that best fits the computed stresses
+    /// at the superconvergent points of three layers of cells around it. Nothing if the cells do not determine it.
+    /// @param u displacements by subdomain of this rank. Collective.
     std::optional<Stress<dim>> fitted(const std::vector<Eigen::VectorXd> &u) const;
 
     /// Positions of the nodes of the cells of this rank that contain the point, and recovered stresses there.
@@ -49,11 +49,11 @@ namespace slipstick::mechanics
       dealii::Point<dim>                                     unit;
     };
 
-    /// Columns: edges of a parallelepiped like one of the cells, the same on all ranks [mm]. Collective.
+    /// Columns: edges of a parallelepiped shaped like one of the cells, the same on all ranks [mm]. Collective.
     Eigen::Matrix<double, dim, dim> shape_of_cells() const;
 
-    /// Place relative to the point (dim numbers, in edges of cells) and stresses, of the superconvergent points around it
-    /// on this rank.
+    /// Positions relative to the point (dim numbers, in edges of cells) and stresses of the superconvergent points
+    /// around it on this rank.
     std::vector<double> samples(const std::vector<Eigen::VectorXd> &u) const;
 
     const scene::Scene<dim> &scene;

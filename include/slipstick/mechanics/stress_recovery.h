@@ -10,8 +10,8 @@
 
 namespace slipstick::mechanics
 {
-  /// Nodal stresses of the displacements @p u, by subdomain of this rank nodes x components of StressModel [MPa]: values of
-  /// polynomials that fit the stresses at the points of Element::stress around every vertex (LinearPatches,
+  /// Nodal stresses of the displacements @p u, by subdomain of this rank, nodes x components of StressModel [MPa]:
+  /// values of polynomials that fit the stresses at the points of Element::stress around every vertex (LinearPatches,
   /// QuadraticPatches), also across the subdomains of a body. Collective.
   template <int dim>
   std::vector<Eigen::MatrixXd> recover_nodal(const scene::Scene<dim>            &scene,

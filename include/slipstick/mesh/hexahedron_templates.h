@@ -1,6 +1,7 @@
 // Templates for hexahedra with marked corners, after R. Schneiders, Refining quadrilateral and hexahedral element
 // meshes (1996).
-// // Corners of cells and templates are numbered as in deal.II: bit d is set if coordinate d is 1.
+//
+// Corners of cells and templates are numbered as in deal.II: bit d is set if coordinate d is 1.
 #pragma once
 
 #include <deal.II/base/tensor.h>

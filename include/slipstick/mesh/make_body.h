@@ -7,8 +7,8 @@
 namespace slipstick::mesh
 {
   /// The complete mesh of body number @p b: read or generated, refined, placed. @p files caches the files by path. A
-  /// body of triangles and quadrilaterals is converted to quadrilaterals if it is refined towards a boundary or if its
-  /// parts of one kind are many and small.
+  /// body of triangles and quadrilaterals is converted to quadrilaterals if it is refined towards a boundary or if it
+  /// has many small parts with one kind of cells.
   /// @param refined cells to be refined further, see adapted(), with the @p paths of the cells; such a body also has
   /// one kind of cells, in space tetrahedra.
   /// @throws InputError as body_from_file() does, and if a boundary or point that the scene uses is missing or

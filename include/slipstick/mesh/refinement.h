@@ -30,8 +30,8 @@ namespace slipstick::mesh
   /// meshes, 1996; the templates for two opposite and three corners are our own and prevent the marks from spreading).
   /// Triangles are divided into four, their neighbours into two (red-green). Cells must be of one kind. Vertices keep
   /// their numbers. Tetrahedra are divided into eight, their neighbours into two or four; hexahedra as in
-  /// hexahedra_refinement.h, at one boundary after the other if the marks of all would spread from where boundaries
-  /// meet.
+  /// hexahedra_refinement.h, at one boundary after the other if the marks of all boundaries together would spread from
+  /// where these meet.
   template <int dim>
   MeshPiece<dim> refined_towards(const MeshPiece<dim> &piece, const std::set<dealii::types::boundary_id> &ids);
 

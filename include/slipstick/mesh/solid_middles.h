@@ -33,8 +33,8 @@ namespace slipstick::mesh
     Point on_face(const Piece::Face &rows) const;
     Point in_hexahedron(const Piece::Cell &cell) const;
 
-    /// Whether the mapping of degree 2 of a cell keeps its orientation, with volumes no less than a given part of those
-    /// with straight edges.
+    /// Whether the mapping of degree 2 of a cell keeps its orientation, with volumes no less than a given fraction of
+    /// those with straight edges.
     bool keeps_its_shape(const Piece::Cell &cell) const;
 
   private:
