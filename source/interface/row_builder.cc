@@ -16,7 +16,7 @@ namespace slipstick::interface
     // the edge of a pair is on a plane of symmetry, the weights of master nodes off the plane nearly vanish, and such
     // rows nearly depend on those of the supports.
     template <int dim>
-    constexpr double held_tangent = dim == 2 ? held_direction_tolerance : 0.05;
+    constexpr double held_tangent = 0.05;
 
     double norm(const std::map<unsigned int, double> &v)
     {
@@ -59,6 +59,7 @@ namespace slipstick::interface
                               tfeti::Constraints                    &constraints)
     : scene(scene)
     , nodes(nodes)
+    , t(t)
     , touches(scene, nodes, contacts, t)
     , constraints(constraints)
     , limits(scene.contacts.size(), std::numeric_limits<double>::infinity())
@@ -335,9 +336,48 @@ namespace slipstick::interface
             touch.point.tangents[k][d] = tangents[k][d];
       }
     for (const auto &tangent : tangents)
-      if (const auto row = jump(touch, tangent); norm(free_of(row)) > held_tangent<dim>)
+      if (const auto row = jump(touch, tangent); norm(free_of(row)) > held_tangent<dim> || is_moved(row))
         rows.push_back(row);
     return rows;
+  }
+
+  template <int dim>
+  double RowBuilder<dim>::prescribed(const Vector &row, const double at) const
+  {
+    double sum = 0, size = 0;
+    for (auto entry = row.begin(); entry != row.end(); std::advance(entry, dim))
+      {
+        const auto displacement = held_displacement(entry->first / dim, at);
+        for (unsigned int c = 0; c < dim; ++c)
+          {
+            const double part = row.at(entry->first + c) * displacement[c];
+            sum += part;
+            size += std::abs(part);
+          }
+      }
+    return std::abs(sum) <= rounding_of_sums * size ? 0. : sum; // else both sides have the same prescribed displacement
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim> RowBuilder<dim>::held_displacement(const unsigned int node, const double at) const
+  {
+    if (at == t)
+      return nodes[node].held_displacement();
+    auto then = nodes[node];
+    for (auto &held : then.held)
+      held.value = held.by.front() < scene.supports.size()
+                     ? scene.supports[held.by.front()].displacement(held.which)->value(then.point(), at)
+                     : 0.;
+    return then.held_displacement();
+  }
+
+  template <int dim>
+  bool RowBuilder<dim>::is_moved(const Vector &row) const
+  {
+    const auto &factors = scene.load_factors;
+    return prescribed(row, t) != 0 || std::any_of(factors.begin(), factors.end(), [&](const double at) {
+             return at < t && prescribed(row, at) != 0;
+           });
   }
 
   template <int dim>
@@ -364,15 +404,7 @@ namespace slipstick::interface
         holders.insert(direction.by.begin(), direction.by.end());
     point.holders.assign(holders.begin(), holders.end());
     point.is_known = norm(free_part(coefficients)) <= held_direction_tolerance;
-    double size    = 0;
-    for (const auto &[k, value] : coefficients)
-      {
-        const double part = value * nodes[k / dim].held_displacement()[k % dim];
-        point.closing += part;
-        size += std::abs(part);
-      }
-    if (std::abs(point.closing) <= rounding_of_sums * size) // both sides have the same prescribed displacement
-      point.closing = 0;
+    point.closing  = prescribed(coefficients, t);
     held.points.push_back(std::move(point));
   }
 

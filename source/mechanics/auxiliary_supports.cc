@@ -47,9 +47,15 @@ namespace slipstick::mechanics
                                   const std::vector<tfeti::BodyFrame> &frames,
                                   const StillNode<dim>                &at)
     {
-      constexpr unsigned int k     = dim * (dim + 1) / 2; // amplitudes per body
-      const auto            &frame = frames[at.body];
-      Eigen::VectorXd        values(motions.size());
+      const unsigned int k     = motions.front().size() / frames.size(); // amplitudes per body
+      const auto        &frame = frames[at.body];
+      Eigen::VectorXd    values(motions.size());
+      if (k == 1) // a body of revolution, along its axis
+        {
+          for (unsigned int m = 0; m < motions.size(); ++m)
+            values[m] = at.component == 1 ? motions[m][at.body] : 0.;
+          return values;
+        }
       for (unsigned int m = 0; m < motions.size(); ++m)
         values[m] = motions[m][at.body * k + at.component];
       for (unsigned int r = 0; r + dim < k; ++r) // rotations from axis a to axis b

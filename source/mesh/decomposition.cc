@@ -26,8 +26,7 @@ namespace slipstick::mesh
     // many subdomains?".
     constexpr double automatic_cells_per_subdomain = 10000;
 
-    // The same in space: a cube with 10 cells per edge (time of factors and coarse problem, space.md of the first
-    // steps).
+    // The same in space: a cube with 10 cells per edge (time of factors and coarse problem).
     constexpr double automatic_cells_per_subdomain_in_space = 1000;
 
     // Limits for two bodies that probably have different units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus):

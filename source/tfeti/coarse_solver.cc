@@ -245,7 +245,7 @@ namespace slipstick::tfeti
 
     std::size_t n_nonzeros() const override
     {
-      return factor.matrixLLT().size();
+      return std::size_t(factor.rows()) * factor.cols(); // 0 before it is computed
     }
 
   private:

@@ -75,7 +75,13 @@ namespace slipstick::interface
     /// Row of a bond along the normal (0) or the tangent (1).
     Vector bond(const ContactCandidate<dim> &touch, const unsigned int direction) const;
     bool   is_pruned(const ContactCandidate<dim> &touch) const;
-    /// Rows along the tangents that are not held by supports, bonds or @p left, the free part of the normal row.
+    /// The part of the jump along a row that the displacements of supports prescribe at the load factor @p at [mm].
+    double                 prescribed(const Vector &row, const double at) const;
+    dealii::Tensor<1, dim> held_displacement(const unsigned int node, const double at) const;
+    /// Whether supports move the two sides of a row relative to each other now, or did in an earlier load step.
+    bool is_moved(const Vector &row) const;
+    /// Rows along the tangents that are not held by supports, bonds or @p left, the free part of the normal row, or that
+    /// supports move: such nodes slide.
     std::vector<Vector> free_tangents(ContactCandidate<dim> &touch, const Vector &left) const;
     /// Whether supports hold the point open although its law acts only on closed contact.
     bool is_held_open(const tfeti::HeldContacts::Point &point) const;
@@ -104,6 +110,7 @@ namespace slipstick::interface
 
     const scene::Scene<dim>               &scene;
     const std::vector<InterfaceNode<dim>> &nodes;
+    const double                           t;
     const Touches<dim>                     touches;
     tfeti::Constraints                    &constraints;
     std::vector<double>                    limits;     // gaps, by pair [mm]

@@ -14,6 +14,7 @@
 //       `project_range(x, y)`   y = Q_f x on the free entries, y = x on the others, so that P_f = I - Q_f keeps G x
 //       `balance(x)`            makes G x = e by the smallest change of the free entries (the tied ones follow)
 //       `project_kernel(p)`     the same for G p = 0; then sets the tied entries to factor times the free ones
+//       `clear_held(p)`         p = 0 on the entries that are neither free nor tied
 //       `multiplier_shift(v, y)` y = G'a on ALL entries, with the a that minimises v - G'a on the free ones
 //       `precondition(r, z)`    z = M r on the free entries, 0 on the others; symmetric positive semidefinite
 //       `is_regular()`          false if the free entries alone do not determine a

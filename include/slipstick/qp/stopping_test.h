@@ -78,16 +78,16 @@ namespace slipstick::qp
         return false;
       }
 
-      /// Called after a face that was solved to @p residual and ended with this natural residual, both over the
-      /// reference. Faces may meet the goal on sets whose bounds are violated by far more than before. If that happens
-      /// again, gradients below the goal determine the sets (very different compliances), and faces are solved to a
-      /// smaller residual.
-      void check_start_of_face(const double residual, const double natural_residual)
+      /// Called after a face that was solved to @p residual; @p with_bounds also counts by how much the bounds are
+      /// violated. Both over the reference. Faces may meet the goal on sets whose bounds are violated by far more than
+      /// before. If that happens again, gradients below the goal determine the sets (very different compliances), and
+      /// faces are solved to a smaller residual.
+      void check_start_of_face(const double residual, const double with_bounds)
       {
-        if (residual <= goal.tolerance &&
-            natural_residual > options.astray * std::max(goal.tolerance, last_natural_residual) && ++n_astray > 1)
+        if (residual <= goal.tolerance && with_bounds > options.astray * std::max(goal.tolerance, last_with_bounds) &&
+            ++n_astray > 1)
           tolerance = std::min(tolerance, options.tightening * residual);
-        last_natural_residual = natural_residual;
+        last_with_bounds = with_bounds;
       }
 
       /// Keeps the point as the best one; its natural residual is the smallest so far.
@@ -119,8 +119,8 @@ namespace slipstick::qp
       double              tolerance;
       bool                is_met = false;
       std::optional<Best> best;
-      double              last_natural_residual = std::numeric_limits<double>::infinity();
-      unsigned int        n_astray              = 0;
+      double              last_with_bounds = std::numeric_limits<double>::infinity();
+      unsigned int        n_astray         = 0;
     };
   } // namespace detail
 } // namespace slipstick::qp

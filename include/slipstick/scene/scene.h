@@ -122,6 +122,12 @@ namespace slipstick::scene
     std::array<std::optional<Field<dim>>, dim> components; // [mm]
     std::optional<Field<dim>>                  normal;     // outwards [mm]; boundaries only, then no components; 0 is a
                                                            // roller or a plane of symmetry
+
+    /// The displacement of component @p which, or from dim on along the normal.
+    const std::optional<Field<dim>> &displacement(const unsigned int which) const
+    {
+      return which < dim ? components[which] : normal;
+    }
   };
 
   /// Elastic foundation: springs between a boundary and the ground, force per area and displacement.
