@@ -22,6 +22,9 @@ namespace slipstick::app
     // printed.
     constexpr double nothing = 1e-9;
 
+    constexpr const char *peak_at_one_node =
+      "a peak at a single node: it grows with every refinement (a corner, an edge) or needs a finer mesh";
+
     bool sticks(const ContactNode &node)
     {
       return node.is_closed && node.status == contact::ContactStatus::stick;
@@ -41,14 +44,36 @@ namespace slipstick::app
       });
     }
 
-    template <class Surface, class Traction>
-    void add_norm_resolution(std::vector<output::ErrorBar> &bars,
-                             const std::string             &quantity,
-                             const Surface                 &surface,
-                             const Traction                &traction)
+    /// Whether one node carries more than half of the square of the L2 norm of a traction.
+    template <class Traction>
+    bool is_of_one_node(const std::vector<ContactNode> &nodes, const Traction &traction)
     {
-      if (const auto bar = find(bars, quantity); bar != bars.end() && bar->error)
-        *bar->error += bar->value * surface.norm_resolution(traction);
+      double all = 0, largest = 0;
+      for (const auto &node : nodes)
+        {
+          const double square = traction(node) * traction(node) * node.area;
+          all += square;
+          largest = std::max(largest, square);
+        }
+      return largest > all / 2;
+    }
+
+    template <class Surface, class Traction>
+    void add_norm_resolution(std::vector<output::ErrorBar>  &bars,
+                             const std::string              &quantity,
+                             const std::vector<ContactNode> &nodes,
+                             const Surface                  &surface,
+                             const Traction                 &traction)
+    {
+      const auto bar = find(bars, quantity);
+      if (bar == bars.end() || !bar->error)
+        return;
+      *bar->error += bar->value * surface.norm_resolution(traction);
+      if (!surface.resolution() && is_of_one_node(nodes, traction))
+        {
+          bar->error.reset();
+          bar->reason = peak_at_one_node;
+        }
     }
 
     /// The printed values, by names of goals.
@@ -112,11 +137,12 @@ namespace slipstick::app
         }
     for (unsigned int k = 0; k < pairs.size(); ++k)
       {
-        const ContactProfile<dim> surface(nodes_of_pair(nodes, k));
-        add_norm_resolution(bars, pairs[k].name + ".pressure_norm", surface, [](const ContactNode &node) {
+        const auto                of_pair = nodes_of_pair(nodes, k);
+        const ContactProfile<dim> surface(of_pair);
+        add_norm_resolution(bars, pairs[k].name + ".pressure_norm", of_pair, surface, [](const ContactNode &node) {
           return node.pressure;
         });
-        add_norm_resolution(bars, pairs[k].name + ".traction_norm", surface, [](const ContactNode &node) {
+        add_norm_resolution(bars, pairs[k].name + ".traction_norm", of_pair, surface, [](const ContactNode &node) {
           return node.tangential_traction;
         });
         const auto pressure = find(bars, pairs[k].name + ".max_pressure");
@@ -126,8 +152,7 @@ namespace slipstick::app
         if (!resolved)
           {
             pressure->error.reset();
-            pressure->reason =
-              "a peak at a single node: it grows with every refinement (a corner, an edge) or needs a finer mesh";
+            pressure->reason = peak_at_one_node;
           }
         else if (pressure->error)
           *pressure->error += *resolved;

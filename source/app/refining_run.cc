@@ -217,6 +217,7 @@ namespace slipstick::app
         cells    = errors_of(steps);
         n_marked = mark(steps.mesh(), cells, refinement);
       }
+    n_marked += steps.mark_coarse_masters(options.goals, refinement);
     // nine quadrilaterals or eight tetrahedra per cell, plus transition cells around them
     constexpr double cells_for_one = 12;
     const double     growth        = 1 + cells_for_one * n_marked / summary.problem.cells;

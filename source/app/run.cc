@@ -7,6 +7,7 @@
 #include <slipstick/app/names.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/run.h>
+#include <slipstick/app/side_balance.h>
 #include <slipstick/app/solution_warnings.h>
 #include <slipstick/base/memory.h>
 #include <slipstick/contact/equilibrium_limit.h>
@@ -168,6 +169,17 @@ namespace slipstick::app
   std::vector<LeftOut<dim>> Run<dim>::point_forces() const
   {
     return app::point_forces(scene, solver.mesh(), solver.spaces(), solver.n_given_supports());
+  }
+
+  template <int dim>
+  std::size_t Run<dim>::mark_coarse_masters(const std::vector<std::string> &goals, mesh::Refinement &refinement) const
+  {
+    return app::mark_coarse_masters(scene,
+                                    solver.mesh(),
+                                    contact_steps.empty() ? std::vector<contact::ContactNode>()
+                                                          : contact_steps.back().nodes,
+                                    goals,
+                                    refinement);
   }
 
   template <int dim>

@@ -58,6 +58,10 @@ namespace slipstick::app
       // the smallest significant force: rounding of the displacement over the compliance |PFP|
       double largest =
         displacement_rounding * answer.contact->checks.max_displacement / solver.dual().norm() / negligible_held_force;
+      double pressed = 0;
+      for (const auto &node : answer.contact->nodes)
+        pressed += std::abs(node.pressure) * node.area;
+      largest = std::max(largest, dealii::Utilities::MPI::sum(pressed, solver.dual().communicator()));
       for (const auto &load : sums.loads)
         largest = std::max(largest, size(load.sum));
       for (const auto &reaction : reactions)

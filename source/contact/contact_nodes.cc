@@ -84,7 +84,7 @@ namespace slipstick::contact
         node.gap      = dual.constraints().c[point.normal_row] - jumps.local_element(point.normal_row);
       }
     node.is_closed    = point.normal_row == tfeti::invalid_row || free[point.normal_row];
-    node.status       = status_of(node.is_closed, 0., false);
+    node.status       = status_of(node.is_closed, 0., point.is_held_across);
     double tangential = 0;
     if (point.tangential_row != tfeti::invalid_row)
       {

@@ -284,7 +284,10 @@ namespace slipstick::interface
           }
         std::vector<Vector> across; // rows along the tangents that are not held
         if (touch.has_tangent && !(!has_normal && is_held_open(held.points.back())))
-          across = free_tangents(touch, has_normal ? left : Vector());
+          {
+            across                     = free_tangents(touch, has_normal ? left : Vector());
+            touch.point.is_held_across = across.empty();
+          }
         if (!has_normal && across.empty())
           continue;
         const std::uint64_t which = touch.pair + (std::uint64_t(touch.side) << 32);

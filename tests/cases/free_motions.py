@@ -27,6 +27,16 @@ def shaft(radius, load, refinements=0, law='Coulomb', young='2.1e5', centre_only
         Discretization={'Refinements': refinements}, **{**SMALL, **kinds})
 
 
+def fit_of_revolution(**supports):
+    """A ring shrunk on a shaft of twice its length."""
+    return scenes.box('fit', plane_state='axisymmetric', materials={'steel': STEEL}, bodies={
+        'shaft': {'Origin': '0, -10', 'Size': '10.01, 20', 'Cells': '10, 20', 'Material': 'steel'},
+        'ring': {'Origin': '10, -5', 'Size': '10, 10', 'Cells': '10, 10', 'Material': 'steel'}},
+        supports=supports, contacts={'fit': {'Slave': 'ring/left', 'Master': 'shaft/right', 'Law': 'Coulomb',
+                                             'Friction coefficient': '0.15'}},
+        Solver={'Tolerance': '1e-8'}, **SMALL)
+
+
 class FreeMotions(unittest.TestCase):
 
     def converges(self, case, *words, ranks=1):
@@ -37,6 +47,15 @@ class FreeMotions(unittest.TestCase):
         for word in words:
             self.assertIn(word, warnings[0])
         return result
+
+    def test_bodies_of_revolution(self):
+        """Along the axis nothing holds them, as in the plane and in space."""
+        free = self.converges(fit_of_revolution(), 'translation along the axis')
+        held = self.converges(fit_of_revolution(end={'Body': 'shaft', 'Point': '0, 0', 'Displacement y': '0'}))
+        (free, held) = (result.summary['results']['contact'][0] for result in (free, held))
+        self.assertGreater(held['normal_force'], 1e4)
+        for key in ('normal_force', 'max_pressure'):
+            self.assertAlmostEqual(free[key] / held[key], 1, places=5)
 
     def test_a_shaft_held_at_its_centre_alone(self):
         turns = ('body shaft: rotation about (0, 0); body hub: rotation about (0, 0)', 'set to zero')

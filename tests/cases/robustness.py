@@ -9,6 +9,9 @@ import unittest
 
 from program import ENVIRONMENT, PROGRAM, WORK, launcher, new_path, run, settings, shipped, solve
 
+SANITIZED = 'SLIPSTICK_SANITIZED' in os.environ  # set by scripts/sanitize
+SHADOW = 'AddressSanitizer maps terabytes of shadow memory'
+
 BLOCK = """\
 set Materials = s
 set Bodies = a
@@ -84,6 +87,7 @@ class Robustness(unittest.TestCase):
         self.refused(shipped('hertz'), {'Body cylinder/Refinements': 10, 'Discretization/Refinements': 10}, 'unknowns')
         self.refused(shipped('ring_on_shaft'), {'Body shaft/Cells along axis': 1000000}, 'Body shaft: ', 'MB are free')
 
+    @unittest.skipIf(SANITIZED, SHADOW)
     def test_force_overrides_the_estimate_of_memory(self):
         # more than the limit of the process, by the estimate
         case = write(BLOCK.replace('Cells = 10, 4', 'Cells = 2400, 960'))
@@ -93,6 +97,7 @@ class Robustness(unittest.TestCase):
         self.assertIn('MB are free', refused.stderr)
         self.assertIn('--force', refused.stderr)
 
+    @unittest.skipIf(SANITIZED, SHADOW)
     def test_memory_that_runs_out_is_no_internal_error(self):
         process, directory = limited(write(BLOCK.replace('Cells = 10, 4', 'Cells = 2400, 960')), ('--force', '--quiet'), RLIMIT_AS=1300 << 20)
         self.assertEqual(process.returncode, 2, process)
@@ -100,6 +105,7 @@ class Robustness(unittest.TestCase):
         self.assertEqual(process.stderr.count('remedy: '), 1, process)
         self.assertEqual([name for name in (os.listdir(directory) if directory.exists() else []) if name.endswith('.tmp')], [])
 
+    @unittest.skipIf(SANITIZED, SHADOW)
     def test_address_space_that_is_too_small(self):
         for megabytes in (600, 700):
             process, directory = limited(write(BLOCK), RLIMIT_AS=megabytes << 20)

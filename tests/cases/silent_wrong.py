@@ -187,6 +187,50 @@ class SharedSides(Case):
                       contacts={'c': TOUCH, 'd': {**TOUCH, 'Slave': 'bar/left', 'Master': 'wall'}}))
 
 
+class HeldNodes(Case):
+    """Friction at contact nodes that supports hold or move along the surface."""
+
+    def pushed(self, displacement='0.1', **kinds):
+        """Poisson's ratio 0, 10 N on a floor with a coefficient of friction of 0.3, the left end moved: all nodes slide."""
+        return bar(**{'materials': {'elastic': {**STEEL, 'Poisson ratio': '0'}},
+                      'supports': {'push': {'Boundary': 'bar/left', 'Displacement x': displacement}},
+                      'tractions': {'pressed': PRESSED}, 'Solver': {'Tolerance': '1e-8'},
+                      'contacts': {'touch': {**TOUCH, 'Law': 'Coulomb', 'Friction coefficient': '0.3'}}, **kinds})
+
+    def push(self, case):
+        return force(converged(case), 'supports')[0]
+
+    def test_nodes_that_a_support_moves_slide_too(self):
+        for degree in (1, 2):
+            self.assertAlmostEqual(self.push(self.pushed(Discretization={'Degree': degree})), 3, places=5)
+        self.assertAlmostEqual(self.push(self.pushed(Solver={'Algorithm': 'smalbe'})), 3, places=3)
+        tresca = {'touch': {**TOUCH, 'Law': 'Tresca', 'Slip bound': '0.3'}}
+        self.assertAlmostEqual(self.push(self.pushed(contacts=tresca)), 3, places=5)
+        nodes = converged(self.pushed()).contact
+        self.assertTrue(all(node['status'] == 'slip' and node['slip'] > 0.09 for node in nodes), nodes)
+
+    def test_friction_follows_a_support_that_turns_back(self):
+        there_and_back = self.pushed('0.1*(1-abs(t-1))', **{'Load steps': {'Factors': '0.5, 1, 1.5, 2'}})
+        self.assertAlmostEqual(self.push(there_and_back), -3, places=5)
+
+    def test_both_sides_held_where_one_is_moved(self):
+        case = self.pushed(
+            bodies={'bar': BAR, 'floor': {**BAR, 'Origin': '0, -4'}}, obstacles={},
+            supports={'push': {'Boundary': 'bar/left', 'Displacement x': '0.1'}, 'end': {'Boundary': 'floor/left', 'Displacement x': '0'},
+                      'base': {'Boundary': 'floor/bottom', 'Displacement y': '0'}},
+            contacts={'touch': {'Slave': 'bar/bottom', 'Master': 'floor/top', 'Law': 'Coulomb', 'Friction coefficient': '0.3'}})
+        result = converged(case)
+        self.assertAlmostEqual(force(result, 'supports')[0], 3, places=5)
+        self.assertAlmostEqual(force(result, 'supports', 1)[0], -3, places=5)
+
+    def test_nodes_on_planes_of_symmetry_stick(self):
+        """Meshes that do not match: master nodes off the plane have small weights there."""
+        nodes = converged(shipped('press_fit'), {'Contact fit/Law': 'Coulomb', 'Contact fit/Friction coefficient': '0.2',
+                                                 'Solver/Tolerance': '1e-8'}).contact
+        self.assertTrue(all(node['status'] == 'stick' for node in nodes), nodes)
+        self.assertEqual([nodes[i]['tangential_traction'] for i in (0, -1)], [0, 0])
+
+
 class AfterLoading(Case):
     """Geometry that no row of contact watches."""
 

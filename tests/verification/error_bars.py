@@ -271,6 +271,25 @@ class Accuracy(unittest.TestCase):
             if not bar['quantity'].endswith('_length'):
                 self.assertLess(bar['error'], 0.02 * abs(bar['value']))
 
+    def test_pressures_where_the_slave_is_refined_more(self):
+        """Hertz, two discs: a slave finer than its master follows the edges of the master, which no bar contains."""
+        disc = {'Shape': 'half disc', 'Cells along arc': '64'}
+        modulus = 1 / (1 / 2.1e5 + 1 / 7e4)  # plane stress
+        exact = math.sqrt(1500 * modulus / math.pi * (1 / 20 + 1 / 35))
+        case = scenes.box('discs', materials={'steel': {'Young modulus': '2.1e5', 'Poisson ratio': '0.3'},
+                                              'aluminium': {'Young modulus': '7e4', 'Poisson ratio': '0.33'}},
+                          bodies={'top': {**disc, 'Center': '0, 20', 'Radius': '20', 'Material': 'steel'},
+                                  'low': {**disc, 'Center': '0, 35', 'Radius': '35', 'Rotation': '180', 'Material': 'aluminium'}},
+                          supports={'base': {'Boundary': 'low/flat', 'Displacement x': '0', 'Displacement y': '0'},
+                                    'guide': {'Boundary': 'top/flat', 'Displacement x': '0'}},
+                          tractions={'load': {'Boundary': 'top/flat', 'Pressure': '37.5'}},
+                          contacts={'c': {'Slave': 'top/arc', 'Master': 'low/arc', 'Law': 'frictionless'}},
+                          Decomposition={'Method': 'auto'})
+        for accuracy in ('3 %', '1 %'):
+            summary = converged(case, {'Mesh': 'adaptive', 'Goal': 'c.max_pressure', 'Accuracy': accuracy, 'Output/VTU': 'false'}).summary
+            bar = {bar['quantity']: bar for bar in summary['error_bars']}['c.max_pressure']
+            self.assertLess(abs(bar['value'] - exact), min(5 * bar['error'], 0.03 * exact), bar)
+
     def test_an_accuracy_that_is_missed(self):
         result = solve(shipped('hertz_ball'), {'Accuracy': '1 %', 'Adaptivity/Max meshes': 2, 'Output/VTU': 'false'})
         self.assertEqual(result.status, 3, result)

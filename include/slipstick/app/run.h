@@ -69,6 +69,9 @@ namespace slipstick::app
     }
     std::vector<LeftOut<dim>> point_forces() const;
 
+    /// See side_balance.h; with the contact nodes of the last load step. Collective.
+    std::size_t mark_coarse_masters(const std::vector<std::string> &goals, mesh::Refinement &refinement) const;
+
   private:
     /// Takes over the results of an earlier run. @return its summary.
     output::Summary resume();

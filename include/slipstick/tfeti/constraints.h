@@ -57,7 +57,8 @@ namespace slipstick::tfeti
     unsigned int                         tangential_row = invalid_row;
     unsigned int                         second_row     = invalid_row; // in space: along the other tangent
     std::array<std::array<double, 3>, 2> tangents{};                   // in space
-    unsigned int                         interface_dof = 0; // owned number of the node's first interface unknown
+    bool         is_held_across = false; // its law has friction, but supports let neither side slip
+    unsigned int interface_dof  = 0;     // owned number of the node's first interface unknown
 
     bool is_in_space() const
     {

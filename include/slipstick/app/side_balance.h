@@ -1,0 +1,25 @@
+// Meshes of the two sides of a contact pair whose pressures are goals.
+#pragma once
+
+#include <slipstick/contact/result.h>
+#include <slipstick/mesh/adaptive_refinement.h>
+#include <slipstick/mesh/mesh.h>
+#include <slipstick/scene/scene.h>
+
+#include <string>
+#include <vector>
+
+namespace slipstick::app
+{
+  /// Adds the master cells to @p refinement whose faces in the contact zone are much longer than those of the slave will be.
+  /// A slave that is finer than its master follows the edges of the master's faces: its nodal pressures alternate, which
+  /// no estimate on that mesh contains (doc/decisions/0129). Only pairs of two bodies whose pressures or tractions are
+  /// among the goals. Collective.
+  /// @param nodes of all ranks, on rank 0. @return number of cells added.
+  template <int dim>
+  std::size_t mark_coarse_masters(const scene::Scene<dim>                 &scene,
+                                  const mesh::Mesh<dim>                   &mesh,
+                                  const std::vector<contact::ContactNode> &nodes,
+                                  const std::vector<std::string>          &goals,
+                                  mesh::Refinement                        &refinement);
+} // namespace slipstick::app
