@@ -29,6 +29,10 @@ namespace slipstick::mesh
     // The same in space: a cube with 10 cells per edge (time of factors and coarse problem).
     constexpr double automatic_cells_per_subdomain_in_space = 1000;
 
+    // A body in the plane that only contact holds in some direction, if longer than twice this many times its thickness, gets that many
+    // more subdomains if their number is `auto`, so that none is longer than this: doc/decisions/0131.
+    constexpr double automatic_slenderness = 8;
+
     // Limits for two bodies that probably have different units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus):
     // ratio of the larger to the smaller size or modulus. Parts of one assembly differ less in size; steel and rubber
     // differ by 1e5 in modulus. The lower limits must be exceeded together, by a smaller body that is also the stiffer
@@ -57,6 +61,58 @@ namespace slipstick::mesh
     double cost_of(const MeshPiece<dim> &piece)
     {
       return piece.cells.size() * (is_simplex<dim>(piece.cells[0]) ? (dim == 2 ? .5 : 1. / 6) : 1.);
+    }
+
+    /// Length over thickness of a long piece of the plane, from its outline and its area; 4 for a square.
+    double slenderness(const MeshPiece<2> &piece)
+    {
+      double outline = 0, area = 0;
+      for (const auto &face : piece.boundary_faces)
+        outline += piece.vertices[face.vertices[0]].distance(piece.vertices[face.vertices[1]]);
+      for (const auto &cell : piece.cells)
+        {
+          const auto cross = [&](const unsigned int i, const unsigned int j) {
+            const auto &a = piece.vertices[cell[i]], &b = piece.vertices[cell[j]];
+            return a[0] * b[1] - a[1] * b[0];
+          };
+          area += std::abs(is_simplex<2>(cell) ? cross(0, 1) + cross(1, 2) + cross(2, 0)
+                                               : cross(0, 1) + cross(1, 3) + cross(3, 2) + cross(2, 0)) /
+                  2;
+        }
+      return outline * outline / (4 * area);
+    }
+
+    double slenderness(const MeshPiece<3> &)
+    {
+      return 0;
+    }
+
+    /// By body: whether only contact that may open or slip holds it in some direction.
+    template <int dim>
+    std::vector<bool> held_by_contact(const scene::Scene<dim> &scene)
+    {
+      std::vector<std::array<bool, dim>> held(scene.bodies.size(), std::array<bool, dim>{});
+      std::vector<unsigned int>          n_normals(scene.bodies.size(), 0);
+      for (const auto &support : scene.supports)
+        {
+          const unsigned int body = support.point ? support.point->body : support.where.body;
+          for (unsigned int d = 0; d < dim; ++d)
+            held[body][d] |= bool(support.components[d]);
+          n_normals[body] += bool(support.normal);
+        }
+      std::vector<bool> loose;
+      for (unsigned int b = 0; b < held.size(); ++b)
+        loose.push_back(std::count(held[b].begin(), held[b].end(), true) + n_normals[b] < dim);
+      for (const auto &foundation : scene.foundations)
+        loose[foundation.where.body] = false;
+      for (const auto &pair : scene.contacts)
+        if (pair.law.is_bonded)
+          {
+            loose[pair.slave.body] = false;
+            if (pair.master)
+              loose[pair.master->body] = false;
+          }
+      return loose;
     }
 
     /// Whether every rank can generate its own blocks.
@@ -262,7 +318,16 @@ namespace slipstick::mesh
       if (asked > 0 && asked < wholes.size())
         remarks.push_back(std::to_string(wholes.size()) + " subdomains instead of " + std::to_string(asked) +
                           ": at least one for each body and cell type");
-      const auto shares = shares_of_pieces(cost, n_cells, wanted);
+      auto shares = shares_of_pieces(cost, n_cells, wanted);
+      if (asked == 0)
+        {
+          const auto loose = held_by_contact(scene);
+          for (unsigned int k = 0; k < wholes.size(); ++k)
+            if (const double slender = slenderness(wholes[k]);
+                loose[wholes[k].body] && slender > 2 * automatic_slenderness)
+              shares[k] =
+                std::max<double>(shares[k], std::min<double>(std::ceil(slender / automatic_slenderness), n_cells[k]));
+        }
 
       std::vector<MeshPiece<dim>>                                   pieces;
       std::map<unsigned int, std::pair<unsigned int, unsigned int>> made; // by body: requested, obtained

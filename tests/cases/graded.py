@@ -1,13 +1,68 @@
 """Grids graded towards the contact, where the start of the solver is far from the solution: its price, and what it finds."""
 
+import math
 import sys
 import unittest
 
+import scenes
 from program import SOURCE, WORK, converged
 
 sys.path.insert(0, str(SOURCE / 'benchmarks'))
 import graded_scenes  # noqa: E402
 from scene_files import Variant  # noqa: E402
+
+
+class Slender(unittest.TestCase):
+    """Long bodies that friction holds along their length: 8429, 5247 and 6464 multiplications without a solution as one subdomain."""
+
+    FLOOR = {'Shape': 'half plane', 'Point': '0, 0', 'Normal': '0, 1'}
+    ROUGH = {'Slave': 'strip/bottom', 'Master': 'floor', 'Law': 'Coulomb', 'Friction coefficient': '0.3'}  # 0.6 MPa
+
+    def displacements(self, case):
+        """Of the probe, in every load step, and multiplications."""
+        result = converged(case)
+        self.assertEqual(result.summary['solver']['fallbacks'], 0)
+        return ([row['u_x'] for row in result.rows('probes.csv', text=('probe',))],
+                result.summary['solver']['hessian_multiplications'])
+
+    def strip(self, cells, probe, **kinds):
+        return scenes.box('strip', **{
+            'materials': {'soft': {'Young modulus': '1e5', 'Poisson ratio': '0', 'Thermal expansion': '1e-5'}},
+            'bodies': {'strip': {'Size': '100, 1', 'Cells': cells, 'Material': 'soft'}}, 'obstacles': {'floor': self.FLOOR},
+            'contacts': {'rough': self.ROUGH}, 'probes': {'end': {'Body': 'strip', 'Point': probe}},
+            'Decomposition': {'Method': 'auto'}, 'Solver': {'Tolerance': '1e-8'}, **kinds})
+
+    def test_bar_pushed_along_a_rough_floor(self):
+        found, n = self.displacements(self.strip('100, 1', '0, 0.5', **{'Load steps': {'Factors': '0.5, 1, 1.5, 2'}}, tractions={
+            'press': {'Boundary': 'strip/top', 'Pressure': '2'}, 'push': {'Boundary': 'strip/left', 'Traction x': '30*min(t,2-t)'}}))
+        for value, wanted in zip(found, (1.875e-3, 7.5e-3, 6.5625e-3, 3.75e-3)):  # as a bar of one dimension
+            self.assertAlmostEqual(value / wanted, 1, delta=0.02)
+        self.assertLess(n, 300)
+
+    def test_strip_heated_and_cooled(self):
+        found, n = self.displacements(self.strip(
+            '200, 2', '100, 0.5', **{'Load steps': {'Factors': '1, 2, 3'}}, tractions={'press': {'Boundary': 'strip/top', 'Pressure': '2'}},
+            supports={'end': {'Boundary': 'strip/left', 'Displacement x': '0'}},
+            temperatures={'heat': {'Bodies': 'strip', 'Change': '20*(t<=1 ? t : (t<=2 ? 2-t : t-2))'}}))
+        for value, wanted in zip(found, (1 / 300, 1 / 600, 1 / 300)):
+            self.assertAlmostEqual(value / wanted, 1, delta=0.025)
+        self.assertLess(n, 450)
+
+    def test_belt_on_a_drum(self):
+        """Euler and Eytelwein, with the drum's radius for friction and the middle of the belt for its forces."""
+        inner, middle, mu = 50, 50.25, 0.3
+        case = scenes.box('belt', materials={'soft': {'Young modulus': '1e5', 'Poisson ratio': '0.3'}},
+                          bodies={'belt': {'Shape': 'quarter ring', 'Inner radius': '50', 'Radius': '50.5', 'Cells': '180, 2',
+                                           'Material': 'soft'}},
+                          obstacles={'drum': {'Shape': 'circle', 'Center': '0, 0', 'Radius': '50'}},
+                          supports={'pull': {'Boundary': 'belt/start', 'Displacement y': '-1'}},
+                          tractions={'weight': {'Boundary': 'belt/end', 'Traction x': '-20'}},
+                          contacts={'wrap': {'Slave': 'belt/inner', 'Master': 'drum', 'Law': 'Coulomb', 'Friction coefficient': mu}},
+                          Decomposition={'Method': 'auto'}, Solver={'Tolerance': '1e-8'})
+        result = converged(case)
+        ratio = abs(result.summary['results']['supports'][0]['force'][1]) / 10  # over the weight
+        self.assertAlmostEqual(ratio, math.exp(mu * math.pi / 2 * inner / middle), delta=0.02)
+        self.assertLess(result.summary['solver']['hessian_multiplications'], 400)
 
 
 class Graded(unittest.TestCase):

@@ -19,7 +19,7 @@ def text(**kinds):
         kinds.setdefault('obstacles', {'disc': DISC})
     lists = {'materials': 'Material', 'bodies': 'Body', 'obstacles': 'Obstacle', 'supports': 'Support',
              'foundations': 'Foundation', 'tractions': 'Traction', 'contacts': 'Contact', 'body_forces': 'Body force',
-             'point_loads': 'Point load', 'probes': 'Probe'}
+             'point_loads': 'Point load', 'probes': 'Probe', 'temperatures': 'Temperature'}
     lines = ['set Plane state = ' + kinds.pop('plane_state', 'plane stress')]
     sections = {}
     for kind, content in kinds.items():
