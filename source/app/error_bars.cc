@@ -44,7 +44,8 @@ namespace slipstick::app
       });
     }
 
-    /// Whether one node carries more than half of the square of the L2 norm of a traction.
+    /// Whether one node carries nearly all of the square of the L2 norm of a traction, as where one node touches: the norm
+    /// then grows without limit as well.
     template <class Traction>
     bool is_of_one_node(const std::vector<ContactNode> &nodes, const Traction &traction)
     {
@@ -55,7 +56,8 @@ namespace slipstick::app
           all += square;
           largest = std::max(largest, square);
         }
-      return largest > all / 2;
+      constexpr double nearly_all = 0.9;
+      return largest > nearly_all * all;
     }
 
     template <class Surface, class Traction>

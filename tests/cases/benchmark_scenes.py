@@ -68,6 +68,14 @@ class Statics(unittest.TestCase):
                 self.assertAlmostEqual(pair['normal_force'] / wanted, 1, places=4)
                 self.assertAlmostEqual(abs(pair['tangential_force']) / wanted, mu, places=4)
 
+    def test_wedge_that_stays_jammed(self):
+        """Friction locks forces in, which do not end with the load."""
+        nearly, unloaded = (solved(family_scenes.wedge(Variant(), n=12, mu=0.3), {'Load steps/Factors': '1, 2, 3, 4, 5, ' + last})
+                            for last in ('5.999999', '6'))
+        for before, after in zip(nearly, unloaded):
+            self.assertGreater(before['normal_force'], 100)
+            self.assertAlmostEqual(after['normal_force'] / before['normal_force'], 1, places=4)
+
     def test_wedge_released(self):
         """Drawn out again: nothing is left, told beside what there was, and at no price of its own."""
         result = converged(family_scenes.wedge(Variant(subdomains=32), mu=0.3, driven='displacement').write(

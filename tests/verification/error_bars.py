@@ -250,6 +250,22 @@ class Accuracy(unittest.TestCase):
         summary = converged(shipped('raous'), {**QUIET, 'Error bars': 'true'}).summary  # the corner is a node of the contact zone
         self.assertIsNotNone({bar['quantity']: bar for bar in summary['error_bars']}['strain_energy']['error'])
 
+    def test_contact_on_one_node(self):
+        """A zone of contact of 0.1 mm, edges of 1 mm: neither the largest pressure nor its norm has a bar."""
+        block = scenes.box(name='one node', bodies={'block': {'Size': '10, 4', 'Cells': '10, 4', 'Material': 'elastic'}},
+                           materials={'elastic': {'Young modulus': '2e5'}},
+                           supports={'left': {'Boundary': 'block/left', 'Displacement x': '0'},
+                                     'right': {'Boundary': 'block/right', 'Displacement x': '0'}},
+                           obstacles={'disc': {'Shape': 'circle', 'Center': '5, -100', 'Radius': '100'}},
+                           tractions={'press': {'Boundary': 'block/top', 'Pressure': '1'}},
+                           contacts={'touch': {'Slave': 'block/bottom', 'Master': 'disc', 'Law': 'frictionless'}})
+        summary = converged(block, {'Error bars': 'true'}).summary
+        self.assertEqual(summary['results']['contact'][0]['contact_nodes'], 1)
+        bars = {bar['quantity']: bar for bar in summary['error_bars']}
+        for quantity in ('touch.max_pressure', 'touch.pressure_norm'):
+            self.assertIsNone(bars[quantity]['error'], quantity)
+            self.assertIn('a peak at a single node', bars[quantity]['reason'])
+
     def test_figures_that_a_fixed_mesh_does_not_give(self):
         result = converged(shipped('hertz'), {'Accuracy': 'reference', 'Error bars': 'true', 'Output/VTU': 'false'})
         self.assertRegex(result.stdout, r'errors above the 0.3 % of the preset: touch.max_pressure \(0\.\d+ %\)')
