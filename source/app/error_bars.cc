@@ -44,8 +44,8 @@ namespace slipstick::app
       });
     }
 
-    /// Whether one node carries nearly all of the square of the L2 norm of a traction, as where one node touches: the norm
-    /// then grows without limit as well.
+    /// Whether one node carries nearly all of the square of the L2 norm of a traction, as where only one node touches:
+    /// then the norm grows without limit, too.
     template <class Traction>
     bool is_of_one_node(const std::vector<ContactNode> &nodes, const Traction &traction)
     {

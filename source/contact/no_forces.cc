@@ -45,23 +45,22 @@ namespace slipstick::contact
                          const std::vector<double>      &slip_bound)
   {
     const auto         &kind = dual.constraints().kind;
-    std::vector<double> largest{feasible.linfty_norm(), 0., 0., 0.}; // loads; overlaps, earlier slip; slip bounds
+    const auto         &c    = dual.constraints().c;
+    std::vector<double> largest{feasible.linfty_norm(), 0., 0., 0.}; // loads; overlaps and slip; bounds; earlier slip
     for (unsigned int r = 0; r < kind.size(); ++r)
       {
         const double d = dual.d().local_element(r);
         if (is_equality(kind[r]))
           largest[0] = std::max(largest[0], std::abs(d));
-        else if (kind[r] == tfeti::RowKind::normal)
-          largest[1] = std::max(largest[1], d);
         else
-          largest[2] = std::max(largest[2], std::abs(d));
-        largest[3] = std::max(largest[3], slip_bound[r]);
+          largest[1] = std::max(largest[1], kind[r] == tfeti::RowKind::normal ? d : std::abs(d));
+        largest[2] = std::max(largest[2], slip_bound[r]);
+        if (kind[r] == tfeti::RowKind::tangential)
+          largest[3] = std::max(largest[3], std::abs(c[r]));
       }
     dealii::Utilities::MPI::max(largest, dual.communicator(), largest);
-    if (largest[0] > 0)
+    if (largest[0] > 0 || largest[3] > 0) // friction may lock forces in
       return false;
-    if (largest[2] > 0) // friction may lock forces in
-      return false;
-    return largest[1] == 0 || (largest[3] == 0 && can_be_separated(dual, box));
+    return largest[1] == 0 || (largest[2] == 0 && can_be_separated(dual, box));
   }
 } // namespace slipstick::contact

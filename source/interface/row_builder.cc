@@ -12,10 +12,9 @@ namespace slipstick::interface
 {
   namespace
   {
-    // In space a tangent is held if supports leave less than this fraction of its row (the slave's part is 1): where
-    // the edge of a pair is on a plane of symmetry, the weights of master nodes off the plane nearly vanish, and such
-    // rows nearly depend on those of the supports.
-    template <int dim>
+    // A tangent is held if supports leave less than this fraction of its row (the slave's part is 1): where the edge of a
+    // pair is on a plane of symmetry, the weights of master nodes off the plane nearly vanish, and such rows nearly
+    // depend on those of the supports.
     constexpr double held_tangent = 0.05;
 
     double norm(const std::map<unsigned int, double> &v)
@@ -327,7 +326,7 @@ namespace slipstick::interface
         Eigen::Matrix2d gram;
         gram << product(a, a), product(a, b), product(a, b), product(b, b);
         const tfeti::SymmetricEigen principal(gram);
-        if (principal.values[0] <= held_tangent<dim> * held_tangent<dim>)
+        if (principal.values[0] <= held_tangent * held_tangent)
           {
             const auto v = principal.vectors.col(1);
             const auto t = v[0] * tangents[0] + v[1] * tangents[1];
@@ -339,7 +338,7 @@ namespace slipstick::interface
             touch.point.tangents[k][d] = tangents[k][d];
       }
     for (const auto &tangent : tangents)
-      if (const auto row = jump(touch, tangent); norm(free_of(row)) > held_tangent<dim> || is_moved(row))
+      if (const auto row = jump(touch, tangent); norm(free_of(row)) > held_tangent || is_moved(row))
         rows.push_back(row);
     return rows;
   }

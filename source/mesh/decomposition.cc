@@ -29,8 +29,9 @@ namespace slipstick::mesh
     // The same in space: a cube with 10 cells per edge (time of factors and coarse problem).
     constexpr double automatic_cells_per_subdomain_in_space = 1000;
 
-    // A body in the plane that only contact holds in some direction, if longer than twice this many times its thickness, gets that many
-    // more subdomains if their number is `auto`, so that none is longer than this: doc/decisions/0131.
+    // If the number of subdomains is `auto`, bodies of the plane that only contact holds in some direction are cut so
+    // that subdomains are about this many times as long as thick, if they are twice as long themselves:
+    // doc/decisions/0131.
     constexpr double automatic_slenderness = 8;
 
     // Limits for two bodies that probably have different units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus):
@@ -91,7 +92,9 @@ namespace slipstick::mesh
     template <int dim>
     std::vector<bool> held_by_contact(const scene::Scene<dim> &scene)
     {
-      std::vector<std::array<bool, dim>> held(scene.bodies.size(), std::array<bool, dim>{});
+      std::array<bool, dim> by_nature{}; // bodies of revolution do not move away from their axis
+      by_nature[0] = scene.plane_state == scene::PlaneState::axisymmetric;
+      std::vector<std::array<bool, dim>> held(scene.bodies.size(), by_nature);
       std::vector<unsigned int>          n_normals(scene.bodies.size(), 0);
       for (const auto &support : scene.supports)
         {

@@ -20,9 +20,15 @@ namespace
         entry /= norm;
     }
 
-    NewtonResult<Vector> solve(const AdmissibleSet<Vector> &set) const
+    NewtonResult<Vector> solve(const AdmissibleSet<Vector> &set, const NewtonOptions &options = {}) const
     {
-      return semismooth_newton(problem, 1., d, set, NewtonStart<Vector>{Vector(d.size(), 0.)}, Goal(1e-10, 1.));
+      return semismooth_newton(problem,
+                               1.,
+                               d,
+                               set,
+                               NewtonStart<Vector>{Vector(d.size(), 0.)},
+                               Goal(1e-10, 1.),
+                               options);
     }
 
     /// Largest violation of G x = e.
@@ -430,13 +436,7 @@ TEST(SemismoothNewton, whole_steps_solve_problems_where_the_line_search_fails)
       for (unsigned int seed = 0; seed < 100; ++seed)
         {
           const Contact p(seed, 6, {0., coefficient});
-          const auto    found = semismooth_newton(p.problem,
-                                               1.,
-                                               p.d,
-                                               p.set,
-                                               NewtonStart<Vector>{Vector(p.d.size(), 0.)},
-                                               Goal(1e-10, 1.),
-                                               options);
+          const auto    found = p.solve(p.set, options);
           if (found.status != Status::converged)
             continue;
           ++n;

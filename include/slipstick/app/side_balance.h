@@ -11,10 +11,10 @@
 
 namespace slipstick::app
 {
-  /// Adds the master cells to @p refinement whose faces in the contact zone are much longer than those of the slave will be.
-  /// A slave that is finer than its master follows the edges of the master's faces: its nodal pressures alternate, which
-  /// no estimate on that mesh contains (doc/decisions/0129). Only pairs of two bodies whose pressures or tractions are
-  /// among the goals. Collective.
+  /// Adds the master cells to @p refinement whose faces in the contact zone are much longer than those of the slave
+  /// will be. A slave that is finer than its master follows the edges of the master's faces: its nodal pressures
+  /// alternate, which no estimate on that mesh contains (doc/decisions/0129). Only for pairs of two bodies of which
+  /// pressures or tractions are goals. Collective.
   /// @param nodes of all ranks, on rank 0. @return number of cells added.
   template <int dim>
   std::size_t mark_coarse_masters(const scene::Scene<dim>                 &scene,

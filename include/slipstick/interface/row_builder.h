@@ -80,8 +80,8 @@ namespace slipstick::interface
     dealii::Tensor<1, dim> held_displacement(const unsigned int node, const double at) const;
     /// Whether supports move the two sides of a row relative to each other now, or did in an earlier load step.
     bool is_moved(const Vector &row) const;
-    /// Rows along the tangents that are not held by supports, bonds or @p left, the free part of the normal row, or that
-    /// supports move: such nodes slide.
+    /// Rows along the tangents that supports, bonds and @p left, the free part of the normal row, do not hold, or along
+    /// which supports move the node: it slides.
     std::vector<Vector> free_tangents(ContactCandidate<dim> &touch, const Vector &left) const;
     /// Whether supports hold the point open although its law acts only on closed contact.
     bool is_held_open(const tfeti::HeldContacts::Point &point) const;
