@@ -14,7 +14,7 @@ namespace slipstick::app
 
     // Contributions of cells partly cancel. If they cancel almost completely, the size of the sum is accidental;
     // therefore the error bar is at least this fraction of the sum of their magnitudes (measured: doc/error_bars.md).
-    constexpr double least_part = 0.1;
+    constexpr double least_part = 0.05;
     // The value of a goal agrees with the printed one if they differ by less than this fraction of the largest quantity
     // with the same unit.
     constexpr double same = 1e-5;

@@ -12,9 +12,6 @@ namespace slipstick::app
     // Smaller components of directions are rounding errors.
     constexpr double along_axis = 1e-9;
 
-    // A pair slides as a whole if sticking nodes carry no more than this fraction of its friction.
-    constexpr double sticking_part = 0.1;
-
     // Point forces below this fraction of the largest force are neglected: most point supports only hold rigid motions.
     constexpr double negligible_reaction = 1e-3;
 
@@ -203,12 +200,6 @@ namespace slipstick::app
           goal.jumps[row] = dim == 2 ? 1. : size > 0 ? x.local_element(row) / size : 0.;
     });
     goal.value = value_of(goal.jumps);
-    if (slides(pair)) // as a whole: friction follows the pressure
-      for_points_of(pair, [&](const tfeti::ContactPoint &point) {
-        if (point.normal_row != tfeti::invalid_row && point.tangential_row != tfeti::invalid_row &&
-            !solver.solution().free[point.tangential_row] && x.local_element(point.normal_row) > 0)
-          goal.jumps[point.normal_row] = tangential(point) / x.local_element(point.normal_row);
-      });
     return goal;
   }
 
@@ -219,22 +210,6 @@ namespace slipstick::app
     if (dim == 2)
       return along;
     return std::hypot(along, point.second_row != tfeti::invalid_row ? x.local_element(point.second_row) : 0.);
-  }
-
-  template <int dim>
-  bool Functionals<dim>::slides(const unsigned int pair) const
-  {
-    if (!solver.discrete_scene().contacts[pair].law.coefficient)
-      return false;
-    double sticks = 0, all = 0;
-    for_points_of(pair, [&](const tfeti::ContactPoint &point) {
-      if (point.tangential_row == tfeti::invalid_row)
-        return;
-      const double force = std::abs(tangential(point));
-      all += force;
-      sticks += solver.solution().free[point.tangential_row] ? force : 0.;
-    });
-    return dealii::Utilities::MPI::sum(sticks, comm) <= sticking_part * dealii::Utilities::MPI::sum(all, comm);
   }
 
   template <int dim>
@@ -288,14 +263,6 @@ namespace slipstick::app
           square.jumps[row] = x.local_element(row) / point.traction_area;
     });
     square.value = value_of(square.jumps);
-    if (slides(pair)) // as for the force
-      for_points_of(pair, [&](const tfeti::ContactPoint &point) {
-        if (point.normal_row != tfeti::invalid_row && point.tangential_row != tfeti::invalid_row &&
-            point.traction_area > 0 && !solver.solution().free[point.tangential_row] &&
-            x.local_element(point.normal_row) > 0)
-          square.jumps[point.normal_row] =
-            tangential(point) * tangential(point) / (point.traction_area * x.local_element(point.normal_row));
-      });
     return as_norm(std::move(square));
   }
 

@@ -163,7 +163,8 @@ namespace slipstick::app
       products.add_up(goal);
     }
 
-    /// With w, the displacement due to the gaps of the bodies without loads: |e|^2 / 2 - a(e, w).
+    /// With w, the displacement due to the gaps and slips of the bodies without loads: |e|^2 / 2 - a(e, w).
+    /// @param gaps right-hand sides of the rows; on rows tied to others, their jumps in the solution.
     template <int dim>
     GoalError energy_error(const StepSolver<dim>                            &solver,
                            const StepSolution                               &answer,
@@ -227,16 +228,21 @@ namespace slipstick::app
     const auto wanted = [&](const std::string &name) {
       return quantities.empty() || std::find(quantities.begin(), quantities.end(), name) != quantities.end();
     };
-    const auto             gaps = solver.dual().constraints().c; // overwritten by the adjoint problems
+    auto                   gaps = solver.dual().constraints().c; // overwritten by the adjoint problems
     const Functionals<dim> of_scene(solver, probes, answer, t);
     auto                   functionals = of_scene.all();
     for (auto &functional : stress_functionals(solver, probes, answer, of_scene.point_forces(), peaks, t, quantities))
       functionals.push_back(std::move(functional));
     const ErrorProducts<dim> products(solver, answer, t);
     const GapErrors<dim>     gap_errors(solver, t);
-    contact::Adjoint         adjoint(solver.dual_for_adjoints(), solver.solution().free, solver.solution().directions);
-    const std::string        loose = "bodies slide on all of their contacts";
-    std::vector<GoalError>   errors;
+    const auto               ties =
+      contact::following_friction(contact::SlipLaw(solver.discrete_scene(), solver.dual(), t), solver.solution());
+    const auto jumps = solver.dual().dual_operator().jumps(answer.recovery.u);
+    for (const auto &tie : ties)
+      gaps[tie.tied] = jumps.local_element(tie.tied);
+    contact::Adjoint  adjoint(solver.dual_for_adjoints(), solver.solution().free, ties, solver.solution().directions);
+    const std::string loose = "bodies slide on all of their contacts";
+    std::vector<GoalError> errors;
     for (const auto &functional : functionals)
       if (wanted(functional.quantity))
         {

@@ -3,6 +3,7 @@ effectivities, bar over true error, against closed forms where they are known, e
 a finer mesh; and Accuracy = 3 % against closed forms."""
 
 import math
+import pathlib
 import sys
 import unittest
 
@@ -120,6 +121,18 @@ class ErrorBars(unittest.TestCase):
         known = reference('lap_joint', 1)
         self.check('lap_joint', 1, 0, known, (0.5, 2), ('max_displacement', 'strain_energy', 'head left.normal_force',
                                                       'joint left.normal_force', 'nut right.normal_force'))
+
+    def test_friction_of_a_sliding_body(self):
+        """Friction follows the pressure in the adjoint problem, for the forces of supports and of probes as for the pair's own."""
+        scene = pathlib.Path(__file__).parent / 'sliding_over_ball.prm'
+        fine, coarse = (converged(scene, {**settings(*mesh), 'Error bars': 'true'}).summary for mesh in ((2, 1), (1, 0)))
+        known = {bar['quantity']: bar['value'] for bar in fine['error_bars']}
+        bars = {bar['quantity']: bar for bar in coarse['error_bars']}
+        for quantity in ('c.normal_force', 'c.tangential_force', 'top.force_x', 'top.force_y', 'top.force_z', 'strain_energy'):
+            effectivity = bars[quantity]['error'] / abs(known[quantity] - bars[quantity]['value'])
+            print(bars[quantity], known[quantity], effectivity, flush=True)
+            self.assertGreater(effectivity, 0.5, quantity)
+            self.assertLess(effectivity, 2, quantity)
 
     def test_probe(self):
         # on the outside of the ring, Lame: p 2 b^2 c / (E (c^2 - b^2))

@@ -72,10 +72,6 @@ namespace slipstick::app
     /// Magnitude of the tangential force on a node in space [N].
     double tangential(const tfeti::ContactPoint &point) const;
 
-    /// Whether slipping nodes whose bound follows the pressure carry nearly all of the pair's friction. Otherwise
-    /// equilibrium with the forces of the other nodes determines the friction more than the pressure does.
-    bool slides(const unsigned int pair) const;
-
     Functional pressure(const std::string &name, const unsigned int pair) const;
 
     /// L2 norms of the pressure and of the tangential traction over the contact; in the plane and for bodies of

@@ -29,10 +29,9 @@ namespace slipstick::app
   /// Dual weighted residuals (Becker, Rannacher, Acta Numerica 2001): the error of a quantity is the energy product of
   /// the errors of the solution and of the adjoint displacement, which solves a linear problem on the active set of the
   /// solution (contact::Adjoint); the effect of the gaps between the nodes is added (interface::gap_defects). Both
-  /// errors in energy products are those of recovered stresses, as in the estimate of the energy norm. Friction bounds
-  /// are fixed in the adjoint problem; only for the tangential force of a pair that slides as a whole do they follow
-  /// the pressure. In space the friction forces of slipping nodes also keep their directions, and the tangential force
-  /// is the sum of their magnitudes.
+  /// errors in energy products are those of recovered stresses, as in the estimate of the energy norm. Friction at
+  /// slipping nodes follows the normal force; in space it keeps its direction, and the tangential force is the sum of
+  /// the magnitudes at the nodes.
   /// @param peaks peaks of the contact pressure, where stresses are not resolved.
   /// @param quantities quantities whose errors are requested; empty: all.
   /// Changes the dual problem of @p solver, which is set to the last load step. Collective.
