@@ -1,4 +1,5 @@
 #include <slipstick/app/contact_profile.h>
+#include <slipstick/base/text.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -36,6 +37,13 @@ namespace slipstick::app
     // if the directions to its `n_around` nearest nodes leave a larger angle than `angle_at_edge` free.
     constexpr unsigned int n_beside = 4, n_around = 8;
     constexpr double       angle_at_edge = 150 * M_PI / 180;
+
+    // A pair is not resolved if its unresolved zones carry more than this fraction of its normal force; corners that
+    // touch, for instance at one end of a wide contact, carry less.
+    constexpr double most_unresolved = 0.5;
+
+    // A zone with at least this fraction of its nodes at the edge of the surface is one of a corner or edge.
+    constexpr double part_at_edge = 1. / 3;
 
     /// Resolution error of a largest pressure; nothing if it cannot be resolved.
     /// @param drops differences to the adjacent nodes.
@@ -123,6 +131,26 @@ namespace slipstick::app
     return result;
   }
 
+  std::vector<ContactZone> ContactLine::unresolved_zones() const
+  {
+    std::vector<ContactZone> zones;
+    for (std::size_t i = 0, end = 0; i < line.size(); i = end)
+      {
+        for (end = i; end < line.size() && line[end].is_closed == line[i].is_closed;)
+          ++end;
+        if (!line[i].is_closed || end - i > 2 || i == 0 || end == line.size())
+          continue;
+        zones.push_back(
+          {line[i].position,
+           static_cast<unsigned int>(end - i),
+           0,
+           std::min(line[i].arc_length - line[i - 1].arc_length, line[i + 1].arc_length - line[i].arc_length)});
+        for (std::size_t k = i; k < end; ++k)
+          zones.back().force += line[k].pressure * line[k].area;
+      }
+    return zones;
+  }
+
   ContactSurface::ContactSurface(std::vector<ContactNode> nodes_)
     : nodes(std::move(nodes_))
     , tree(boxes_of(nodes))
@@ -157,6 +185,56 @@ namespace slipstick::app
             result.push_back(node);
         }
     return result;
+  }
+
+  std::vector<ContactZone> ContactSurface::unresolved_zones() const
+  {
+    std::vector<std::vector<unsigned int>> around(nodes.size()); // closed nodes next to closed ones, in both directions
+    std::vector<bool>                      is_inside(nodes.size(), true);
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      {
+        if (!nodes[i].is_closed)
+          continue;
+        for (const unsigned int k : beside(nodes[i]))
+          {
+            if (!nodes[k].is_closed)
+              {
+                is_inside[i] = false;
+                continue;
+              }
+            around[i].push_back(k);
+            around[k].push_back(i);
+          }
+      }
+    std::vector<ContactZone> zones;
+    std::vector<bool>        is_seen(nodes.size(), false);
+    for (unsigned int first = 0; first < nodes.size(); ++first)
+      {
+        if (is_seen[first] || !nodes[first].is_closed)
+          continue;
+        std::vector<unsigned int> zone{first};
+        is_seen[first] = true;
+        for (std::size_t i = 0; i < zone.size(); ++i)
+          for (const unsigned int k : around[zone[i]])
+            if (!is_seen[k])
+              {
+                is_seen[k] = true;
+                zone.push_back(k);
+              }
+        if (std::any_of(zone.begin(), zone.end(), [&](const unsigned int i) { return is_inside[i]; }))
+          continue;
+        const auto at_edge =
+          std::count_if(zone.begin(), zone.end(), [&](const unsigned int i) { return is_at_edge(nodes[i]); });
+        if (at_edge >= part_at_edge * zone.size())
+          continue;
+        zones.push_back({nodes[first].position, static_cast<unsigned int>(zone.size())});
+        const auto next = nearest(nodes[first], 1);
+        if (!next.empty())
+          zones.back().distance = place(nodes[first]).distance(place(nodes[next[0]]));
+        for (const unsigned int i : zone)
+          zones.back().force += nodes[i].pressure * nodes[i].area;
+      }
+    return zones;
   }
 
   std::vector<unsigned int> ContactSurface::nearest(const ContactNode &node, const unsigned int n) const
@@ -196,6 +274,52 @@ namespace slipstick::app
       widest = std::max(widest, angles[k] - angles[k - 1]);
     return widest > angle_at_edge;
   }
+
+  template <int dim>
+  std::string unresolved_contacts(const std::vector<ContactNode>             &nodes,
+                                  const std::vector<scene::ContactPair<dim>> &pairs,
+                                  const MPI_Comm                              comm)
+  {
+    std::string names, first;
+    for (unsigned int k = 0; k < pairs.size(); ++k)
+      {
+        if (pairs[k].law.is_bonded)
+          continue;
+        const auto of_pair = nodes_of_pair(nodes, k);
+        const auto zones   = ContactProfile<dim>(of_pair).unresolved_zones();
+        double     force = 0, unresolved = 0;
+        for (const auto &node : of_pair)
+          force += node.pressure * node.area;
+        for (const auto &zone : zones)
+          unresolved += zone.force;
+        if (!(unresolved > most_unresolved * force))
+          continue;
+        names += (names.empty() ? "" : ", ") + pairs[k].name;
+        if (first.empty())
+          first = format("%s: %u node%s at %s, where nodes are %.4g mm apart",
+                         pairs[k].name.c_str(),
+                         zones[0].n_nodes,
+                         zones[0].n_nodes == 1 ? "" : "s",
+                         point_text(zones[0].position, dim).c_str(),
+                         zones[0].distance);
+      }
+    const std::string text =
+      names.empty()
+        ? ""
+        : format("Contact %s: most of the normal force acts on nodes next to open ones (%s), so that the mesh does "
+                 "not resolve the contact: pressures depend on the mesh, and so do forces that equilibrium does "
+                 "not determine; refine the mesh there (Refine towards) or set Mesh = adaptive",
+                 names.c_str(),
+                 first.c_str());
+    return dealii::Utilities::MPI::broadcast(comm, text);
+  }
+
+  template std::string unresolved_contacts(const std::vector<ContactNode> &,
+                                           const std::vector<scene::ContactPair<2>> &,
+                                           const MPI_Comm);
+  template std::string unresolved_contacts(const std::vector<ContactNode> &,
+                                           const std::vector<scene::ContactPair<3>> &,
+                                           const MPI_Comm);
 
   template <int dim>
   std::vector<mechanics::Surroundings<dim>> pressure_peaks(const std::vector<ContactNode>             &nodes,

@@ -316,6 +316,9 @@ namespace slipstick::app
         std::vector<mechanics::NodeKey> nodes;
         contact_steps.push_back(gather_contact(solver, contact, total_slip, nodes));
         contact_steps.back().step = step;
+        if (step + 1 == scene.load_factors.size())
+          if (const auto text = unresolved_contacts(contact_steps.back().nodes, scene.contacts, comm); !text.empty())
+            warn({{"resolution", text}});
         output::write_contact_vtp(
           directory,
           contact_steps.back(),

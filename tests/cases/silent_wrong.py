@@ -2,6 +2,7 @@
 wrong. And what loads, supports and contact pairs come to."""
 
 import math
+import pathlib
 import re
 import unittest
 
@@ -394,6 +395,39 @@ class Resultants(Case):
             largest = max(abs(f) for entry in step['loads'] for f in entry['force'])
             for d in (0, 1):
                 self.assertAlmostEqual(total[d] / largest, 0, delta=1e-8)
+
+
+class Resolution(unittest.TestCase):
+    """Contacts much smaller than the edges: pressures, and forces that supports determine, are those of the mesh."""
+
+    def warnings(self, *arguments, **kinds):
+        found = converged(*arguments, **kinds).summary
+        return [text for text in found['warnings'] if 'does not resolve the contact' in text], found
+
+    def test_ball_on_one_node(self):
+        scene = pathlib.Path(__file__).parent / 'half_ball.prm'
+        for ranks in (1, 2):
+            texts, _ = self.warnings(scene, {'Output/VTU': 'false'}, ranks=ranks)
+            self.assertRegex(only(texts), r'Contact c: .* \(c: 1 node at \(0, 0, 0\), where nodes are 1\.96 mm apart\)')
+
+    def test_disc(self):
+        def disc(edges, push):
+            held = {'Displacement x': '0', 'Displacement y': '0'}
+            return bar(bodies={'bar': {'Shape': 'half disc', 'Center': '0, 10', 'Radius': '10', 'Cells along arc': edges, 'Material': 'elastic'}},
+                       supports={'push': {'Boundary': 'bar/flat', **held, 'Displacement y': push}},
+                       contacts={'touch': {**TOUCH, 'Slave': 'bar/arc'}})
+        self.assertIn('1 node ', only(self.warnings(disc(32, '-0.001'))[0]))
+        texts, found = self.warnings(disc(32, '-0.2'))
+        self.assertEqual(texts, [])
+        self.assertGreaterEqual(only(found['results']['contact'])['contact_nodes'], 3)
+
+    def test_corners_are_named_elsewhere(self):
+        """A bar that stands on its corner alone: the contact is as small as it is, on any mesh."""
+        held = {'Displacement x': '0', 'Displacement y': '0'}
+        texts, found = self.warnings(bar(bodies={'bar': {**BAR, 'Origin': '0, 0.4', 'Rotation': '-2'}}, supports={
+            'top': {'Boundary': 'bar/top', **held, 'Displacement y': '-0.1'}}))
+        self.assertIn(only(found['results']['contact'])['contact_nodes'], (1, 2))
+        self.assertEqual(texts, [])
 
 
 if __name__ == '__main__':

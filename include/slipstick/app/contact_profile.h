@@ -5,8 +5,10 @@
 #include <slipstick/contact/result.h>
 #include <slipstick/mechanics/singular_points.h>
 
+#include <array>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -16,6 +18,15 @@ namespace slipstick::app
   /// The nodes of pair @p pair.
   std::vector<contact::ContactNode> nodes_of_pair(const std::vector<contact::ContactNode> &nodes,
                                                   const unsigned int                       pair);
+
+  /// A zone of connected contact nodes.
+  struct ContactZone
+  {
+    std::array<double, 3> position{{0, 0, 0}}; // of one of its nodes
+    unsigned int          n_nodes  = 0;
+    double                force    = 0;  // normal force [N]
+    double                distance = 0.; // to the nearest node next to that node [mm]
+  };
 
   /// Contact nodes along a line of the plane.
   class ContactLine
@@ -63,6 +74,10 @@ namespace slipstick::app
     /// Nodes with an unresolved local maximum of the pressure, except maxima far below the largest pressure of the
     /// pair.
     std::vector<contact::ContactNode> unresolved_peaks() const;
+
+    /// Zones in which every node is next to an open one. Zones with a node at an end of the line, i.e. of a corner that
+    /// touches, are left out.
+    std::vector<ContactZone> unresolved_zones() const;
 
   private:
     /// As resolution(), for the pressure of node @p i.
@@ -122,6 +137,9 @@ namespace slipstick::app
     /// since the pressure may be large all along the edge.
     std::vector<contact::ContactNode> unresolved_peaks() const;
 
+    /// As of ContactLine; zones of which a third of the nodes or more are at the edge of the surface are left out.
+    std::vector<ContactZone> unresolved_zones() const;
+
   private:
     std::optional<double> resolution_at(const contact::ContactNode &node) const;
 
@@ -138,6 +156,13 @@ namespace slipstick::app
 
   template <int dim>
   using ContactProfile = std::conditional_t<dim == 2, ContactLine, ContactSurface>;
+
+  /// A warning about pairs whose contact the mesh does not resolve: most of the normal force acts on nodes next to open
+  /// ones. Empty: none. Only the nodes of rank 0 are used; the result is the same on all ranks. Collective.
+  template <int dim>
+  std::string unresolved_contacts(const std::vector<contact::ContactNode>    &nodes,
+                                  const std::vector<scene::ContactPair<dim>> &pairs,
+                                  const MPI_Comm                              comm);
 
   /// Pressure peaks of every pair that its nodes do not resolve, on both bodies, with a radius of a tenth of the size
   /// of the contact: stresses there grow with every refinement, or require a finer mesh. Only the nodes of rank 0 are
