@@ -22,6 +22,9 @@ namespace slipstick::app
     // A nodal pressure is a mean weighted with the shape function of the node, and the maximum may lie between two
     // nodes: the total error is at most this fraction of the second difference of the pressures.
     constexpr double of_second_difference = 1. / 8;
+    // Where edges near a node differ by more than this factor, nodal pressures alternate: if the node is too high
+    // by d and its neighbours too low by d / 2, d is this fraction of the second difference.
+    constexpr double changing_size = 1.5, of_alternation = 1. / 3;
     // A peak is unresolved if its pressure exceeds an adjacent one by more than the first fraction of it, at the end of
     // a boundary by more than the second.
     constexpr double peak = 0.25, peak_at_end = 0.05;
@@ -47,7 +50,10 @@ namespace slipstick::app
 
     /// Resolution error of a largest pressure; nothing if it cannot be resolved.
     /// @param drops differences to the adjacent nodes.
-    std::optional<double> resolution(const double pressure, const std::vector<double> &drops, const bool is_at_end)
+    std::optional<double> resolution(const double               pressure,
+                                     const std::vector<double> &drops,
+                                     const bool                 is_at_end,
+                                     const double               part = of_second_difference)
     {
       double sum = 0;
       for (const double drop : drops)
@@ -56,7 +62,7 @@ namespace slipstick::app
             return {};
           sum += drop;
         }
-      return of_second_difference * sum;
+      return part * sum;
     }
 
     auto with_largest_pressure(const std::vector<ContactNode> &nodes)
@@ -117,7 +123,19 @@ namespace slipstick::app
       drops.push_back(line[i].pressure - line[i - 1].pressure);
     if (i + 1 < line.size())
       drops.push_back(line[i].pressure - line[i + 1].pressure);
-    return app::resolution(line[i].pressure, drops, drops.size() < 2);
+    const bool is_at_end = drops.size() < 2;
+    double     longest = 0, shortest = std::numeric_limits<double>::infinity(); // two edges on each side
+    for (std::size_t k = i > 1 ? i - 2 : 0; k < i + 2 && k + 1 < line.size(); ++k)
+      {
+        longest  = std::max(longest, line[k + 1].arc_length - line[k].arc_length);
+        shortest = std::min(shortest, line[k + 1].arc_length - line[k].arc_length);
+      }
+    if (is_at_end && !drops.empty()) // of a plane of symmetry
+      drops.push_back(drops[0]);
+    return app::resolution(line[i].pressure,
+                           drops,
+                           is_at_end,
+                           longest > changing_size * shortest ? of_alternation : of_second_difference);
   }
 
   std::vector<ContactNode> ContactLine::unresolved_peaks() const

@@ -14,7 +14,32 @@ namespace slipstick::app
   {
     // A finer mesh may resolve a quantity without an estimate (a pressure at a single node).
     constexpr unsigned int most_without_estimate = 3; // consecutive meshes
-  }                                                   // namespace
+    // ... unless its value grows by less than this factor from mesh to mesh: a pressure at a corner grows without limit.
+    constexpr double settling = 1.1;
+    // Cells with large errors in the energy norm are divided, too, if two meshes have not reduced the error of the goals
+    // to this fraction.
+    constexpr double stagnation = 0.7;
+    // A quantity is zero if its value and its error are below this fraction of the largest one with the same unit.
+    constexpr double nothing = 1e-5;
+
+    /// Largest magnitude of the results with this unit; 0: none is known.
+    double largest_of_unit(const std::string &unit, const output::ResultSummary &results)
+    {
+      double     largest = 0;
+      const auto take    = [&](const double value) { largest = std::max(largest, std::abs(value)); };
+      if (unit == "mm")
+        take(results.max_displacement);
+      if (unit == "MPa")
+        take(results.max_von_mises);
+      for (const auto &pair : results.contact)
+        take(unit == "N" ? pair.normal_force : unit == "MPa" ? pair.max_pressure : 0.);
+      if (unit == "N")
+        for (const auto &support : results.forces.supports)
+          for (const double force : support.sum.force)
+            take(force);
+      return largest;
+    }
+  } // namespace
 
   template <int dim>
   RefiningRun<dim>::RefiningRun(const scene::Scene<dim>        &scene_,
@@ -105,10 +130,10 @@ namespace slipstick::app
     row.cells        = summary.problem.cells;
     row.unknowns     = summary.problem.primal_dofs;
     row.energy_error = summary.error.estimate_energy_relative;
-    find_counted(summary.error_bars);
-    const auto worst  = options.goals.empty() ? std::optional<double>(std::sqrt(errors_of(steps).total))
-                        : counted.empty()     ? std::optional<double>()
-                                              : worst_error(summary.error_bars, counted);
+    find_counted(summary.error_bars, summary.results);
+    const auto worst  = options.goals.empty()       ? std::optional<double>(std::sqrt(errors_of(steps).total))
+                        : !without_estimate.empty() ? std::optional<double>()
+                                                    : worst_error(summary.error_bars, counted);
     is_known          = dealii::Utilities::MPI::broadcast(comm, worst.has_value());
     const auto change = options.goals.empty() ? 0. : change_of_counted(summary.error_bars);
     is_confirmed      = dealii::Utilities::MPI::broadcast(comm, change.has_value());
@@ -135,25 +160,39 @@ namespace slipstick::app
   }
 
   template <int dim>
-  void RefiningRun<dim>::find_counted(const std::vector<output::ErrorBar> &bars)
+  void RefiningRun<dim>::find_counted(const std::vector<output::ErrorBar> &bars, const output::ResultSummary &results)
   {
     counted = options.goals;
     unknown.clear();
+    const auto is_zero = [&](const output::ErrorBar &bar) {
+      return std::abs(bar.value) + bar.error.value_or(0.) <= nothing * largest_of_unit(bar.unit, results);
+    };
     if (options.skips_unknown)
       for (const auto &bar : bars)
         if (const auto goal = std::find(counted.begin(), counted.end(), bar.quantity); goal != counted.end())
           {
-            if (!bar.error || bar.value == 0)
+            if (!bar.error || is_zero(bar))
               counted.erase(goal);
             if (!bar.error)
               unknown.push_back("the accuracy leaves out " + bar.quantity + ": " + bar.reason);
           }
     counted          = dealii::Utilities::MPI::broadcast(comm, counted);
     without_estimate = counted.empty() ? "none of the figures has an estimate" : "";
+    may_settle       = true;
     for (const auto &bar : bars)
-      if (without_estimate.empty() && std::find(counted.begin(), counted.end(), bar.quantity) != counted.end() &&
-          (!bar.error || bar.value == 0))
+      {
+        if (std::find(counted.begin(), counted.end(), bar.quantity) == counted.end() || (bar.error && !is_zero(bar)))
+          continue;
+        const auto before = values.find(bar.quantity);
+        may_settle        = may_settle && !bar.error && before != values.end() &&
+                     std::abs(bar.value) <= settling * std::abs(before->second);
+        if (!without_estimate.empty())
+          continue;
         without_estimate = bar.quantity + (bar.error ? " is 0" : " has no estimate: " + bar.reason);
+        if (bar.error && bar.value != 0)
+          without_estimate += format(" compared with %.4g %s", largest_of_unit(bar.unit, results), bar.unit.c_str());
+      }
+    may_settle       = dealii::Utilities::MPI::broadcast(comm, may_settle);
     without_estimate = dealii::Utilities::MPI::broadcast(comm, without_estimate);
   }
 
@@ -187,7 +226,7 @@ namespace slipstick::app
     const auto goals = goals_of(steps);
     const bool is_resolvable =
       std::any_of(goals.begin(), goals.end(), [](const GoalError &goal) { return goal.is_resolvable; });
-    n_without = is_known || is_resolvable ? 0 : n_without + 1;
+    n_without = is_known || is_resolvable || may_settle ? 0 : n_without + 1;
     if (n_without == most_without_estimate)
       return so_far;
     const std::string limit = mark_next(steps, summary);
@@ -212,10 +251,13 @@ namespace slipstick::app
     auto         cells =
       options.goals.empty() || !is_known ? errors_of(steps) : errors_of_goals(goals_of(steps), aimed_at, comm);
     auto n_marked = mark(steps.mesh(), cells, refinement);
-    if (n_marked == 0 && !options.goals.empty()) // only the resolution of a pressure is missing
+    // Only the resolution of a pressure is missing, or peaks move along the contact with the cells that are divided.
+    const std::size_t n         = rows.size();
+    const bool        stagnates = is_known && n > 2 && rows[n - 1].error > stagnation * rows[n - 3].error;
+    if ((n_marked == 0 || stagnates) && !options.goals.empty())
       {
-        cells    = errors_of(steps);
-        n_marked = mark(steps.mesh(), cells, refinement);
+        cells = errors_of(steps);
+        n_marked += mark(steps.mesh(), cells, refinement);
       }
     n_marked += steps.mark_coarse_masters(options.goals, refinement);
     // nine quadrilaterals or eight tetrahedra per cell, plus transition cells around them

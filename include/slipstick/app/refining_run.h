@@ -35,7 +35,7 @@ namespace slipstick::app
     void add(const Run<dim> &steps, const output::Summary &summary);
 
     /// Finds the goals with estimates, and the reasons why others have none. Collective; bars are those of rank 0.
-    void find_counted(const std::vector<output::ErrorBar> &bars);
+    void find_counted(const std::vector<output::ErrorBar> &bars, const output::ResultSummary &results);
 
     std::vector<GoalError> goals_of(const Run<dim> &steps) const;
 
@@ -65,11 +65,12 @@ namespace slipstick::app
     std::vector<output::MeshRow>    rows;
     std::vector<LeftOut<dim>>       left_out;
     std::vector<std::string>        notes;
-    std::vector<std::string>        counted;          // goals with an estimate ...
-    std::vector<std::string>        unknown;          // ... and on rank 0 why the others have none
-    std::string                     without_estimate; // a counted goal and the reason; empty: none
-    unsigned int                    n_without = 0;    // consecutive meshes
-    std::map<std::string, double>   values;           // on rank 0, on the previous mesh
+    std::vector<std::string>        counted;            // goals with an estimate ...
+    std::vector<std::string>        unknown;            // ... and on rank 0 why the others have none
+    std::string                     without_estimate;   // a counted goal and the reason; empty: none
+    bool                            may_settle = false; // values without an estimate grow little or not at all
+    unsigned int                    n_without  = 0;     // consecutive meshes
+    std::map<std::string, double>   values;             // on rank 0, on the previous mesh
     double                          bar_over_error = 1;
     bool                            is_known       = false; // the error
     bool                            is_accurate    = false; // that error ...
