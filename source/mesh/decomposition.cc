@@ -30,9 +30,9 @@ namespace slipstick::mesh
     constexpr double automatic_cells_per_subdomain_in_space = 1000;
 
     // If the number of subdomains is `auto`, bodies of the plane that only contact holds in some direction are cut so
-    // that subdomains are about this many times as long as thick, if they are twice as long themselves:
-    // doc/decisions/0131.
-    constexpr double automatic_slenderness = 8;
+    // that subdomains are about this many times as long as thick, if their own slenderness is above the second number:
+    // doc/decisions/0133.
+    constexpr double automatic_slenderness = 3, least_slenderness = 16;
 
     // Limits for two bodies that probably have different units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus):
     // ratio of the larger to the smaller size or modulus. Parts of one assembly differ less in size; steel and rubber
@@ -327,7 +327,7 @@ namespace slipstick::mesh
           const auto loose = held_by_contact(scene);
           for (unsigned int k = 0; k < wholes.size(); ++k)
             if (const double slender = slenderness(wholes[k]);
-                loose[wholes[k].body] && slender > 2 * automatic_slenderness)
+                loose[wholes[k].body] && slender > least_slenderness)
               shares[k] =
                 std::max<double>(shares[k], std::min<double>(std::ceil(slender / automatic_slenderness), n_cells[k]));
         }
