@@ -326,8 +326,7 @@ namespace slipstick::mesh
         {
           const auto loose = held_by_contact(scene);
           for (unsigned int k = 0; k < wholes.size(); ++k)
-            if (const double slender = slenderness(wholes[k]);
-                loose[wholes[k].body] && slender > least_slenderness)
+            if (const double slender = slenderness(wholes[k]); loose[wholes[k].body] && slender > least_slenderness)
               shares[k] =
                 std::max<double>(shares[k], std::min<double>(std::ceil(slender / automatic_slenderness), n_cells[k]));
         }
