@@ -219,11 +219,30 @@ namespace slipstick::app
                                                checked(solve_step(step, multiplications_before, false), t));
     if (problem.bolts())
       answer = tighten_bolts(step, multiplications_before, std::move(answer));
-    if (step + 1 < discrete_scene().load_factors.size())
-      u = answer->recovery.u;
     history.add(answer->contact->checks);
     the_solution.multipliers = answer->recovery.multipliers;
+    if (step + 1 < discrete_scene().load_factors.size())
+      keep_for_next_step(answer->recovery, t);
     return answer;
+  }
+
+  template <int dim>
+  void StepSolver<dim>::keep_for_next_step(const tfeti::Recovery &recovery, const double t)
+  {
+    const auto &contacts = discrete_scene().contacts;
+    const bool  slips    = std::any_of(contacts.begin(), contacts.end(), [](const scene::ContactPair<dim> &pair) {
+      return pair.law.has_tangential_row();
+    });
+    auto        exact    = recovery;
+    if (slips && the_solution.status == qp::Status::converged && the_solution.directions)
+      the_solution.counts += contact::close_gaps(problem.dual(),
+                                                 contact::SlipLaw(discrete_scene(), dual(), t),
+                                                 the_solution.free,
+                                                 options.pcpg,
+                                                 exact,
+                                                 the_solution.directions.get());
+    u                        = std::move(exact.u);
+    the_solution.multipliers = std::move(exact.multipliers);
   }
 
   template <int dim>

@@ -15,6 +15,8 @@ namespace slipstick::contact
     constexpr unsigned int multiplications_per_check = 2;
     // Tolerance for closing the gaps, relative to the gaps; rounding of F prevents less in slender subdomains.
     constexpr double closing_tolerance = 1e-4;
+    // The same before the next load step.
+    constexpr double tolerance_of_history = 1e-2;
 
     using Vector = tfeti::DistributedVector;
 
@@ -76,6 +78,42 @@ namespace slipstick::contact
       auto result = solver.solve_unsymmetric(closing_tolerance * size);
       return {std::move(result.x), result.counts};
     }
+
+    /// With directions of earlier solves that change no held row and satisfy the ties.
+    Closing with_store(const tfeti::Face          &face,
+                       const Vector               &b,
+                       const double                size,
+                       const std::vector<bool>    &free,
+                       const SlippingRows         &slipping,
+                       const bool                  has_ties,
+                       qp::DirectionStore<Vector> &store)
+    {
+      std::vector<bool> is_held(free);
+      is_held.flip();
+      for (const auto &tie : slipping.ties)
+        is_held[tie.tied] = false;
+      for (const auto &turn : slipping.turns) // across the force nothing changes
+        is_held[turn.second] = false;
+      const auto conditions = [&](const Vector &p) {
+        std::vector<double> moved;
+        for (std::size_t r = 0; r < is_held.size(); ++r)
+          if (is_held[r])
+            moved.push_back(p.local_element(r));
+        Vector turned(p);
+        qp::turn(slipping.turns, turned);
+        for (const auto &tie : slipping.ties)
+          moved.push_back(turned.local_element(tie.tied) - tie.factor * p.local_element(tie.to));
+        for (const auto &turn : slipping.turns)
+          moved.push_back(turned.local_element(turn.second));
+        return moved;
+      };
+      const qp::FaceSolverOptions         options;
+      qp::FaceSolver<Vector, tfeti::Face> solver(face, b, store, conditions, options, slipping.turns);
+      solver.start(qp::zero_like(b), qp::zero_like(b));
+      auto result = has_ties ? solver.solve_unsymmetric(tolerance_of_history * size)
+                             : solver.solve_symmetric(tolerance_of_history * size);
+      return {std::move(result.x), result.counts};
+    }
   } // namespace
 
   DualSolution solve_refined(tfeti::DualProblem           &dual,
@@ -132,11 +170,12 @@ namespace slipstick::contact
       }
   }
 
-  qp::Counts close_gaps(const tfeti::DualProblem &dual,
-                        const SlipLaw            &law,
-                        const std::vector<bool>  &free,
-                        const qp::PcpgOptions    &options,
-                        tfeti::Recovery          &recovery)
+  qp::Counts close_gaps(const tfeti::DualProblem   &dual,
+                        const SlipLaw              &law,
+                        const std::vector<bool>    &free,
+                        const qp::PcpgOptions      &options,
+                        tfeti::Recovery            &recovery,
+                        qp::DirectionStore<Vector> *store)
   {
     Vector             x        = recovery.multipliers;
     const SlippingRows slipping = slipping_rows(law, free, x);
@@ -153,7 +192,9 @@ namespace slipstick::contact
     auto b = tfeti::misfit(dual, recovery, free);
     b /= -dual.norm(); // F step = B u - c
     const double  size    = tfeti::residual_norm(dual, b);
-    const Closing closing = has_ties ? with_ties(face, b, size, slipping.turns) : without_ties(face, b, size, options);
+    const Closing closing = store      ? with_store(face, b, size, free, slipping, has_ties, *store)
+                            : has_ties ? with_ties(face, b, size, slipping.turns)
+                                       : without_ties(face, b, size, options);
     tfeti::correct(dual, recovery, closing.step, free);
     return closing.counts;
   }

@@ -16,6 +16,8 @@ namespace slipstick::test
     constexpr double disturbance = 0.03;
     // Admissible remainder of gaps and errors; gaps are closed to 1e-4.
     constexpr double left = 1e-2;
+    // The same with directions of earlier solves; gaps are closed to 1e-2.
+    constexpr double left_with_store = 0.1;
 
     double largest_difference(const std::vector<Eigen::VectorXd> &a, const std::vector<Eigen::VectorXd> &b)
     {
@@ -51,6 +53,14 @@ namespace slipstick::test
     EXPECT_GT(open, 1e6 * tfeti::misfit(dual, recovery, free).l2_norm());
     EXPECT_LT(tfeti::misfit(dual, rough, free).l2_norm(), left * open);
     EXPECT_LT(largest_difference(rough.u, recovery.u), left * off);
+
+    if (accurate.directions)
+      {
+        auto again = tfeti::recover(dual, disturbed(accurate, dual), free);
+        contact::close_gaps(dual, law, free, {}, again, accurate.directions.get());
+        EXPECT_LT(tfeti::misfit(dual, again, free).l2_norm(), left_with_store * open);
+        EXPECT_LT(largest_difference(again.u, recovery.u), left_with_store * off);
+      }
 
     unsigned int n_slipping = 0;
     const auto   bounds     = law.bounds(rough.multipliers);

@@ -128,6 +128,11 @@ namespace slipstick::app
     /// @param bounds_follow whether bounds follow the pressure.
     tfeti::Recovery recovered(bool bounds_follow);
 
+    /// Displacements and forces from which the next load step starts. With friction they are corrected on the active
+    /// set of the solution: nodes that neither stick firmly nor slip, as after a reversal of the load, would otherwise
+    /// begin the next step with slips that are only the error of this one (decision 0134).
+    void keep_for_next_step(const tfeti::Recovery &recovery, const double t);
+
     /// Computes checks and stresses of a solution recovered from @p from.
     void evaluate(Answer &answer, const contact::DualSolution &from, const double t) const;
 

@@ -26,10 +26,12 @@ namespace slipstick::contact
   /// forces follow the normal forces according to the law; in space their directions are kept. Bodies that slide on all
   /// their contacts are not corrected.
   /// Collective.
+  /// @param store directions of earlier solves, which are used and extended; the tolerance is then only 1e-2. Null: none.
   /// @return counts of the solve.
-  qp::Counts close_gaps(const tfeti::DualProblem &dual,
-                        const SlipLaw            &law,
-                        const std::vector<bool>  &free,
-                        const qp::PcpgOptions    &options,
-                        tfeti::Recovery          &recovery);
+  qp::Counts close_gaps(const tfeti::DualProblem                     &dual,
+                        const SlipLaw                                &law,
+                        const std::vector<bool>                      &free,
+                        const qp::PcpgOptions                        &options,
+                        tfeti::Recovery                              &recovery,
+                        qp::DirectionStore<tfeti::DistributedVector> *store = nullptr);
 } // namespace slipstick::contact
