@@ -44,6 +44,8 @@ namespace slipstick::app
     // A pair is not resolved if its unresolved zones carry more than this fraction of its normal force; corners that
     // touch, for instance at one end of a wide contact, carry less.
     constexpr double most_unresolved = 0.5;
+    // Pairs with smaller forces, relative to the largest one, bear practically nothing.
+    constexpr double negligible_force = 1e-5;
 
     // A zone with at least this fraction of its nodes at the edge of the surface is one of a corner or edge.
     constexpr double part_at_edge = 1. / 3;
@@ -296,6 +298,7 @@ namespace slipstick::app
   template <int dim>
   std::string unresolved_contacts(const std::vector<ContactNode>             &nodes,
                                   const std::vector<scene::ContactPair<dim>> &pairs,
+                                  const double                                largest_force,
                                   const MPI_Comm                              comm)
   {
     std::string names, first;
@@ -310,7 +313,7 @@ namespace slipstick::app
           force += node.pressure * node.area;
         for (const auto &zone : zones)
           unresolved += zone.force;
-        if (!(unresolved > most_unresolved * force))
+        if (zones.empty() || !(force > negligible_force * largest_force) || unresolved <= most_unresolved * force)
           continue;
         names += (names.empty() ? "" : ", ") + pairs[k].name;
         if (first.empty())
@@ -334,9 +337,11 @@ namespace slipstick::app
 
   template std::string unresolved_contacts(const std::vector<ContactNode> &,
                                            const std::vector<scene::ContactPair<2>> &,
+                                           const double,
                                            const MPI_Comm);
   template std::string unresolved_contacts(const std::vector<ContactNode> &,
                                            const std::vector<scene::ContactPair<3>> &,
+                                           const double,
                                            const MPI_Comm);
 
   template <int dim>

@@ -91,6 +91,8 @@ namespace slipstick::app
             mechanics::Stress<dim> weights = mechanics::Stress<dim>::Zero();
             weights[c]                     = 1;
             list.push_back(combination(name + ".stress_" + scene::stress_components[c], stresses, weights));
+            if (stresses.fitted) // the two stresses may agree in one component by accident
+              list.back().local_error = (*stresses.fitted - stresses.recovered).abs().maxCoeff();
           }
         list.push_back(von_mises(name + ".von_mises", stresses));
         for (const auto &[singular, radius] : around)

@@ -253,7 +253,7 @@ namespace slipstick::scene
               "",
               meaning,
               "auto, or " + std::to_string(dim) + " whole numbers from " + count_text(1, most) +
-                ", separated by a comma",
+                ", separated by a comma" + (dim == 3 ? " (of a cuboid; of round shapes: Cells around)" : ""),
               allows,
               store);
   }

@@ -158,10 +158,12 @@ namespace slipstick::app
   using ContactProfile = std::conditional_t<dim == 2, ContactLine, ContactSurface>;
 
   /// A warning about pairs whose contact the mesh does not resolve: most of the normal force acts on nodes next to open
-  /// ones. Empty: none. Only the nodes of rank 0 are used; the result is the same on all ranks. Collective.
+  /// ones. Empty: none. Only the nodes of rank 0 are used; the result is the same on all ranks.
+  /// @param largest_force of loads, supports and pairs, in all load steps so far [N]; on rank 0. Collective.
   template <int dim>
   std::string unresolved_contacts(const std::vector<contact::ContactNode>    &nodes,
                                   const std::vector<scene::ContactPair<dim>> &pairs,
+                                  const double                                largest_force,
                                   const MPI_Comm                              comm);
 
   /// Pressure peaks of every pair that its nodes do not resolve, on both bodies, with a radius of a tenth of the size

@@ -121,6 +121,7 @@ namespace slipstick::app
     std::vector<GoalError>                  errors; // of its quantities
     std::vector<output::ContactStep>        contact_steps;
     TotalSlip                               total_slip;
+    double                                  largest_force = 0; // of the load steps so far, on rank 0 [N]
     std::vector<std::string>                warnings;
     std::set<std::string>                   warned_about;
     std::optional<output::Summary>          finished_steps;   // of all load steps that have ended
