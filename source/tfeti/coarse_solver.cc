@@ -69,11 +69,16 @@ namespace slipstick::tfeti
           diagonal[i] = matrix.valuePtr()[matrix.outerIndexPtr()[i]]; // the first entry of the sorted column
       }
 
-      /// Replaces A_ij by s_i A_ij s_j with s_i = 1 / sqrt(A_ii) where A_ii is positive, 1 elsewhere.
+      /// Replaces A_ij by s_i A_ij s_j with s_i = 1 / sqrt(A_ii + C_ii) where the sum is positive, 1 elsewhere.
+      /// @param more C, of which only the diagonal is used.
       /// @return s
-      Eigen::VectorXd scale()
+      Eigen::VectorXd scale(const CoarseSolver::Entries &more = {})
       {
-        const Eigen::VectorXd s = (diagonal.array() > 0).select(diagonal.array().rsqrt(), 1.);
+        Eigen::VectorXd sum = diagonal;
+        for (const auto &entry : more)
+          if (entry.row == entry.column)
+            sum[entry.row] += entry.value;
+        const Eigen::VectorXd s = (sum.array() > 0).select(sum.array().rsqrt(), 1.);
         for (Eigen::Index j = 0; j < matrix.cols(); ++j)
           for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, j); entry; ++entry)
             entry.valueRef() *= s[entry.row()] * s[j];
@@ -101,7 +106,10 @@ namespace slipstick::tfeti
   class CoarseSolver::Elimination
   {
   public:
-    Elimination(const Entries &own_entries, const std::vector<bool> &changes, const MPI_Comm comm_)
+    Elimination(const Entries           &own_entries,
+                const std::vector<bool> &changes,
+                const Entries           &own_changes,
+                const MPI_Comm           comm_)
       : comm(comm_)
       , n_owned(changes.size())
       , session(std::make_shared<CholmodSession>(Ordering::nested_dissection))
@@ -120,7 +128,7 @@ namespace slipstick::tfeti
         }
       Entries all = gather(own_entries, comm);
       if (changing.size() <= most_changing * std::sqrt(n))
-        eliminate_all_but(changing, all);
+        eliminate_all_but(changing, all, gather(own_changes, comm));
       else
         entries = std::move(all);
     }
@@ -157,12 +165,15 @@ namespace slipstick::tfeti
     class WithComplement;
     class Whole;
 
-    /// L L' = s (A + D) s with the changing unknowns last, where D, the diagonal of A there, makes the matrix definite.
-    /// The trailing block of L L' minus D is the Schur complement.
-    void eliminate_all_but(const std::vector<unsigned int> &changing, const Entries &all)
+    /// L L' = s A s + D with the changing unknowns last, where D, 1 there and 0 elsewhere, makes the matrix definite. The
+    /// trailing block of L L' minus D is the Schur complement. s belongs to A + C rather than A: A may resist a motion by
+    /// rounding only, (1e-16)^2 along an axis to which all normals of its rows are orthogonal, and solutions scaled
+    /// by that would lose the digits of the other motions.
+    /// @param changes C, the largest one; only its diagonal is used.
+    void eliminate_all_but(const std::vector<unsigned int> &changing, const Entries &all, const Entries &changes)
     {
       LowerTriangle A(n, all);
-      scale = A.scale();
+      scale = A.scale(changes);
       for (const unsigned int i : changing)
         A.matrix.coeffRef(i, i) += 1;
       if (n > 0)
@@ -299,9 +310,14 @@ namespace slipstick::tfeti
 
   std::shared_ptr<const CoarseSolver::Elimination> CoarseSolver::eliminate(const Entries           &entries,
                                                                            const std::vector<bool> &changes,
-                                                                           const MPI_Comm           comm)
+                                                                           const MPI_Comm           comm,
+                                                                           const Entries           &largest_changes)
   {
-    return std::make_shared<Elimination>(entries, changes, comm);
+    Entries diagonal;
+    std::copy_if(largest_changes.begin(), largest_changes.end(), std::back_inserter(diagonal), [](const Entry &entry) {
+      return entry.row == entry.column;
+    });
+    return std::make_shared<Elimination>(entries, changes, diagonal, comm);
   }
 
   CoarseSolver::CoarseSolver(std::shared_ptr<const Elimination> staying_, const Entries &changing)

@@ -250,7 +250,10 @@ namespace slipstick::tfeti
           Gram gram;
           for (const unsigned int r : staying)
             add(r, metric.empty() ? 1. : metric[r], gram);
-          of_staying        = CoarseSolver::eliminate(gram.entries(), changes, comm);
+          Gram of_all_changing;
+          for (const unsigned int r : changing)
+            add(r, metric.empty() ? 1. : metric[r], of_all_changing);
+          of_staying        = CoarseSolver::eliminate(gram.entries(), changes, comm, of_all_changing.entries());
           metric_of_staying = std::move(of_these);
         }
       return of_staying;

@@ -171,6 +171,17 @@ class Assemblies(Solids):
                 self.assertEqual(row['status'], 'stick')
 
 
+class Oblique(Solids):
+    """Supports whose normals are orthogonal to an axis but for rounding: the coarse problem lost its digits, pressures were 80 MPa."""
+
+    def test_block_between_oblique_planes(self):
+        scene = pathlib.Path(__file__).parent / 'oblique_block.prm'
+        for angle in (0, 1e-7, 0.01, 17, 30, 45):
+            found = converged(scene, {'Body b/Rotation': angle, 'Solver/Tolerance': '1e-8', 'Output/VTU': 'false'}).summary
+            self.assertAlmostEqual(found['results']['contact'][0]['max_pressure'], 60, delta=1e-3)
+            self.assertLessEqual(found['solver']['hessian_multiplications'], 30)
+
+
 class Inside(Solids):
     """Bodies that no pair joins, before and after loading, and the search for pairs."""
 

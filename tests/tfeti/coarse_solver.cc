@@ -119,6 +119,29 @@ TEST(CoarseSolver, eliminates_what_stays_once_for_several_changes_elsewhere)
     }
 }
 
+// Normals of oblique planes are orthogonal to an axis but for rounding; what stays then resists the motion along this
+// axis by (1e-16)^2.
+TEST(CoarseSolver, resistance_of_rounding_costs_no_digits)
+{
+  if (n_ranks() > 1)
+    return;
+  for (const int axis : {0, 1, 2})
+    {
+      Eigen::MatrixXd G(3, 4);
+      G.row(axis) << 1.4e-16, 0, -1.4e-16, 1e-16;
+      G.row((axis + 1) % 3) << 0.956, 0.292, 0.7, -0.292;
+      G.row((axis + 2) % 3) << -0.292, 0.956, -0.2, 0.956;
+      const Eigen::MatrixXd stays   = G * G.transpose();
+      Eigen::MatrixXd       changes = Eigen::MatrixXd::Zero(3, 3);
+      changes(axis, axis)           = 9;
+      const Eigen::VectorXd b = random_vector(3, 1), x = (stays + changes).ldlt().solve(b);
+      const auto            eliminated =
+        CoarseSolver::eliminate(share_of(stays), {true, true, true}, MPI_COMM_WORLD, share_of(changes));
+      const CoarseSolver solver(eliminated, share_of(changes));
+      EXPECT_LT((solver.solve(b) - x).norm(), 1e-12 * x.norm());
+    }
+}
+
 TEST(CoarseSolver, units_of_the_unknowns_do_not_matter)
 {
   const unsigned int    n_owned = 20, n = n_owned * n_ranks(), first = n_owned * rank();

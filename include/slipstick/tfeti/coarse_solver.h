@@ -42,11 +42,14 @@ namespace slipstick::tfeti
     CoarseSolver(const unsigned int n_owned, const Entries &entries, const MPI_Comm comm);
 
     /// Eliminates all but the changing unknowns from A, which may be semidefinite.
-    /// @param changes for each row of this rank: whether it changes. Collective.
+    /// @param changes for each row of this rank: whether it changes.
+    /// @param largest_changes entries of the sum of all C; only its diagonal is used, to scale the changing unknowns,
+    /// which A alone may resist by rounding only. Collective.
     /// @throws NumericalError when A without the changing rows and columns is not positive definite.
     static std::shared_ptr<const Elimination> eliminate(const Entries           &entries,
                                                         const std::vector<bool> &changes,
-                                                        const MPI_Comm           comm);
+                                                        const MPI_Comm           comm,
+                                                        const Entries           &largest_changes = {});
 
     /// Factorises A + C.
     /// @param changing entries of C, in changing rows and columns; store zeros where other C_i have entries to keep the
