@@ -421,6 +421,17 @@ class Resolution(unittest.TestCase):
         self.assertEqual(texts, [])
         self.assertGreaterEqual(only(found['results']['contact'])['contact_nodes'], 3)
 
+    def test_contacts_that_bear_nothing(self):
+        """Forces of rounding size, of either sign, have no resolution."""
+        case = scenes.box('bar', Decomposition=NONE, materials={'elastic': {'Young modulus': '1000', 'Poisson ratio': '0'}},
+                          bodies={'bar': {'Size': '4, 3', 'Cells': '5, 3', 'Material': 'elastic'}}, obstacles={'floor': FLOOR},
+                          foundations={'bed': {'Boundary': 'bar/top', 'Normal stiffness': '2', 'Tangential stiffness': '1'}},
+                          tractions={'pull': {'Boundary': 'bar/top', 'Traction x': '1.5*t', 'Traction y': '-10*cos(pi*t/2)'}},
+                          contacts={'touch': {**TOUCH, 'Law': 'Coulomb', 'Friction coefficient': '0.4'}})
+        self.assertEqual(self.warnings(case)[0], [])
+        unloaded = disc_on_plate('5')
+        self.assertEqual(self.warnings(unloaded, {'Support push/Displacement y': '-0.5*max(0,2-t)+0.1*max(0,t-1)', 'Load steps/Factors': '1, 2'})[0], [])
+
     def test_corners_are_named_elsewhere(self):
         """A bar that stands on its corner alone: the contact is as small as it is, on any mesh."""
         held = {'Displacement x': '0', 'Displacement y': '0'}
