@@ -19,6 +19,7 @@ namespace slipstick::contact
     constexpr double tolerance_of_history = 1e-2;
 
     using Vector = tfeti::DistributedVector;
+    using Store  = qp::DirectionStore<Vector>;
 
     /// Slipping rows whose bounds follow normal forces that may change.
     struct SlippingRows
@@ -68,25 +69,15 @@ namespace slipstick::contact
       return {std::move(result.x), result.counts};
     }
 
-    Closing with_ties(const tfeti::Face &face, const Vector &b, const double size, const std::vector<qp::Turn> &turns)
-    {
-      const qp::FaceSolverOptions         options;
-      qp::DirectionStore<Vector>          store(options.max_iterations);
-      const auto                          no_conditions = [](const Vector &) { return std::vector<double>(); };
-      qp::FaceSolver<Vector, tfeti::Face> solver(face, b, store, no_conditions, options, turns);
-      solver.start(qp::zero_like(b), qp::zero_like(b));
-      auto result = solver.solve_unsymmetric(closing_tolerance * size);
-      return {std::move(result.x), result.counts};
-    }
-
-    /// With directions of earlier solves that change no held row and satisfy the ties.
-    Closing with_store(const tfeti::Face          &face,
-                       const Vector               &b,
-                       const double                size,
-                       const std::vector<bool>    &free,
-                       const SlippingRows         &slipping,
-                       const bool                  has_ties,
-                       qp::DirectionStore<Vector> &store)
+    /// With those directions of the store that change no held row and satisfy the ties.
+    /// @param residual to be reached.
+    Closing with_store(const tfeti::Face       &face,
+                       const Vector            &b,
+                       const double             residual,
+                       const std::vector<bool> &free,
+                       const SlippingRows      &slipping,
+                       const bool               has_ties,
+                       Store                   &store)
     {
       std::vector<bool> is_held(free);
       is_held.flip();
@@ -110,8 +101,7 @@ namespace slipstick::contact
       const qp::FaceSolverOptions         options;
       qp::FaceSolver<Vector, tfeti::Face> solver(face, b, store, conditions, options, slipping.turns);
       solver.start(qp::zero_like(b), qp::zero_like(b));
-      auto result = has_ties ? solver.solve_unsymmetric(tolerance_of_history * size)
-                             : solver.solve_symmetric(tolerance_of_history * size);
+      auto result = has_ties ? solver.solve_unsymmetric(residual) : solver.solve_symmetric(residual);
       return {std::move(result.x), result.counts};
     }
   } // namespace
@@ -191,10 +181,16 @@ namespace slipstick::contact
       }
     auto b = tfeti::misfit(dual, recovery, free);
     b /= -dual.norm(); // F step = B u - c
-    const double  size    = tfeti::residual_norm(dual, b);
-    const Closing closing = store      ? with_store(face, b, size, free, slipping, has_ties, *store)
-                            : has_ties ? with_ties(face, b, size, slipping.turns)
-                                       : without_ties(face, b, size, options);
+    const double  size = tfeti::residual_norm(dual, b);
+    Store         fresh(qp::FaceSolverOptions().max_iterations);
+    const Closing closing = store || has_ties ? with_store(face,
+                                                           b,
+                                                           (store ? tolerance_of_history : closing_tolerance) * size,
+                                                           free,
+                                                           slipping,
+                                                           has_ties,
+                                                           store ? *store : fresh)
+                                              : without_ties(face, b, size, options);
     tfeti::correct(dual, recovery, closing.step, free);
     return closing.counts;
   }
