@@ -26,8 +26,9 @@ namespace slipstick::qp
     constexpr double fine_imbalance = 0.01;
 
     // If the compliance across a slipping force times the weight of its entry exceeds this (for |F| = 1), the entry is
-    // held.
-    constexpr double rigid_compliance = 1e3;
+    // held. Far beyond that of sliding bodies, which such entries alone may hold across their motion
+    // (doc/decisions/0136).
+    constexpr double rigid_compliance = 1e8;
 
     /// The natural map x -> proj(x - s g) of an admissible set, and the active set that it determines. s is `step` over
     /// the norm of F, times the weight of the entry, so that s g is about the force that closes g: s is the stiffness

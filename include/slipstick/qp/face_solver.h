@@ -136,21 +136,21 @@ namespace slipstick::qp
           multiply(p, Fp);
           Vector Ap(Fp); // (F + C) p
           add_compliances(p, Ap);
-          const auto [pr, pFp, pp, squares] = reduction.sum(
-            std::array<double, 4>{{local_dot(p, r), local_dot(p, Ap), local_dot(p, p), local_squares(weights, p, Fp)}});
-          if (!std::isfinite(pr) || !std::isfinite(pFp) || !(pr > 0))
+          const auto [pr, pAp, pFp, pp, squares] = reduction.sum(std::array<double, 5>{
+            {local_dot(p, r), local_dot(p, Ap), local_dot(p, Fp), local_dot(p, p), local_squares(weights, p, Fp)}});
+          if (!std::isfinite(pr) || !std::isfinite(pAp) || !(pr > 0))
             return ended(Status::stagnated);
-          if (pFp <= options.smallest_curvature * largest * pp)
+          if (pAp <= options.smallest_curvature * largest * pp)
             return ended(Status::infeasible);
-          largest = std::max(largest, pFp / pp);
-          add(pr / pFp, p, x);
-          add(pr / pFp, Fp, Fx);
+          largest = std::max(largest, pFp / pp); // without C, which may be 1e8 times as large
+          add(pr / pAp, p, x);
+          add(pr / pAp, Fp, Fx);
           const double error_of_own = rounding_of_product(squares), before = norm_r;
-          error = std::hypot(error, pr / pFp * error_of_own);
+          error = std::hypot(error, pr / pAp * error_of_own);
           update_residual();
           ++counts.cg_steps;
           own.emplace_back(p, std::move(Ap));
-          energies.push_back(pFp);
+          energies.push_back(pAp);
           keep(std::move(p), std::move(Fp), error_of_own);
           if (stagnates(before))
             return ended(Status::stagnated);
