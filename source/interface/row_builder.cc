@@ -12,10 +12,11 @@ namespace slipstick::interface
 {
   namespace
   {
-    // A tangent is held if supports leave less than this fraction of its row (the slave's part is 1): where the edge of a
-    // pair is on a plane of symmetry, the weights of master nodes off the plane nearly vanish, and such rows nearly
-    // depend on those of the supports.
+    // A tangent is held if supports leave less than this fraction of its row (the slave's part is 1), ...
     constexpr double held_tangent = 0.05;
+    // ... or of the slave's part, and less than this fraction of the master's: where the edge of a pair is on a plane of
+    // symmetry, weights of master nodes off the plane cancel those of their mirror images, so that there is no such row.
+    constexpr double held_master = 0.7;
 
     double norm(const std::map<unsigned int, double> &v)
     {
@@ -43,8 +44,38 @@ namespace slipstick::interface
       return v;
     }
 
+    /// In space: if less than held_tangent of the row along some tangent is free, turns the tangents so that this is the
+    /// second one. @param free_of the free part of the row along a tangent
+    template <typename Tangents, typename FreePart>
+    void turn_to_held(Tangents &tangents, const FreePart &free_of)
+    {
+      if constexpr (std::tuple_size<Tangents>() == 2)
+        {
+          const auto      a = free_of(tangents[0]), b = free_of(tangents[1]);
+          Eigen::Matrix2d gram;
+          gram << product(a, a), product(a, b), product(a, b), product(b, b);
+          const tfeti::SymmetricEigen principal(gram);
+          if (principal.values[0] > held_tangent * held_tangent)
+            return;
+          const auto v = principal.vectors.col(1);
+          const auto t = v[0] * tangents[0] + v[1] * tangents[1];
+          tangents[1]  = v[0] * tangents[1] - v[1] * tangents[0];
+          tangents[0]  = t;
+        }
+    }
+
     // Distinguishes the labels of the rows along the two tangents of a node.
     constexpr std::uint64_t second_tangent = std::uint64_t(1) << 48;
+
+    /// Solids only: those of the plane follow from the normal.
+    template <typename Tangents>
+    void set_tangents(const Tangents &tangents, tfeti::ContactPoint &point)
+    {
+      if constexpr (std::tuple_size<Tangents>() == 2)
+        for (unsigned int k = 0; k < 2; ++k)
+          for (unsigned int d = 0; d < 3; ++d)
+            point.tangents[k][d] = tangents[k][d];
+    }
 
     // Sums below this fraction of their terms are rounding.
     constexpr double rounding_of_sums = 1e-12;
@@ -211,10 +242,39 @@ namespace slipstick::interface
   }
 
   template <int dim>
+  typename RowBuilder<dim>::Vector RowBuilder<dim>::free_sides(const ContactCandidate<dim> &touch,
+                                                               const Tensor                &direction) const
+  {
+    Vector     result;
+    const auto add_side = [&](const auto &side, const double factor) {
+      double squares = 0;
+      for (const auto &[node, weight] : side)
+        squares += weight * weight;
+      for (const auto &[node, weight] : side)
+        {
+          const Tensor left = nodes[node].free_part(direction);
+          for (unsigned int c = 0; c < dim; ++c)
+            result[dim * node + c] += factor * weight / std::sqrt(squares) * left[c];
+        }
+    };
+    add_side(touch.slave, 1.);
+    add_side(touch.master, held_tangent / held_master);
+    return result;
+  }
+
+  template <int dim>
+  typename RowBuilder<dim>::Tangents RowBuilder<dim>::tangents_of(const ContactCandidate<dim> &touch) const
+  {
+    auto tangents = across(touch.normal);
+    turn_to_held(tangents, [&](const Tensor &tangent) { return free_sides(touch, tangent); });
+    return tangents;
+  }
+
+  template <int dim>
   typename RowBuilder<dim>::Vector RowBuilder<dim>::bond(const ContactCandidate<dim> &touch,
                                                          const unsigned int           direction) const
   {
-    return jump(touch, direction == 0 ? touch.normal : across(touch.normal)[direction - 1]);
+    return jump(touch, direction == 0 ? touch.normal : tangents_of(touch)[direction - 1]);
   }
 
   template <int dim>
@@ -240,8 +300,13 @@ namespace slipstick::interface
     for (const auto &list : touches.bonds_between_bodies())
       for (const auto &[i, touch] : list)
         for (unsigned int d = 0; d < dim; ++d)
-          if (bonds.add(free_part(bond(touch, d)), held_direction_tolerance, dim * i, dim * (i + 1)))
-            kept_bonds.insert(std::array<unsigned int, 4>{{i, touch.pair, touch.side, d}});
+          {
+            const auto row = bond(touch, d);
+            if (d > 0 && norm(free_sides(touch, tangents_of(touch)[d - 1])) <= held_tangent && !is_moved(row))
+              continue;
+            if (bonds.add(free_part(row), held_direction_tolerance, dim * i, dim * (i + 1)))
+              kept_bonds.insert(std::array<unsigned int, 4>{{i, touch.pair, touch.side, d}});
+          }
   }
 
   template <int dim>
@@ -253,6 +318,7 @@ namespace slipstick::interface
     for (ContactCandidate<dim> &touch : touching)
       if (scene.contacts[touch.pair].law.is_bonded)
         {
+          set_tangents(tangents_of(touch), touch.point);
           for (unsigned int d = 0; d < dim; ++d)
             {
               if (kept_bonds.count(std::array<unsigned int, 4>{{i, touch.pair, touch.side, d}}) == 0)
@@ -318,28 +384,16 @@ namespace slipstick::interface
       auto free = bonds.reduce(free_part(row));
       return left.empty() ? free : without(free, left);
     };
-    auto                tangents = across(touch.normal);
+    auto tangents = tangents_of(touch); // if a support holds one of them, the disc becomes an interval along the other
+    turn_to_held(tangents, [&](const Tensor &tangent) { return free_of(jump(touch, tangent)); });
+    set_tangents(tangents, touch.point);
     std::vector<Vector> rows;
-    if constexpr (dim == 3)
-      { // if a support holds one tangent, the force is along the other one: the disc becomes an interval
-        const Vector    a = free_of(jump(touch, tangents[0])), b = free_of(jump(touch, tangents[1]));
-        Eigen::Matrix2d gram;
-        gram << product(a, a), product(a, b), product(a, b), product(b, b);
-        const tfeti::SymmetricEigen principal(gram);
-        if (principal.values[0] <= held_tangent * held_tangent)
-          {
-            const auto v = principal.vectors.col(1);
-            const auto t = v[0] * tangents[0] + v[1] * tangents[1];
-            tangents[1]  = v[0] * tangents[1] - v[1] * tangents[0];
-            tangents[0]  = t;
-          }
-        for (unsigned int k = 0; k + 1 < dim; ++k)
-          for (unsigned int d = 0; d < dim; ++d)
-            touch.point.tangents[k][d] = tangents[k][d];
-      }
     for (const auto &tangent : tangents)
-      if (const auto row = jump(touch, tangent); norm(free_of(row)) > held_tangent || is_moved(row))
-        rows.push_back(row);
+      {
+        const auto row = jump(touch, tangent);
+        if ((norm(free_of(row)) > held_tangent && norm(free_sides(touch, tangent)) > held_tangent) || is_moved(row))
+          rows.push_back(row);
+      }
     return rows;
   }
 

@@ -65,14 +65,20 @@ namespace slipstick::interface
     std::uint64_t         n_interface = 0;
 
   private:
-    using Tensor = dealii::Tensor<1, dim>;
-    using Vector = Echelon::Vector; // by dim * node + component
+    using Tensor   = dealii::Tensor<1, dim>;
+    using Vector   = Echelon::Vector; // by dim * node + component
+    using Tangents = std::array<Tensor, dim - 1>;
 
     void add(const unsigned int node);
 
     void add_contact(const unsigned int node);
     void find_bonds();
-    /// Row of a bond along the normal (0) or the tangent (1).
+    /// Of the jump along @p direction the part that supports do not prescribe, of each side relative to its size; that
+    /// of the master counts by held_tangent / held_master.
+    Vector free_sides(const ContactCandidate<dim> &touch, const Tensor &direction) const;
+    /// If supports hold both sides along a tangent, it is the second one.
+    Tangents tangents_of(const ContactCandidate<dim> &touch) const;
+    /// Row of a bond along the normal (0) or a tangent (1, 2).
     Vector bond(const ContactCandidate<dim> &touch, const unsigned int direction) const;
     bool   is_pruned(const ContactCandidate<dim> &touch) const;
     /// The part of the jump along a row that the displacements of supports prescribe at the load factor @p at [mm].
