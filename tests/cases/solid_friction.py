@@ -137,6 +137,24 @@ class SlidingRing(unittest.TestCase):
             self.assertAlmostEqual(work / (row['tangential_traction'] * row['slip']), -1, delta=1e-6)
 
 
+class DraggedStrip(unittest.TestCase):
+    """A strip on a floor whose end is pulled far beyond all strains: friction alone holds it across, hardly, since its force turns
+    with the slip. If such forces were held, one of them left free would carry everything: status 3 after 5000 multiplications."""
+
+    def test_forces(self):
+        for law, bound in (('Coulomb', {'Friction coefficient': '0.3'}), ('Tresca', {'Slip bound': '0.15'})):
+            for pull in ('1', '1000'):
+                scene = solid('strip', 8, 0,
+                              obstacles={'floor': {'Shape': 'half space', 'Point': '0, 0, 0', 'Normal': '0, 1, 0'}},
+                              bodies={'strip': {'Size': '100, 2, 4', 'Cells': '40, 1, 2', 'Material': 'steel'}},
+                              supports={'end': {'Boundary': 'strip/right', 'Displacement x': pull}},
+                              tractions={'load': {'Boundary': 'strip/top', 'Pressure': '0.5'}},
+                              contacts={'joint': {'Slave': 'strip/bottom', 'Master': 'floor', 'Law': law, **bound}})
+                found = converged(scene, {'Solver/Tolerance': '1e-8'}).summary
+                self.assertAlmostEqual(found['results']['contact'][0]['force'][0], -60, delta=0.01, msg=f'{law} {pull}')
+                self.assertLessEqual(found['solver']['hessian_multiplications'], 300, f'{law} {pull}')
+
+
 class Rollers(unittest.TestCase):
 
     def test_forces_are_told_beside_large_gaps(self):

@@ -182,6 +182,39 @@ class Oblique(Solids):
             self.assertLessEqual(found['solver']['hessian_multiplications'], 30)
 
 
+class Symmetry(Solids):
+    """Contact and bonds that end at a plane of symmetry: nothing acts across it, as in the whole model."""
+
+    def test_friction_on_curved_elements(self):
+        """The whole has a tangential force of 1195.94 N; an eighth of the mean pressure acted across the plane."""
+        result = converged(pathlib.Path(__file__).parent / 'curved_half.prm')
+        self.assertAlmostEqual(result.summary['results']['contact'][0]['tangential_force'], 1195.94 / 2, delta=0.01)
+        at_plane = [row for row in result.contact if abs(row['x']) < 1e-9]
+        self.assertEqual(len(at_plane), 5)
+        for row in at_plane:
+            self.assertEqual(row['traction_x'], 0)
+        self.assertEqual(at_plane[2]['status'], 'stick')
+
+    def test_bond_at_a_turned_plane(self):
+        """The traction along the normal of the plane, which the support holds, was not determined."""
+        size = {'Material': 'elastic', 'Rotation axis': '0, 1, 0'}
+        planes = {body: {'Boundary': body + '/left', 'Displacement normal': '0'} for body in ('low', 'high')}
+        for degree in (1, 2):
+            forces = []
+            for angle in ('0', '30', '75'):
+                scene = solid(bodies={'low': {'Size': '7, 4, 6', 'Cells': '3, 2, 3', 'Rotation': angle, **size},
+                                      'high': {'Size': '6, 3, 4', 'Origin': '0, 4, 1', 'Cells': '4, 2, 4', 'Rotation': angle, **size}},
+                              supports={'floor': {'Boundary': 'low/bottom', **{'Displacement ' + d: '0' for d in 'xyz'}}, **planes},
+                              tractions={'load': {'Boundary': 'high/top', 'Pressure': '1'}},
+                              contacts={'bond': {'Slave': 'high/bottom', 'Master': 'low/top', 'Law': 'bonded'}},
+                              Discretization={'Degree': str(degree)})
+                found = converged(scene, {'Solver/Tolerance': '1e-9'}).summary
+                forces.append(found['results']['contact'][0]['tangential_force'])
+            self.assertGreater(forces[0], 1)
+            for force in forces[1:]:
+                self.assertAlmostEqual(force / forces[0], 1, delta=1e-6)
+
+
 class Inside(Solids):
     """Bodies that no pair joins, before and after loading, and the search for pairs."""
 
