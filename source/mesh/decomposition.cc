@@ -11,6 +11,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <deal.II/grid/grid_tools.h>
+
 #include <boost/serialization/set.hpp>
 #include <boost/serialization/string.hpp>
 
@@ -29,10 +31,10 @@ namespace slipstick::mesh
     // The same in space: a cube with 10 cells per edge (time of factors and coarse problem).
     constexpr double automatic_cells_per_subdomain_in_space = 1000;
 
-    // If the number of subdomains is `auto`, bodies of the plane that only contact holds in some direction are cut so
-    // that subdomains are about this many times as long as thick, if their own slenderness is above the second number:
-    // doc/decisions/0133.
-    constexpr double automatic_slenderness = 3, least_slenderness = 16;
+    // If the number of subdomains is `auto`, bodies that only contact holds in some direction are cut so that subdomains
+    // are about this many times as long as thick, if their own slenderness is above the last number: doc/decisions/0133,
+    // for solids 0137.
+    constexpr double automatic_slenderness = 3, automatic_slenderness_in_space = 6, least_slenderness = 16;
 
     // Limits for two bodies that probably have different units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus):
     // ratio of the larger to the smaller size or modulus. Parts of one assembly differ less in size; steel and rubber
@@ -64,28 +66,52 @@ namespace slipstick::mesh
       return piece.cells.size() * (is_simplex<dim>(piece.cells[0]) ? (dim == 2 ? .5 : 1. / 6) : 1.);
     }
 
-    /// Length over thickness of a long piece of the plane, from its outline and its area; 4 for a square.
+    /// Length of an edge, area of a facet.
+    double measure_of(const MeshPiece<2> &piece, const MeshPiece<2>::Face &face)
+    {
+      return piece.vertices[face[0]].distance(piece.vertices[face[1]]);
+    }
+
+    double measure_of(const MeshPiece<3> &piece, const MeshPiece<3>::Face &face)
+    {
+      const auto triangle = [&](const unsigned int a, const unsigned int b, const unsigned int c) {
+        const auto &x = piece.vertices;
+        return cross_product_3d(x[b] - x[a], x[c] - x[a]).norm() / 2;
+      };
+      return triangle(face[0], face[1], face[2]) +
+             (face[3] == MeshPiece<3>::no_vertex ? 0. : triangle(face[1], face[3], face[2]));
+    }
+
+    /// Sum over the boundary, and over the cells.
+    template <int dim>
+    std::pair<double, double> boundary_and_content(const MeshPiece<dim> &piece)
+    {
+      double boundary = 0, content = 0;
+      for (const auto &face : piece.boundary_faces)
+        boundary += measure_of(piece, face.vertices);
+      for (const auto &cell : piece.cells)
+        content += std::abs(dealii::GridTools::cell_measure<dim>(piece.vertices, {cell.data(), n_corners<dim>(cell)}));
+      return {boundary, content};
+    }
+
+    /// Length over thickness of a long piece, from its outline and its area; 4 for a square.
     double slenderness(const MeshPiece<2> &piece)
     {
-      double outline = 0, area = 0;
-      for (const auto &face : piece.boundary_faces)
-        outline += piece.vertices[face.vertices[0]].distance(piece.vertices[face.vertices[1]]);
-      for (const auto &cell : piece.cells)
-        {
-          const auto cross = [&](const unsigned int i, const unsigned int j) {
-            const auto &a = piece.vertices[cell[i]], &b = piece.vertices[cell[j]];
-            return a[0] * b[1] - a[1] * b[0];
-          };
-          area += std::abs(is_simplex<2>(cell) ? cross(0, 1) + cross(1, 2) + cross(2, 0)
-                                               : cross(0, 1) + cross(1, 3) + cross(3, 2) + cross(2, 0)) /
-                  2;
-        }
+      const auto [outline, area] = boundary_and_content(piece);
       return outline * outline / (4 * area);
     }
 
-    double slenderness(const MeshPiece<3> &)
+    /// Diameter over the thickness of a plate or half of that of a rod; 5 for a cube.
+    double slenderness(const MeshPiece<3> &piece)
     {
-      return 0;
+      const auto farthest_from = [&piece](const dealii::Point<3> &x) {
+        return *std::max_element(piece.vertices.begin(), piece.vertices.end(), [&x](const auto &a, const auto &b) {
+          return x.distance_square(a) < x.distance_square(b);
+        });
+      };
+      const auto end               = farthest_from(piece.vertices[0]);
+      const auto [surface, volume] = boundary_and_content(piece);
+      return end.distance(farthest_from(end)) * surface / (2 * volume);
     }
 
     /// By body: whether only contact that may open or slip holds it in some direction.
@@ -328,7 +354,10 @@ namespace slipstick::mesh
           for (unsigned int k = 0; k < wholes.size(); ++k)
             if (const double slender = slenderness(wholes[k]); loose[wholes[k].body] && slender > least_slenderness)
               shares[k] =
-                std::max<double>(shares[k], std::min<double>(std::ceil(slender / automatic_slenderness), n_cells[k]));
+                std::max<double>(shares[k],
+                                 std::min<double>(std::ceil(slender / (dim == 3 ? automatic_slenderness_in_space
+                                                                                : automatic_slenderness)),
+                                                  n_cells[k]));
         }
 
       std::vector<MeshPiece<dim>>                                   pieces;

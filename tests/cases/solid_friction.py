@@ -141,15 +141,26 @@ class DraggedStrip(unittest.TestCase):
     """A strip on a floor whose end is pulled far beyond all strains: friction alone holds it across, hardly, since its force turns
     with the slip. If such forces were held, one of them left free would carry everything: status 3 after 5000 multiplications."""
 
+    def strip(self, subdomains, size, pull, **law):
+        return solid('strip', subdomains, 0,
+                     obstacles={'floor': {'Shape': 'half space', 'Point': '0, 0, 0', 'Normal': '0, 1, 0'}},
+                     bodies={'strip': {'Size': size, 'Cells': '40, 1, 2', 'Material': 'steel'}},
+                     supports={'end': {'Boundary': 'strip/right', 'Displacement x': pull}},
+                     tractions={'load': {'Boundary': 'strip/top', 'Pressure': '0.5'}},
+                     contacts={'joint': {'Slave': 'strip/bottom', 'Master': 'floor', **law}})
+
+    def test_slender_strips_are_cut(self):
+        """With one subdomain status 3 after more than 6000 multiplications."""
+        for pull in ('0.002', '0.02'):
+            scene = self.strip('auto', '100, 0.5, 4', pull, **{'Law': 'Coulomb', 'Friction coefficient': '0.3'})
+            found = converged(scene).summary
+            self.assertGreater(found['problem']['subdomains'], 20)
+            self.assertLessEqual(found['solver']['hessian_multiplications'], 400)
+
     def test_forces(self):
         for law, bound in (('Coulomb', {'Friction coefficient': '0.3'}), ('Tresca', {'Slip bound': '0.15'})):
             for pull in ('1', '1000'):
-                scene = solid('strip', 8, 0,
-                              obstacles={'floor': {'Shape': 'half space', 'Point': '0, 0, 0', 'Normal': '0, 1, 0'}},
-                              bodies={'strip': {'Size': '100, 2, 4', 'Cells': '40, 1, 2', 'Material': 'steel'}},
-                              supports={'end': {'Boundary': 'strip/right', 'Displacement x': pull}},
-                              tractions={'load': {'Boundary': 'strip/top', 'Pressure': '0.5'}},
-                              contacts={'joint': {'Slave': 'strip/bottom', 'Master': 'floor', 'Law': law, **bound}})
+                scene = self.strip(8, '100, 2, 4', pull, Law=law, **bound)
                 found = converged(scene, {'Solver/Tolerance': '1e-8'}).summary
                 self.assertAlmostEqual(found['results']['contact'][0]['force'][0], -60, delta=0.01, msg=f'{law} {pull}')
                 self.assertLessEqual(found['solver']['hessian_multiplications'], 300, f'{law} {pull}')
