@@ -151,6 +151,23 @@ class Resumed(unittest.TestCase):
         self.assertTrue((directory / 'history.csv').is_file())
 
 
+class Proportional(unittest.TestCase):
+    """Directions of earlier steps are combined again and again: what rounding leaves of their G p grew from step to step, until
+    loads were not balanced any more (2236 multiplications, the last three steps by the fallback)."""
+
+    def test_ten_steps(self):
+        scene = scenes.box(name='ten steps', bodies={'box': {**scenes.BOX, 'Size': '27, 6', 'Cells': '8, 4'}}, supports={},
+                           obstacles={'floor': {'Shape': 'half plane', 'Point': '0, 0', 'Normal': '0, 1'}},
+                           tractions={'load': {'Boundary': 'box/top', 'Traction x': '-1.69*t', 'Traction y': '-34.5*t'}},
+                           contacts={'joint': {'Slave': 'box/bottom', 'Master': 'floor', 'Law': 'Coulomb',
+                                               'Friction coefficient': '0.18'}},
+                           Discretization={'Degree': '2'}, **{'Load steps': {'Factors': '0.1:0.1:1'}})
+        found = converged(scene, {'Decomposition/Method': 'METIS'}).summary
+        self.assertAlmostEqual(found['results']['contact'][0]['tangential_force'], 1.69 * 27, delta=1e-3)
+        self.assertLessEqual(found['solver']['hessian_multiplications'], 150)
+        self.assertEqual(found['solver']['fallbacks'], 0)
+
+
 class Conditions(unittest.TestCase):
     def test_where_they_are(self):
         for ranks in (1, 2):
