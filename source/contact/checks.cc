@@ -166,6 +166,8 @@ namespace slipstick::contact
         check_nodes();
         const auto   on_bodies = balance(dual, u, forces, multipliers, n_bodies, largest[nodal_equilibrium]);
         const Scales scales    = find_scales(on_bodies.largest);
+        if (law.depends_on_pressure())
+          check_open_nodes(scales);
         check_balance(on_bodies, scales);
         check_energies(error_energies, on_bodies, scales);
         for (unsigned int i = 0; i < Checks::n_entries; ++i)
@@ -315,6 +317,35 @@ namespace slipstick::contact
           }
         for (double *sum : {&result.checks.complementarity, &all_bounds})
           *sum = dealii::Utilities::MPI::sum(*sum, comm);
+      }
+
+      /// Open nodes whose bound follows the pressure carry no force: relative to the largest tangential force of their
+      /// pair, however small that is beside the normal forces.
+      void check_open_nodes(const Scales &scales)
+      {
+        unsigned int n_pairs = 0;
+        for (const auto &point : constraints.contact_points)
+          n_pairs = std::max(n_pairs, point.pair + 1);
+        n_pairs = dealii::Utilities::MPI::max(n_pairs, comm);
+        std::vector<double> of_pair(n_pairs, std::max(negligible_part * largest_contact, scales.no_force));
+        const auto          force_at = [&](const unsigned int i) {
+          return std::abs(result.nodes[i].tangential_traction * result.nodes[i].area);
+        };
+        for (unsigned int i = 0; i < constraints.contact_points.size(); ++i)
+          of_pair[result.nodes[i].pair] = std::max(of_pair[result.nodes[i].pair], force_at(i));
+        MPI_Allreduce(MPI_IN_PLACE, of_pair.data(), of_pair.size(), MPI_DOUBLE, MPI_MAX, comm);
+        const double      noise = tfeti::force_rounding * multipliers.linfty_norm();
+        std::vector<bool> follows(constraints.kind.size(), false);
+        for (const auto &bound : law.pressure_bounds())
+          follows[bound.tangential] = true;
+        for (unsigned int i = 0; i < constraints.contact_points.size(); ++i)
+          {
+            const auto &point = constraints.contact_points[i];
+            if (point.tangential_row != tfeti::invalid_row && follows[point.tangential_row] &&
+                !result.nodes[i].is_closed && force_at(i) > noise)
+              largest[friction_bound].take(scales.force * relative(force_at(i), of_pair[point.pair]),
+                                           {true, point.slave_body, point.position, true, true, point.pair});
+          }
       }
 
       static double friction_work(const tfeti::ContactPoint &point, const ContactNode &node)

@@ -93,9 +93,11 @@ namespace slipstick::contact
   std::vector<double> SlipLaw::bounds(const Vector &x) const
   {
     std::vector<double> result = fixed;
+    const double        least  = follows_pressure ? tfeti::force_rounding * x.linfty_norm() : 0.; // rounding
     for (const auto &row : rows)
       {
-        result[row.tangential] = row.forces.radius(x.local_element(row.normal));
+        const double pressed   = x.local_element(row.normal);
+        result[row.tangential] = pressed > least ? row.forces.radius(pressed) : 0.;
         if (row.is_disc())
           result[row.second] = result[row.tangential];
       }

@@ -20,7 +20,47 @@ def block(shear, supports=None, **law):
                       tractions=sides if supports else {**sides, **top})
 
 
+def rolling_disc(degree, edges, cells, young='2.1e5', push='0'):
+    """A disc that rolls freely on a frictionless floor, pressed by a plate to which cohesion holds it."""
+    return scenes.box(
+        'roll', plane_state='plane strain', Decomposition={'Method': 'METIS'}, Discretization={'Degree': degree},
+        materials={'steel': {'Young modulus': '2.1e5', 'Poisson ratio': '0.3'}, 'soft': {'Young modulus': young, 'Poisson ratio': '0.3'}},
+        bodies={'disc': {'Shape': 'disc', 'Center': '0, 6', 'Radius': '6', 'Cells along arc': edges, 'Material': 'steel'},
+                'plate': {'Origin': '-15, 12', 'Size': '30, 8', 'Cells': '{}, 4'.format(cells), 'Material': 'soft'}},
+        obstacles={'floor': GROUND}, supports={'load': {'Boundary': 'plate/top', 'Displacement x': push, 'Displacement y': '-0.03'}},
+        contacts={'c0': {'Slave': 'disc/arc', 'Master': 'floor', 'Law': 'frictionless'},
+                  'c1': {'Slave': 'disc/arc', 'Master': 'plate/bottom', 'Law': 'cohesion', 'Friction coefficient': '0.5', 'Cohesion': '20'}})
+
+
 class Cohesion(unittest.TestCase):
+
+    def test_open_nodes_carry_nothing(self):
+        """Nodes that only hold the rolling of the disc carried 20 MPa, and those beside them the opposite."""
+        for case in (rolling_disc(2, 32, 20), rolling_disc(1, 32, 20), rolling_disc(1, 48, 31, '3e4', '0.005')):
+            for tolerance in (1e-4, 1e-6, 1e-8):
+                result = converged(case, {'Solver/Tolerance': tolerance, 'Output/VTU': 'false'})
+                largest = max(row['pressure'] for row in result.contact)
+                for row in result.contact:
+                    if row['pressure'] < 1e-12 * largest:
+                        self.assertEqual((row['tangential_traction'], row['slip_bound']), (0, 0), row)
+                        self.assertIn(row['status'], ('open', 'slip') if row['pair'] == 'c0' else ('open', ), row)
+
+    def test_blocks_that_lose_contact(self):
+        """Forces of rounding size close no node: the solver ended at status 3 after 101 multiplications."""
+        blocks = {'lower': {'Shape': 'cuboid', 'Size': '7, 4, 7', 'Cells': '4, 2, 4', 'Material': 'soft'},
+                  'upper': {'Shape': 'cuboid', 'Origin': '1, 4, 1', 'Size': '5, 4, 5', 'Cells': '3, 2, 3', 'Material': 'steel'}}
+        law = {'Law': 'cohesion', 'Cohesion': '1', 'Friction coefficient': '0.2'}
+        kinds = dict(
+            materials={name: {'Young modulus': young, 'Thermal expansion': '1.2e-5'} for name, young in (('soft', '7e4'), ('steel', '2.1e5'))},
+            bodies=blocks, obstacles={'floor': {'Shape': 'half space', 'Point': '0, 0, 0', 'Normal': '0, 1, 0'}},
+            supports={'left': {'Boundary': 'lower/left', 'Displacement normal': '0'}, 'back': {'Boundary': 'lower/back', 'Displacement normal': '0'},
+                      'push': {'Boundary': 'upper/top', 'Displacement x': '0.002', 'Displacement y': '-0.0012', 'Displacement z': '0'}},
+            contacts={'between': {'Slave': 'upper/bottom', 'Master': 'lower/top', **law}, 'foot': {'Slave': 'lower/bottom', 'Master': 'floor', **law}},
+            temperatures={'cold': {'Bodies': 'all', 'Change': '-30'}}, Decomposition={'Method': 'METIS'})
+        content = scenes.text(**kinds).replace('set Plane state = plane stress', 'set Dimension = 3')
+        result = converged(scenes.write('cold', content), {'Output/VTU': 'false'})
+        self.assertLess(result.summary['solver']['hessian_multiplications'], 60)
+        self.assertEqual({(row['status'], row['tangential_traction']) for row in result.contact}, {('open', 0)})
 
     def test_block_sticks_up_to_cohesion_and_friction(self):
         result = converged(block(0.999 * STRENGTH), {'Solver/Tolerance': 1e-8}, ranks=2)

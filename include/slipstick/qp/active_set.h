@@ -30,6 +30,9 @@ namespace slipstick::qp
     // (doc/decisions/0136).
     constexpr double rigid_compliance = 1e8;
 
+    // Normal forces up to this part of the largest force are zero up to rounding: they close no node.
+    constexpr double rounding_of_forces = 1e-13;
+
     /// The natural map x -> proj(x - s g) of an admissible set, and the active set that it determines. s is `step` over
     /// the norm of F, times the weight of the entry, so that s g is about the force that closes g: s is the stiffness
     /// of a point. A force beyond its bound and the gap that it closes then contribute equally to the residual.
@@ -56,6 +59,7 @@ namespace slipstick::qp
         , weights(residual_weights(problem_, 0))
         , active(local_size(set.box.lower))
         , beyond(active.size(), 0.)
+        , is_open(active.size(), false)
       {
         for (std::size_t i = 0; i < active.size(); ++i)
           bounded.push_back(set.box.lower.begin()[i] > -HUGE_VAL || set.box.upper.begin()[i] < HUGE_VAL);
@@ -69,6 +73,8 @@ namespace slipstick::qp
             discs.push_back({bound.tangential, bound.second});
             bounds_of_discs.push_back(bound);
           }
+        const bool jumps = std::any_of(set.pressure_bounds.begin(), set.pressure_bounds.end(), jumps_at_zero);
+        has_jumps        = problem.reduction().min(jumps ? -1. : 0.) < 0;
       }
 
       /// s times the norm of F, for an entry of weight 1.
@@ -174,6 +180,7 @@ namespace slipstick::qp
       {
         const Sides             before       = active;
         const std::vector<Turn> discs_before = discs;
+        const std::vector<bool> open_before  = is_open;
         double                  sum          = 0;
         for (std::size_t i = 0; i < active.size(); ++i)
           if (!bounded[i])
@@ -185,8 +192,9 @@ namespace slipstick::qp
           const double r = norm * (xi - projected) / step;
           sum += r * r;
         });
-        active = before;
-        discs  = discs_before;
+        active  = before;
+        discs   = discs_before;
+        is_open = open_before;
         return std::sqrt(problem.reduction().sum(std::array<double, 1>{{sum}})[0]);
       }
 
@@ -195,6 +203,8 @@ namespace slipstick::qp
       std::array<double, 2> residuals(const Vector &x, const Vector &g)
       {
         move_bounds(x);
+        if (has_jumps)
+          open_unpressed(x);
         std::array<double, 2> sum{{0, 0}};
         for (std::size_t i = 0; i < active.size(); ++i)
           {
@@ -235,7 +245,8 @@ namespace slipstick::qp
         std::vector<Tie> result;
         for (const PressureBound &bound : set.pressure_bounds)
           if (const double slope = bound.forces.slope(set.box.upper.begin()[bound.tangential]);
-              active[bound.tangential] != 0 && bound.normal != no_entry && active[bound.normal] == 0 && slope > 0)
+              active[bound.tangential] != 0 && bound.normal != no_entry && active[bound.normal] == 0 &&
+              !is_open[bound.tangential] && slope > 0)
             result.push_back({bound.tangential, bound.normal, active[bound.tangential] * slope});
         return result;
       }
@@ -316,15 +327,40 @@ namespace slipstick::qp
           step = std::max(1., softening * n[0] / n[1]);
       }
 
-      // Updates the bounds that follow normal entries to those at x: 0 if the normal entry is at its bound; otherwise
-      // without the jump to 0 that the law has where the normal entry vanishes.
+      // Whether the bound jumps to 0 where the normal entry vanishes.
+      static bool jumps_at_zero(const PressureBound &bound)
+      {
+        return bound.normal != no_entry && bound.forces.closed_radius(0) > 0;
+      }
+
+      // Largest normal force that is only rounding.
+      double least_force(const Vector &x) const
+      {
+        double largest = 0;
+        for (const double value : x)
+          largest = std::max(largest, std::abs(value));
+        return -rounding_of_forces * problem.reduction().min(-largest);
+      }
+
+      // Updates the bounds that follow normal entries to those at x: 0 if the normal entry is at its bound, or if it was
+      // released there and the bound jumps to 0; otherwise without that jump.
       void move_bounds(const Vector &x)
       {
         for (const PressureBound &bound : set.pressure_bounds)
           set_radius(bound,
-                     bound.normal == no_entry    ? bound.forces.closed_radius(0)
-                     : active[bound.normal] == 0 ? bound.forces.closed_radius(x.begin()[bound.normal])
-                                                 : 0.);
+                     bound.normal == no_entry ? bound.forces.closed_radius(0)
+                     : active[bound.normal] == 0 && !is_open[bound.tangential]
+                       ? bound.forces.closed_radius(x.begin()[bound.normal])
+                       : 0.);
+      }
+
+      // The jump of bounds to 0 where no normal force is left at x.
+      void open_unpressed(const Vector &x)
+      {
+        const double least = least_force(x);
+        for (const PressureBound &bound : set.pressure_bounds)
+          if (jumps_at_zero(bound) && !(x.begin()[bound.normal] > least))
+            set_radius(bound, 0);
       }
 
       double radius_of(const Turn &disc) const
@@ -440,18 +476,25 @@ namespace slipstick::qp
         for (std::size_t i = 0; i < active.size(); ++i)
           if (bounded[i] && !in_disc[i])
             place(i);
+        const double least = has_jumps ? least_force(x) : 0.;
+        for (const PressureBound &bound : set.pressure_bounds)
+          is_open[bound.tangential] = jumps_at_zero(bound) && !(projected[bound.normal] > least);
+        const auto radius_at = [&](const PressureBound &bound) {
+          return bound.normal == no_entry    ? bound.forces.closed_radius(0)
+                 : is_open[bound.tangential] ? 0.
+                                             : bound.forces.radius(projected[bound.normal]);
+        };
         for (const PressureBound &bound : set.pressure_bounds)
           if (!bound.is_disc())
             {
-              set_radius(bound, bound.forces.radius(projected[bound.normal]));
+              set_radius(bound, radius_at(bound));
               place(bound.tangential);
             }
         for (std::size_t k = 0; k < discs.size(); ++k)
           {
-            Turn                &disc  = discs[k];
-            const PressureBound &bound = bounds_of_discs[k];
-            const double         radius =
-              bound.normal == no_entry ? bound.forces.closed_radius(0) : bound.forces.radius(projected[bound.normal]);
+            Turn                &disc   = discs[k];
+            const PressureBound &bound  = bounds_of_discs[k];
+            const double         radius = radius_at(bound);
             double &x1 = projected[disc.first] = moved[disc.first], &x2 = projected[disc.second] = moved[disc.second];
             const double size = std::hypot(x1, x2);
             if (size > 0)
@@ -485,6 +528,8 @@ namespace slipstick::qp
       std::vector<Turn>          turned; // those that slip
       Sides                      active;
       std::vector<double>        beyond;
+      bool                       has_jumps = false; // on any process
+      std::vector<bool>          is_open;           // tangential entries whose bound jumped to 0 in the last prediction
     };
   } // namespace detail
 } // namespace slipstick::qp
