@@ -1,4 +1,5 @@
 #include <slipstick/app/contact_profile.h>
+#include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
 
 #include <deal.II/base/mpi.h>
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace slipstick::app
@@ -47,6 +49,9 @@ namespace slipstick::app
     // Pairs with smaller forces, relative to the largest one, bear practically nothing.
     constexpr double negligible_force = 1e-5;
 
+    // Nodes closer to the axis of revolution than this part of the length of a contact are on it.
+    constexpr double on_axis = 1e-9;
+
     // A zone with at least this fraction of its nodes at the edge of the surface is one of a corner or edge.
     constexpr double part_at_edge = 1. / 3;
 
@@ -84,6 +89,16 @@ namespace slipstick::app
     Point place(const ContactNode &node)
     {
       return {node.position[0], node.position[1], node.position[2]};
+    }
+
+    std::vector<ContactZone> unresolved_zones(const ContactLine &line, const bool is_of_revolution)
+    {
+      return line.unresolved_zones(is_of_revolution);
+    }
+
+    std::vector<ContactZone> unresolved_zones(const ContactSurface &surface, const bool /*is_of_revolution*/)
+    {
+      return surface.unresolved_zones();
     }
 
     std::vector<BoxTree<3>::Box> boxes_of(const std::vector<ContactNode> &nodes)
@@ -151,20 +166,25 @@ namespace slipstick::app
     return result;
   }
 
-  std::vector<ContactZone> ContactLine::unresolved_zones() const
+  std::vector<ContactZone> ContactLine::unresolved_zones(const bool may_cross_axis) const
   {
+    const auto is_on_axis = [&](const ContactNode &node) {
+      return may_cross_axis &&
+             std::abs(node.position[0]) <= on_axis * (line.back().arc_length - line.front().arc_length);
+    };
     std::vector<ContactZone> zones;
     for (std::size_t i = 0, end = 0; i < line.size(); i = end)
       {
         for (end = i; end < line.size() && line[end].is_closed == line[i].is_closed;)
           ++end;
-        if (!line[i].is_closed || end - i > 2 || i == 0 || end == line.size())
+        const bool begins = i == 0, ends = end == line.size();
+        if (!line[i].is_closed || end - i > 2 || (begins && ends))
           continue;
-        zones.push_back(
-          {line[i].position,
-           static_cast<unsigned int>(end - i),
-           0,
-           std::min(line[i].arc_length - line[i - 1].arc_length, line[i + 1].arc_length - line[i].arc_length)});
+        if ((begins || ends) && (end - i > 1 || !is_on_axis(line[i]))) // on the axis both neighbours are the same
+          continue;
+        const double before = begins ? HUGE_VAL : line[i].arc_length - line[i - 1].arc_length;
+        const double after  = i + 1 == line.size() ? HUGE_VAL : line[i + 1].arc_length - line[i].arc_length;
+        zones.push_back({line[i].position, static_cast<unsigned int>(end - i), 0, std::min(before, after)});
         for (std::size_t k = i; k < end; ++k)
           zones.back().force += line[k].pressure * line[k].area;
       }
@@ -299,6 +319,7 @@ namespace slipstick::app
   std::string unresolved_contacts(const std::vector<ContactNode>             &nodes,
                                   const std::vector<scene::ContactPair<dim>> &pairs,
                                   const double                                largest_force,
+                                  const bool                                  is_of_revolution,
                                   const MPI_Comm                              comm)
   {
     std::string names, first;
@@ -307,7 +328,7 @@ namespace slipstick::app
         if (pairs[k].law.is_bonded)
           continue;
         const auto of_pair = nodes_of_pair(nodes, k);
-        const auto zones   = ContactProfile<dim>(of_pair).unresolved_zones();
+        const auto zones   = unresolved_zones(ContactProfile<dim>(of_pair), is_of_revolution);
         double     force = 0, unresolved = 0;
         for (const auto &node : of_pair)
           force += node.pressure * node.area;
@@ -338,10 +359,12 @@ namespace slipstick::app
   template std::string unresolved_contacts(const std::vector<ContactNode> &,
                                            const std::vector<scene::ContactPair<2>> &,
                                            const double,
+                                           const bool,
                                            const MPI_Comm);
   template std::string unresolved_contacts(const std::vector<ContactNode> &,
                                            const std::vector<scene::ContactPair<3>> &,
                                            const double,
+                                           const bool,
                                            const MPI_Comm);
 
   template <int dim>

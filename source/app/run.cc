@@ -342,7 +342,11 @@ namespace slipstick::app
       }
     largest_force = std::max(largest_force, largest_of(summary.results));
     if (scene.has_contact() && step + 1 == scene.load_factors.size())
-      if (const auto text = unresolved_contacts(contact_steps.back().nodes, scene.contacts, largest_force, comm);
+      if (const auto text = unresolved_contacts(contact_steps.back().nodes,
+                                                scene.contacts,
+                                                largest_force,
+                                                scene.plane_state == scene::PlaneState::axisymmetric,
+                                                comm);
           !text.empty())
         warn({{"resolution", text}});
     drop_moments(scene, summary.results);

@@ -421,6 +421,19 @@ class Resolution(unittest.TestCase):
         self.assertEqual(texts, [])
         self.assertGreaterEqual(only(found['results']['contact'])['contact_nodes'], 3)
 
+    def test_ball_on_the_axis(self):
+        """The axis is no end of the contact: with one node in contact the force was 1.7 times as large, without a word."""
+        held = {'Displacement x': '0', 'Displacement y': '0'}
+
+        def ball(push):
+            return scenes.box('ball', plane_state='axisymmetric', Decomposition={'Method': 'METIS'}, bodies={
+                'ball': {'Shape': 'quarter disc', 'Center': '0, 10', 'Radius': '10', 'Cells along arc': '12', 'Material': 'elastic'},
+                'block': {'Origin': '0, -15', 'Size': '25, 15', 'Cells': '15, 8', 'Material': 'elastic'}},
+                supports={'base': {'Boundary': 'block/bottom', **held}, 'load': {'Boundary': 'ball/flat', **held, 'Displacement y': push}},
+                contacts={'c': {'Slave': 'ball/arc', 'Master': 'block/top', 'Law': 'frictionless'}})
+        self.assertRegex(only(self.warnings(ball('-0.05'))[0]), r'Contact c: .* \(c: 1 node at \(0, 0\), where nodes are 1\.308 mm apart\)')
+        self.assertEqual(self.warnings(ball('-0.6'))[0], [])
+
     def test_contacts_that_bear_nothing(self):
         """Forces of rounding size, of either sign, have no resolution."""
         case = scenes.box('bar', Decomposition=NONE, materials={'elastic': {'Young modulus': '1000', 'Poisson ratio': '0'}},

@@ -76,8 +76,9 @@ namespace slipstick::app
     std::vector<contact::ContactNode> unresolved_peaks() const;
 
     /// Zones in which every node is next to an open one. Zones with a node at an end of the line, i.e. of a corner that
-    /// touches, are left out.
-    std::vector<ContactZone> unresolved_zones() const;
+    /// touches, are left out, except an end on the axis of revolution.
+    /// @param may_cross_axis whether x is a radius.
+    std::vector<ContactZone> unresolved_zones(const bool may_cross_axis) const;
 
   private:
     /// As resolution(), for the pressure of node @p i.
@@ -159,11 +160,13 @@ namespace slipstick::app
 
   /// A warning about pairs whose contact the mesh does not resolve: most of the normal force acts on nodes next to open
   /// ones. Empty: none. Only the nodes of rank 0 are used; the result is the same on all ranks.
-  /// @param largest_force of loads, supports and pairs, in all load steps so far [N]; on rank 0. Collective.
+  /// @param largest_force of loads, supports and pairs, in all load steps so far [N]; on rank 0.
+  /// @param is_of_revolution whether the scene is axisymmetric. Collective.
   template <int dim>
   std::string unresolved_contacts(const std::vector<contact::ContactNode>    &nodes,
                                   const std::vector<scene::ContactPair<dim>> &pairs,
                                   const double                                largest_force,
+                                  const bool                                  is_of_revolution,
                                   const MPI_Comm                              comm);
 
   /// Pressure peaks of every pair that its nodes do not resolve, on both bodies, with a radius of a tenth of the size
