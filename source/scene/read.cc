@@ -274,6 +274,15 @@ namespace slipstick::scene
       for (const std::string &goal : adaptivity.goals)
         if (std::find(names.begin(), names.end(), goal) == names.end())
           throw parameters.error("Goal", "there is no quantity '" + goal + "'", suggest_name(goal, names));
+      const bool has_bolts = !scene.pretensions.empty(); // as in app::goal_errors
+      if (std::find(adaptivity.goals.begin(), adaptivity.goals.end(), "strain_energy") != adaptivity.goals.end() &&
+          !adaptivity.skips_unknown && (has_bolts || !scene.temperatures.empty()))
+        throw parameters.error(
+          "Goal",
+          std::string("strain_energy has no estimate in scenes with ") +
+            (has_bolts ? "bolts" : "changes of temperature"),
+          "leave it out of the goals, or leave Goal out: Accuracy = 1 % then applies to the energy "
+          "norm");
     }
   } // namespace
 

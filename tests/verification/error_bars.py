@@ -366,6 +366,18 @@ class Accuracy(unittest.TestCase):
                 self.assertIn(word, result.stderr)
         self.assertEqual(solve(shipped('hertz_ball'), {'Accuracy': '1 %'}, options=('--resume',)).status, 2)
 
+    def test_an_energy_that_is_never_estimated_is_refused(self):
+        """12 meshes and 1.2 million unknowns did not help."""
+        held = {'bodies': {'block': {**scenes.BOX, 'Cells': '6, 6'}}, 'supports': {'bottom': {'Boundary': 'block/bottom', 'Displacement x': '0',
+                                                                                            'Displacement y': '0'}}}
+        warm = scenes.box(name='warm', temperatures={'warm': {'Bodies': 'block', 'Change': '50'}}, materials={
+            'elastic': {**scenes.ELASTIC, 'Thermal expansion': '1e-5'}}, **held)
+        result = solve(warm, {'Accuracy': '5 %', 'Goal': 'max_displacement, strain_energy'})
+        self.assertEqual(result.status, 2, result)
+        for words in ('Goal', 'strain_energy has no estimate in scenes with changes of temperature', 'leave it out of the goals'):
+            self.assertIn(words, result.stderr)
+        converged(warm, {'Accuracy': '10 %', 'Output/VTU': 'false'})
+
 
 if __name__ == '__main__':
     sys.exit(unittest.main())
