@@ -128,6 +128,7 @@ namespace slipstick::app
   void StepProblem<dim>::make_dual(const double t)
   {
     scene.supports.erase(scene.supports.begin() + n_given, scene.supports.end());
+    held_still.clear();
     try
       {
         make_dual_as_it_is(t);
@@ -144,6 +145,7 @@ namespace slipstick::app
              mechanics::auxiliary_supports(*the_mesh, *the_spaces, motions, unheld.motions.front().frames))
           scene.supports.push_back(std::move(support));
         make_dual_as_it_is(t);
+        held_still = unheld.motions;
       }
   }
 

@@ -349,6 +349,7 @@ namespace slipstick::app
                 answer           = std::make_unique<Answer>();
                 answer->recovery = recovered(law.depends_on_pressure());
               }
+            take_out_still_motions(*answer, t);
             const double penetration = problem.penetration_of_pruned(answer->recovery.u);
             if (!(penetration > 0))
               return answer;
@@ -365,6 +366,26 @@ namespace slipstick::app
         if (step > 0)
           problem.start_slip_from(u);
       }
+  }
+
+  // Motions that additional supports hold at a node: there, deformation would show as a motion.
+  template <int dim>
+  void StepSolver<dim>::take_out_still_motions(Answer &answer, const double t)
+  {
+    constexpr double part_of_limit = 0.01;
+    if (problem.still_motions().empty())
+      return;
+    double size = 0;
+    for (const auto &part : answer.recovery.u)
+      size = std::max(size, part.size() > 0 ? part.lpNorm<Eigen::Infinity>() : 0.);
+    const double limit = check_limit(tolerance_of(discrete_scene().solver, the_solution));
+    tfeti::remove_motions(problem.dual(),
+                          problem.still_motions(),
+                          the_solution.free,
+                          part_of_limit * limit * dealii::Utilities::MPI::max(size, comm),
+                          answer.recovery.u);
+    if (answer.stress)
+      evaluate(answer, the_solution, t);
   }
 
   // If the solution has not converged, work of the loads along a free motion does not prove that there is no

@@ -28,8 +28,10 @@ namespace slipstick::tfeti
       return dual.loose_bodies().hold_by(loose, is_candidate, equal, free);
     }
 
-    /// Removes the loose motions from u.
-    void remove_motions(const DualProblem &dual, const std::vector<RigidMotion> &loose, std::vector<Eigen::VectorXd> &u)
+    /// The amplitudes of the part of u along loose motions.
+    Eigen::VectorXd amplitudes_in(const DualProblem                  &dual,
+                                  const std::vector<RigidMotion>     &loose,
+                                  const std::vector<Eigen::VectorXd> &u)
     {
       const auto       &systems = dual.subdomains();
       const std::size_t n       = loose.size();
@@ -47,7 +49,12 @@ namespace slipstick::tfeti
       Eigen::VectorXd       amplitudes = Eigen::VectorXd::Zero(loose[0].amplitudes.size());
       for (std::size_t m = 0; m < n; ++m)
         amplitudes += amount[m] * loose[m].amplitudes;
-      for (unsigned int p = 0; p < systems.size(); ++p)
+      return amplitudes;
+    }
+
+    void subtract_motion(const DualProblem &dual, const Eigen::VectorXd &amplitudes, std::vector<Eigen::VectorXd> &u)
+    {
+      for (unsigned int p = 0; p < u.size(); ++p)
         u[p] -= dual.body_motions().displacements(p, amplitudes);
     }
 
@@ -244,7 +251,7 @@ namespace slipstick::tfeti
       fit_motions(dual, on_free, fixed, result);
       if (!is_at_rest)
         {
-          remove_motions(dual, loose, result.u);
+          subtract_motion(dual, amplitudes_in(dual, loose, result.u), result.u);
           result.unresisted = loose;
         }
       if (!loose.empty())
@@ -252,6 +259,31 @@ namespace slipstick::tfeti
       return result;
     }
   } // namespace
+
+  void remove_motions(DualProblem                    &dual,
+                      const std::vector<RigidMotion> &motions,
+                      const std::vector<bool>        &free,
+                      const double                    tolerated,
+                      std::vector<Eigen::VectorXd>   &u)
+  {
+    const Constraints      &rows   = dual.constraints();
+    std::vector<double>     c      = rows.c;
+    const RigidMotion       motion = {amplitudes_in(dual, motions, u), 0., motions.front().frames};
+    const Eigen::VectorXd   moved  = dual.body_motions().jumps({motion}).toDense().col(0);
+    const DistributedVector jumps  = dual.dual_operator().jumps(u);
+    double                  worst  = 0;
+    for (unsigned int r = 0; r < c.size(); ++r)
+      if (rows.kind[r] == RowKind::prescribed)
+        c[r] -= moved[r];
+      else if (free[r] || rows.kind[r] != RowKind::normal)
+        worst = std::max(worst, std::abs(moved[r]));
+      else // closes a gap
+        worst = std::max(worst, std::min(-moved[r], jumps.local_element(r) - moved[r] - c[r]));
+    if (dealii::Utilities::MPI::max(worst, dual.communicator()) > tolerated)
+      return;
+    subtract_motion(dual, motion.amplitudes, u);
+    dual.set_right_hand_side(std::move(c));
+  }
 
   DistributedVector misfit(const DualProblem &dual, const Recovery &of, const std::vector<bool> &free)
   {

@@ -78,6 +78,27 @@ class FreeMotions(unittest.TestCase):
         self.assertEqual(checked.status, 0, checked)
         self.assertIn(turns[0], checked.stdout)
 
+    def press_fit(self, law, force=('5', '3'), edges='48', **kinds):
+        """A shaft in a ring, pushed by forces through its centre."""
+        return scenes.box('fit', plane_state='plane strain', materials={'steel': STEEL}, bodies={
+            'shaft': {'Shape': 'disc', 'Radius': '10', 'Cells along arc': '32', 'Material': 'steel'},
+            'hub': {'Shape': 'ring', 'Inner radius': '10', 'Radius': '20', 'Cells': edges + ', 4', 'Material': 'steel'}},
+            supports={'held': {'Boundary': 'hub/outer', 'Displacement x': '0', 'Displacement y': '0'}},
+            body_forces={'g': {'Bodies': 'shaft', 'Force x': force[0], 'Force y': force[1]}},
+            contacts={'fit': {'Slave': 'shaft/arc', 'Master': 'hub/inner', 'Offset': '-0.01', **law}},
+            probes={side: {'Body': 'shaft', 'Point': point} for side, point in (('east', '10, 0'), ('west', '-10, 0'))}, **SMALL, **kinds)
+
+    def test_a_rotation_set_to_zero_is_zero(self):
+        """Without friction one node was held, whose deformation showed as a rotation of 1.8e-4."""
+        turned = []
+        for law in ({'Law': 'frictionless'}, {'Law': 'Tresca', 'Slip bound': '0'}):
+            for ranks, tolerance in ((1, '1e-8'), (2, '1e-4')):
+                result = self.converges(self.press_fit(law, Solver={'Tolerance': tolerance}), 'body shaft: rotation about (0, 0)', ranks=ranks)
+                u = [probe['displacement'] for probe in result.summary['results']['probes']]
+                self.assertAlmostEqual(u[0][1], u[1][1], delta=1e-6)
+                turned.append(u[0][1])
+        self.assertAlmostEqual(min(turned), max(turned), delta=1e-6)
+
     def test_a_torque_on_it(self):
         torque = {'Traction x': '-y/40', 'Traction y': 'x/40'}
         for radius in ('20', '20.02'):

@@ -114,6 +114,11 @@ namespace slipstick::app
     {
       return unheld_motions;
     }
+    /// These motions, held by additional supports in the present step.
+    const std::vector<tfeti::RigidMotion> &still_motions() const
+    {
+      return held_still;
+    }
     /// Null if the scene has none.
     const mechanics::Bolts<dim> *bolts() const
     {
@@ -171,6 +176,7 @@ namespace slipstick::app
     tfeti::HeldContacts                 held;    // contact nodes whose gap supports prescribe
     unsigned int                        n_given; // number of supports
     std::string                         unheld_motions;
+    std::vector<tfeti::RigidMotion>     held_still;
     mechanics::Tightening               bolts_so_far;
     double                              the_kept_part;
     double                              the_largest_load = 0; // [N]

@@ -127,6 +127,7 @@ namespace slipstick::app
     /// although others may.
     /// @param bounds_follow whether bounds follow the pressure.
     tfeti::Recovery recovered(bool bounds_follow);
+    void            take_out_still_motions(Answer &answer, const double t);
 
     /// Displacements and forces from which the next load step starts. With friction they are corrected on the active
     /// set of the solution: nodes that neither stick firmly nor slip, as after a reversal of the load, would otherwise

@@ -38,6 +38,15 @@ namespace slipstick::tfeti
   /// than that of u, does not enter again as with recover(). Collective.
   void correct(const DualProblem &dual, Recovery &at, const DistributedVector &step, const std::vector<bool> &free);
 
+  /// Takes motions out of u that no row resists except those of auxiliary supports, whose prescribed displacements
+  /// follow; unless other rows were moved by more than @p tolerated [mm]. Collective.
+  /// @param free as in recover().
+  void remove_motions(DualProblem                    &dual,
+                      const std::vector<RigidMotion> &motions,
+                      const std::vector<bool>        &free,
+                      const double                    tolerated,
+                      std::vector<Eigen::VectorXd>   &u);
+
   /// c + compliance x - B u on the free rows, 0 on the others [mm]. Collective.
   DistributedVector misfit(const DualProblem &dual, const Recovery &of, const std::vector<bool> &free);
 } // namespace slipstick::tfeti
