@@ -74,9 +74,13 @@ namespace slipstick::app
           wanted = options.goals;
         steps.emplace(scene, directory, quiet, comm, wanted, &refinement);
         steps->start_from(std::move(contact));
+        if (is_undriven)
+          steps->assume_undriven();
         const auto &summary = steps->solve_and_write(false);
         contact             = steps->contact_of_first_step();
-        const bool solved   = summary.status == output::RunStatus::converged;
+        if (rows.empty())
+          is_undriven = steps->has_still_motions();
+        const bool solved = summary.status == output::RunStatus::converged;
         if (rows.empty() && options.goals.empty())
           leave_out(steps->point_forces());
         else if (rows.empty())

@@ -145,7 +145,7 @@ namespace slipstick::tfeti
     const std::string others = motions.size() > 1 ? format(" (one of %zu free motions)", motions.size()) : "";
     const std::string remedy = "add a support or a contact that acts against this motion";
     if (motion.work > 0)
-      throw NoEquilibrium(text + ", where the loads push" + others, remedy);
+      throw DrivenMotions(text + ", where the loads push" + others, remedy, motions, motion.work);
     throw UnheldMotions(text + "; no load acts along it, but the position is not determined" + others, remedy, motions);
   }
 } // namespace slipstick::tfeti

@@ -99,6 +99,24 @@ class FreeMotions(unittest.TestCase):
                 turned.append(u[0][1])
         self.assertAlmostEqual(min(turned), max(turned), delta=1e-6)
 
+    def test_a_mesh_that_cuts_the_outline_unevenly(self):
+        """The centroid of a polygon refined on one side is not the centre; a torque, however small, is refused."""
+        goals = {'Accuracy': '1 %', 'Goal': 'fit.max_pressure', 'Output/VTU': 'false'}
+        for ranks in (1, 2):
+            result = solve(self.press_fit({'Law': 'frictionless'}, force=('0.5', '0.21')), goals, ranks=ranks)
+            self.assertEqual(result.status, 0, result)
+            self.assertGreater(len(result.summary['meshes']), 1)
+            self.assertIn('rotation about (0, 0)', ' '.join(result.summary['warnings']))
+            held, = result.summary['results']['supports']
+            load, = result.summary['results']['loads']
+            for d in (0, 1):
+                self.assertAlmostEqual(held['force'][d] / load['force'][d], -1, delta=1e-9)
+        for torque in (1e-3, 1e-6):  # of force times radius
+            turning = 2 * torque * math.hypot(0.5, 0.3) / 10
+            pushed = self.press_fit({'Law': 'frictionless'}, force=('0.5-{}*y'.format(turning), '0.3+{}*x'.format(turning)))
+            for settings in ({}, goals):
+                self.assertEqual(solve(pushed, settings).status, 4)
+
     def test_a_torque_on_it(self):
         torque = {'Traction x': '-y/40', 'Traction y': 'x/40'}
         for radius in ('20', '20.02'):

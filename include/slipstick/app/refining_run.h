@@ -61,7 +61,8 @@ namespace slipstick::app
     const Log                       quiet;
     const MPI_Comm                  comm;
     mesh::Refinement                refinement;
-    contact::ContactOfMesh          contact; // on the previous mesh
+    contact::ContactOfMesh          contact;             // on the previous mesh
+    bool                            is_undriven = false; // whether motions that nothing resists were found on the first
     std::vector<output::MeshRow>    rows;
     std::vector<LeftOut<dim>>       left_out;
     std::vector<std::string>        notes;

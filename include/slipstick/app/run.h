@@ -34,6 +34,18 @@ namespace slipstick::app
       solver.start_from(std::move(other));
     }
 
+    /// See StepProblem.
+    void assume_undriven()
+    {
+      solver.assume_undriven();
+    }
+
+    /// Whether motions that nothing resists were set to zero.
+    bool has_still_motions() const
+    {
+      return !solver.unheld().empty();
+    }
+
     /// The contact of the first load step. Collective.
     contact::ContactOfMesh contact_of_first_step() const;
 

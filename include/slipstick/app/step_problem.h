@@ -32,6 +32,13 @@ namespace slipstick::app
                 const scene::SolverOptions &options,
                 mesh::Refinement           *refinement);
 
+    /// Small loads along motions that nothing resists are those of an outline that the mesh cuts unevenly: on another
+    /// mesh of this scene there are none.
+    void assume_undriven()
+    {
+      is_undriven = true;
+    }
+
     /// Builds the problem at load factor t. @throws InputError, NoEquilibrium.
     void build(const double t);
 
@@ -148,6 +155,9 @@ namespace slipstick::app
     void make_dual(const double t);
     void make_dual_as_it_is(const double t);
 
+    /// Subtracts the parts of loads along `balanced`.
+    void balance(std::vector<Eigen::VectorXd> &loads) const;
+
     /// Loads of this rank's subdomains, including bolts, with rounding set to zero.
     std::vector<Eigen::VectorXd> loads_at(const double t);
 
@@ -177,6 +187,8 @@ namespace slipstick::app
     unsigned int                        n_given; // number of supports
     std::string                         unheld_motions;
     std::vector<tfeti::RigidMotion>     held_still;
+    bool                                is_undriven = false;
+    std::vector<tfeti::RigidMotion>     balanced; // motions along which the loads of the scene do no work
     mechanics::Tightening               bolts_so_far;
     double                              the_kept_part;
     double                              the_largest_load = 0; // [N]

@@ -45,6 +45,11 @@ namespace slipstick::app
     /// Builds the dual problem of the first load step. @throws InputError, NoEquilibrium.
     void build();
 
+    void assume_undriven() // see StepProblem
+    {
+      problem.assume_undriven();
+    }
+
     /// The first load step will begin from the contact on another mesh.
     void start_from(contact::ContactOfMesh other);
 

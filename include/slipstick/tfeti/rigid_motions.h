@@ -31,6 +31,23 @@ namespace slipstick::tfeti
     std::vector<RigidMotion> motions; // orthonormal
   };
 
+  /// Thrown for motions that no row of B resists, along which the loads push.
+  class DrivenMotions : public NoEquilibrium
+  {
+  public:
+    DrivenMotions(const std::string              &problem,
+                  const std::string              &remedy,
+                  const std::vector<RigidMotion> &unheld,
+                  const double                    work_)
+      : NoEquilibrium(problem, remedy)
+      , motions(unheld)
+      , work(work_)
+    {}
+
+    std::vector<RigidMotion> motions; // orthonormal
+    double                   work;    // of the loads, as in RigidMotion, along the motion where it is largest
+  };
+
   /// Jumps of the rows of B under rigid motions of whole bodies (gluing rows excepted: both sides move with their
   /// body).
   class BodyMotions
@@ -134,7 +151,7 @@ namespace slipstick::tfeti
   /// moves the fewest components (translations before rotations). @param motions orthonormal, at least one.
   RigidMotion plainest(const std::vector<RigidMotion> &motions);
 
-  /// @throws NoEquilibrium naming the plainest of the motions if the loads push along it, otherwise UnheldMotions; does
+  /// @throws DrivenMotions naming the plainest of the motions if the loads push along it, otherwise UnheldMotions; does
   /// not throw if there are no motions.
   void require_support(const std::vector<RigidMotion> &motions, const std::vector<std::string> &body_names);
 } // namespace slipstick::tfeti
