@@ -131,6 +131,28 @@ TEST(Cohesion, holds_a_block_up_to_its_shear_strength)
   });
 }
 
+TEST(Cohesion, a_force_at_an_open_node_fails_the_checks_however_small)
+{
+  const double shear = 1e-4 * pressure;
+  const Answer answer(loaded_block(numbers[0].law(), shear, blocks(1)));
+  const auto  &point = answer.dual->constraints().contact_points.front();
+  auto         x     = answer.recovery.multipliers;
+  auto         free  = answer.solution.free;
+  const auto   worst = [&] {
+    return contact::check(*answer.dual, answer.law, x, answer.recovery.u, answer.law.bounds(x), free, 1)
+      .checks.friction_bound;
+  };
+  EXPECT_LT(worst(), 1e-6);
+  free[point.normal_row] = false;
+  for (const double rounding : {0., 1e-14})
+    {
+      x.local_element(point.normal_row) = rounding * x.linfty_norm();
+      EXPECT_GT(worst(), 0.4);
+    }
+  x.local_element(point.tangential_row) = 0;
+  EXPECT_LT(worst(), 1e-6);
+}
+
 TEST(Cohesion, does_not_hold_a_block_beyond_it)
 {
   for_each_law([](const Numbers &number, const scene::Algorithm algorithm) {
