@@ -386,13 +386,13 @@ namespace slipstick::qp
         next.x           = std::move(result.x);
         next.Fx          = std::move(result.product);
         next.error_of_Fx = result.error;
-        restore_balance(face, target);
+        restore_balance(face);
         fill_gradient(face, next);
       }
 
       // Directions satisfy G p = 0 up to rounding, and so do their combinations unless they cancel. What is missing of G
       // x = e is restored; otherwise it would grow from face to face, since steps between points become directions.
-      void restore_balance(const Face &face, const double target)
+      void restore_balance(const Face &face)
       {
         constexpr double rounding = 1e-13; // relative to |x|
         Vector           balanced(next.x), product(next.x);
@@ -402,7 +402,7 @@ namespace slipstick::qp
         if (!(missing > rounding * qp::norm(next.x, problem.reduction())))
           return;
         add(1., balanced, next.x);
-        if (norm * missing <= options.face.accuracy * target)
+        if (norm * missing <= options.face.accuracy * options.last_forcing * stop.tolerance_of_faces() * goal.reference)
           {
             next.error_of_Fx = std::hypot(next.error_of_Fx, norm * missing);
             return;
