@@ -280,10 +280,18 @@ namespace slipstick::app
   Functional Functionals<dim>::reaction(const std::string &name, const unsigned int support, const unsigned int d) const
   {
     Functional goal{name, "N", 0, std::vector<double>(n_rows, 0.), {}, {}};
+    // at nodes that several supports hold, each is given an equal share of the force, which may belong to either
+    double shared = 0;
     for (const auto &reaction : rows.reactions)
       if (std::count(reaction.holders.begin(), reaction.holders.end(), support) > 0)
-        goal.jumps[reaction.row] -= reaction.direction[d] / reaction.holders.size();
-    goal.value = value_of(goal.jumps);
+        {
+          const double share = reaction.direction[d] / reaction.holders.size();
+          goal.jumps[reaction.row] -= share;
+          if (reaction.holders.size() > 1)
+            shared += std::abs(share * x.local_element(reaction.row));
+        }
+    goal.value       = value_of(goal.jumps);
+    goal.local_error = dealii::Utilities::MPI::sum(shared, comm);
     return goal;
   }
 
