@@ -9,6 +9,12 @@
 
 namespace slipstick::tfeti
 {
+  namespace
+  {
+    // Stiffness of a turned entry, relative to that without its compliance, below which M does not couple it.
+    constexpr double least_carried = 0.1;
+  } // namespace
+
   Face DualProblem::face(const std::vector<bool>     &free,
                          const std::vector<qp::Tie>  &ties,
                          const std::vector<qp::Turn> &turns) const
@@ -38,8 +44,13 @@ namespace slipstick::tfeti
         tied.reset();
         return;
       }
-    if (problem.preconditioner())
-      weights = std::make_unique<RowWeights::Inverse>(problem.preconditioner()->weights(), free, turns);
+    if (!problem.preconditioner())
+      return;
+    std::vector<bool> carried = free;
+    for (std::size_t k = 0; k < turns.size(); ++k)
+      if (stiffness[k] < least_carried)
+        carried[turns[k].second] = false;
+    weights = std::make_unique<RowWeights::Inverse>(problem.preconditioner()->weights(), carried, turns);
   }
 
   void Face::make_projectors()
@@ -182,7 +193,22 @@ namespace slipstick::tfeti
     for (std::size_t row = 0; row < compliance_factors.size(); ++row) // their own stiffness also carries smooth loads
       z.local_element(row) += (1 - compliance_factors[row] * compliance_factors[row]) * metric.weights()[row] *
                               metric.least() * r.local_element(row);
+    if (!turns.empty() && !metric.weights().empty())
+      add_soft_entries(r, z);
     z *= problem.norm();
+  }
+
+  // Entries across a slipping force that are much softer than the bodies are not carried by them: M has their own
+  // compliance, and no coupling to other entries.
+  void Face::add_soft_entries(const DistributedVector &r, DistributedVector &z) const
+  {
+    DistributedVector at(r);
+    qp::turn(turns, at);
+    qp::turn(turns, z);
+    for (std::size_t k = 0; k < turns.size(); ++k)
+      if (const unsigned int row = turns[k].second; stiffness[k] < least_carried && free[row])
+        z.local_element(row) = stiffness[k] * metric.weights()[row] * metric.least() * at.local_element(row);
+    qp::turn_back(turns, z);
   }
 
   // Returns x itself if no rows are turned.

@@ -387,7 +387,8 @@ namespace slipstick::qp
         if (!(radius > 0))
           return {0., size};
         const double c = size > 0 ? x1 / size : disc.cosine, s = size > 0 ? x2 / size : disc.sine;
-        return {std::hypot(std::max(0., c * g1 + s * g2), c * g2 - s * g1), size - radius};
+        const double across = (c * g2 - s * g1) / (1 + disc.compliance * weight(disc.second)); // as FaceSolver
+        return {std::hypot(std::max(0., c * g1 + s * g2), across), size - radius};
       }
 
       // Determines the turns of the slipping nodes of a new set; g is the gradient with which it was predicted. A force

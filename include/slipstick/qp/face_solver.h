@@ -346,7 +346,16 @@ namespace slipstick::qp
         }
       face.project_range(r, w);
       add(-1.0, w, r);
-      norm_r = std::sqrt(reduction.sum(std::array<double, 1>{{local_weighted_dot(weights, r, r)}})[0]);
+      norm_r = std::sqrt(reduction.sum(std::array<double, 1>{{squared(r)}})[0]);
+    }
+
+    // Of the owned entries, in the norm of the residual.
+    double squared(const Vector &v) const
+    {
+      if (turns.empty())
+        return local_weighted_dot(weights, v, v);
+      const Vector in_norm = weighted(v);
+      return local_dot(in_norm, in_norm);
     }
 
     Vector preconditioned(const Vector &residual)
@@ -383,22 +392,39 @@ namespace slipstick::qp
           add(-c[j], images[j], left);
           add(c[j], store[j].p, p);
         }
-      if (weights)
-        for (std::size_t i = 0; i < local_size(left); ++i)
-          left.begin()[i] /= weights[i];
+      unweight(left);
       face.clear_held(p);
       add(1., preconditioned(left), p);
       face.project_kernel(p);
       return p;
     }
 
+    // In the norm of the residual: entries are turned, and those across a slipping force count relative to their own
+    // compliance, since the force follows the slip.
     Vector weighted(const Vector &v) const
     {
       Vector result(v);
-      if (weights)
-        for (std::size_t i = 0; i < local_size(v); ++i)
-          result.begin()[i] *= weights[i];
+      turn(turns, result);
+      for (std::size_t i = 0; i < local_size(v); ++i)
+        result.begin()[i] *= weight(i);
+      for (const Turn &of : turns)
+        result.begin()[of.second] /= 1 + of.compliance * weight(of.second);
       return result;
+    }
+
+    // The inverse.
+    void unweight(Vector &v) const
+    {
+      for (const Turn &of : turns)
+        v.begin()[of.second] *= 1 + of.compliance * weight(of.second);
+      for (std::size_t i = 0; i < local_size(v); ++i)
+        v.begin()[i] /= weight(i);
+      turn_back(turns, v);
+    }
+
+    double weight(const std::size_t i) const
+    {
+      return weights ? weights[i] : 1.;
     }
 
     // weighted P (F + C + eps D) p

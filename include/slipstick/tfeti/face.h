@@ -57,6 +57,7 @@ namespace slipstick::tfeti
     void                make_projectors();
     std::vector<double> softened_weights();
     const DistributedVector &turned(const DistributedVector &x, std::optional<DistributedVector> &copy) const;
+    void                     add_soft_entries(const DistributedVector &r, DistributedVector &z) const;
     void                     soften(DistributedVector &x) const;
 
     const Projector &balancing() const
