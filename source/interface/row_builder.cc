@@ -271,13 +271,6 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  typename RowBuilder<dim>::Vector RowBuilder<dim>::bond(const ContactCandidate<dim> &touch,
-                                                         const unsigned int           direction) const
-  {
-    return jump(touch, direction == 0 ? touch.normal : tangents_of(touch)[direction - 1]);
-  }
-
-  template <int dim>
   typename RowBuilder<dim>::Vector RowBuilder<dim>::free_part(const Vector &row) const
   {
     Vector left;
@@ -299,14 +292,18 @@ namespace slipstick::interface
   {
     for (const auto &list : touches.bonds_between_bodies())
       for (const auto &[i, touch] : list)
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            const auto row = bond(touch, d);
-            if (d > 0 && norm(free_sides(touch, tangents_of(touch)[d - 1])) <= held_tangent && !is_moved(row))
-              continue;
-            if (bonds.add(free_part(row), held_direction_tolerance, dim * i, dim * (i + 1)))
-              kept_bonds.insert(std::array<unsigned int, 4>{{i, touch.pair, touch.side, d}});
-          }
+        {
+          const auto tangents = tangents_of(touch);
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const Tensor &direction = d == 0 ? touch.normal : tangents[d - 1];
+              const auto    row       = jump(touch, direction);
+              if (d > 0 && norm(free_sides(touch, direction)) <= held_tangent && !is_moved(row))
+                continue;
+              if (bonds.add(free_part(row), held_direction_tolerance, dim * i, dim * (i + 1)))
+                kept_bonds.insert(std::array<unsigned int, 4>{{i, touch.pair, touch.side, d}});
+            }
+        }
   }
 
   template <int dim>
@@ -318,7 +315,8 @@ namespace slipstick::interface
     for (ContactCandidate<dim> &touch : touching)
       if (scene.contacts[touch.pair].law.is_bonded)
         {
-          set_tangents(tangents_of(touch), touch.point);
+          const auto tangents = tangents_of(touch);
+          set_tangents(tangents, touch.point);
           for (unsigned int d = 0; d < dim; ++d)
             {
               if (kept_bonds.count(std::array<unsigned int, 4>{{i, touch.pair, touch.side, d}}) == 0)
@@ -326,7 +324,7 @@ namespace slipstick::interface
               const unsigned int number =
                 new_row(tfeti::RowKind::bonded, 0., key, (1ull << 32) + 16 * touch.pair + 4 * touch.side + d);
               (d == 0 ? touch.point.normal_row : d == 1 ? touch.point.tangential_row : touch.point.second_row) = number;
-              fill(number, bond(touch, d));
+              fill(number, jump(touch, d == 0 ? touch.normal : tangents[d - 1]));
               ++constraints.counts.gluing;
             }
           if (touch.point.normal_row != tfeti::invalid_row || touch.point.tangential_row != tfeti::invalid_row)

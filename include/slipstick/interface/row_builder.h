@@ -78,9 +78,7 @@ namespace slipstick::interface
     Vector free_sides(const ContactCandidate<dim> &touch, const Tensor &direction) const;
     /// If supports hold both sides along a tangent, it is the second one.
     Tangents tangents_of(const ContactCandidate<dim> &touch) const;
-    /// Row of a bond along the normal (0) or a tangent (1, 2).
-    Vector bond(const ContactCandidate<dim> &touch, const unsigned int direction) const;
-    bool   is_pruned(const ContactCandidate<dim> &touch) const;
+    bool     is_pruned(const ContactCandidate<dim> &touch) const;
     /// The part of the jump along a row that the displacements of supports prescribe at the load factor @p at [mm].
     double                 prescribed(const Vector &row, const double at) const;
     dealii::Tensor<1, dim> held_displacement(const unsigned int node, const double at) const;

@@ -387,7 +387,7 @@ namespace slipstick::qp
         if (!(radius > 0))
           return {0., size};
         const double c = size > 0 ? x1 / size : disc.cosine, s = size > 0 ? x2 / size : disc.sine;
-        const double across = (c * g2 - s * g1) / (1 + disc.compliance * weight(disc.second)); // as FaceSolver
+        const double across = (c * g2 - s * g1) * disc.softness(weight(disc.second));
         return {std::hypot(std::max(0., c * g1 + s * g2), across), size - radius};
       }
 

@@ -408,7 +408,7 @@ namespace slipstick::qp
       for (std::size_t i = 0; i < local_size(v); ++i)
         result.begin()[i] *= weight(i);
       for (const Turn &of : turns)
-        result.begin()[of.second] /= 1 + of.compliance * weight(of.second);
+        result.begin()[of.second] *= of.softness(weight(of.second));
       return result;
     }
 
@@ -416,7 +416,7 @@ namespace slipstick::qp
     void unweight(Vector &v) const
     {
       for (const Turn &of : turns)
-        v.begin()[of.second] *= 1 + of.compliance * weight(of.second);
+        v.begin()[of.second] /= of.softness(weight(of.second));
       for (std::size_t i = 0; i < local_size(v); ++i)
         v.begin()[i] /= weight(i);
       turn_back(turns, v);

@@ -45,6 +45,13 @@ namespace slipstick::qp
     double      cosine     = 1;
     double      sine       = 0;
     double      compliance = 0; // >= 0
+
+    /// Factor of the residual of x_s, about the force that it changes over that without the compliance.
+    /// @param weight of the residual of the entry (for |F| = 1)
+    double softness(const double weight) const
+    {
+      return 1 / (1 + compliance * weight);
+    }
   };
 
   /// Turns the entries of x.
