@@ -37,19 +37,11 @@ namespace slipstick::contact
   std::vector<qp::Tie> following_friction(const SlipLaw &law, const DualSolution &solution)
   {
     std::vector<qp::Tie> ties;
-    const auto          &x    = solution.multipliers;
-    const auto          &free = solution.free;
-    for (const auto &node : law.pressure_bounds())
-      {
-        if (free[node.tangential] || !free[node.normal] || (node.is_disc() && free[node.second]))
-          continue;
-        const double radius = node.forces.radius(x.local_element(node.normal)), slope = node.forces.slope(radius);
-        if (!(radius > 0) || slope == 0)
-          continue;
-        for (const std::size_t row : {node.tangential, node.second})
-          if (row != qp::no_entry)
-            ties.push_back({row, node.normal, slope * x.local_element(row) / radius});
-      }
+    const auto          &x = solution.multipliers;
+    for (const auto &[node, bound, slope] : law.slipping_nodes(x, solution.free))
+      for (const std::size_t row : {node.tangential, node.second})
+        if (row != qp::no_entry)
+          ties.push_back({row, node.normal, slope * x.local_element(row) / bound});
     return ties;
   }
 

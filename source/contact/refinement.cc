@@ -32,25 +32,19 @@ namespace slipstick::contact
     SlippingRows slipping_rows(const SlipLaw &law, const std::vector<bool> &free, Vector &x)
     {
       SlippingRows result;
-      for (const qp::PressureBound &bound : law.pressure_bounds())
+      for (const auto &[node, bound, slope] : law.slipping_nodes(x, free))
         {
-          double       along = x.local_element(bound.tangential), across = 0;
-          const double radius = bound.forces.radius(x.local_element(bound.normal)), slope = bound.forces.slope(radius);
-          const bool   is_free = free[bound.tangential] || (bound.is_disc() && free[bound.second]);
-          if (bound.is_disc())
-            across = x.local_element(bound.second);
+          double along = x.local_element(node.tangential), across = node.is_disc() ? x.local_element(node.second) : 0.;
           const double size = std::hypot(along, across);
-          if (is_free || !free[bound.normal] || slope == 0 || size == 0)
-            continue;
           along /= size;
           across /= size;
-          x.local_element(bound.tangential) = along * radius;
-          if (bound.is_disc())
+          x.local_element(node.tangential) = along * bound;
+          if (node.is_disc())
             {
-              x.local_element(bound.second) = across * radius;
-              result.turns.push_back({bound.tangential, bound.second, along, across});
+              x.local_element(node.second) = across * bound;
+              result.turns.push_back({node.tangential, node.second, along, across});
             }
-          result.ties.push_back({bound.tangential, bound.normal, bound.is_disc() ? slope : along * slope});
+          result.ties.push_back({node.tangential, node.normal, node.is_disc() ? slope : along * slope});
         }
       return result;
     }

@@ -104,6 +104,21 @@ namespace slipstick::contact
     return result;
   }
 
+  std::vector<SlippingNode> SlipLaw::slipping_nodes(const Vector &x, const std::vector<bool> &free) const
+  {
+    std::vector<SlippingNode> result;
+    for (const auto &node : rows)
+      {
+        const double first  = x.local_element(node.tangential),
+                     second = node.is_disc() ? x.local_element(node.second) : 0.;
+        const double bound = node.forces.radius(x.local_element(node.normal)), slope = node.forces.slope(bound);
+        const bool   sticks = free[node.tangential] || (node.is_disc() && free[node.second]);
+        if (!sticks && free[node.normal] && bound > 0 && slope > 0 && (first != 0 || second != 0))
+          result.push_back({node, bound, slope});
+      }
+    return result;
+  }
+
   std::vector<qp::PressureBound> SlipLaw::fixed_discs(const std::vector<double> &bounds, const bool all) const
   {
     std::vector<qp::PressureBound> result = discs;

@@ -12,6 +12,14 @@ namespace slipstick::contact
   /// Bounds of the multipliers: normal >= 0, |tangential| <= slip bound, equality rows unbounded [N].
   Box multiplier_box(const tfeti::DualProblem &dual, const std::vector<double> &slip_bound);
 
+  /// A slipping node whose slip bound follows its normal force.
+  struct SlippingNode
+  {
+    qp::PressureBound rows;
+    double            bound; // [N], > 0
+    double            slope; // its derivative with respect to the normal force [-], > 0
+  };
+
   /// The contact laws of a scene on the rows of a dual problem: the admissible forces at every contact node.
   class SlipLaw
   {
@@ -41,6 +49,10 @@ namespace slipstick::contact
     {
       return rows;
     }
+
+    /// The nodes that slip under the multipliers x and may change their normal force, where the slip bound follows it.
+    /// @param free owned rows: the multiplier is strictly inside its bounds
+    std::vector<SlippingNode> slipping_nodes(const tfeti::DistributedVector &x, const std::vector<bool> &free) const;
 
     /// Discs with radii fixed at @p bounds, for a solver.
     /// @param all true: all nodes in space with friction; false: those whose bound does not depend on a normal force
