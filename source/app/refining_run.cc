@@ -1,5 +1,6 @@
 #include <slipstick/app/refining_run.h>
 #include <slipstick/app/report.h>
+#include <slipstick/app/run_summary.h>
 #include <slipstick/base/memory.h>
 #include <slipstick/base/text.h>
 
@@ -25,18 +26,15 @@ namespace slipstick::app
     /// Largest magnitude of the results with this unit; 0: none is known.
     double largest_of_unit(const std::string &unit, const output::ResultSummary &results)
     {
-      double     largest = 0;
-      const auto take    = [&](const double value) { largest = std::max(largest, std::abs(value)); };
-      if (unit == "mm")
-        take(results.max_displacement);
-      if (unit == "MPa")
-        take(results.max_von_mises);
-      for (const auto &pair : results.contact)
-        take(unit == "N" ? pair.normal_force : unit == "MPa" ? pair.max_pressure : 0.);
       if (unit == "N")
-        for (const auto &support : results.forces.supports)
-          for (const double force : support.sum.force)
-            take(force);
+        return largest_force(results);
+      if (unit == "mm")
+        return results.max_displacement;
+      if (unit != "MPa")
+        return 0;
+      double largest = results.max_von_mises;
+      for (const auto &pair : results.contact)
+        largest = std::max(largest, pair.max_pressure);
       return largest;
     }
   } // namespace

@@ -53,19 +53,6 @@ namespace slipstick::app
       return summary;
     }
 
-    /// Largest force of a load, a support or a pair [N].
-    double largest_of(const output::ResultSummary &results)
-    {
-      double largest = 0;
-      for (const auto *of : {&results.forces.loads, &results.forces.supports})
-        for (const auto &entry : *of)
-          for (const double force : entry.sum.force)
-            largest = std::max(largest, std::abs(force));
-      for (const auto &pair : results.contact)
-        largest = std::max({largest, std::abs(pair.normal_force), std::abs(pair.tangential_force)});
-      return largest;
-    }
-
     /// "40 s", "12 min", "3.5 h"
     std::string duration_text(const double seconds)
     {
@@ -340,7 +327,7 @@ namespace slipstick::app
         for (std::size_t k = 0; k < contact.checks.traction_errors.size(); ++k)
           pairs[k].algebraic_error = contact.checks.traction_errors[k];
       }
-    largest_force = std::max(largest_force, largest_of(summary.results));
+    largest_force = std::max(largest_force, app::largest_force(summary.results));
     if (scene.has_contact() && step + 1 == scene.load_factors.size())
       if (const auto text = unresolved_contacts(contact_steps.back().nodes,
                                                 scene.contacts,

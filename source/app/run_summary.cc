@@ -86,6 +86,18 @@ namespace slipstick::app
       pair.on_slave.moment = pair.moment_mismatch = {{0, 0, 0}};
   }
 
+  double largest_force(const output::ResultSummary &results)
+  {
+    double largest = 0;
+    for (const auto *list : {&results.forces.loads, &results.forces.supports})
+      for (const auto &one : *list)
+        for (const double force : one.sum.force)
+          largest = std::max(largest, std::abs(force));
+    for (const auto &pair : results.contact)
+      largest = std::max({largest, std::abs(pair.normal_force), std::abs(pair.tangential_force)});
+    return largest;
+  }
+
   template <int dim>
   output::Summary make_summary(const scene::Scene<dim>       &scene,
                                const mesh::Mesh<dim>         &mesh,

@@ -33,6 +33,9 @@ namespace slipstick::app
   template <int dim>
   void drop_moments(const scene::Scene<dim> &scene, output::ResultSummary &results);
 
+  /// Largest component of the force of a load or support, or force of a pair [N].
+  double largest_force(const output::ResultSummary &results);
+
   /// All entries of summary.json except times and memory.
   template <int dim>
   output::Summary make_summary(const scene::Scene<dim>       &scene,
