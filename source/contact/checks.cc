@@ -1,5 +1,6 @@
 #include <slipstick/contact/checks.h>
 #include <slipstick/contact/node_law.h>
+#include <slipstick/qp/types.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -228,7 +229,7 @@ namespace slipstick::contact
         for (unsigned int r = 0; r < constraints.kind.size(); ++r)
           if (is_equality(constraints.kind[r]) && largest[jump].take(std::abs(violation(r)), Place()))
             row_of_jump = r;
-        const double      noise = tfeti::force_rounding * multipliers.linfty_norm();
+        const double      noise = qp::force_rounding * multipliers.linfty_norm();
         DistributedVector wrong = jumps;
         std::vector<bool> held(constraints.kind.size());
         for (unsigned int r = 0; r < held.size(); ++r)
@@ -334,7 +335,7 @@ namespace slipstick::contact
         for (unsigned int i = 0; i < constraints.contact_points.size(); ++i)
           of_pair[result.nodes[i].pair] = std::max(of_pair[result.nodes[i].pair], force_at(i));
         MPI_Allreduce(MPI_IN_PLACE, of_pair.data(), of_pair.size(), MPI_DOUBLE, MPI_MAX, comm);
-        const double      noise = tfeti::force_rounding * multipliers.linfty_norm();
+        const double      noise = qp::force_rounding * multipliers.linfty_norm();
         std::vector<bool> follows(constraints.kind.size(), false);
         for (const auto &bound : law.pressure_bounds())
           follows[bound.tangential] = true;
@@ -362,7 +363,7 @@ namespace slipstick::contact
         const double way    = std::max(largest_gap, result.checks.max_displacement);
         const double before = part_of_history * history.displacement;
         // supports may carry all loads right where these act: then only rounding remains
-        const double rounding  = tfeti::force_rounding * largest_force;
+        const double rounding  = qp::force_rounding * largest_force;
         const double no_length = std::max(negligible_part * way, before);
         Scales       scales;
         scales.no_strain = std::max(negligible_deformation * way, before);

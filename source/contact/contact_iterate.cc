@@ -1,6 +1,7 @@
 #include <slipstick/contact/contact_iterate.h>
 #include <slipstick/contact/linear.h>
 #include <slipstick/qp/box.h>
+#include <slipstick/qp/types.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -105,7 +106,7 @@ namespace slipstick::contact
   DualSolution ContactIterate::finished()
   {
     unsigned long long n     = 0;
-    const double       noise = tfeti::force_rounding * solution.multipliers.linfty_norm();
+    const double       noise = qp::force_rounding * solution.multipliers.linfty_norm();
     const auto         size  = sizes(solution.multipliers);
     solution.free.resize(solution.multipliers.locally_owned_size());
     for (unsigned int r = 0; r < solution.free.size(); ++r)

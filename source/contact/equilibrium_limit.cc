@@ -1,5 +1,6 @@
 #include <slipstick/base/log.h>
 #include <slipstick/contact/equilibrium_limit.h>
+#include <slipstick/qp/types.h>
 #include <slipstick/tfeti/rigid_motions.h>
 
 #include <deal.II/base/mpi.h>
@@ -36,7 +37,7 @@ namespace slipstick::contact
                                                 const tfeti::DistributedVector &x,
                                                 const double                    below)
   {
-    const double        largest = x.linfty_norm(), noise = tfeti::force_rounding * largest;
+    const double        largest = x.linfty_norm(), noise = qp::force_rounding * largest;
     const auto          bounds = law.bounds(x);
     std::vector<bool>   holds(x.locally_owned_size());
     std::vector<double> capacity(holds.size(), -1.);

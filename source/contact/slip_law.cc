@@ -1,5 +1,6 @@
 #include <slipstick/base/collective.h>
 #include <slipstick/contact/slip_law.h>
+#include <slipstick/qp/types.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -93,7 +94,7 @@ namespace slipstick::contact
   std::vector<double> SlipLaw::bounds(const Vector &x) const
   {
     std::vector<double> result = fixed;
-    const double        least  = follows_pressure ? tfeti::force_rounding * x.linfty_norm() : 0.; // rounding
+    const double        least  = follows_pressure ? qp::force_rounding * x.linfty_norm() : 0.; // rounding
     for (const auto &row : rows)
       {
         const double pressed   = x.local_element(row.normal);

@@ -1,3 +1,4 @@
+#include <slipstick/qp/types.h>
 #include <slipstick/tfeti/dense.h>
 #include <slipstick/tfeti/least_violation.h>
 #include <slipstick/tfeti/recovery.h>
@@ -20,7 +21,7 @@ namespace slipstick::tfeti
                                 std::vector<bool>              &free)
     {
       const Constraints        &rows  = dual.constraints();
-      const double              noise = force_rounding * x.linfty_norm();
+      const double              noise = qp::force_rounding * x.linfty_norm();
       const std::vector<double> equal(free.size(), 1.);
       std::vector<bool>         is_candidate(free.size());
       for (unsigned int r = 0; r < free.size(); ++r)

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <slipstick/qp/admissible_set.h>
+#include <slipstick/qp/friction_discs.h>
 #include <slipstick/qp/kernels.h>
 #include <slipstick/qp/optional_members.h>
+#include <slipstick/qp/types.h>
 
 #include <algorithm>
 #include <array>
@@ -16,22 +18,11 @@ namespace slipstick::qp
 {
   namespace detail
   {
-    /// For every owned entry: -1 at the lower bound, 1 at the upper bound, 0 free.
-    using Sides = std::vector<signed char>;
-
     // An imbalance below this part of all forces moves no body: the face problem determines the rest more accurately
     // than points on springs do (doc/decisions/0091). ...
     constexpr double tolerated_imbalance = 0.1;
     // ... Once a step was cut in vain, the limit is this part or, if that is less, the natural residual.
     constexpr double fine_imbalance = 0.01;
-
-    // If the compliance across a slipping force times the weight of its entry exceeds this (for |F| = 1), the entry is
-    // held. Far beyond that of sliding bodies, which such entries alone may hold across their motion
-    // (doc/decisions/0136).
-    constexpr double rigid_compliance = 1e8;
-
-    // Normal forces up to this part of the largest force are zero up to rounding: they close no node.
-    constexpr double rounding_of_forces = 1e-13;
 
     /// The natural map x -> proj(x - s g) of an admissible set, and the active set that it determines. s is `step` over
     /// the norm of F, times the weight of the entry, so that s g is about the force that closes g: s is the stiffness
@@ -58,20 +49,17 @@ namespace slipstick::qp
         , set(std::move(set_))
         , weights(residual_weights(problem_, 0))
         , active(local_size(set.box.lower))
+        , discs(set.pressure_bounds, weights, active.size())
         , beyond(active.size(), 0.)
         , is_open(active.size(), false)
       {
         for (std::size_t i = 0; i < active.size(); ++i)
           bounded.push_back(set.box.lower.begin()[i] > -HUGE_VAL || set.box.upper.begin()[i] < HUGE_VAL);
-        in_disc.assign(active.size(), false);
         for (const PressureBound &bound : set.pressure_bounds)
           {
             bounded[bound.tangential] = true;
-            if (!bound.is_disc())
-              continue;
-            bounded[bound.second] = in_disc[bound.tangential] = in_disc[bound.second] = true;
-            discs.push_back({bound.tangential, bound.second});
-            bounds_of_discs.push_back(bound);
+            if (bound.is_disc())
+              bounded[bound.second] = true;
           }
         const bool jumps = std::any_of(set.pressure_bounds.begin(), set.pressure_bounds.end(), jumps_at_zero);
         has_jumps        = problem.reduction().min(jumps ? -1. : 0.) < 0;
@@ -104,30 +92,29 @@ namespace slipstick::qp
       /// The turns of slipping nodes in space on faces of the set; comments on single entries apply to turned ones.
       const std::vector<Turn> &turns() const
       {
-        return turned;
+        return discs.turns();
       }
 
       /// x := nearest point within the bounds, as they were last set.
       void project_on_bounds(Vector &x) const
       {
         for (std::size_t i = 0; i < active.size(); ++i)
-          if (!in_disc[i])
+          if (!discs.contains(i))
             x.begin()[i] = clip(x.begin()[i], set.box.lower.begin()[i], set.box.upper.begin()[i]);
-        for (const Turn &disc : discs)
-          put_within(radius_of(disc), x.begin()[disc.first], x.begin()[disc.second]);
+        discs.project(set.box, x);
       }
 
       /// Clears the free entries of g, the gradient at x, after a face was solved: the remainder says nothing about the
       /// set. The component that turns the force of a slipping node is kept.
       void clear_solved(const Vector &x, Vector &g) const
       {
-        turn(turned, g);
+        turn(turns(), g);
         for (std::size_t i = 0; i < active.size(); ++i)
           g.begin()[i] = active[i] == 0 ? 0. : g.begin()[i];
-        for (const Turn &of : turned)
+        for (const Turn &of : turns())
           if (active[of.second] == 0)
             g.begin()[of.second] = -of.compliance * (of.cosine * x.begin()[of.second] - of.sine * x.begin()[of.first]);
-        turn_back(turned, g);
+        turn_back(turns(), g);
       }
 
       /// From now on, bodies move until their loads are balanced to the fine limit. @return whether this is a change.
@@ -160,15 +147,16 @@ namespace slipstick::qp
       /// Sets the active set to that of x - s g. @return whether it has changed on any process.
       bool predict(const Vector &x, const Vector &g)
       {
-        const Sides             before       = active;
-        const std::vector<Turn> discs_before = discs;
+        const Sides             before            = active;
+        const std::vector<Turn> directions_before = discs.directions();
         map(x, g, [this](const std::size_t i, const double, const double projected, const double moved) {
           beyond[i] = std::abs(moved - projected) * norm / (step * weight(i));
         });
         for (std::size_t i = 0; i < active.size(); ++i)
           if (active[i] * before[i] < 0 && set.box.lower.begin()[i] < set.box.upper.begin()[i])
             active[i] = 0; // an entry reaches the opposite bound only after being free: s g is cut to the width
-        find_turns(before, discs_before, g);
+        discs.merge_excess(set.box, beyond);
+        discs.find_turns(before, directions_before, g, active, set.box);
         if (balances)
           adapt_step();
         return problem.reduction().min(active == before ? 1. : 0.) < 1;
@@ -178,10 +166,10 @@ namespace slipstick::qp
       /// faces.
       double natural_residual(const Vector &x, const Vector &g)
       {
-        const Sides             before       = active;
-        const std::vector<Turn> discs_before = discs;
-        const std::vector<bool> open_before  = is_open;
-        double                  sum          = 0;
+        const Sides             before            = active;
+        const std::vector<Turn> directions_before = discs.directions();
+        const std::vector<bool> open_before       = is_open;
+        double                  sum               = 0;
         for (std::size_t i = 0; i < active.size(); ++i)
           if (!bounded[i])
             {
@@ -193,8 +181,8 @@ namespace slipstick::qp
           sum += r * r;
         });
         active  = before;
-        discs   = discs_before;
         is_open = open_before;
+        discs.restore(directions_before);
         return std::sqrt(problem.reduction().sum(std::array<double, 1>{{sum}})[0]);
       }
 
@@ -208,7 +196,7 @@ namespace slipstick::qp
         std::array<double, 2> sum{{0, 0}};
         for (std::size_t i = 0; i < active.size(); ++i)
           {
-            if (in_disc[i])
+            if (discs.contains(i))
               continue;
             const double l = set.box.lower.begin()[i], u = set.box.upper.begin()[i], xi = x.begin()[i],
                          gi = g.begin()[i];
@@ -217,12 +205,7 @@ namespace slipstick::qp
             sum[0] += weight(i) * weight(i) * gp * gp;
             sum[1] += out * out; // without weight: F out decreases as the weight increases
           }
-        for (const Turn &disc : discs)
-          {
-            const auto [gp, out] = residuals_on(disc, x, g);
-            sum[0] += weight(disc.first) * weight(disc.first) * gp * gp;
-            sum[1] += out * out;
-          }
+        discs.add_residuals(x, g, active, set.box, sum);
         sum = problem.reduction().sum(sum);
         return {{std::sqrt(sum[0]), norm * std::sqrt(sum[1])}};
       }
@@ -260,7 +243,7 @@ namespace slipstick::qp
       std::vector<double> conditions(const Vector &p, const std::vector<Tie> &ties) const
       {
         std::vector<double> result;
-        if (ties.empty() && turned.empty())
+        if (ties.empty() && turns().empty())
           {
             for (std::size_t i = 0; i < active.size(); ++i)
               if (active[i] != 0)
@@ -268,7 +251,7 @@ namespace slipstick::qp
             return result;
           }
         std::vector<double> value(p.begin(), p.end());
-        turn(turned, value);
+        turn(turns(), value);
         for (const Tie &tie : ties)
           value[tie.tied] -= tie.factor * value[tie.to];
         for (std::size_t i = 0; i < active.size(); ++i)
@@ -289,21 +272,18 @@ namespace slipstick::qp
         for (std::size_t i = 0; i < active.size(); ++i)
           if (free[i])
             active[i] = 0;
-        turned.erase(std::remove_if(turned.begin(),
-                                    turned.end(),
-                                    [this](const Turn &of) { return active[of.first] == 0 && active[of.second] == 0; }),
-                     turned.end()); // these nodes stick now
+        discs.drop_sticking(active);
       }
 
       /// Moves x to the bounds of the set, which follow x.
       void put_on_bounds(Vector &x)
       {
         move_bounds(x);
-        turn(turned, x);
+        turn(turns(), x);
         for (std::size_t i = 0; i < active.size(); ++i)
           if (active[i] != 0)
             x.begin()[i] = active[i] < 0 ? set.box.lower.begin()[i] : set.box.upper.begin()[i];
-        turn_back(turned, x);
+        turn_back(turns(), x);
       }
 
     private:
@@ -339,7 +319,7 @@ namespace slipstick::qp
         double largest = 0;
         for (const double value : x)
           largest = std::max(largest, std::abs(value));
-        return -rounding_of_forces * problem.reduction().min(-largest);
+        return -force_rounding * problem.reduction().min(-largest);
       }
 
       // Updates the bounds that follow normal entries to those at x: 0 if the normal entry is at its bound, or if it was
@@ -351,7 +331,9 @@ namespace slipstick::qp
                      bound.normal == no_entry ? bound.forces.closed_radius(0)
                      : active[bound.normal] == 0 && !is_open[bound.tangential]
                        ? bound.forces.closed_radius(x.begin()[bound.normal])
-                       : 0.);
+                       : 0.,
+                     active,
+                     set.box);
       }
 
       // The jump of bounds to 0 where no normal force is left at x.
@@ -360,74 +342,7 @@ namespace slipstick::qp
         const double least = least_force(x);
         for (const PressureBound &bound : set.pressure_bounds)
           if (jumps_at_zero(bound) && !(x.begin()[bound.normal] > least))
-            set_radius(bound, 0);
-      }
-
-      double radius_of(const Turn &disc) const
-      {
-        return set.box.upper.begin()[disc.first];
-      }
-
-      static void put_within(const double radius, double &x1, double &x2)
-      {
-        const double size = std::hypot(x1, x2);
-        if (size <= radius)
-          return;
-        x1 *= radius / size;
-        x2 *= radius / size;
-      }
-
-      // |gP| and the distance of x from where it should be, as in residuals(), for a disc.
-      std::pair<double, double> residuals_on(const Turn &disc, const Vector &x, const Vector &g) const
-      {
-        const double radius = radius_of(disc), x1 = x.begin()[disc.first], x2 = x.begin()[disc.second],
-                     g1 = g.begin()[disc.first], g2 = g.begin()[disc.second], size = std::hypot(x1, x2);
-        if (active[disc.first] == 0)
-          return {std::hypot(g1, g2), std::max(0., size - radius)};
-        if (!(radius > 0))
-          return {0., size};
-        const double c = size > 0 ? x1 / size : disc.cosine, s = size > 0 ? x2 / size : disc.sine;
-        const double across = (c * g2 - s * g1) * disc.softness(weight(disc.second));
-        return {std::hypot(std::max(0., c * g1 + s * g2), across), size - radius};
-      }
-
-      // Determines the turns of the slipping nodes of a new set; g is the gradient with which it was predicted. A force
-      // that turns by more than 90 degrees becomes free first.
-      void find_turns(const Sides &before, const std::vector<Turn> &discs_before, const Vector &g)
-      {
-        turned.clear();
-        for (std::size_t k = 0; k < discs.size(); ++k)
-          {
-            Turn        &disc   = discs[k];
-            const double radius = radius_of(disc), excess = std::hypot(beyond[disc.first], beyond[disc.second]);
-            beyond[disc.first]  = excess;
-            beyond[disc.second] = radius > 0 ? 0. : excess;
-            if (active[disc.first] == 0 || !(radius > 0))
-              continue;
-            if (before[disc.first] != 0 && before[disc.second] == 0 &&
-                disc.cosine * discs_before[k].cosine + disc.sine * discs_before[k].sine < 0)
-              {
-                active[disc.first] = 0;
-                continue;
-              }
-            disc.compliance =
-              std::max(0., -(disc.cosine * g.begin()[disc.first] + disc.sine * g.begin()[disc.second])) / radius;
-            if (disc.compliance * weight(disc.second) > rigid_compliance)
-              active[disc.second] = 1; // at 0
-            turned.push_back(disc);
-            set_radius(bounds_of_discs[k], radius);
-          }
-      }
-
-      void set_radius(const PressureBound &bound, const double radius)
-      {
-        set.box.lower.begin()[bound.tangential] = -radius;
-        set.box.upper.begin()[bound.tangential] = radius;
-        if (!bound.is_disc())
-          return;
-        const bool is_held = !(radius > 0) || (active[bound.tangential] != 0 && active[bound.second] != 0);
-        set.box.lower.begin()[bound.second] = is_held ? 0. : -HUGE_VAL;
-        set.box.upper.begin()[bound.second] = is_held ? 0. : HUGE_VAL;
+            set_radius(bound, 0, active, set.box);
       }
 
       // moved -= stiffness times the jumps of the body motions for which the projected forces balance the loads. An
@@ -438,7 +353,7 @@ namespace slipstick::qp
       {
         std::vector<double> forces(moved);
         for (std::size_t i = 0; i < forces.size(); ++i)
-          if (bounded[i] && !in_disc[i])
+          if (bounded[i] && !discs.contains(i))
             {
               if (const double l = set.box.lower.begin()[i]; x.begin()[i] <= l)
                 forces[i] = std::min(forces[i], l);
@@ -475,7 +390,7 @@ namespace slipstick::qp
           projected[i] = clip(moved[i], l, u);
         };
         for (std::size_t i = 0; i < active.size(); ++i)
-          if (bounded[i] && !in_disc[i])
+          if (bounded[i] && !discs.contains(i))
             place(i);
         const double least = has_jumps ? least_force(x) : 0.;
         for (const PressureBound &bound : set.pressure_bounds)
@@ -488,49 +403,30 @@ namespace slipstick::qp
         for (const PressureBound &bound : set.pressure_bounds)
           if (!bound.is_disc())
             {
-              set_radius(bound, radius_at(bound));
+              set_radius(bound, radius_at(bound), active, set.box);
               place(bound.tangential);
             }
-        for (std::size_t k = 0; k < discs.size(); ++k)
-          {
-            Turn                &disc   = discs[k];
-            const PressureBound &bound  = bounds_of_discs[k];
-            const double         radius = radius_at(bound);
-            double &x1 = projected[disc.first] = moved[disc.first], &x2 = projected[disc.second] = moved[disc.second];
-            const double size = std::hypot(x1, x2);
-            if (size > 0)
-              {
-                disc.cosine = x1 / size;
-                disc.sine   = x2 / size;
-              }
-            active[disc.first]  = size >= radius ? 1 : 0;
-            active[disc.second] = radius > 0 ? 0 : 1;
-            set_radius(bound, radius);
-            put_within(radius, x1, x2);
-          }
+        discs.place(radius_at, moved, projected, active, set.box);
         for (std::size_t i = 0; i < active.size(); ++i)
           if (bounded[i])
             action(i, x.begin()[i], projected[i], moved[i]);
       }
 
-      const Problem             &problem;
-      const double               norm, noise;
-      const bool                 balances;
-      double                     step;
-      double                     softening        = 1;              // factor on s, <= 1
-      double                     finest_imbalance = fine_imbalance; // fine limit of imbalances that move no body, ...
-      bool                       is_fine          = false;          // ... used once a step was cut in vain
-      AdmissibleSet<Vector>      set;
-      const double              *weights;
-      std::vector<bool>          bounded;
-      std::vector<bool>          in_disc;
-      std::vector<PressureBound> bounds_of_discs;
-      std::vector<Turn>          discs;  // all, in the order of bounds_of_discs
-      std::vector<Turn>          turned; // those that slip
-      Sides                      active;
-      std::vector<double>        beyond;
-      bool                       has_jumps = false; // on any process
-      std::vector<bool>          is_open;           // tangential entries whose bound jumped to 0 in the last prediction
+      const Problem        &problem;
+      const double          norm, noise;
+      const bool            balances;
+      double                step;
+      double                softening        = 1;              // factor on s, <= 1
+      double                finest_imbalance = fine_imbalance; // fine limit of imbalances that move no body, ...
+      bool                  is_fine          = false;          // ... used once a step was cut in vain
+      AdmissibleSet<Vector> set;
+      const double         *weights;
+      std::vector<bool>     bounded;
+      Sides                 active;
+      FrictionDiscs<Vector> discs;
+      std::vector<double>   beyond;
+      bool                  has_jumps = false; // on any process
+      std::vector<bool>     is_open;           // tangential entries whose bound jumped to 0 in the last prediction
     };
   } // namespace detail
 } // namespace slipstick::qp

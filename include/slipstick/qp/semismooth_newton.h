@@ -394,12 +394,11 @@ namespace slipstick::qp
       // x = e is restored; otherwise it would grow from face to face, since steps between points become directions.
       void restore_balance(const Face &face)
       {
-        constexpr double rounding = 1e-13; // relative to |x|
-        Vector           balanced(next.x), product(next.x);
+        Vector balanced(next.x), product(next.x);
         face.balance(balanced);
         add(-1., next.x, balanced);
         const double missing = qp::norm(balanced, problem.reduction());
-        if (!(missing > rounding * qp::norm(next.x, problem.reduction())))
+        if (!(missing > force_rounding * qp::norm(next.x, problem.reduction())))
           return;
         add(1., balanced, next.x);
         if (norm * missing <= options.face.accuracy * options.last_forcing * stop.tolerance_of_faces() * goal.reference)
@@ -422,13 +421,13 @@ namespace slipstick::qp
       // are ignored.
       void step_to_start(const Face &face)
       {
-        constexpr double rounding = 1e-13, no_direction = 1e-6; // relative to |x|
+        constexpr double no_direction = 1e-6; // relative to |x|
         Vector           step(next.x), product(next.x);
         add(-1., now.x, step);
         const auto s =
           problem.reduction().sum(std::array<double, 2>{{local_dot(step, step), local_dot(next.x, next.x)}});
         std::copy(now.Fx.begin(), now.Fx.end(), next.Fx.begin());
-        if (s[0] <= rounding * rounding * s[1])
+        if (s[0] <= force_rounding * force_rounding * s[1])
           return;
         descend(face, step);
         std::copy(now.x.begin(), now.x.end(), next.x.begin());

@@ -1,7 +1,7 @@
 // History of the active sets of a method, compared over all processes.
 #pragma once
 
-#include <slipstick/qp/active_set.h>
+#include <slipstick/qp/friction_discs.h>
 #include <slipstick/qp/kernels.h>
 
 #include <algorithm>

@@ -33,6 +33,10 @@ namespace slipstick::qp
     infeasible       // no solution: contradictory constraints, or unbounded from below
   };
 
+  /// Forces below this part of the largest one, and changes below this part of the norm of all, are rounding: such
+  /// forces hold nothing and close no node.
+  constexpr double force_rounding = 1e-13;
+
   /// Numbers of operations performed.
   struct Counts
   {

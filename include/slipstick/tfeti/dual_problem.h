@@ -14,9 +14,6 @@ namespace slipstick::tfeti
 {
   class Face;
 
-  /// Forces below this fraction of the largest one count as rounding of zero and hold nothing.
-  constexpr double force_rounding = 1e-13;
-
   /// min 1/2 x'F x - x'd  s.t.  G x = e and bounds on x (handled by the contact layer). x: multipliers [N], one per row
   /// of B. Implements qp's Problem concept with F scaled by 1 / |P F P|, so that its norm is about 1 in any units.
   /// Related: face.h (restriction to the free rows), recovery.h (displacements), diagnosis.h (energy errors, ambiguous
