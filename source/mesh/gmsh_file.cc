@@ -1,223 +1,17 @@
 // Gmsh's MSH format, https://gmsh.info/doc/texinfo/gmsh.html, sections "MSH file format" and "... version 2".
-#include <slipstick/base/exceptions.h>
 #include <slipstick/base/text.h>
+#include <slipstick/mesh/gmsh_cursor.h>
+#include <slipstick/mesh/gmsh_element.h>
 #include <slipstick/mesh/mesh_file.h>
 #include <slipstick/mesh/solid_nodes.h>
 
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
-#include <limits>
 #include <unordered_map>
 
 namespace slipstick::mesh
 {
   namespace
   {
-    /// Gmsh's element types: dimension, corners, nodes; 0 nodes: unknown.
-    struct ElementType
-    {
-      unsigned int dim, n_corners, n_nodes;
-    };
-
-    ElementType element_type(const int type)
-    {
-      switch (type)
-        {
-          case 15:
-            return {0, 1, 1};
-          case 1:
-            return {1, 2, 2};
-          case 8:
-            return {1, 2, 3};
-          case 26:
-            return {1, 2, 4};
-          case 27:
-            return {1, 2, 5};
-          case 28:
-            return {1, 2, 6};
-          case 2:
-            return {2, 3, 3};
-          case 9:
-            return {2, 3, 6};
-          case 20:
-            return {2, 3, 9};
-          case 21:
-            return {2, 3, 10};
-          case 22:
-            return {2, 3, 12};
-          case 23:
-            return {2, 3, 15};
-          case 24:
-            return {2, 3, 15};
-          case 25:
-            return {2, 3, 21};
-          case 3:
-            return {2, 4, 4};
-          case 16:
-            return {2, 4, 8};
-          case 10:
-            return {2, 4, 9};
-          case 36:
-            return {2, 4, 16};
-          case 37:
-            return {2, 4, 25};
-          case 4: // tetrahedra, hexahedra, prisms, pyramids and their second-order variants
-            return {3, 4, 4};
-          case 5:
-            return {3, 8, 8};
-          case 6:
-            return {3, 6, 6};
-          case 7:
-            return {3, 5, 5};
-          case 11:
-            return {3, 4, 10};
-          case 12:
-            return {3, 8, 27};
-          case 17:
-            return {3, 8, 20};
-          case 13:
-            return {3, 6, 18};
-          case 18:
-            return {3, 6, 15};
-          case 14:
-            return {3, 5, 14};
-          case 19:
-            return {3, 5, 13};
-        }
-      return {0, 0, 0};
-    }
-
-    /// Reads numbers from the text of the file, in ASCII or binary.
-    class Cursor
-    {
-    public:
-      Cursor(const std::string &file, const std::string &text)
-        : file(file)
-        , text(text)
-      {}
-
-      bool        binary = false;
-      std::string section; // for messages
-
-      [[noreturn]] void fail(const std::string &problem, const std::string &remedy) const
-      {
-        throw InputError("mesh file " + file + ": " + problem + (section.empty() ? "" : " (section $" + section + ")"),
-                         remedy);
-      }
-
-      [[noreturn]] void fail_broken() const
-      {
-        fail(std::string("is truncated or corrupt: ") +
-               (binary ? "its size does not match its own counts" : "not the number expected here") + " at byte " +
-               std::to_string(at),
-             "write it again with Gmsh (copying in text mode damages a binary file), for example: gmsh -2 part.geo "
-             "-format msh41");
-      }
-
-      int integer()
-      {
-        return binary ? bytes<int>() : word<int>();
-      }
-
-      std::size_t count()
-      {
-        return binary ? bytes<std::size_t>() : word<std::size_t>();
-      }
-
-      double real()
-      {
-        return binary ? bytes<double>() : word<double>();
-      }
-
-      /// The number of a physical entity without the sign, which gives its orientation.
-      int physical(const int number) const
-      {
-        if (number == std::numeric_limits<int>::min()) // has no absolute value
-          fail_broken();
-        return std::abs(number);
-      }
-
-      /// A number of items of at least @p least bytes each; fails if the rest of the file is too short for them.
-      std::size_t checked(const std::size_t n, const std::size_t least) const
-      {
-        if (n > (text.size() - at) / least)
-          fail_broken();
-        return n;
-      }
-
-      /// The rest of the current line.
-      std::string line()
-      {
-        const auto end   = std::min(text.find('\n', at), text.size());
-        const auto start = at;
-        at               = std::min(end + 1, text.size());
-        return trim(text.substr(start, end - start));
-      }
-
-      /// The name of the next section, empty at the end of the file.
-      std::string next_section()
-      {
-        section.clear();
-        at = text.find('$', at);
-        if (at == std::string::npos)
-          return "";
-        section = line().substr(1);
-        section = section.substr(0, section.find('\0')); // a null character would truncate messages
-        return section;
-      }
-
-      /// Moves past the end of the current section, which must follow immediately unless the section is skipped.
-      void end_section(const bool skip)
-      {
-        const std::string end   = "$End" + section;
-        const auto        found = text.find(end, at);
-        if (found == std::string::npos || (!skip && text.find_first_not_of(" \t\r\n", at) != found))
-          fail_broken();
-        at = found + end.size();
-      }
-
-      std::string quoted()
-      {
-        const auto start = text.find('"', at), end = text.find('"', start + 1);
-        if (start == std::string::npos || end == std::string::npos)
-          fail_broken();
-        at = end + 1;
-        if (text.find('\0', start) < end) // a null character would truncate messages
-          fail_broken();
-        return text.substr(start + 1, end - start - 1);
-      }
-
-      template <typename Number>
-      Number word()
-      {
-        at = std::min(text.find_first_not_of(" \t\r\n", at), text.size());
-        Number     value{};
-        const auto result = std::from_chars(text.data() + at, text.data() + text.size(), value);
-        if (result.ec != std::errc())
-          fail_broken();
-        at = result.ptr - text.data();
-        return value;
-      }
-
-      template <typename Number>
-      Number bytes()
-      {
-        if (text.size() - at < sizeof(Number))
-          fail_broken();
-        Number value;
-        std::memcpy(&value, text.data() + at, sizeof(Number));
-        at += sizeof(Number);
-        return value;
-      }
-
-    private:
-      const std::string &file;
-      const std::string &text;
-      std::size_t        at = 0;
-    };
-
     class GmshReader
     {
     public:
@@ -239,16 +33,16 @@ namespace slipstick::mesh
       void         read_elements_2();
       void         add_node(const std::size_t tag, const double x, const double y, const double z);
       unsigned int group(const std::vector<int> &physicals);
-      ElementType  type_of(const int type);
+      GmshElement  type_of(const int type);
 
       /// The element whose node numbers follow.
       template <typename ReadTag>
-      void add_element(const ElementType &type,
+      void add_element(const GmshElement &type,
                        const unsigned int of_group,
                        const std::size_t  number,
                        const ReadTag     &read_tag);
 
-      Cursor                                          in;
+      GmshCursor                                      in;
       MeshFile                                        mesh;
       bool                                            is_version_2 = false;
       std::unordered_map<std::size_t, unsigned int>   index_of_node;
@@ -371,9 +165,9 @@ namespace slipstick::mesh
       return found->second;
     }
 
-    ElementType GmshReader::type_of(const int type)
+    GmshElement GmshReader::type_of(const int type)
     {
-      const ElementType result = element_type(type);
+      const GmshElement result = gmsh_element(type);
       if (result.n_nodes == 0)
         in.fail(
           "has elements of type " + std::to_string(type) + ", which is not supported, or is corrupt",
@@ -382,7 +176,7 @@ namespace slipstick::mesh
     }
 
     template <typename ReadTag>
-    void GmshReader::add_element(const ElementType &type,
+    void GmshReader::add_element(const GmshElement &type,
                                  const unsigned int of_group,
                                  const std::size_t  number,
                                  const ReadTag     &read_tag)
@@ -423,7 +217,7 @@ namespace slipstick::mesh
         {
           const int          dim      = in.integer();
           const int          entity   = in.integer();
-          const ElementType  type     = type_of(in.integer());
+          const GmshElement  type     = type_of(in.integer());
           const std::size_t  n        = in.checked(in.count(), 1);
           const auto         found    = physicals_of_entity.find({dim, entity});
           const unsigned int of_group = group(found == physicals_of_entity.end() ? std::vector<int>() : found->second);
@@ -451,7 +245,7 @@ namespace slipstick::mesh
           n_tags = in.integer();
           if (in_block < 1 || n_tags < 0)
             in.fail_broken();
-          const ElementType known = type_of(type);
+          const GmshElement known = type_of(type);
           for (int e = 0; e < in_block; ++e, ++k)
             {
               if (in.binary)
