@@ -32,12 +32,10 @@
 #pragma once
 
 #include <slipstick/qp/active_set.h>
-#include <slipstick/qp/face_solver.h>
-#include <slipstick/qp/line_search.h>
+#include <slipstick/qp/globalization.h>
+#include <slipstick/qp/newton_faces.h>
 #include <slipstick/qp/newton_point.h>
-#include <slipstick/qp/set_history.h>
 #include <slipstick/qp/stopping_test.h>
-#include <slipstick/qp/watchdog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -82,12 +80,6 @@ namespace slipstick::qp
 
   namespace detail
   {
-    // Length of a step along M r: eigenvalues of F M are 1 to about 5 (first steps of conjugate gradients: 0.15 to
-    // 0.5).
-    constexpr double descent_step = 0.3;
-    // Largest number of kinks of the natural residual that are crossed from one point.
-    constexpr std::size_t most_kinks = 10;
-
     template <typename Vector, typename Problem>
     class SemismoothNewton
     {
@@ -109,21 +101,12 @@ namespace slipstick::qp
         , options(options_)
         , observer(observer_)
         , accepts(accepts_)
-        , has_wide_stiffnesses(ratio_of_weights(problem_, d_) > options_.wide_stiffnesses)
-        , is_singular(dependent_compliances(problem_, 0) != nullptr)
         , stop(goal_, norm_, options_, is_right_)
         , set(problem_, norm_, std::move(admissible), options.set_step, noise_of(problem_, d_))
-        , directions(start.directions ? std::move(start.directions)
-                                      : std::make_shared<DirectionStore<Vector>>(options_.n_directions))
-        , store(*directions)
-        , line(options_)
-        , watchdog(options_)
-        , solved(options.n_remembered_sets)
-        , refused(most_kinks + 1)
         , now(std::move(start.x), start.gradient ? std::move(*start.gradient) : zero_like(d_), zero_like(d_))
         , next(zero_like(d_), zero_like(d_), zero_like(d_))
-        , is_rough(start.is_rough)
-        , told(zero_like(d_))
+        , faces(problem_, norm_, d_, goal, options_, std::move(start.directions), set, counts)
+        , path(problem_, options_, goal.reference, start.is_rough, set, stop, now, next)
       {
         set.predict(now.x, now.gradient);
       }
@@ -139,17 +122,7 @@ namespace slipstick::qp
       }
 
     private:
-      using Face = decltype(std::declval<Problem>().face(std::vector<bool>(), std::vector<Tie>(), std::vector<Turn>()));
-
-      // The largest weight of a residual over the smallest, which is 1.
-      static double ratio_of_weights(const Problem &problem, const Vector &d)
-      {
-        const double *weights = residual_weights(problem, 0);
-        double        largest = 1;
-        for (std::size_t i = 0; weights && i < local_size(d); ++i)
-          largest = std::max(largest, weights[i]);
-        return -problem.reduction().min(-largest);
-      }
+      using Face = typename NewtonFaces<Vector, Problem>::Face;
 
       // Rounding level of gradients, which are differences of entries of d and F x.
       static double noise_of(const Problem &problem, const Vector &d)
@@ -165,15 +138,14 @@ namespace slipstick::qp
       {
         if (!begin())
           return Status::infeasible;
-        is_unjudged = !is_rough;
         while (counts.outer_iterations < options.max_outer_iterations)
           {
-            const auto face = regular_face();
+            const auto face = faces.regular(path.is_stuck());
             if (!face)
               return Status::infeasible;
-            if (is_unjudged && solves_already(*face))
+            if (path.is_unjudged() && solves_already(*face))
               return converged_at_next();
-            solve(*face);
+            faces.solve(*face, path.merit(), stop.tolerance_of_faces(), now, next);
             ++counts.outer_iterations;
             const double left = measure();
             report();
@@ -182,7 +154,7 @@ namespace slipstick::qp
             if (is_accepted() || is_solution(*face, left))
               return converged_at_next();
             stop.check_start_of_face(residual, left);
-            if (!step())
+            if (!path.step())
               return ended(Status::stagnated);
           }
         return ended(Status::iteration_limit);
@@ -200,11 +172,11 @@ namespace slipstick::qp
       // previous ones, or the end of a step that was cut. A step on a nearly singular face could lead far away from it.
       bool solves_already(const Face &face)
       {
-        if (!(line.present() <= goal.tolerance * goal.reference))
+        if (!(path.merit() <= goal.tolerance * goal.reference))
           return false;
         next.x  = now.x;
         next.Fx = now.Fx;
-        fill_gradient(face, next);
+        faces.fill_gradient(face, next);
         const double left = measure();
         if (!is_solution(face, left))
           return false;
@@ -286,307 +258,19 @@ namespace slipstick::qp
         return error;
       }
 
-      // The face of the set. If it leaves a motion open, the entries at bounds that are closest to leaving them hold
-      // it; after a failed step, motions that the free entries hardly resist count as open.
-      std::optional<Face> regular_face()
-      {
-        if (is_stuck)
-          set.release(problem.loose_bodies().hold(set.free(), set.gaps(), true, set.turns()));
-        for (unsigned int attempt = 0; attempt < 2; ++attempt)
-          {
-            ties = set.ties();
-            std::optional<Face> face;
-            face.emplace(problem.face(set.free(), ties, set.turns()));
-            if (face->is_regular())
-              return face;
-            set.release(problem.loose_bodies().hold(set.free(), set.gaps(), false, set.turns()));
-          }
-        return {};
-      }
-
       // Moves the start to its bounds and to G x = e; computes F x, the gradient and the set.
       bool begin()
       {
-        auto face = regular_face();
+        const auto face = faces.regular(false);
         if (!face)
           return false;
         set.put_on_bounds(now.x);
         face->balance(now.x);
         problem.multiply(now.x, now.Fx);
         ++counts.hessian_multiplications;
-        fill_gradient(*face, now);
-        line.begin(set.natural_residual(now.x, now.gradient));
-        predict(now);
+        faces.fill_gradient(*face, now);
+        path.begin();
         return true;
-      }
-
-      // Sets the active set to the one predicted from a point and its gradient.
-      void predict(const PointWithGradient<Vector> &at)
-      {
-        predict(at.x, at.gradient);
-      }
-
-      // Natural residuals with different s cannot be compared. Those of the last steps are therefore scaled by the
-      // factor by which the residual of the present point changes with s.
-      void predict(const Vector &at, const Vector &gradient)
-      {
-        const double before = set.step_length();
-        told                = gradient;
-        set.predict(at, gradient);
-        if (set.step_length() == before || !(line.present() > 0))
-          return;
-        const double factor = set.natural_residual(now.x, now.gradient) / line.present();
-        line.rescale(factor);
-        watchdog.rescale(factor);
-      }
-
-      // F x - d + G'a, with the a that minimises it on the free entries, including the gradient of turned forces.
-      void fill_gradient(const Face &face, NewtonPoint<Vector> &at) const
-      {
-        combine(1.0, at.Fx, 0.0, at.gradient);
-        add(-1.0, d, at.gradient);
-        Vector shift(at.gradient), left(at.gradient);
-        add_compliance(set.turns(), at.x, left);
-        face.multiplier_shift(static_cast<const Vector &>(left), shift);
-        add(-1.0, shift, at.gradient);
-      }
-
-      // Regularisation of the next face, which decreases with the residual (Levenberg, Marquardt): where forces are not
-      // unique, the method converges to the nearest ones, as fast as elsewhere (Fan, Yuan 2005). The residual that a
-      // face leaves, divided by this, is the distance by which forces may drift that F does not determine.
-      double regularization() const
-      {
-        return is_singular ? std::min(options.largest_regularization, line.present() / goal.reference) : 0.;
-      }
-
-      // `next` becomes the solution on the face, up to a part of the present residual.
-      void solve(const Face &face)
-      {
-        next.x = now.x;
-        set.put_on_bounds(next.x);
-        face.balance(next.x);
-        const Vector center(next.x);
-        step_to_start(face);
-        FaceSolver<Vector, Face> solver(
-          face,
-          d,
-          store,
-          [this](const Vector &p) { return set.conditions(p, ties); },
-          options.face,
-          set.turns(),
-          regularization());
-        const double first  = solver.start(std::move(next.x), std::move(next.Fx), now.error_of_Fx, center);
-        const double target = std::min(std::max(options.last_forcing * stop.tolerance_of_faces() * goal.reference,
-                                                (is_singular ? options.singular_forcing : options.forcing) *
-                                                  std::min(first, line.present())),
-                                       options.sharpening * solved.least_of_earlier(set.sides(), problem.reduction()));
-        auto         result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
-        if (is_singular || has_wide_stiffnesses)
-          solved.add(set.sides(), result.residual);
-        counts += result.counts;
-        next.x           = std::move(result.x);
-        next.Fx          = std::move(result.product);
-        next.error_of_Fx = result.error;
-        restore_balance(face);
-        fill_gradient(face, next);
-      }
-
-      // Directions satisfy G p = 0 up to rounding, and so do their combinations unless they cancel. What is missing of G
-      // x = e is restored; otherwise it would grow from face to face, since steps between points become directions.
-      void restore_balance(const Face &face)
-      {
-        Vector balanced(next.x), product(next.x);
-        face.balance(balanced);
-        add(-1., next.x, balanced);
-        const double missing = qp::norm(balanced, problem.reduction());
-        if (!(missing > force_rounding * qp::norm(next.x, problem.reduction())))
-          return;
-        add(1., balanced, next.x);
-        if (norm * missing <= options.face.accuracy * options.last_forcing * stop.tolerance_of_faces() * goal.reference)
-          {
-            next.error_of_Fx = std::hypot(next.error_of_Fx, norm * missing);
-            return;
-          }
-        problem.multiply(balanced, product);
-        ++counts.hessian_multiplications;
-        add(1., product, next.Fx);
-      }
-
-      // Whether any process has ties.
-      bool has_ties() const
-      {
-        return problem.reduction().min(ties.empty() ? 1. : 0.) < 1;
-      }
-
-      // F x of `next`, from the product with the step to it, which is stored as a direction. Steps at rounding level
-      // are ignored.
-      void step_to_start(const Face &face)
-      {
-        constexpr double no_direction = 1e-6; // relative to |x|
-        Vector           step(next.x), product(next.x);
-        add(-1., now.x, step);
-        const auto s =
-          problem.reduction().sum(std::array<double, 2>{{local_dot(step, step), local_dot(next.x, next.x)}});
-        std::copy(now.Fx.begin(), now.Fx.end(), next.Fx.begin());
-        if (s[0] <= force_rounding * force_rounding * s[1])
-          return;
-        descend(face, step);
-        std::copy(now.x.begin(), now.x.end(), next.x.begin());
-        add(1., step, next.x);
-        problem.multiply(step, product);
-        ++counts.hessian_multiplications;
-        add(1., product, next.Fx);
-        if (s[0] > no_direction * no_direction * s[1]) // otherwise G step = 0 holds only to a few digits
-          {
-            const double squares = problem.reduction().sum(
-              std::array<double, 1>{{local_squares(residual_weights(problem, 0), step, product)}})[0];
-            store.push(std::move(step),
-                       std::move(product),
-                       rounding_of_product(squares),
-                       dependent_compliances(problem, 0),
-                       problem.reduction());
-          }
-      }
-
-      // Adds a short step along the preconditioned residual of the face to the step onto its bounds: F is multiplied
-      // anyway.
-      void descend(const Face &face, Vector &step)
-      {
-        Vector r(now.gradient), shift(r), p(r);
-        add_compliance(set.turns(), now.x, r);
-        face.multiplier_shift(static_cast<const Vector &>(r), shift);
-        add(-1., shift, r);
-        combine(-1., r, 0., r);
-        face.precondition(static_cast<const Vector &>(r), p);
-        ++counts.preconditioner_applications;
-        face.project_kernel(p);
-        add(descent_step, p, step);
-      }
-
-      // Moves along the step to the next point and set. @return whether there is one.
-      bool step()
-      {
-        double t    = line.search(set, now, next);
-        is_unjudged = false;
-        if (watchdog.is_watching())
-          {
-            if (watchdog.goes_on(line))
-              {
-                go_whole();
-                return true;
-              }
-            t = come_back();
-          }
-        else if (t < options.shortest_step && !stop.has_met_goal() && watchdog.may_begin(line))
-          {
-            watchdog.begin({now, next, told, line, t});
-            go_whole();
-            return true;
-          }
-        if (t < options.shortest_step)
-          {
-            if (stop.has_met_goal())
-              return false;
-            if (cross_kink() || restart() || leap())
-              return true;
-            if (t == 0)
-              return false;
-          }
-        move_by_part(t);
-        is_unjudged = t < 1;
-        is_stuck    = false;
-        refused.clear();
-        if (t < options.shortest_step)
-          predict(line.refused());
-        else
-          predict_from_here(t == 1);
-        return true;
-      }
-
-      // The natural residual has a kink next to the present point, where entries reach or leave their bounds. The
-      // derivative along the step determines the set beyond it (Pang 1990); the step of that set may cross other kinks.
-      // @return whether that set was not tried from here yet.
-      bool cross_kink()
-      {
-        refused.add(set.sides());
-        if (refused.size() > most_kinks)
-          return false;
-        predict(line.refused());
-        return !refused.contains(set.sides(), problem.reduction());
-      }
-
-      // Restarts from the set of the present point, with bodies balanced finely or, if they are already, on softer
-      // points. @return whether this was not tried yet.
-      bool restart()
-      {
-        const bool is_changed = set.balance_finely() || set.soften(), is_first = !is_stuck;
-        is_stuck = true;
-        if (is_changed)
-          line.begin(set.natural_residual(now.x, now.gradient));
-        predict(now);
-        return is_changed || is_first;
-      }
-
-      // Once, from a rough start, takes the whole step although it raises the residual. @return whether it was taken.
-      bool leap()
-      {
-        if (!is_rough || !(line.whole() <= options.longest_leap * line.present()))
-          return false;
-        is_rough = false;
-        go_whole();
-        return true;
-      }
-
-      // Returns to the point where whole steps began. @return the part of the step from there that is taken.
-      double come_back()
-      {
-        auto start = watchdog.give_up();
-        now        = std::move(start.from);
-        next       = std::move(start.to);
-        line       = std::move(start.line);
-        predict(now.x, start.told);
-        return start.t;
-      }
-
-      void go_whole()
-      {
-        go_to_next(line.whole());
-        is_stuck = false;
-        refused.clear();
-        predict_from_here(true);
-      }
-
-      // @param is_solved whether this is the end of a whole step, so that the gradient on the free entries is
-      // meaningless
-      void predict_from_here(const bool is_solved)
-      {
-        Vector known(now.gradient);
-        if (is_solved)
-          set.clear_solved(now.x, known);
-        predict(now.x, known);
-      }
-
-      // Moves to the end of the step found by the line search.
-      void move_by_part(const double t)
-      {
-        if (t < 1)
-          {
-            std::swap(static_cast<PointWithGradient<Vector> &>(next), line.end());
-            combine(1 - t, now.Fx, t, next.Fx);
-            next.error_of_Fx = std::max(now.error_of_Fx, next.error_of_Fx);
-          }
-        if (line.found() < line.least())
-          stop.propose(next, line.found() / goal.reference);
-        if (!(line.found() < line.present()) && (t == 1 || !set.balance_finely()))
-          set.soften();
-        go_to_next(line.found());
-      }
-
-      void go_to_next(const double merit)
-      {
-        line.move_to(merit);
-        set.approach(merit / goal.reference);
-        std::swap(now, next);
       }
 
       bool is_accepted()
@@ -618,27 +302,15 @@ namespace slipstick::qp
       const NewtonOptions      &options;
       const Observer           &observer;
       const Acceptance<Vector> &accepts;
-      const bool                has_wide_stiffnesses; // sets may depend on gradients below the tolerance
-      const bool                is_singular;          // whether F is singular on some faces
 
-      StoppingTest<Vector>                           stop;
-      ActiveSet<Vector, Problem>                     set;
-      const std::shared_ptr<DirectionStore<Vector>>  directions;
-      DirectionStore<Vector>                        &store;
-      std::vector<Tie>                               ties; // of the present face
-      LineSearch<Vector, ActiveSet<Vector, Problem>> line;
-      Watchdog<Vector, ActiveSet<Vector, Problem>>   watchdog;
-      SetHistory                                     solved; // with the residuals to which faces were solved
-      SetHistory refused; // sets whose steps do not lower the residual of the present point
-
-      NewtonPoint<Vector> now;                    // present point
-      NewtonPoint<Vector> next;                   // end of the present step
-      bool                is_unjudged = false;    // whether `now` may be the solution
-      double              residual    = HUGE_VAL; // of the last face, over the reference
-      bool                is_stuck    = false;    // the last step did not lower the natural residual
-      bool                is_rough; // whether the start is, and no step has raised the residual deliberately yet
-      Vector              told;     // gradient of the last prediction
-      Counts              counts;
+      StoppingTest<Vector>           stop;
+      ActiveSet<Vector, Problem>     set;
+      NewtonPoint<Vector>            now;                 // present point
+      NewtonPoint<Vector>            next;                // end of the present step
+      double                         residual = HUGE_VAL; // of the last face, over the reference
+      Counts                         counts;
+      NewtonFaces<Vector, Problem>   faces;
+      Globalization<Vector, Problem> path;
     };
   } // namespace detail
 
