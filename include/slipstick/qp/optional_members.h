@@ -6,16 +6,12 @@
 
 namespace slipstick::qp::detail
 {
-  // Ratio of s in the natural map to the stiffness of a point with its neighbours held: the neighbours move with it,
-  // and the diagonal of F is about ten times the inverse of that stiffness (doc/decisions/0090).
-  constexpr double yielding_neighbours = 0.1;
-
   /// s times the norm of F, for an entry of weight 1: from the stiffness of single points if the problem provides it,
   /// but never less than the value for whole bodies.
   template <typename Problem>
   auto natural_map_scale(const Problem &problem, const double least, int) -> decltype(problem.point_stiffness())
   {
-    return std::max(least, yielding_neighbours * problem.point_stiffness());
+    return std::max(least, problem.point_stiffness());
   }
   template <typename Problem>
   double natural_map_scale(const Problem &, const double least, long)

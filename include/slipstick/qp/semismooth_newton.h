@@ -27,7 +27,7 @@
 //       `balance(stiffness, set, tolerated, moved)`   moves them, moved -= stiffness times their jumps, such that
 //           proj(moved) balances their loads up to the part `tolerated` of all forces (the minimum of the potential of
 //           the projected forces). The predicted sets can then carry the loads.
-// It may have `point_stiffness() const`, |PFP| times the stiffness of an entry of weight 1 whose neighbours are held
+// It may have `point_stiffness() const`, |PFP| times the stiffness of an entry of weight 1 among yielding neighbours
 // (active_set.h), and, like its faces, `dependent_compliances() const` (kernels.h).
 #pragma once
 

@@ -119,11 +119,12 @@ namespace slipstick::tfeti
       return contradiction;
     }
 
-    /// |P F P| times the stiffness of the row of weight 1 with its neighbours held. 0 if unknown (without a
-    /// preconditioner) or if it does not improve the prediction of the active set (solids; doc/decisions/0090).
+    /// |P F P| times the stiffness of the row of weight 1, whose neighbours yield: a part of that with its neighbours
+    /// held. 0 if unknown (without a preconditioner).
     double point_stiffness() const
     {
-      return M && !bodies->are_solids() ? norm_PFP * row_metric.least() : 0.;
+      constexpr double in_plane = 0.1, in_space = 0.02; // doc/decisions/0090, 0142
+      return M ? (bodies->are_solids() ? in_space : in_plane) * norm_PFP * row_metric.least() : 0.;
     }
 
     /// The problem on the owned rows with `free`; the other rows are fixed, or tied to free ones. In space, rows of
