@@ -244,5 +244,24 @@ class Meshes(Case):
         self.near(force(result, 'supports'), [0, 4, 0])
 
 
+class Scales(Case):
+
+    def test_a_soft_pair_beside_a_stiff_one_is_as_accurate(self):
+        scene = {kind: {} for kind in ('materials', 'bodies', 'supports', 'tractions', 'contacts')}
+        for n, x, modulus, scale in (('0', 40, '2e5', 1), ('1', 0, '2', 1e-6)):
+            scene['materials'][n] = {'Young modulus': modulus, 'Poisson ratio': '0.3'}
+            scene['bodies']['block' + n] = {'Origin': f'{x}, 0, 0', 'Size': '6, 3, 5', 'Cells': '6, 4, 5', 'Material': n}
+            scene['bodies']['base' + n] = {'Origin': f'{x - 2}, -4, -2', 'Size': '10, 4, 9', 'Cells': '7, 3, 6', 'Material': n}
+            scene['supports'][n] = held(f'base{n}/bottom')
+            scene['tractions'][n] = {'Boundary': f'block{n}/top', 'Traction x': str(10 * scale), 'Traction y': str(-100 * scale),
+                                     'Traction z': str(10 / 3 * scale)}
+            scene['contacts'][n] = {'Slave': f'block{n}/bottom', 'Master': f'base{n}/top', 'Law': 'Coulomb',
+                                    'Friction coefficient': '0.3'}
+        stiff, soft = converged(solids.solid('scales', Solver={'Tolerance': '1e-4'}, **scene)).summary['results']['contact']
+        self.assertEqual(soft['stick_nodes'], stiff['stick_nodes'])
+        for figure in ('tangential_force', 'max_pressure'):
+            self.near([1e6 * soft[figure]], [stiff[figure]], 5e-3)
+
+
 if __name__ == '__main__':
     unittest.main()

@@ -18,7 +18,7 @@ namespace slipstick::contact
     TractionErrors(const tfeti::DualProblem &dual, const Vector &x, const Vector &error);
 
     /// For each pair the L2 norms of the errors of pressures and of tangential tractions over those of these tractions
-    /// themselves. The latter are taken as at least 1 % of the norm of both together, 0.1 % of the largest such norm of
+    /// themselves. The latter are taken as at least 1 % of the norm of both together, 1e-6 of the largest such norm of
     /// any pair, and @p least [sqrt(N MPa)].
     std::vector<PairTractions> relative(const double least) const;
 
