@@ -327,6 +327,8 @@ namespace slipstick::interface
               fill(number, jump(touch, d == 0 ? touch.normal : tangents[d - 1]));
               ++constraints.counts.gluing;
             }
+          if (touch.point.normal_row != tfeti::invalid_row)
+            add_areas_of_implied_bonds(i, touching, touch);
           if (touch.point.normal_row != tfeti::invalid_row || touch.point.tangential_row != tfeti::invalid_row)
             constraints.bonded_points.push_back(touch.point);
         }
@@ -372,6 +374,27 @@ namespace slipstick::interface
         ++constraints.counts.candidates;
         constraints.contact_points.push_back(touch.point);
       }
+  }
+
+  // Where pairs meet at a node, the force of a bond is that of the implied ones, too. Its tractions are therefore
+  // relative to the areas of all of them that face the same way.
+  template <int dim>
+  void RowBuilder<dim>::add_areas_of_implied_bonds(const unsigned int                        i,
+                                                   const std::vector<ContactCandidate<dim>> &touching,
+                                                   ContactCandidate<dim>                    &kept) const
+  {
+    constexpr double same_way = 0.7; // least cosine: within 45 degrees
+    auto            &point    = kept.point;
+    double           area = point.area, length = point.length;
+    for (const ContactCandidate<dim> &other : touching)
+      if (scene.contacts[other.pair].law.is_bonded && other.normal * kept.normal > same_way &&
+          kept_bonds.count(std::array<unsigned int, 4>{{i, other.pair, other.side, 0}}) == 0)
+        {
+          area += other.point.area;
+          length += other.point.length;
+        }
+    point.traction_area   = std::max(point.traction_area, area);
+    point.traction_length = std::max(point.traction_length, length);
   }
 
   template <int dim>

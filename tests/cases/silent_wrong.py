@@ -54,13 +54,13 @@ def force(result, kind='contact', name=0):
     return result.summary['results'][kind][name]['force']
 
 
-def pressed_bars(cells, **contact):
+def pressed_bars(cells, contacts=None, **contact):
     """Poisson's ratio 0: every stress is uniform, 10 MPa, whatever the meshes."""
     return two_bars({'Cells': cells}, materials={'elastic': {'Young modulus': '1000', 'Poisson ratio': '0'}},
                     supports={'below': {'Boundary': 'bar/bottom', 'Displacement y': '0'}, 'left': {'Boundary': 'bar/left', 'Displacement x': '0'},
                               'left above': {'Boundary': 'lid/left', 'Displacement x': '0'}},
                     tractions={'press': {'Boundary': 'lid/top', 'Traction y': '-10'}},
-                    contacts={'joint': {'Slave': 'bar/top', 'Master': 'lid/bottom', **contact}})
+                    contacts=contacts or {'joint': {'Slave': 'bar/top', 'Master': 'lid/bottom', **contact}})
 
 
 class Case(unittest.TestCase):
@@ -171,6 +171,13 @@ class Bonded(Case):
             self.near([pair['moment']], [50 + 4 * 5])
             self.near([pair['normal_force'], pair['contact_nodes']], [10, 11])
             self.assertEqual(len(result.contact), 11)
+
+    def test_tractions_are_right_where_two_bonds_meet(self):
+        halves = {part: {'Slave': 'bar/top where x ' + part, 'Master': 'lid/bottom', 'Law': 'bonded'} for part in ('< 4', '> 4')}
+        for cells in ('10, 4', '15, 4', '5, 2'):
+            result = converged(pressed_bars(cells, halves))
+            self.near([pair['max_pressure'] for pair in result.summary['results']['contact']], [10, 10], 1e-4)
+            self.near([sum(pair['normal_force'] for pair in result.summary['results']['contact'])], [100], 1e-6)
 
 
 class SharedSides(Case):

@@ -72,6 +72,9 @@ namespace slipstick::interface
     void add(const unsigned int node);
 
     void add_contact(const unsigned int node);
+    void add_areas_of_implied_bonds(const unsigned int                        node,
+                                    const std::vector<ContactCandidate<dim>> &touching,
+                                    ContactCandidate<dim>                    &kept) const;
     void find_bonds();
     /// Of the jump along @p direction the part that supports do not prescribe, of each side relative to its size; that
     /// of the master counts by held_tangent / held_master.
