@@ -13,6 +13,9 @@ namespace slipstick::tfeti
   {
     // Jumps of a row per unit motion below this are rounding.
     constexpr double least_jump = 1e-8;
+    // Friction forces below this part of the largest force do not tell where a body slides: they come from rounding or
+    // from the tolerance of the solver.
+    constexpr double least_friction = 1e-8;
 
     /// Adds to the free rows those rows with friction forces that hold the loose motions. @return whether all are held.
     bool add_rows_with_friction(const DualProblem              &dual,
@@ -21,7 +24,7 @@ namespace slipstick::tfeti
                                 std::vector<bool>              &free)
     {
       const Constraints        &rows  = dual.constraints();
-      const double              noise = qp::force_rounding * x.linfty_norm();
+      const double              noise = least_friction * x.linfty_norm();
       const std::vector<double> equal(free.size(), 1.);
       std::vector<bool>         is_candidate(free.size());
       for (unsigned int r = 0; r < free.size(); ++r)
@@ -73,6 +76,7 @@ namespace slipstick::tfeti
         , free(free_)
         , x(x_)
         , jump(jump_)
+        , noise(least_friction * x_.linfty_norm())
         , per_motion(dual.body_motions().jumps(loose).toDense())
       {
         per_motion = (per_motion.array().abs() < least_jump).select(0., per_motion); // rounding moves no row
@@ -106,7 +110,7 @@ namespace slipstick::tfeti
       void add_row(const unsigned int r)
       {
         const double force = x.local_element(r);
-        if (rows.kind[r] == RowKind::tangential && force == 0)
+        if (rows.kind[r] == RowKind::tangential && !(std::abs(force) > noise))
           return;
         const double side = rows.kind[r] == RowKind::tangential && force > 0 ? 1. : -1.;
         add(side * beyond(r), side * per_motion.row(r));
@@ -115,7 +119,7 @@ namespace slipstick::tfeti
       void add_disc(const unsigned int first, const unsigned int second)
       {
         const double x1 = x.local_element(first), x2 = x.local_element(second), size = std::hypot(x1, x2);
-        if (free[first] || free[second] || size == 0)
+        if (free[first] || free[second] || !(size > noise))
           return;
         const double c = x1 / size, s = x2 / size;
         add(c * beyond(first) + s * beyond(second), c * per_motion.row(first) + s * per_motion.row(second));
@@ -127,6 +131,7 @@ namespace slipstick::tfeti
       const Constraints       &rows;
       const std::vector<bool> &free;
       const DistributedVector &x, &jump;
+      const double             noise;
       Eigen::MatrixXd          per_motion; // owned rows x loose motions
     };
 

@@ -5,6 +5,7 @@ import math
 import unittest
 
 import scenes
+import solids
 from program import run, solve
 
 STEEL = {'Young modulus': '2.1e5', 'Poisson ratio': '0.3'}
@@ -98,6 +99,20 @@ class FreeMotions(unittest.TestCase):
                 self.assertAlmostEqual(u[0][1], u[1][1], delta=1e-6)
                 turned.append(u[0][1])
         self.assertAlmostEqual(min(turned), max(turned), delta=1e-6)
+
+    def test_forces_of_rounding_do_not_turn_a_body(self):
+        """A heated block on the top of a dome: its weight rests on one node, two others bear 1e-10 of it."""
+        block = solids.solid('block', materials={'light': {'Library': 'aluminium'}}, bodies={
+            'block': {'Origin': '-20, 0, -8', 'Size': '40, 15, 16', 'Cells': '8, 4, 4', 'Material': 'light'}},
+            obstacles={'dome': {'Shape': 'function', 'Height': '-0.00002*(x^2+z^2)'}},
+            body_forces={'weight': {'Bodies': 'block', 'Acceleration y': '-9810'}},
+            temperatures={'heat': {'Bodies': 'block', 'Change': '20'}},
+            contacts={'top': {'Slave': 'block/bottom', 'Master': 'dome', 'Law': 'Coulomb', 'Friction coefficient': '0.15'}},
+            probes={side: {'Body': 'block', 'Point': point} for side, point in (('east', '20, 15, 0'), ('west', '-20, 15, 0'))},
+            Decomposition={'Method': 'none'}, Solver={'Tolerance': '1e-4'})
+        result = self.converges(block, 'body block: rotation about the axis along (0, 1, 0)')
+        for probe in result.summary['results']['probes']:
+            self.assertAlmostEqual(probe['displacement'][2], 0, delta=1e-5)
 
     def test_a_mesh_that_cuts_the_outline_unevenly(self):
         """The centroid of a polygon refined on one side is not the centre; a torque, however small, is refused."""
