@@ -1,4 +1,5 @@
 #include <slipstick/contact/linear.h>
+#include <slipstick/contact/traction_error.h>
 #include <slipstick/qp/pcpg.h>
 #include <slipstick/tfeti/diagnosis.h>
 #include <slipstick/tfeti/face.h>
@@ -15,6 +16,8 @@ namespace slipstick::contact
     constexpr double part_of_residual = 0.3;
     // ... starting with this residual.
     constexpr double first_asked = 0.1;
+    // Tractions of bonded pairs that are not accurate enough at the tolerance are solved further, down to this part of it.
+    constexpr double least_part = 1e-5;
   } // namespace
 
   tfeti::DistributedVector homogenised_load(const tfeti::DualProblem &dual, const tfeti::DistributedVector &start)
@@ -80,8 +83,25 @@ namespace slipstick::contact
     qp::PcpgStart<Vector> from{dual.zero()};
     if (is_accurate) // stages continue with the directions of the previous ones
       from.history = std::make_shared<qp::DirectionHistory<Vector>>(is_preconditioned);
-    double tolerance = is_accurate ? std::max(first_asked, options.tolerance) : options.tolerance;
-    for (;; tolerance = std::max(options.tolerance, part_of_residual * tolerance))
+    double             tolerance = is_accurate ? std::max(first_asked, options.tolerance) : options.tolerance;
+    const TractionTest tractions(dual,
+                                 options.tolerance,
+                                 start.linfty_norm(),
+                                 goes_on ? goes_on->largest_traction : 0.);
+    const auto         are_tractions_accurate = [&](const Vector &residual) {
+      if (!tractions.has_pairs())
+        return true;
+      Vector error = dual.zero();
+      face.precondition(residual, error);
+      ++solution.counts.preconditioner_applications;
+      face.project_kernel(error);
+      return tractions.accepts(solution.multipliers, error);
+    };
+    if (tractions.has_pairs() && !from.history)
+      from.history = std::make_shared<qp::DirectionHistory<Vector>>(is_preconditioned);
+    bool has_met_goal = false;
+    for (;; tolerance = has_met_goal ? part_of_residual * tolerance
+                                     : std::max(options.tolerance, part_of_residual * tolerance))
       {
         const qp::Goal goal(tolerance, reference);
         auto           result = is_preconditioned ? qp::pcpg(face, b, from, goal, pcpg, precondition, counted)
@@ -91,6 +111,11 @@ namespace slipstick::contact
         solution.projected_gradient = result.relative_residual;
         solution.multipliers        = start;
         solution.multipliers += result.x;
+        if (has_met_goal && result.status != qp::Status::converged) // at rounding level
+          {
+            solution.status = qp::Status::converged;
+            break;
+          }
         if (result.status == qp::Status::stagnated && !reorthogonalizes)
           { // rounding has destroyed the conjugacy of the directions
             reorthogonalizes         = true;
@@ -99,17 +124,27 @@ namespace slipstick::contact
             tolerance /= part_of_residual; // repeat the stage
             continue;
           }
-        if (result.status != qp::Status::converged || tolerance <= options.tolerance)
+        if (result.status != qp::Status::converged)
           break;
-        Vector jumps = std::move(result.residual);
-        jumps *= dual.norm();
-        if (is_accurate(solution, residual_energy(dual, jumps)))
-          break;
+        has_met_goal = tolerance <= options.tolerance;
+        if (has_met_goal)
+          {
+            if (tolerance <= least_part * options.tolerance || are_tractions_accurate(result.residual))
+              break;
+          }
+        else
+          {
+            Vector jumps = std::move(result.residual);
+            jumps *= dual.norm();
+            if (is_accurate(solution, residual_energy(dual, jumps)))
+              break;
+          }
         from.x       = std::move(result.x);
         from.product = std::move(result.product);
       }
     ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
     solution.counts.outer_iterations = 1;
+    solution.largest_traction        = tractions.largest(solution.multipliers);
     return solution;
   }
 } // namespace slipstick::contact

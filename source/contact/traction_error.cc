@@ -24,6 +24,17 @@ namespace slipstick::contact
     // ... and this fraction of the forces that balance the loads, on one contact node, for pairs without load.
     constexpr double negligible_force = 1e-6;
 
+    /// Of contact nodes and bonded ones. Collective.
+    double largest_area_of_nodes(const tfeti::DualProblem &dual)
+    {
+      const tfeti::Constraints &rows = dual.constraints();
+      double                    area = 0;
+      for (const auto *points : {&rows.contact_points, &rows.bonded_points})
+        for (const auto &point : *points)
+          area = std::max(area, point.traction_area);
+      return dealii::Utilities::MPI::max(area, dual.communicator());
+    }
+
     double norm(const PairTractions &pair)
     {
       return std::hypot(pair.pressure, pair.tangential);
@@ -32,20 +43,22 @@ namespace slipstick::contact
 
   TractionErrors::TractionErrors(const tfeti::DualProblem &dual, const Vector &x, const Vector &error)
   {
-    const auto  &points  = dual.constraints().contact_points;
-    unsigned int n_pairs = 0;
-    for (const auto &point : points)
-      n_pairs = std::max(n_pairs, point.pair + 1);
+    const tfeti::Constraints &rows    = dual.constraints();
+    unsigned int              n_pairs = 0;
+    for (const auto *points : {&rows.contact_points, &rows.bonded_points})
+      for (const auto &point : *points)
+        n_pairs = std::max(n_pairs, point.pair + 1);
     n_pairs = dealii::Utilities::MPI::max(n_pairs, dual.communicator());
     std::vector<double> squares(4 * n_pairs, 0.);
-    for (const auto &point : points)
-      for (const unsigned int row : {point.normal_row, point.tangential_row, point.second_row})
-        if (row != tfeti::invalid_row)
-          {
-            double *of_pair = &squares[4 * point.pair + (row == point.normal_row ? 0 : 2)];
-            of_pair[0] += x.local_element(row) * x.local_element(row) / point.traction_area;
-            of_pair[1] += error.local_element(row) * error.local_element(row) / point.traction_area;
-          }
+    for (const auto *points : {&rows.contact_points, &rows.bonded_points})
+      for (const auto &point : *points)
+        for (const unsigned int row : {point.normal_row, point.tangential_row, point.second_row})
+          if (row != tfeti::invalid_row)
+            {
+              double *of_pair = &squares[4 * point.pair + (row == point.normal_row ? 0 : 2)];
+              of_pair[0] += x.local_element(row) * x.local_element(row) / point.traction_area;
+              of_pair[1] += error.local_element(row) * error.local_element(row) / point.traction_area;
+            }
     qp::sum_all(squares, dual.reduction());
     for (std::size_t k = 0; k < squares.size(); k += 4)
       {
@@ -85,16 +98,13 @@ namespace slipstick::contact
     : dual(dual_)
     , part(std::min(largest_traction_error, traction_error * tolerance))
     , balance(balance_)
+    , largest_area(largest_area_of_nodes(dual_))
     , largest_before(largest_before_)
   {}
 
   bool TractionTest::accepts(const Vector &x, const Vector &error) const
   {
-    double area = 0;
-    for (const auto &point : dual.constraints().contact_points)
-      area = std::max(area, point.traction_area);
-    area               = dealii::Utilities::MPI::max(area, dual.communicator());
-    const double none  = area > 0 ? negligible_force * balance / std::sqrt(area) : 0.;
+    const double none  = has_pairs() ? negligible_force * balance / std::sqrt(largest_area) : 0.;
     const auto   pairs = TractionErrors(dual, x, error).relative(std::max(negligible_remainder * largest_before, none));
     return std::all_of(pairs.begin(), pairs.end(), [this](const PairTractions &pair) {
       return pair.pressure <= part && pair.tangential <= part;

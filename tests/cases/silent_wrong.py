@@ -7,7 +7,7 @@ import re
 import unittest
 
 import scenes
-from program import converged, run, shipped, solve
+from program import converged, new_path, run, shipped, solve
 
 STEEL = {'Young modulus': '2.1e5'}
 BAR = {'Size': '10, 4', 'Cells': '10, 4', 'Material': 'elastic'}
@@ -61,6 +61,32 @@ def pressed_bars(cells, contacts=None, **contact):
                               'left above': {'Boundary': 'lid/left', 'Displacement x': '0'}},
                     tractions={'press': {'Boundary': 'lid/top', 'Traction y': '-10'}},
                     contacts=contacts or {'joint': {'Slave': 'bar/top', 'Master': 'lid/bottom', **contact}})
+
+
+def slit_ring(cells=48, layers=3, half_angle=0.001, **kinds):
+    """Radii 8 and 10 mm, degree 2; the sides of the slit are bonded to each other."""
+    columns = [half_angle + 2 * (math.pi - half_angle) * i / cells for i in range(cells + 1)]
+    nodes = ['{} {!r} {!r} 0'.format(1 + i * (layers + 1) + k, r * math.cos(a), r * math.sin(a))
+             for i, a in enumerate(columns) for k, r in enumerate(8 + 2 * k / layers for k in range(layers + 1))]
+
+    def node(i, k):
+        return 1 + i * (layers + 1) + k
+
+    elements = ['1 2 2 2 {} {}'.format(node(i, layers), node(i + 1, layers)) for i in range(cells)]
+    elements += ['1 2 {0} {0} {1} {2}'.format(which, node(i, k), node(i, k + 1)) for which, i in ((3, 0), (4, cells)) for k in range(layers)]
+    elements += ['3 2 5 5 {} {} {} {}'.format(node(i, k), node(i, k + 1), node(i + 1, k + 1), node(i + 1, k))
+                 for i in range(cells) for k in range(layers)]
+    path = new_path('slit_ring.msh')
+    path.write_text('\n'.join(
+        ['$MeshFormat', '2.2 0 8', '$EndMeshFormat', '$PhysicalNames', '4', '1 2 "outer"', '1 3 "one"', '1 4 "other"', '2 5 "all"',
+         '$EndPhysicalNames', '$Nodes', str(len(nodes))] + nodes + ['$EndNodes', '$Elements', str(len(elements))] +
+        ['{} {}'.format(number, element) for number, element in enumerate(elements, 1)] + ['$EndElements', '']))
+    return scenes.box('ring', plane_state='plane strain', materials={'elastic': {**STEEL, 'Poisson ratio': '0.3'}}, Decomposition=NONE,
+                      bodies={'ring': {'Shape': 'mesh', 'File': path, 'Material': 'elastic'}}, Discretization={'Degree': '2'},
+                      contacts={'slit': {'Slave': 'ring/one', 'Master': 'ring/other', 'Law': 'bonded'}},
+                      tractions={'press': {'Boundary': 'ring/outer', 'Pressure': '10*(1 + 0.2*(x^2 - y^2)/100)'}},
+                      supports={'pin': {'Body': 'ring', 'Point': '-10, 0', 'Displacement x': '0', 'Displacement y': '0'},
+                                'guide': {'Body': 'ring', 'Point': '-8, 0', 'Displacement y': '0'}}, **kinds)
 
 
 class Case(unittest.TestCase):
@@ -171,6 +197,12 @@ class Bonded(Case):
             self.near([pair['moment']], [50 + 4 * 5])
             self.near([pair['normal_force'], pair['contact_nodes']], [10, 11])
             self.assertEqual(len(result.contact), 11)
+
+    def test_a_slit_ring_bonded_to_itself_is_solved_until_its_tractions_are_right(self):
+        found = [converged(slit_ring(Solver={'Tolerance': tolerance})).summary['results'] for tolerance in ('1e-4', '1e-8')]
+        for figure in ('max_displacement', 'strain_energy'):
+            self.near([found[0][figure]], [found[1][figure]], 1e-3)
+        self.near([found[0]['contact'][0]['normal_force']], [found[1]['contact'][0]['normal_force']], 1e-3)
 
     def test_tractions_are_right_where_two_bonds_meet(self):
         halves = {part: {'Slave': 'bar/top where x ' + part, 'Master': 'lid/bottom', 'Law': 'bonded'} for part in ('< 4', '> 4')}

@@ -43,6 +43,12 @@ namespace slipstick::contact
                  const double              balance,
                  const double              largest_before);
 
+    /// Whether any process has nodes of pairs, bonded ones included.
+    bool has_pairs() const
+    {
+      return largest_area > 0;
+    }
+
     /// Whether the errors are below a given fraction of the tractions. Collective. @p error: estimated error of x.
     bool accepts(const Vector &x, const Vector &error) const;
 
@@ -53,6 +59,7 @@ namespace slipstick::contact
     const tfeti::DualProblem &dual;
     const double              part;           // admissible error over tractions
     const double              balance;        // [N]
+    const double              largest_area;   // of a node [mm^2]
     const double              largest_before; // [sqrt(N MPa)]
   };
 } // namespace slipstick::contact
