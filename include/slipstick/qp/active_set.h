@@ -28,9 +28,10 @@ namespace slipstick::qp
     /// the norm of F, times the weight of the entry, so that s g is about the force that closes g: s is the stiffness
     /// of a point. A force beyond its bound and the gap that it closes then contribute equally to the residual.
     /// Bodies that are held by contact alone move until s g balances their loads. How far they move depends on s, which
-    /// should then be the stiffness of the points in contact: the norm of F on these entries grows with their number.
-    /// If s is too stiff, bodies rest on few points. Therefore s is halved after steps that do not lower the residual,
-    /// but never below the value for all entries.
+    /// should then be the stiffness of the points in contact: the norm of F on these entries grows with their number,
+    /// and where bodies are soft as a whole (a ring of revolution, a beam) even a single point is stiffer than that
+    /// (doc/decisions/0142). If s is too stiff, bodies rest on few points. Therefore s is halved after steps that do not
+    /// lower the residual, but never below the value for all entries.
     template <typename Vector, typename Problem>
     class ActiveSet
     {
@@ -45,7 +46,8 @@ namespace slipstick::qp
         , norm(norm_)
         , noise(noise_)
         , balances(bodies_predict_active_sets(problem_, 0))
-        , step(balances ? 1 : natural_map_scale(problem_, step_, 0))
+        , of_point(point_stiffness(problem_, 0))
+        , step(balances ? 1 : std::max(step_, of_point))
         , set(std::move(set_))
         , weights(residual_weights(problem_, 0))
         , active(local_size(set.box.lower))
@@ -304,7 +306,7 @@ namespace slipstick::qp
             }
         n = problem.reduction().sum(n);
         if (n[1] > 0)
-          step = std::max(1., softening * n[0] / n[1]);
+          step = std::max(1., softening * std::max(n[0] / n[1], of_point));
       }
 
       // Whether the bound jumps to 0 where the normal entry vanishes.
@@ -415,6 +417,7 @@ namespace slipstick::qp
       const Problem        &problem;
       const double          norm, noise;
       const bool            balances;
+      const double          of_point; // |F| times the stiffness of a single point of weight 1; 0: unknown
       double                step;
       double                softening        = 1;              // factor on s, <= 1
       double                finest_imbalance = fine_imbalance; // fine limit of imbalances that move no body, ...

@@ -1,22 +1,20 @@
 // Optional members of problems, used by the semismooth Newton method (semismooth_newton.h).
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 namespace slipstick::qp::detail
 {
-  /// s times the norm of F, for an entry of weight 1: from the stiffness of single points if the problem provides it,
-  /// but never less than the value for whole bodies.
+  /// The member of that name of problems that have it; 0 for others.
   template <typename Problem>
-  auto natural_map_scale(const Problem &problem, const double least, int) -> decltype(problem.point_stiffness())
+  auto point_stiffness(const Problem &problem, int) -> decltype(problem.point_stiffness())
   {
-    return std::max(least, problem.point_stiffness());
+    return problem.point_stiffness();
   }
   template <typename Problem>
-  double natural_map_scale(const Problem &, const double least, long)
+  double point_stiffness(const Problem &, long)
   {
-    return least;
+    return 0;
   }
 
   /// Uses the loose bodies of problems that have them (semismooth_newton.h); other problems have no bodies held by
