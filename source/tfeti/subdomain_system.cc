@@ -42,8 +42,8 @@ namespace slipstick::tfeti
       const double          relative =
         KR.cwiseAbs().maxCoeff() / (matrices.stiffness.diagonal().maxCoeff() * matrices.kernel.cwiseAbs().maxCoeff());
       if (!(relative < kernel_tolerance))
-        throw NumericalError(name_of(matrices) + format(": a rigid motion strains it (|K R| = %g relative)", relative),
-                             "look for inverted or degenerate cells in the mesh");
+        throw InputError(name_of(matrices) + format(": a rigid motion strains it (|K R| = %g relative)", relative),
+                         "look for inverted or degenerate cells in the mesh");
     }
 
     /// K may have a larger kernel than R: the factor of a matrix that is singular in exact arithmetic may exist, but
@@ -61,11 +61,10 @@ namespace slipstick::tfeti
       const double stiffness =
         v.dot(matrices.stiffness.selfadjointView<Eigen::Lower>() * v) / matrices.stiffness.diagonal().maxCoeff();
       if (!(stiffness > smallest_stiffness))
-        throw NumericalError(name_of(matrices) +
-                               format(": its stiffness matrix does not resist a motion that is not rigid "
-                                      "(energy %g relative)",
-                                      stiffness),
-                             "look for degenerate cells, a hinge inside the subdomain, or extreme material parameters");
+        throw InputError(name_of(matrices) + format(": its stiffness matrix does not resist a motion that is not rigid "
+                                                    "(energy %g relative)",
+                                                    stiffness),
+                         "look for degenerate cells, a hinge inside the subdomain, or extreme material parameters");
       return stiffness;
     }
 
@@ -148,7 +147,14 @@ namespace slipstick::tfeti
 
   Cholesky SubdomainSystem::factorised(const std::vector<unsigned int> &last) const
   {
-    return {session, regularised(matrices.stiffness, fixing_unknowns, regularization), last, name_of(matrices)};
+    try
+      {
+        return {session, regularised(matrices.stiffness, fixing_unknowns, regularization), last, name_of(matrices)};
+      }
+    catch (const NumericalError &error) // its reasons are in the mesh and in the materials
+      {
+        throw InputError(Error::Ready(), error.what());
+      }
   }
 
   void SubdomainSystem::apply_pseudo_inverse(Eigen::VectorXd &x) const

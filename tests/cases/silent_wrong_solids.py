@@ -243,6 +243,16 @@ class Meshes(Case):
         result = converged(self.scene([self.ONE, ((1, 0, 0), (2, 1, 1)), ((0, 0, 1), (1, 1, 3))]))
         self.near(force(result, 'supports'), [0, 4, 0])
 
+    def test_cells_too_flat_for_double_precision_are_refused(self):
+        bodies = {'shaft': {'Shape': 'cylinder', 'Radius': '37553.3', 'Length': '8', 'Cells around': '16', 'Cells along axis': '11',
+                            'Material': 'elastic'},
+                  'ring': {'Shape': 'tube', 'Radius': '40', 'Inner radius': '20', 'Length': '5', 'Center': '0, 0, 1.5', 'Cells around': '16',
+                           'Cells along axis': '3', 'Material': 'elastic'}}
+        self.refused(solids.solid('flat', bodies=bodies, supports={'end': held('shaft/back'), 'other': held('ring/outer')},
+                                  contacts={'fit': {'Slave': 'ring/inner', 'Master': 'shaft/side', 'Law': 'Coulomb',
+                                                    'Friction coefficient': '0.3'}},
+                                  Decomposition={'Method': 'METIS', 'Subdomains': '12', 'Seed': '8'}), 2, 'subdomain', 'degenerate cells')
+
 
 class Scales(Case):
 

@@ -115,7 +115,7 @@ namespace
                           with_trailing_block);
           ADD_FAILURE() << "not thrown";
         }
-      catch (const NumericalError &error)
+      catch (const InputError &error)
         {
           EXPECT_NE(std::string(error.what()).find("subdomain 41"), std::string::npos) << error.what();
         }
