@@ -16,8 +16,6 @@ namespace slipstick::contact
     constexpr double part_of_residual = 0.3;
     // ... starting with this residual.
     constexpr double first_asked = 0.1;
-    // Tractions of bonded pairs that are not accurate enough at the tolerance are solved further, down to this part of it.
-    constexpr double least_part = 1e-5;
   } // namespace
 
   tfeti::DistributedVector homogenised_load(const tfeti::DualProblem &dual, const tfeti::DistributedVector &start)
@@ -100,22 +98,18 @@ namespace slipstick::contact
     if (tractions.has_pairs() && !from.history)
       from.history = std::make_shared<qp::DirectionHistory<Vector>>(is_preconditioned);
     bool has_met_goal = false;
-    for (;; tolerance = has_met_goal ? part_of_residual * tolerance
-                                     : std::max(options.tolerance, part_of_residual * tolerance))
+    for (;; tolerance = std::max(has_met_goal ? 0. : options.tolerance, part_of_residual * tolerance))
       {
         const qp::Goal goal(tolerance, reference);
         auto           result = is_preconditioned ? qp::pcpg(face, b, from, goal, pcpg, precondition, counted)
                                                   : qp::pcpg(face, b, from, goal, pcpg, qp::NoPreconditioner(), counted);
         solution.counts += result.counts;
+        if (has_met_goal && result.status != qp::Status::converged) // the point that met the goal is at rounding level
+          break;
         solution.status             = result.status;
         solution.projected_gradient = result.relative_residual;
         solution.multipliers        = start;
         solution.multipliers += result.x;
-        if (has_met_goal && result.status != qp::Status::converged) // at rounding level
-          {
-            solution.status = qp::Status::converged;
-            break;
-          }
         if (result.status == qp::Status::stagnated && !reorthogonalizes)
           { // rounding has destroyed the conjugacy of the directions
             reorthogonalizes         = true;
@@ -129,7 +123,7 @@ namespace slipstick::contact
         has_met_goal = tolerance <= options.tolerance;
         if (has_met_goal)
           {
-            if (tolerance <= least_part * options.tolerance || are_tractions_accurate(result.residual))
+            if (tolerance <= options.newton.least_part * options.tolerance || are_tractions_accurate(result.residual))
               break;
           }
         else

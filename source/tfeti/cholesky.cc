@@ -108,7 +108,8 @@ namespace slipstick::tfeti
   const Cholesky::Failure Cholesky::of_stiffness = {
     ": its regularised stiffness matrix is not positive definite, so its kernel is larger than the rigid motions or its "
     "stiffness is zero to rounding",
-    "look for degenerate cells, a hinge inside the subdomain, or extreme material parameters"};
+    "look for degenerate cells, a hinge inside the subdomain, or extreme material parameters",
+    true};
 
   CholmodSession::CholmodSession(const Ordering ordering)
     : ordering(ordering)
@@ -242,7 +243,11 @@ namespace slipstick::tfeti
                        "use more or smaller subdomains (Decomposition), or more ranks on more machines");
     if (common.status != CHOLMOD_OK || factor->minor < factor->n ||
         cholmod_rcond(factor.get(), &common) < smallest_reciprocal_condition)
-      throw NumericalError(name + failure.text, failure.remedy);
+      {
+        if (failure.is_of_input)
+          throw InputError(name + failure.text, failure.remedy);
+        throw NumericalError(name + failure.text, failure.remedy);
+      }
     if (last.empty())
       session->keep(A, last, factor);
   }

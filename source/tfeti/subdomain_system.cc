@@ -147,14 +147,7 @@ namespace slipstick::tfeti
 
   Cholesky SubdomainSystem::factorised(const std::vector<unsigned int> &last) const
   {
-    try
-      {
-        return {session, regularised(matrices.stiffness, fixing_unknowns, regularization), last, name_of(matrices)};
-      }
-    catch (const NumericalError &error) // its reasons are in the mesh and in the materials
-      {
-        throw InputError(Error::Ready(), error.what());
-      }
+    return {session, regularised(matrices.stiffness, fixing_unknowns, regularization), last, name_of(matrices)};
   }
 
   void SubdomainSystem::apply_pseudo_inverse(Eigen::VectorXd &x) const

@@ -179,7 +179,7 @@ TEST(Cholesky, indefinite_and_singular_matrices_are_named)
           Cholesky(session(), A, last, "subdomain 7");
           ADD_FAILURE() << "not thrown";
         }
-      catch (const NumericalError &error)
+      catch (const InputError &error)
         {
           EXPECT_NE(std::string(error.what()).find("subdomain 7"), std::string::npos);
         }

@@ -54,8 +54,7 @@ namespace slipstick
     using NoEquilibrium::NoEquilibrium;
   };
 
-  /// A numerical method failed in a way that theory excludes (e.g. a breakdown of a factorisation, a kernel larger than
-  /// the rigid motions).
+  /// A numerical method failed in a way that theory excludes (e.g. a breakdown of the factorisation of the coarse matrix).
   class NumericalError : public Error
   {
   public:

@@ -21,29 +21,7 @@ namespace slipstick::qp::detail
       : at(at_)
     {}
 
-    /// @param target weighted residual to be reached.
-    FaceSolution<Vector> solve(const double target)
-    {
-      use_store(target);
-      while (!at.is_solved(target))
-        {
-          if (!at.has_steps_left())
-            return at.ended(Status::iteration_limit);
-          if (const auto failure = step())
-            return at.ended(*failure);
-        }
-      return at.ended(Status::converged);
-    }
-
-  private:
-    using Direction = typename DirectionStore<Vector>::Direction;
-
-    struct Own
-    {
-      Vector p, Ap;
-      double energy; // p'A p
-    };
-
+    /// Goes to the minimum on the stored directions, unless the weighted residual is at most @p target.
     void use_store(const double target)
     {
       if (at.recycled.size() == 0 || !(at.residual_norm() > target))
@@ -57,7 +35,7 @@ namespace slipstick::qp::detail
         at.move_along_stored(coefficients(dots_with_stored(at.residual(), &Direction::p)));
     }
 
-    // @return the reason, if there is no step or it does not reduce the residual
+    /// @return the reason, if there is no step or it does not reduce the residual
     std::optional<Status> step()
     {
       Vector p = at.preconditioned(at.residual());
@@ -78,6 +56,15 @@ namespace slipstick::qp::detail
         return Status::stagnated;
       return {};
     }
+
+  private:
+    using Direction = typename DirectionStore<Vector>::Direction;
+
+    struct Own
+    {
+      Vector p, Ap;
+      double energy; // p'A p
+    };
 
     // Makes p A-orthogonal to the directions of the store and to the own ones.
     void orthogonalise(Vector &p) const

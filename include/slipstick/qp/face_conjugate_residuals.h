@@ -22,27 +22,7 @@ namespace slipstick::qp::detail
       : at(at_)
     {}
 
-    /// @param target weighted residual to be reached.
-    FaceSolution<Vector> solve(const double target)
-    {
-      use_store(target);
-      while (!at.is_solved(target))
-        if (!at.has_steps_left())
-          return at.ended(Status::iteration_limit);
-        else if (!step())
-          return at.ended(Status::stagnated);
-      return at.ended(Status::converged);
-    }
-
-  private:
-    using Direction = typename DirectionStore<Vector>::Direction;
-
-    struct Own
-    {
-      Vector p, Fp, q;
-      double error; // of Fp
-    };
-
+    /// Goes to the least residual on the stored directions, unless the weighted residual is at most @p target.
     void use_store(const double target)
     {
       if (at.n_recycled == 0 || !(at.residual_norm() > target))
@@ -58,8 +38,8 @@ namespace slipstick::qp::detail
         nearly.emplace(regularized(all, gram(at.violations)));
     }
 
-    // @return whether there is a step and it reduces the residual
-    bool step()
+    /// @return the reason, if there is no step or it does not reduce the residual
+    std::optional<Status> step()
     {
       Vector p = nearly ? preconditioned() : at.preconditioned(at.residual());
       Vector Fp(p);
@@ -70,14 +50,25 @@ namespace slipstick::qp::detail
       orthogonalise(made);
       const double length = norm(made.q, at.reduction);
       if (!(length > at.options.rounding * std::sqrt(squares[0])))
-        return false;
+        return Status::stagnated;
       for (Vector *v : {&made.p, &made.Fp, &made.q})
         combine(1. / length, *v, 0., *v);
       made.error /= length;
       const double along = dot(at.weighted(at.residual()), made.q, at.reduction);
       own.push_back(std::move(made));
-      return at.move(along, own.back().p, own.back().Fp, own.back().error);
+      if (!at.move(along, own.back().p, own.back().Fp, own.back().error))
+        return Status::stagnated;
+      return {};
     }
+
+  private:
+    using Direction = typename DirectionStore<Vector>::Direction;
+
+    struct Own
+    {
+      Vector p, Fp, q;
+      double error; // of Fp
+    };
 
     // Makes q orthogonal to the images of the directions of the store and of the own ones.
     void orthogonalise(Own &made) const

@@ -55,16 +55,30 @@ namespace slipstick::qp
     /// Conjugate gradients from the start until the weighted residual is at most @p target. For faces without ties.
     FaceSolution<Vector> solve_symmetric(const double target)
     {
-      return detail::FaceConjugateGradients<Vector, Face>(at).solve(target);
+      return solve(detail::FaceConjugateGradients<Vector, Face>(at), target);
     }
 
     /// The same by generalised conjugate residuals, for all faces.
     FaceSolution<Vector> solve_unsymmetric(const double target)
     {
-      return detail::FaceConjugateResiduals<Vector, Face>(at).solve(target);
+      return solve(detail::FaceConjugateResiduals<Vector, Face>(at), target);
     }
 
   private:
+    template <typename Method>
+    FaceSolution<Vector> solve(Method method, const double target)
+    {
+      method.use_store(target);
+      while (!at.is_solved(target))
+        {
+          if (!at.has_steps_left())
+            return at.ended(Status::iteration_limit);
+          if (const auto failure = method.step())
+            return at.ended(*failure);
+        }
+      return at.ended(Status::converged);
+    }
+
     detail::FaceIterate<Vector, Face> at;
   };
 } // namespace slipstick::qp

@@ -83,15 +83,17 @@ namespace slipstick::tfeti
   {
   public:
     /// Parts of the error message for a matrix that is not positive definite: a description, printed after its name,
-    /// and a remedy.
+    /// and a remedy; and whether the reason is in the input, mesh or materials.
     struct Failure
     {
       std::string text, remedy;
+      bool        is_of_input = false;
     };
     static const Failure of_stiffness; // for the stiffness of a subdomain
 
     /// @param lower lower triangle of A, compressed columns, sorted.
-    /// @throws NumericalError when A is not positive definite; @p name identifies the matrix in the message.
+    /// @throws InputError or NumericalError, as @p failure says, when A is not positive definite; @p name identifies the
+    /// matrix in the message.
     Cholesky(const std::shared_ptr<CholmodSession> &session,
              const Eigen::SparseMatrix<double>     &lower,
              const std::vector<unsigned int>       &last,

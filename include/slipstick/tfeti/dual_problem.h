@@ -58,7 +58,7 @@ namespace slipstick::tfeti
     /// Factorises the subdomains and the coarse problem and estimates |P F P|. Collective.
     /// @throws NoEquilibrium naming body and motion when no row of B resists a rigid motion of a body; UnheldMotions
     /// if no load drives any such motion.
-    /// @throws NumericalError when a subdomain cannot be factorised.
+    /// @throws InputError when a subdomain cannot be factorised.
     DualProblem(std::vector<SubdomainMatrices>  matrices,
                 Constraints                     constraints,
                 const DualOptions              &options,

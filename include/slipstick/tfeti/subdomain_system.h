@@ -23,7 +23,7 @@ namespace slipstick::tfeti
     /// @param with_trailing_block order the touched and fixing unknowns last, for the dense blocks below.
     /// @param fixed_at_boundary take the fixing unknowns from the boundary in any case: congruent subdomains then have
     /// the same ones and share their factor.
-    /// @throws NumericalError when the kernel of K is not spanned by R.
+    /// @throws InputError when the kernel of K is not spanned by R.
     SubdomainSystem(const std::shared_ptr<CholmodSession> &session,
                     SubdomainMatrices                      matrices,
                     std::vector<unsigned int>              touched,

@@ -18,7 +18,7 @@ namespace slipstick::tfeti
     /// Factorises the subdomains whose touched unknowns differ from those of the last call (all of them in the first
     /// call), and computes the dense blocks and K+ f. The options must be those of the last call.
     /// @param touched unknowns touched by rows of B, sorted. @param explicit_blocks whether to compute blocks of K+.
-    /// @throws NumericalError as SubdomainSystem does, on the affected rank only.
+    /// @throws InputError as SubdomainSystem does, on the affected rank only.
     void prepare(const std::vector<std::vector<unsigned int>> &touched,
                  const bool                                    explicit_blocks,
                  const DualOptions                            &options);
