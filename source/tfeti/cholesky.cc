@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <camd.h>
 #include <cmath>
+#include <new>
 
 namespace slipstick::tfeti
 {
@@ -24,6 +25,18 @@ namespace slipstick::tfeti
     constexpr std::size_t max_factors = 4;
     // Cached analyses: the blocks of a rectangle have about ten patterns; each METIS part has its own.
     constexpr std::size_t max_analyses = 32;
+
+    /// Call it after every CHOLMOD function that allocates memory.
+    /// @throws std::bad_alloc, which may be thrown on this rank only: main() ends the other ranks. InputError for more
+    /// entries than indices can count: first in Subdomains::prepare, which throws it on all ranks.
+    void check(const cholmod_common &common)
+    {
+      if (common.status == CHOLMOD_OUT_OF_MEMORY)
+        throw std::bad_alloc();
+      if (common.status == CHOLMOD_TOO_LARGE)
+        throw InputError("the matrix of a subdomain or its factor is too large for indices of 32 bits",
+                         "use more subdomains (Decomposition)");
+    }
 
     /// For matrices with the same pattern.
     bool are_equal(const cholmod_sparse &A, const std::vector<double> &entries)
@@ -51,15 +64,18 @@ namespace slipstick::tfeti
       for (const unsigned int i : last)
         constraint[i] = 1;
       cholmod_sparse *pattern = cholmod_copy(&A, 0, 0, &common); // both triangles, no values
-      const bool      success = camd_order(static_cast<int>(A.nrow),
-                                      static_cast<int *>(pattern->p),
-                                      static_cast<int *>(pattern->i),
-                                      permutation.data(),
-                                      nullptr,
-                                      nullptr,
-                                      constraint.data()) >= CAMD_OK;
+      check(common);
+      const int result = camd_order(static_cast<int>(A.nrow),
+                                    static_cast<int *>(pattern->p),
+                                    static_cast<int *>(pattern->i),
+                                    permutation.data(),
+                                    nullptr,
+                                    nullptr,
+                                    constraint.data());
       cholmod_free_sparse(&pattern, &common);
-      AssertThrow(success, dealii::ExcMessage("camd_order failed"));
+      if (result == CAMD_OUT_OF_MEMORY)
+        throw std::bad_alloc();
+      AssertThrow(result >= CAMD_OK, dealii::ExcMessage("camd_order failed"));
       return permutation;
     }
 
@@ -95,7 +111,8 @@ namespace slipstick::tfeti
       if (!others.empty())
         {
           const bool success = cholmod_metis(&pattern, nullptr, 0, 1, permutation.data(), &common) != 0;
-          raise_termination(!success && common.status != CHOLMOD_OUT_OF_MEMORY);
+          check(common);
+          raise_termination(!success);
           AssertThrow(success, dealii::ExcMessage("cholmod_metis failed"));
         }
       for (int &k : permutation)
@@ -178,9 +195,9 @@ namespace slipstick::tfeti
 
   const double *CholmodSession::solve(const int system, cholmod_factor &factor, cholmod_dense &B)
   {
+    // it can only lack memory; on one rank, perhaps: see check()
     if (cholmod_solve2(system, &factor, &B, nullptr, &X, nullptr, &Y, &E, &common) == 0)
-      throw InputError("not enough memory for a solve with a Cholesky factor",
-                       "use more or smaller subdomains (Decomposition), or more ranks on more machines");
+      throw std::bad_alloc();
     return static_cast<const double *>(X->x);
   }
 
@@ -190,9 +207,8 @@ namespace slipstick::tfeti
       return found->factor;
 
     cholmod_factor *factor = analyse(A, last);
-    if (factor == nullptr)
-      throw InputError("not enough memory for the analysis of a sparse matrix",
-                       "use more or smaller subdomains (Decomposition), or more ranks on more machines");
+    check(common);
+    AssertThrow(factor != nullptr, dealii::ExcMessage("cholmod_analyze failed"));
     if (analyses.size() == max_analyses)
       {
         cholmod_free_factor(&analyses.front().factor, &common);
@@ -231,16 +247,15 @@ namespace slipstick::tfeti
       return;
     // The session keeps a weak pointer, and the deleter lives as long as that: it must not own the session. Every user
     // of the factor does.
-    factor                  = std::shared_ptr<cholmod_factor>(cholmod_copy_factor(session->analysis(A, last), &common),
+    factor = std::shared_ptr<cholmod_factor>(cholmod_copy_factor(session->analysis(A, last), &common),
                                              [owner = session.get()](cholmod_factor *unused) {
                                                cholmod_free_factor(&unused, &owner->common);
                                              });
+    check(common);
     const auto *permutation = static_cast<const int *>(factor->Perm);
     trailing.assign(permutation + factor->n - last.size(), permutation + factor->n);
     cholmod_factorize(&A, factor.get(), &common);
-    if (common.status == CHOLMOD_OUT_OF_MEMORY)
-      throw InputError(name + ": not enough memory for the Cholesky factor",
-                       "use more or smaller subdomains (Decomposition), or more ranks on more machines");
+    check(common);
     if (common.status != CHOLMOD_OK || factor->minor < factor->n ||
         cholmod_rcond(factor.get(), &common) < smallest_reciprocal_condition)
       {

@@ -2,6 +2,11 @@
 
 #include <slipstick/base/exceptions.h>
 
+#include <SuiteSparse_config.h>
+
+#include <cstdlib>
+#include <new>
+
 using namespace slipstick;
 using namespace slipstick::test;
 using tfeti::Cholesky;
@@ -27,7 +32,62 @@ namespace
   }
 
   const auto session = [] { return std::make_shared<CholmodSession>(); };
+
+#if SUITESPARSE_MAIN_VERSION < 6 // later ones hide the functions behind others
+  /// While one of these exists, CHOLMOD runs out of memory after a number of allocations.
+  class Shortage
+  {
+  public:
+    explicit Shortage(const int n_allocations)
+      : before(SuiteSparse_config)
+    {
+      left                           = n_allocations;
+      SuiteSparse_config.malloc_func = [](std::size_t n) { return left-- > 0 ? std::malloc(n) : nullptr; };
+      SuiteSparse_config.calloc_func = [](std::size_t n, std::size_t s) {
+        return left-- > 0 ? std::calloc(n, s) : nullptr;
+      };
+      SuiteSparse_config.realloc_func = [](void *p, std::size_t n) {
+        return left-- > 0 ? std::realloc(p, n) : nullptr;
+      };
+    }
+    ~Shortage()
+    {
+      SuiteSparse_config = before;
+    }
+
+  private:
+    const SuiteSparse_config_struct before;
+    static inline int               left = 0;
+  };
+#endif
 } // namespace
+
+#if SUITESPARSE_MAIN_VERSION < 6
+TEST(Cholesky, lack_of_memory_anywhere_is_bad_alloc)
+{
+  const auto A = shifted_stiffness(4);
+  for (const auto &last : {std::vector<unsigned int>(), every(5, A.rows())})
+    for (const auto ordering : {tfeti::Ordering::minimum_degree, tfeti::Ordering::nested_dissection})
+      {
+        int n = 0;
+        for (bool ran_out = true; ran_out; ++n)
+          {
+            ASSERT_LT(n, 1000);
+            const auto      memory = std::make_shared<CholmodSession>(ordering);
+            Eigen::VectorXd x      = random_vector(A.rows(), 1);
+            const Shortage  shortage(n);
+            try
+              {
+                Cholesky(memory, A, last, "box").solve(x);
+                ran_out = false;
+              }
+            catch (const std::bad_alloc &)
+              {}
+          }
+        EXPECT_GT(n, 10);
+      }
+}
+#endif
 
 TEST(Cholesky, solves)
 {

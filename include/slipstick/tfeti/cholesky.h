@@ -28,6 +28,7 @@ namespace slipstick::tfeti
     ~CholmodSession();
 
     /// X with A X = B for one of the systems that CHOLMOD numbers; valid until the next call.
+    /// @throws std::bad_alloc on this rank.
     const double *solve(const int system, cholmod_factor &factor, cholmod_dense &B);
 
     CholmodSession(const CholmodSession &)            = delete;
@@ -93,12 +94,16 @@ namespace slipstick::tfeti
 
     /// @param lower lower triangle of A, compressed columns, sorted.
     /// @throws InputError or NumericalError, as @p failure says, when A is not positive definite; @p name identifies the
-    /// matrix in the message.
+    /// matrix in the message. std::bad_alloc on this rank, when memory runs out.
     Cholesky(const std::shared_ptr<CholmodSession> &session,
              const Eigen::SparseMatrix<double>     &lower,
              const std::vector<unsigned int>       &last,
              const std::string                     &name,
              const Failure                         &failure = of_stiffness);
+
+    Cholesky(Cholesky &&) = default;
+    // It would replace the session before the factor, which is freed by its session.
+    Cholesky &operator=(Cholesky &&) = delete;
 
     /// x := A^-1 x; n entries.
     void solve(Eigen::VectorXd &x) const;
