@@ -53,4 +53,14 @@ namespace slipstick
       }
     return free;
   }
+
+  double share_of_free_memory_mb(const MPI_Comm comm)
+  {
+    MPI_Comm machine;
+    MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+    int n_ranks;
+    MPI_Comm_size(machine, &n_ranks);
+    MPI_Comm_free(&machine);
+    return free_memory_mb(n_ranks) / n_ranks;
+  }
 } // namespace slipstick

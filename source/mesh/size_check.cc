@@ -189,11 +189,7 @@ namespace slipstick::mesh
   template <int dim>
   void check_size(const scene::Scene<dim> &scene, const bool forced, const MPI_Comm comm)
   {
-    MPI_Comm node;
-    MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
-    const unsigned int on_node = dealii::Utilities::MPI::n_mpi_processes(node);
-    MPI_Comm_free(&node);
-    const double free = dealii::Utilities::MPI::sum(free_memory_mb(on_node) / on_node, comm); // each rank adds a share
+    const double free = dealii::Utilities::MPI::sum(share_of_free_memory_mb(comm), comm);
     collectively(comm, [&] {
       if (dealii::Utilities::MPI::this_mpi_process(comm) != 0)
         return;

@@ -1,13 +1,11 @@
+#include <slipstick/base/memory.h>
 #include <slipstick/tfeti/operator_choice.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <limits>
 #include <set>
-#include <string>
 
 namespace slipstick::tfeti
 {
@@ -24,7 +22,8 @@ namespace slipstick::tfeti
     // Minimum number of multiplications with F in a run: norm estimate and solution.
     constexpr double expected_multiplications = 40;
     // Part of a process's memory share that the dense blocks may take.
-    constexpr double memory_part = 0.5;
+    constexpr double memory_part  = 0.5;
+    constexpr double bytes_per_mb = 1048576;
 
     std::size_t n_touched(const std::vector<Constraints::Entry> &block)
     {
@@ -53,20 +52,6 @@ namespace slipstick::tfeti
     return estimate;
   }
 
-  std::size_t memory_share(const MPI_Comm comm)
-  {
-    MPI_Comm node;
-    MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
-    int n_ranks;
-    MPI_Comm_size(node, &n_ranks);
-    MPI_Comm_free(&node);
-    std::ifstream file("/proc/meminfo");
-    for (std::string line; std::getline(file, line);)
-      if (line.rfind("MemAvailable:", 0) == 0)
-        return std::stoull(line.substr(line.find(':') + 1)) * 1024 / n_ranks; // kB
-    return std::numeric_limits<std::size_t>::max();
-  }
-
   bool is_explicit(const DualOptions               &options,
                    const std::vector<unsigned int> &n_unknowns,
                    const Constraints               &constraints,
@@ -82,7 +67,7 @@ namespace slipstick::tfeti
         bytes += estimate.bytes;
         gain += expected_multiplications * estimate.saving - estimate.setup;
       }
-    const bool fits = bytes <= memory_part * memory_share(comm);
+    const bool fits = bytes <= memory_part * share_of_free_memory_mb(comm) * bytes_per_mb;
     return dealii::Utilities::MPI::min(fits ? 1 : 0, comm) > 0 && dealii::Utilities::MPI::sum(gain, comm) >= 0;
   }
 } // namespace slipstick::tfeti

@@ -3,6 +3,8 @@
 
 #include <slipstick/base/exceptions.h>
 
+#include <mpi.h>
+
 namespace slipstick
 {
   /// Whether an error means that memory ran out: std::bad_alloc, or the corresponding exception of deal.II.
@@ -16,4 +18,7 @@ namespace slipstick
   /// of the run on it (for limited address spaces: the part not used by this process); infinite if none of this can be
   /// read.
   double free_memory_mb(const unsigned int n_ranks);
+
+  /// The share of this process in the free memory of its machine [MB]; infinite if nothing is known. Collective.
+  double share_of_free_memory_mb(const MPI_Comm comm);
 } // namespace slipstick

@@ -18,11 +18,9 @@ namespace slipstick::tfeti
 
   BlockEstimate estimate_block(const std::size_t n_unknowns, const std::size_t n_touched, const DualOptions &options);
 
-  /// Memory available to this process: its share of the free memory of the machine [bytes]. Collective.
-  std::size_t memory_share(const MPI_Comm comm);
-
   /// Whether F is stored in dense blocks: as prescribed by the options; if they leave the choice to the program, when
-  /// the blocks of every rank fit into a part of its memory share and the expected multiplications pay for them.
+  /// the blocks of every rank fit into a part of its share of the free memory (limits of the run count) and the expected
+  /// multiplications pay for them.
   /// Collective.
   /// @param n_unknowns of every subdomain.
   bool is_explicit(const DualOptions               &options,
