@@ -1,10 +1,12 @@
 #include <slipstick/base/collective.h>
+#include <slipstick/base/exceptions.h>
 #include <slipstick/tfeti/dual_problem.h>
 #include <slipstick/tfeti/operator_choice.h>
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <cmath>
 
 namespace slipstick::tfeti
 {
@@ -227,6 +229,9 @@ namespace slipstick::tfeti
         std::swap(before, x);
         std::swap(x, y);
       }
+    if (!std::isfinite(norm))
+      throw NumericalError("the norm of the dual operator is not a finite number",
+                           "look for extreme dimensions, material parameters or units");
     return norm > 0 ? norm : 1.;
   }
 
