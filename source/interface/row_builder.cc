@@ -64,8 +64,16 @@ namespace slipstick::interface
         }
     }
 
-    // Distinguishes the labels of the rows along the two tangents of a node.
-    constexpr std::uint64_t second_tangent = std::uint64_t(1) << 48;
+    // What distinguishes the labels of rows of one node and kind. Rows of contact pairs: the pair from bit 0, its side
+    // from bit 32, the tangent in bit 48. Prescribed displacements: their component or normal; springs: this and more.
+    constexpr unsigned int first_side = 32, second_tangent = 48, first_spring = 1000;
+
+    /// The same for bonds, disjoint too: direction in bits 0 and 1, side in bits 2 and 3 and from bit 48, pair from bit 4.
+    /// Bit 32 is always set. (Labels decide the start vector of Lanczos' method and thus the last digits of results.)
+    std::uint64_t bond_number(const std::uint64_t pair, const std::uint64_t side, const std::uint64_t direction)
+    {
+      return direction + (side % 4 << 2) + (pair << 4) + (std::uint64_t(1) << 32) + (side / 4 << 48);
+    }
 
     /// Solids only: those of the plane follow from the normal.
     template <typename Tangents>
@@ -168,7 +176,7 @@ namespace slipstick::interface
         foundations.insert(side.condition);
     for (unsigned int k = 0; k < node.springs.size(); ++k)
       {
-        const unsigned int row = new_row(tfeti::RowKind::prescribed, 0., node.key, 1000 + k);
+        const unsigned int row = new_row(tfeti::RowKind::prescribed, 0., node.key, first_spring + k);
         fill(row, row_coefficients(node.springs[k].direction));
         add_reaction(i, row, node.springs[k].direction, {foundations.begin(), foundations.end()});
         constraints.compliance.resize(constraints.kind.size(), 0.);
@@ -202,7 +210,7 @@ namespace slipstick::interface
   {
     constraints.kind.push_back(kind);
     constraints.c.push_back(c);
-    std::uint64_t label = 1469598103934665603ull; // FNV-1a hash of the data that identify the row
+    std::uint64_t label = 1469598103934665603ull; // a hash like FNV-1a, but of whole words, of what identifies the row
     for (const std::uint64_t part : {key[0], key[1], std::uint64_t(kind), which})
       label = (label ^ part) * 1099511628211ull;
     constraints.label.push_back(label);
@@ -322,7 +330,7 @@ namespace slipstick::interface
               if (kept_bonds.count(std::array<unsigned int, 4>{{i, touch.pair, touch.side, d}}) == 0)
                 continue;
               const unsigned int number =
-                new_row(tfeti::RowKind::bonded, 0., key, (1ull << 32) + 16 * touch.pair + 4 * touch.side + d);
+                new_row(tfeti::RowKind::bonded, 0., key, bond_number(touch.pair, touch.side, d));
               (d == 0 ? touch.point.normal_row : d == 1 ? touch.point.tangential_row : touch.point.second_row) = number;
               fill(number, jump(touch, d == 0 ? touch.normal : tangents[d - 1]));
               ++constraints.counts.gluing;
@@ -355,10 +363,11 @@ namespace slipstick::interface
           }
         if (!has_normal && across.empty())
           continue;
-        const std::uint64_t which = touch.pair + (std::uint64_t(touch.side) << 32);
+        const std::uint64_t which = touch.pair + (std::uint64_t(touch.side) << first_side);
         for (unsigned int k = 0; k < across.size(); ++k)
           {
-            const unsigned int row = new_row(tfeti::RowKind::tangential, 0., key, which + k * second_tangent);
+            const unsigned int row =
+              new_row(tfeti::RowKind::tangential, 0., key, which + (std::uint64_t(k) << second_tangent));
             (k == 0 ? touch.point.tangential_row : touch.point.second_row) = row;
             fill(row, across[k]);
             ++constraints.counts.tangential;

@@ -1,6 +1,8 @@
 // Bodies that nothing but contact holds: where forces within bounds balance their loads.
 #include "torn.h"
 
+#include <slipstick/tfeti/gathered_by_label.h>
+
 #include <functional>
 
 #include <limits>
@@ -202,4 +204,14 @@ TEST(LooseBodies, are_held_by_the_row_that_is_nearest_to_its_bound)
       }
   EXPECT_EQ(dealii::Utilities::MPI::sum(added, MPI_COMM_WORLD), 1u);
   EXPECT_EQ(dual->loose_bodies().hold(holds, gaps, false), holds);
+}
+
+TEST(GatheredByLabel, labels_must_differ)
+{
+  const std::vector<double> values = {1, 2};
+  EXPECT_THROW(tfeti::gathered_by_label({5, 5}, values, MPI_COMM_WORLD), dealii::ExceptionBase);
+  const std::uint64_t rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+  const auto          all  = tfeti::gathered_by_label({2 * rank + 1, 2 * rank}, values, MPI_COMM_WORLD);
+  EXPECT_EQ(all.size(), 2 * dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
+  EXPECT_EQ(all.begin()->second, 2.);
 }
