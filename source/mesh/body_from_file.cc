@@ -1,3 +1,4 @@
+#include <slipstick/base/disjoint_sets.h>
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/body_mesh.h>
 #include <slipstick/mesh/conformity.h>
@@ -192,19 +193,13 @@ namespace slipstick::mesh
     template <int dim>
     void Extraction<dim>::check_connected()
     {
-      std::vector<unsigned int> root(mesh.piece.vertices.size());
-      std::iota(root.begin(), root.end(), 0);
-      const auto find = [&root](unsigned int v) {
-        while (root[v] != v)
-          v = root[v] = root[root[v]];
-        return v;
-      };
+      DisjointSets connected(mesh.piece.vertices.size());
       for (const auto &cell : mesh.piece.cells)
         for (unsigned int k = 1; k < n_corners<dim>(cell); ++k)
-          root[find(cell[k])] = find(cell[0]);
+          connected.join(cell[k], cell[0]);
       std::map<unsigned int, unsigned int> first_cell; // by piece
       for (unsigned int c = 0; c < part.cells().size(); ++c)
-        first_cell.emplace(find(mesh.piece.cells[c][0]), c);
+        first_cell.emplace(connected.root(mesh.piece.cells[c][0]), c);
       if (first_cell.size() == 1)
         return;
       std::string places;

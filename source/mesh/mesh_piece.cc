@@ -1,6 +1,5 @@
+#include <slipstick/base/disjoint_sets.h>
 #include <slipstick/mesh/mesh_piece.h>
-
-#include <numeric>
 
 namespace slipstick::mesh
 {
@@ -200,26 +199,16 @@ namespace slipstick::mesh
     const unsigned int n_cells = whole.cells.size();
     AssertDimension(part.size(), n_cells);
 
-    // union-find over faces between cells of the same part
-    std::vector<unsigned int> root(n_cells);
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](unsigned int c) {
-      while (root[c] != c)
-        c = root[c] = root[root[c]];
-      return c;
-    };
-    const auto faces = faces_with_cells(whole);
+    DisjointSets connected(n_cells); // by faces between cells of the same part
+    const auto   faces = faces_with_cells(whole);
     for (std::size_t k = 1; k < faces.size(); ++k)
       if (faces[k].first == faces[k - 1].first && part[faces[k].second] == part[faces[k - 1].second])
-        {
-          const unsigned int a = find(faces[k].second), b = find(faces[k - 1].second);
-          root[std::max(a, b)] = std::min(a, b);
-        }
+        connected.join(faces[k].second, faces[k - 1].second);
 
     const auto                                                                 boundary = boundary_by_vertices(whole);
     std::map<std::pair<unsigned int, unsigned int>, std::vector<unsigned int>> cells_of_piece; // by part and root
     for (unsigned int c = 0; c < n_cells; ++c)
-      cells_of_piece[{part[c], find(c)}].push_back(c);
+      cells_of_piece[{part[c], connected.root(c)}].push_back(c);
     std::vector<MeshPiece<dim>> pieces;
     for (const auto &[key, cells] : cells_of_piece)
       pieces.push_back(extract<dim>(whole, cells, boundary));

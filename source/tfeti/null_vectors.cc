@@ -1,3 +1,4 @@
+#include <slipstick/base/disjoint_sets.h>
 #include <slipstick/tfeti/dense.h>
 #include <slipstick/tfeti/null_vectors.h>
 
@@ -5,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace slipstick::tfeti
 {
@@ -20,23 +20,14 @@ namespace slipstick::tfeti
     /// Connected parts of the matrix: index sets that no entry couples.
     std::vector<std::vector<int>> connected_parts(const Matrix &matrix)
     {
-      std::vector<int> root(matrix.cols());
-      std::iota(root.begin(), root.end(), 0);
-      const auto find = [&root](int i) {
-        while (root[i] != i)
-          i = root[i] = root[root[i]];
-        return i;
-      };
+      DisjointSets sets(matrix.cols());
       for (int j = 0; j < matrix.outerSize(); ++j)
         for (Matrix::InnerIterator entry(matrix, j); entry; ++entry)
           if (entry.value() != 0)
-            {
-              const int a = find(entry.row()), b = find(j);
-              root[std::max(a, b)] = std::min(a, b);
-            }
-      std::vector<std::vector<int>> parts(root.size());
-      for (unsigned int i = 0; i < root.size(); ++i)
-        parts[find(i)].push_back(i);
+            sets.join(entry.row(), j);
+      std::vector<std::vector<int>> parts(matrix.cols());
+      for (unsigned int i = 0; i < parts.size(); ++i)
+        parts[sets.root(i)].push_back(i);
       parts.erase(std::remove_if(parts.begin(), parts.end(), [](const auto &part) { return part.empty(); }),
                   parts.end());
       return parts;

@@ -1,3 +1,4 @@
+#include <slipstick/base/disjoint_sets.h>
 #include <slipstick/base/exceptions.h>
 #include <slipstick/tfeti/row_weights.h>
 
@@ -5,9 +6,10 @@
 
 #include <boost/serialization/vector.hpp>
 
+#include <algorithm>
 #include <cstdint>
+#include <list>
 #include <map>
-#include <numeric>
 
 namespace slipstick::tfeti
 {
@@ -77,14 +79,9 @@ namespace slipstick::tfeti
 
     // connected groups of rows, and the entries of W
     std::vector<Entry>        entries;
-    std::vector<unsigned int> root(n), size(n, 0);
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&root](unsigned int r) {
-      while (root[r] != r)
-        r = root[r] = root[root[r]];
-      return r;
-    };
-    bool is_local = true;
+    DisjointSets              groups(n);
+    std::vector<unsigned int> size(n, 0);
+    bool                      is_local = true;
     for (const auto &[from, weights] : received)
       for (const auto &weight : weights)
         {
@@ -92,35 +89,34 @@ namespace slipstick::tfeti
           if (!rows->in_local_range(weight.column))
             continue;
           entries.push_back({rows->global_to_local(weight.row), rows->global_to_local(weight.column), weight.value});
-          const unsigned int a = find(entries.back().row), b = find(entries.back().column);
-          root[std::max(a, b)] = std::min(a, b);
+          groups.join(entries.back().row, entries.back().column);
         }
     if (dealii::Utilities::MPI::min(static_cast<int>(is_local), comm) == 0)
       throw NumericalError("rows that share a node are owned by different ranks",
                            "this is a bug of slipstick, please report it");
     for (unsigned int r = 0; r < n; ++r)
-      ++size[find(r)];
+      ++size[groups.root(r)];
 
     constexpr unsigned int    single = -1;
     std::vector<unsigned int> block_of(n, single), position(n); // of the root row of a group; of a row in its block
     std::vector<double>       weight_of_single(n, 0.);
     for (unsigned int r = 0; r < n; ++r)
-      if (size[find(r)] == 1)
+      if (size[groups.root(r)] == 1)
         single_rows.push_back(r);
       else
         {
-          if (find(r) == r)
+          if (groups.root(r) == r)
             {
               block_of[r] = blocks.size();
               blocks.emplace_back();
             }
-          auto &of_block = blocks[block_of[find(r)]].rows; // the root is the first row
+          auto &of_block = blocks[block_of[groups.root(r)]].rows; // the root is the first row
           position[r]    = of_block.size();
           of_block.push_back(r);
         }
     std::vector<std::vector<Eigen::Triplet<double>>> triplets(blocks.size());
     for (const Entry &entry : entries)
-      if (const unsigned int b = block_of[find(entry.row)]; b == single)
+      if (const unsigned int b = block_of[groups.root(entry.row)]; b == single)
         weight_of_single[entry.row] += entry.value;
       else
         triplets[b].emplace_back(position[entry.row], position[entry.column], entry.value);
@@ -355,14 +351,15 @@ namespace slipstick::tfeti
                                                     std::set<unsigned int>      &singles,
                                                     std::set<unsigned int>      &taken) const
   {
-    std::vector<Block>                   groups;
-    std::map<unsigned int, unsigned int> group_of; // by row
-    const auto                           add = [&](const Block &block) {
-      for (const unsigned int row : block.rows)
-        group_of[row] = groups.size();
-      groups.push_back(block);
+    std::vector<const Block *>                                    parts; // with turned rows
+    std::vector<Block>                                            of_singles;
+    std::map<unsigned int, std::pair<unsigned int, unsigned int>> place; // by row: part, position in it
+    std::set<unsigned int>                                        rows;
+    const auto                                                    add = [&](const Block &part) {
+      for (unsigned int k = 0; k < part.rows.size(); ++k)
+        place[part.rows[k]] = {parts.size(), k};
+      parts.push_back(&part);
     };
-    std::set<unsigned int> rows;
     for (const qp::Turn &turn : turns)
       rows.insert({static_cast<unsigned int>(turn.first), static_cast<unsigned int>(turn.second)});
     for (unsigned int b = 0; b < blocks.size(); ++b)
@@ -373,6 +370,7 @@ namespace slipstick::tfeti
           add(blocks[b]);
           taken.insert(b);
         }
+    of_singles.reserve(rows.size()); // parts points to them
     for (unsigned int k = 0; k < single_rows.size(); ++k)
       if (rows.count(single_rows[k]) > 0)
         {
@@ -380,49 +378,65 @@ namespace slipstick::tfeti
           single.rows = {single_rows[k]};
           single.matrix.resize(1, 1);
           single.matrix.insert(0, 0) = single_weights[k];
-          add(single);
+          of_singles.push_back(std::move(single));
+          add(of_singles.back());
           singles.insert(k);
         }
+
+    DisjointSets                         groups(parts.size());
+    std::vector<std::list<unsigned int>> parts_of(parts.size()); // by root of the group, those of first rows first
+    for (unsigned int p = 0; p < parts.size(); ++p)
+      parts_of[p] = {p};
     for (const qp::Turn &turn : turns)
-      if (const unsigned int a = group_of.at(turn.first), b = group_of.at(turn.second); a != b)
+      if (const unsigned int a = groups.root(place.at(turn.first).first), b = groups.root(place.at(turn.second).first);
+          a != b)
         {
-          const unsigned int                  n = groups[a].rows.size(), m = groups[b].rows.size();
-          std::vector<Eigen::Triplet<double>> entries;
-          for (const auto &[block, first] : {std::pair(&groups[a], 0u), std::pair(&groups[b], n)})
-            for (unsigned int k = 0; k < block->rows.size(); ++k)
-              for (Eigen::SparseMatrix<double>::InnerIterator entry(block->matrix, k); entry; ++entry)
-                entries.emplace_back(first + entry.row(), first + k, entry.value());
-          for (const unsigned int row : groups[b].rows)
-            {
-              groups[a].rows.push_back(row);
-              group_of[row] = a;
-            }
-          groups[a].matrix.resize(n + m, n + m);
-          groups[a].matrix.setFromTriplets(entries.begin(), entries.end());
-          groups[b].rows.clear();
+          groups.join(a, b);
+          parts_of[a].splice(parts_of[a].end(), parts_of[b]);
+          if (groups.root(a) == b)
+            std::swap(parts_of[a], parts_of[b]);
         }
-    std::vector<std::vector<qp::Turn>> turns_of(groups.size());
+    std::vector<std::vector<qp::Turn>> turns_of(parts.size()); // by root
     for (const qp::Turn &turn : turns)
-      turns_of[group_of.at(turn.first)].push_back(turn);
-    std::vector<Block> result;
-    for (unsigned int g = 0; g < groups.size(); ++g)
-      if (Block &group = groups[g]; !group.rows.empty())
-        {
-          const auto place = [&group](const std::size_t row) {
-            return std::find(group.rows.begin(), group.rows.end(), row) - group.rows.begin();
-          };
-          Eigen::SparseMatrix<double> Q(group.rows.size(), group.rows.size());
-          Q.setIdentity();
-          for (const qp::Turn &turn : turns_of[g])
-            {
-              const auto first = place(turn.first), second = place(turn.second);
-              Q.coeffRef(first, first) = Q.coeffRef(second, second) = turn.cosine;
-              Q.coeffRef(first, second)                             = turn.sine;
-              Q.coeffRef(second, first)                             = -turn.sine;
-            }
-          group.matrix = (Q * group.matrix * Q.transpose()).eval();
-          result.push_back(std::move(group));
-        }
+      turns_of[groups.root(place.at(turn.first).first)].push_back(turn);
+
+    using Matrix = Eigen::SparseMatrix<double>;
+    std::vector<Block>        result;
+    std::vector<unsigned int> start(parts.size()); // of the rows of a part in its group
+    for (unsigned int g = 0; g < parts.size(); ++g)
+      {
+        if (parts_of[g].empty())
+          continue;
+        Block                               group;
+        std::vector<Eigen::Triplet<double>> of_W, of_Q;
+        for (const unsigned int p : parts_of[g])
+          {
+            start[p] = group.rows.size();
+            group.rows.insert(group.rows.end(), parts[p]->rows.begin(), parts[p]->rows.end());
+            for (unsigned int k = 0; k < parts[p]->rows.size(); ++k)
+              for (Matrix::InnerIterator entry(parts[p]->matrix, k); entry; ++entry)
+                of_W.emplace_back(start[p] + entry.row(), start[p] + k, entry.value());
+          }
+        const auto position = [&](const std::size_t row) {
+          const auto [part, k] = place.at(row);
+          return start[part] + k;
+        };
+        std::vector<double> diagonal(group.rows.size(), 1.);
+        for (const qp::Turn &turn : turns_of[g])
+          {
+            const unsigned int first = position(turn.first), second = position(turn.second);
+            diagonal[first] = diagonal[second] = turn.cosine;
+            of_Q.emplace_back(first, second, turn.sine);
+            of_Q.emplace_back(second, first, -turn.sine);
+          }
+        for (unsigned int k = 0; k < diagonal.size(); ++k)
+          of_Q.emplace_back(k, k, diagonal[k]);
+        Matrix W(group.rows.size(), group.rows.size()), Q(W.rows(), W.cols());
+        W.setFromTriplets(of_W.begin(), of_W.end());
+        Q.setFromTriplets(of_Q.begin(), of_Q.end());
+        group.matrix = (Q * W * Q.transpose()).eval();
+        result.push_back(std::move(group));
+      }
     return result;
   }
 
