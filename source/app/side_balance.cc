@@ -1,4 +1,5 @@
 #include <slipstick/app/side_balance.h>
+#include <slipstick/base/box_tree.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -34,6 +35,14 @@ namespace slipstick::app
       void serialize(Archive &archive, const unsigned int /*version*/)
       {
         archive &body &center &size &division &cell;
+      }
+
+      dealii::Point<dim> place() const
+      {
+        dealii::Point<dim> x;
+        for (unsigned int d = 0; d < dim; ++d)
+          x[d] = center[d];
+        return x;
       }
 
       bool is_at(const contact::ContactNode &node) const
@@ -103,15 +112,29 @@ namespace slipstick::app
           const auto &[body, path] = refinement.cells.at(face.cell);
           return face.size / (refinement.refined[body].count(path) ? face.division : 1.);
         };
+        std::vector<typename BoxTree<dim>::Box> centers;
+        double                                  reach = 0; // within which faces are at a node without gap
+        for (const auto &face : faces)
+          {
+            centers.push_back(BoxTree<dim>::box_around({face.place()}));
+            reach = std::max(reach, nearby * face.size);
+          }
+        const BoxTree<dim> tree(centers);
         for (const auto &node : nodes)
           {
             if (!node.is_closed || !pairs[node.pair])
               continue;
+            dealii::Point<dim> x;
+            for (unsigned int d = 0; d < dim; ++d)
+              x[d] = node.position[d];
+            const auto around =
+              BoxTree<dim>::widened(BoxTree<dim>::box_around({x}), reach + std::abs(node.initial_gap));
             const auto                           &pair  = scene.contacts[node.pair];
             double                                slave = std::numeric_limits<double>::infinity();
             std::vector<const OutlineFace<dim> *> masters;
-            for (const auto &face : faces)
-              if ((face.body == pair.slave.body || face.body == pair.master->body) && face.is_at(node))
+            for (const unsigned int f : tree.near(around))
+              if (const auto &face = faces[f];
+                  (face.body == pair.slave.body || face.body == pair.master->body) && face.is_at(node))
                 {
                   if (face.body == pair.slave.body)
                     slave = std::min(slave, size(face));

@@ -158,6 +158,7 @@ namespace slipstick::interface
                 low[d]  = std::min(low[d], edge.at[i][d]);
                 high[d] = std::max(high[d], edge.at[i][d]);
               }
+        box = BoxTree<2>::box_around({low, high});
       }
 
       bool is_in_box(const Point &x) const
@@ -168,6 +169,7 @@ namespace slipstick::interface
       const Edges         before, now;
       const ClosedOutline outline_before, outline_now;
       Point               low, high;
+      BoxTree<2>::Box     box; // from low to high
     };
 
     /// Depth of the outline below the chord of an edge, the smaller of @p before and @p now: chords of concave sides
@@ -239,8 +241,6 @@ namespace slipstick::interface
     /// Tests nodes and midpoints of the facets of a.
     void find_in_body(const Solid &a, const Solid &b, std::optional<Penetration> &deepest)
     {
-      if (!boost::geometry::intersects(a.box, b.box))
-        return;
       std::set<mechanics::NodeKey> seen;
       for (unsigned int e = 0; e < a.now.size(); ++e)
         for (unsigned int i = 0; i <= a.now[e].n_nodes; ++i)
@@ -291,7 +291,7 @@ namespace slipstick::interface
           }
       for (unsigned int a = 0; a < bodies.size(); ++a)
         for (unsigned int b = 0; b < bodies.size(); ++b)
-          if (a != b && not_watched.count({a, b}) == 0)
+          if (a != b && boost::geometry::intersects(bodies[a]->box, bodies[b]->box) && not_watched.count({a, b}) == 0)
             {
               std::optional<Penetration> deepest;
               find_in_body(*bodies[a], *bodies[b], deepest);
