@@ -232,11 +232,10 @@ namespace slipstick::tfeti
                             const std::vector<bool> &free,
                             Placement                placement)
     {
-      const auto &[loose, fixed, is_at_rest] = placement;
-      if (!is_at_rest)
+      if (!placement.has_forces)
         place_by_any_row(dual, placement);
       const auto       &systems = dual.subdomains();
-      const Projector   on_free = projector_of_displacements(dual, fixed);
+      const Projector   on_free = projector_of_displacements(dual, placement.fixed);
       Recovery          result{{}, dual.zero(), {}};
       DistributedVector step{dual.zero()};
       result.multipliers = x;
@@ -254,14 +253,14 @@ namespace slipstick::tfeti
           systems[p]->apply_pseudo_inverse(u[p]);
         }
 
-      fit_motions(dual, on_free, fixed, result);
-      if (!is_at_rest)
+      fit_motions(dual, on_free, placement.fixed, result);
+      if (!placement.has_forces)
         {
-          subtract_motion(dual, amplitudes_in(dual, loose, result.u), result.u);
-          result.unresisted = loose;
+          subtract_motion(dual, amplitudes_in(dual, placement.loose, result.u), result.u);
+          result.unresisted = placement.loose;
         }
-      if (!loose.empty())
-        slide_apart(dual, loose, free, x, result);
+      if (!placement.loose.empty())
+        slide_apart(dual, placement.loose, free, x, result);
       return result;
     }
   } // namespace

@@ -66,10 +66,9 @@ namespace slipstick::tfeti
     /// nonzero entry in this row. The result does not depend on the partition.
     std::vector<bool> ambiguous(const std::vector<bool> &active) const;
 
-    /// The smallest change of c after which linear dependences of rows do not exclude displacements u with B u = c: x'c
-    /// = 0 for all x with B'x = 0, except those x that involve a row with RowChange::forbidden or for which |x'c|
-    /// exceeds @p limit, with 1 as the largest entry of x. Owned rows.
-    /// the largest entry of x. Owned rows.
+    /// The smallest change of c after which linear dependences of rows do not exclude displacements u with B u = c:
+    /// x'c = 0 for all x with B'x = 0, except those x that involve a row with RowChange::forbidden or for which |x'c|
+    /// exceeds @p limit times the largest entry of x. Owned rows.
     std::vector<double> least_correction(const std::vector<double>    &c,
                                          const std::vector<RowChange> &change,
                                          const double                  limit) const;
