@@ -15,7 +15,6 @@
 #include <slipstick/qp/stagnation.h>
 #include <slipstick/qp/types.h>
 
-#include <optional>
 
 namespace slipstick::qp
 {
@@ -24,22 +23,31 @@ namespace slipstick::qp
   {
     Status       status;      // converged; infeasible, with a certificate; otherwise neither was found
     Vector       x;           // within the set
-    Vector       certificate; // infeasible: r in the range of Q, r'x_e > r'x for all x of the box; else Q(x_e - x)
-    double       residual;    // |Q(x - x_e)| over the reference length max(|Q x_e|, |projection of 0 on the box|)
+    Vector       certificate; // infeasible: r in the range of Q, r'x_e > r'x for all x of the set; else Q(x_e - x)
+    double       residual;    // |Q(x - x_e)| over the reference length max(|Q x_e|, |projection of 0 on the set|)
     unsigned int newton_steps;
     unsigned int projections; // multiplications with Q
   };
 
   namespace detail
   {
+    /// Result of the search for the maximum of the proximal point method.
+    enum class Maximum
+    {
+      found,
+      not_found, // eps is too small
+      feasible,  // the search ended early: x is the point
+      infeasible // the search ended early: there is a certificate
+    };
+
     template <typename Vector, typename Problem, typename Set>
     class NearestPoint
     {
     public:
-      NearestPoint(const Problem &problem_, const Vector &x_e, const Set &box_, const FeasiblePointOptions &options_)
+      NearestPoint(const Problem &problem_, const Vector &x_e, const Set &set_, const FeasiblePointOptions &options_)
         : problem(problem_)
         , reduction(problem.reduction())
-        , box(box_)
+        , set(set_)
         , options(options_)
         , Qx_e(x_e)
         , y(zero_like(x_e))
@@ -53,9 +61,9 @@ namespace slipstick::qp
         , residual(y)
       {
         project_range(x_e, Qx_e);
-        project(box, x);
+        project(set, x);
         const auto s =
-          reduction.sum(std::array<double, 3>{{local_dot(Qx_e, Qx_e), local_dot(x, x), n_contradictions(box)}});
+          reduction.sum(std::array<double, 3>{{local_dot(Qx_e, Qx_e), local_dot(x, x), n_contradictions(set)}});
         reference = std::sqrt(std::max(s[0], s[1]));
         is_empty  = s[2] > 0;
       }
@@ -81,7 +89,7 @@ namespace slipstick::qp
 
       bool proves_infeasibility(const Vector &v) const
       {
-        return is_farkas_certificate(box,
+        return is_farkas_certificate(set,
                                      v,
                                      Qx_e,
                                      options.certificate_radius * reference,
@@ -93,7 +101,7 @@ namespace slipstick::qp
       void update_residual()
       {
         std::copy(y.begin(), y.end(), x.begin());
-        project(box, x);
+        project(set, x);
         project_range(x, r);
         combine(1.0, Qx_e, -1.0, r);
         norm_r = norm(r, reduction);
@@ -136,9 +144,11 @@ namespace slipstick::qp
         eps                      = options.first_regularization;
         for (;;)
           {
-            const auto status = maximum(accuracy);
-            if (status == Status::converged || status == Status::infeasible)
-              return *status;
+            const Maximum maximum = find_maximum(accuracy);
+            if (maximum == Maximum::feasible)
+              return Status::converged;
+            if (maximum == Maximum::infeasible)
+              return Status::infeasible;
             const bool has_settled = norm_r > options.progress * before;
             if (has_settled && norm_r <= std::max(options.tolerance * reference,
                                                   std::min(options.rounding * norm(y, reduction),
@@ -146,11 +156,11 @@ namespace slipstick::qp
               return Status::converged;
             if (newton_steps >= options.max_plain_steps + options.max_newton_steps)
               return Status::iteration_limit;
-            if (status && stagnates(norm_r))
+            if (maximum == Maximum::found && stagnates(norm_r))
               return Status::stagnated;
             if (has_settled)
               accuracy *= options.reduction;
-            if (!status)
+            if (maximum == Maximum::not_found)
               eps = std::min(eps / options.reduction, options.first_regularization);
             else if (norm_r < options.stagnation_progress * before)
               eps = std::max(options.reduction * eps, options.least_regularization);
@@ -159,26 +169,25 @@ namespace slipstick::qp
           }
       }
 
-      // Newton's method for the maximum with the present eps and y_k. @return converged or infeasible as soon as either
-      // is certain, iteration_limit at the maximum, nothing if the maximum was not found (eps is then too small).
-      // @param accuracy of the gradient, over |r|.
-      std::optional<Status> maximum(const double accuracy)
+      // Newton's method for the maximum with the present eps and y_k. It ends as soon as the point or a certificate is
+      // found. @param accuracy of the gradient, over |r|.
+      Maximum find_maximum(const double accuracy)
       {
         for (unsigned int k = 0;; ++k, ++newton_steps)
           {
             update_residual();
             if (norm_r <= options.rounding * reference)
-              return Status::converged;
+              return Maximum::feasible;
             if (proves_infeasibility(r))
-              return Status::infeasible;
+              return Maximum::infeasible;
             const double size = norm(gradient, reduction);
             if (size <=
                 std::max(
                   {accuracy * norm_r, options.least_gradient * reference, options.rounding * norm(y, reduction)}))
-              return Status::iteration_limit;
+              return Maximum::found;
             if (k == options.newton_steps_per_maximum ||
                 newton_steps >= options.max_plain_steps + options.max_newton_steps)
-              return {};
+              return Maximum::not_found;
             find_direction(size);
             add(line_search(), d, y);
           }
@@ -215,7 +224,7 @@ namespace slipstick::qp
       void multiply_newton_matrix()
       {
         std::copy(p.begin(), p.end(), x.begin());
-        multiply_derivative(box, y, x);
+        multiply_derivative(set, y, x);
         add(eps, p, x);
         project_range(x, Ap);
       }
@@ -227,7 +236,7 @@ namespace slipstick::qp
         add(t, d, x);
         std::copy(x.begin(), x.end(), p.begin());
         add(-1.0, center, p);
-        project(box, x);
+        project(set, x);
         return reduction.sum(std::array<double, 1>{{local_dot(d, Qx_e) - local_dot(d, x) - eps * local_dot(d, p)}})[0];
       }
 
@@ -275,7 +284,7 @@ namespace slipstick::qp
 
       const Problem                                        &problem;
       decltype(std::declval<const Problem &>().reduction()) reduction;
-      const Set                                            &box;
+      const Set                                            &set;
       const FeasiblePointOptions                           &options;
 
       Vector       Qx_e, y, center, x, r, gradient, d, p, Ap, residual;
