@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the documents refer to is there: links between .md files, units named in doc/method.md, numbers of decisions.
+"""What the documents refer to is there: links between .md files, units and names in doc/method.md, numbers of decisions.
 
 usage: check_documents.py ROOT        checks the tree, one line per fault, status 1 if there is any
        check_documents.py --self-test checks this script on small trees
@@ -15,6 +15,7 @@ import tempfile
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
 LAYERS = "base|scene|mesh|mechanics|interface|tfeti|qp|contact|output|app"
 UNIT = re.compile(rf"(?<![\w/])((?:{LAYERS})/[a-z_]+)(\.h|\.cc)?\b")
+NAME = re.compile(r"`([A-Za-z_]\w*(?:::\w+)*)(?:\(\))?`")  # `name`, `Class::name`, `name()`
 DECISION = re.compile(r"doc/decisions/(\d{4})")
 HEADING = re.compile(r"# (\d{4})\. (.+)")
 SOURCES = ("include", "source", "tests", "benchmarks", "scripts", "prm")
@@ -42,6 +43,19 @@ def missing_units(root):
         found = {".h": root / "include" / "slipstick" / f"{unit}.h", ".cc": root / "source" / f"{unit}.cc"}
         if not any(file.exists() for end, file in found.items() if ending in ("", end)):
             yield f"doc/method.md: there is no {unit}{ending}"
+
+
+def missing_names(root):
+    path = root / "doc" / "method.md"
+    if not path.exists():
+        return
+    words = set()
+    for folder in ("include", "source"):
+        for file in (root / folder).rglob("*.*"):
+            words.update(re.findall(r"\w+", file.read_text(errors="replace")))
+    for name in sorted(set(NAME.findall(path.read_text()))):
+        if not words.issuperset(name.split("::")):
+            yield f"doc/method.md: there is no {name} in the sources"
 
 
 def wrong_decisions(root):
@@ -72,7 +86,7 @@ def wrong_decisions(root):
 
 def faults(root):
     root = pathlib.Path(root)
-    return [*dead_links(root), *missing_units(root), *wrong_decisions(root)]
+    return [*dead_links(root), *missing_units(root), *missing_names(root), *wrong_decisions(root)]
 
 
 # The self test: files of a small tree, and a word of the fault that they must cause (None: they must pass).
@@ -84,6 +98,9 @@ FIXTURES = {
     "dead link": ({"doc/a.md": "[x](b.md)"}, "link to b.md"),
     "unit that moved": ({"doc/method.md": "see mesh/mesh"}, "no mesh/mesh"),
     "header that is none": ({"doc/method.md": "mesh/mesh.h", "source/mesh/mesh.cc": ""}, "no mesh/mesh.h"),
+    "names": ({"doc/method.md": "`a::b` and `c()`", "include/slipstick/qp/a.h": "struct a { int b; };",
+               "source/qp/a.cc": "void c();"}, None),
+    "name that is gone": ({"doc/method.md": "`a::d`", "include/slipstick/qp/a.h": "struct a { int b; };"}, "no a::d"),
     "title that differs": ({"doc/decisions/README.md": INDEX, "doc/decisions/0001-a.md": "# 0001. B"}, "has no line"),
     "gap in the numbers": ({"doc/decisions/README.md": "| [0002](0002-a.md) | A |", "doc/decisions/0002-a.md": "# 0002. A"},
                            "0001 is expected"),
