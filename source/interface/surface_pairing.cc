@@ -1,3 +1,4 @@
+#include <slipstick/base/across.h>
 #include <slipstick/base/cross.h>
 #include <slipstick/interface/surface_pairing.h>
 
@@ -24,14 +25,9 @@ namespace slipstick::interface
     : origin(origin)
     , normal(n / n.norm())
   {
-    unsigned int axis = 0; // the axis most perpendicular to the normal
-    for (unsigned int d = 1; d < 3; ++d)
-      if (std::abs(normal[d]) < std::abs(normal[axis]))
-        axis = d;
-    first[axis] = 1;
-    first -= normal[axis] * normal;
-    first /= first.norm();
-    second = cross_product_3d(normal, first);
+    const auto tangents = across(normal);
+    first               = tangents[0];
+    second              = tangents[1];
   }
 
   ProjectedFacet::ProjectedFacet(const Facet &facet, const Plane &plane)
