@@ -22,6 +22,9 @@ namespace slipstick::app
     constexpr double stagnation = 0.7;
     // A quantity is zero if its value and its error are below this fraction of the largest one with the same unit.
     constexpr double nothing = 1e-5;
+    // Cells that the refinement of one cell adds, estimated: in the plane eight (nine quadrilaterals replace one), in space
+    // seven (eight tetrahedra), and in both the transition cells around them.
+    constexpr double cells_for_one = 12;
 
     /// Largest magnitude of the results with this unit; 0: none is known.
     double largest_of_unit(const std::string &unit, const output::ResultSummary &results)
@@ -262,9 +265,7 @@ namespace slipstick::app
         n_marked += mark(steps.mesh(), cells, refinement);
       }
     n_marked += steps.mark_coarse_masters(options.goals, refinement);
-    // nine quadrilaterals or eight tetrahedra per cell, plus transition cells around them
-    constexpr double cells_for_one = 12;
-    const double     growth        = 1 + cells_for_one * n_marked / summary.problem.cells;
+    const double growth = 1 + cells_for_one * n_marked / summary.problem.cells;
     if (n_marked == 0)
       return "no cell is left whose refinement would reduce the error";
     if (growth * rows.back().unknowns > options.max_unknowns)

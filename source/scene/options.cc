@@ -251,8 +251,9 @@ namespace slipstick::scene
         }
       if (ends.size() != 3 || std::count(text.begin(), text.end(), ':') != 2 || !(ends[1] > 0) || ends[2] < ends[0])
         return {};
-      const double n_steps = (ends[2] - ends[0]) / ends[1], whole = std::round(n_steps);
-      const bool   meets = std::abs(n_steps - whole) < 1e-9 * std::max(1., whole);
+      constexpr double rounding = 1e-9; // of the number of steps, relative: of decimal fractions, with a margin
+      const double     n_steps = (ends[2] - ends[0]) / ends[1], whole = std::round(n_steps);
+      const bool       meets = std::abs(n_steps - whole) < rounding * std::max(1., whole);
       if (!(n_steps < most_steps))
         return {};
       std::vector<double> numbers;

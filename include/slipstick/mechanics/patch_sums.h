@@ -100,11 +100,12 @@ namespace slipstick::mechanics
       return result;
     }
 
-    /// Variance below which the points count as having no extent in a direction, where @p longest is the largest: it
-    /// allows for aspect ratios of 1e6 and for rounding where the points are far from the vertex.
+    /// Variance [mm^2] below which the points count as having no extent in a direction, where @p longest is the largest.
     double least_variance(const double longest) const
     {
-      return std::max(1e-12 * longest, 1e-14 * mean.squaredNorm());
+      constexpr double largest_aspect_ratio = 1e6;
+      constexpr double rounding             = 1e-14; // of squares of distances from the vertex, relative
+      return std::max(longest / (largest_aspect_ratio * largest_aspect_ratio), rounding * mean.squaredNorm());
     }
 
     double                          n;

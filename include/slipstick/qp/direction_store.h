@@ -16,10 +16,11 @@
 namespace slipstick::qp
 {
   /// Estimated rounding error of a product F p in the norm of residuals. @p squares is |p|^2 plus the square of that
-  /// norm of F p: |F| is near 1, and a product is accurate to a few unit roundoffs.
+  /// norm of F p: |F| is near 1, and a product is accurate to a few unit roundoffs (1.1e-16).
   inline double rounding_of_product(const double squares)
   {
-    return 1e-15 * std::sqrt(squares);
+    constexpr double roundoffs = 1e-15;
+    return roundoffs * std::sqrt(squares);
   }
 
   /// The argument of rounding_of_product(), for the owned entries. @param weights of the norm of residuals.
