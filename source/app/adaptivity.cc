@@ -89,7 +89,7 @@ namespace slipstick::app
               const Eigen::VectorXd part = goal.cells[p].cwiseAbs() / std::abs(goal.value);
               errors.of_cells[p] = errors.of_cells[p].size() > 0 ? Eigen::VectorXd(errors.of_cells[p] + part) : part;
             }
-          estimated = std::max(estimated, std::abs(goal.signed_ / goal.value));
+          estimated = std::max(estimated, std::abs(goal.correction / goal.value));
         }
     for (const auto &part : errors.of_cells)
       own += part.sum();

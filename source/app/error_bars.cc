@@ -124,7 +124,7 @@ namespace slipstick::app
       {
         bars.push_back({goal.quantity, goal.unit, goal.value, {}, goal.reason, goal.note});
         if (goal.is_known)
-          bars.back().error = std::max(std::abs(goal.signed_), least_part * goal.absolute) + goal.local;
+          bars.back().error = std::max(std::abs(goal.correction), least_part * goal.absolute) + goal.local;
       }
     const auto printed = figures(results), largest = largest_of_units(bars);
     for (auto &bar : bars)

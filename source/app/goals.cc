@@ -66,9 +66,9 @@ namespace slipstick::app
             own += part.sum();
             magnitudes += part.cwiseAbs().sum();
           }
-        goal.signed_  = dealii::Utilities::MPI::sum(own, solver.mesh().comm);
-        goal.absolute = dealii::Utilities::MPI::sum(magnitudes, solver.mesh().comm);
-        goal.is_known = std::isfinite(goal.absolute);
+        goal.correction = dealii::Utilities::MPI::sum(own, solver.mesh().comm);
+        goal.absolute   = dealii::Utilities::MPI::sum(magnitudes, solver.mesh().comm);
+        goal.is_known   = std::isfinite(goal.absolute);
       }
 
     private:

@@ -120,7 +120,7 @@ namespace slipstick::contact
         is_no_overload = true; // unless an error is thrown below
         for (const double more : more_friction)
           {
-            const auto held = held_by(more, feasible, start);
+            const auto held = forces_with_scaled_friction(more, feasible, start);
             if (!held)
               continue;
             auto overload = weakest_motion(dual, law, *held, 1);
@@ -128,7 +128,7 @@ namespace slipstick::contact
               return;
             const double least = margin_of_friction / overload->held;
             if (least < more) // closer to sliding, the normal forces are closer to those of this problem
-              if (const auto nearer = held_by(least, feasible, start))
+              if (const auto nearer = forces_with_scaled_friction(least, feasible, start))
                 overload = weakest_motion(dual, law, *nearer, 1);
             if (!overload)
               return;
@@ -141,12 +141,14 @@ namespace slipstick::contact
       }
 
       /// The forces with @p more times the friction, if the algorithm finds them.
-      std::optional<Vector> held_by(const double more, const Vector &feasible, const DualSolution *start)
+      std::optional<Vector> forces_with_scaled_friction(const double        more,
+                                                        const Vector       &feasible,
+                                                        const DualSolution *start)
       {
         const SlipLaw          with_more = law.scaled(more);
-        const ProgressObserver goes_on   = [this](Progress progress) { counted()(progress.step); };
+        const ProgressObserver count     = [this](Progress progress) { counted()(progress.step); };
         const AccuracyTest     none;
-        ContactSolver          held(dual, with_more, options, friction, goes_on, none);
+        ContactSolver          held(dual, with_more, options, friction, count, none);
         const bool             is_held = held.converges(feasible, start);
         solution.counts += held.solution.counts;
         multiplications_beside += held.solution.counts.hessian_multiplications;

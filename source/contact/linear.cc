@@ -43,7 +43,7 @@ namespace slipstick::contact
   DualSolution solve_linear(const tfeti::DualProblem   &dual,
                             const scene::SolverOptions &options,
                             const ProgressObserver     &observer,
-                            const DualSolution         *goes_on,
+                            const DualSolution         *previous,
                             const AccuracyTest         &is_accurate)
   {
     Vector       start = dual.particular();
@@ -62,9 +62,9 @@ namespace slipstick::contact
         return solution;
       }
     const auto precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
-    if (goes_on) // continue from the true residual instead of the recursion of an earlier solve
+    if (previous) // continue from the true residual instead of the recursion of an earlier solve
       {
-        start = goes_on->multipliers;
+        start = previous->multipliers;
         face.balance(start);
         b = homogenised_load(dual, start);
         ++solution.counts.hessian_multiplications;
@@ -85,7 +85,7 @@ namespace slipstick::contact
     const TractionTest tractions(dual,
                                  options.tolerance,
                                  start.linfty_norm(),
-                                 goes_on ? goes_on->largest_traction : 0.);
+                                 previous ? previous->largest_traction : 0.);
     const auto         are_tractions_accurate = [&](const Vector &residual) {
       if (!tractions.has_pairs())
         return true;

@@ -254,12 +254,12 @@ namespace slipstick::tfeti
 
   std::vector<bool> LooseBodies::hold(const std::vector<bool>     &free,
                                       const std::vector<double>   &gaps,
-                                      const bool                   well,
+                                      const bool                   include_weakly_held,
                                       const std::vector<qp::Turn> &turns) const
   {
     std::vector<bool> result = free;
-    auto              loose  = motions.free(free, well ? weak_resistance : BodyMotions::rounding_of_resistance, turns);
-    if (!well && !predict_active_sets() && !loose.empty() && stop_driven(loose, gaps, result))
+    auto loose = motions.free(free, include_weakly_held ? weak_resistance : BodyMotions::rounding_of_resistance, turns);
+    if (!include_weakly_held && !predict_active_sets() && !loose.empty() && stop_driven(loose, gaps, result))
       loose = motions.free(result, BodyMotions::rounding_of_resistance, turns);
     if (loose.empty())
       return result;

@@ -103,7 +103,7 @@ namespace
     bool goes_on_to(const double y)
     {
       to(y);
-      const bool result = watchdog.goes_on(line);
+      const bool result = watchdog.continues(line);
       if (result)
         line.move_to(line.whole());
       return result;
@@ -137,7 +137,7 @@ TEST(Watchdog, StepsWithoutProgressLeadBackAndTheNextOnesWait)
       EXPECT_FALSE(steps.watchdog.is_watching());
       EXPECT_EQ(start.from.x, Vector{0.});
       EXPECT_EQ(start.to.x, Vector{-49});
-      EXPECT_EQ(start.told, Vector{3.});
+      EXPECT_EQ(start.predicted_from, Vector{3.});
       EXPECT_EQ(start.line.present(), 1);
       steps.line = start.line;
     }

@@ -19,7 +19,7 @@ namespace slipstick::app
     std::string                  reason;                // why there is no estimate
     bool                         is_resolvable = false; // finer cells remove the reason
     double                       value         = 0;     // of the quantity
-    double                       signed_       = 0;     // sum over the cells: the correction to be added to the value
+    double                       correction    = 0;     // sum over the cells, to be added to the value
     double                       absolute      = 0;     // sum of the magnitudes
     double                       local         = 0;     // in addition to the cells: Functional::local_error
     std::string                  note;                  // Functional::note

@@ -14,11 +14,11 @@ namespace slipstick::contact
   double residual_energy(const tfeti::DualProblem &dual, const tfeti::DistributedVector &r);
 
   /// Projected conjugate gradients on a problem without inequality rows.
-  /// @param goes_on starting point, to be corrected to G x = e; null: none.
+  /// @param previous starting point, to be corrected to G x = e; null: none.
   /// @param is_accurate may end the solve before the tolerance is reached; may be empty. Collective.
   DualSolution solve_linear(const tfeti::DualProblem   &dual,
                             const scene::SolverOptions &options,
                             const ProgressObserver     &observer,
-                            const DualSolution         *goes_on,
+                            const DualSolution         *previous,
                             const AccuracyTest         &is_accurate);
 } // namespace slipstick::contact

@@ -48,8 +48,8 @@ namespace slipstick::qp::detail
       , watchdog(options_)
       , refused(most_kinks + 1)
       , is_rough(is_rough_)
-      , unjudged(!is_rough_)
-      , told(zero_like(now_.x))
+      , is_candidate(!is_rough_)
+      , predicted_from(zero_like(now_.x))
     {}
 
     /// Predicts the set from the start, whose gradient is known.
@@ -66,9 +66,9 @@ namespace slipstick::qp::detail
     }
 
     /// Whether the present point may be the solution although it was not found on a face.
-    bool is_unjudged() const
+    bool may_be_solution() const
     {
-      return unjudged;
+      return is_candidate;
     }
 
     /// Whether the last step did not lower the natural residual.
@@ -80,11 +80,11 @@ namespace slipstick::qp::detail
     /// Moves along the step to the next point and set. @return whether there is one.
     bool step()
     {
-      double t = line.search(set, now, next);
-      unjudged = false;
+      double t     = line.search(set, now, next);
+      is_candidate = false;
       if (watchdog.is_watching())
         {
-          if (watchdog.goes_on(line))
+          if (watchdog.continues(line))
             {
               go_whole();
               return true;
@@ -93,7 +93,7 @@ namespace slipstick::qp::detail
         }
       else if (t < options.shortest_step && !stop.has_met_goal() && watchdog.may_begin(line))
         {
-          watchdog.begin({now, next, told, line, t});
+          watchdog.begin({now, next, predicted_from, line, t});
           go_whole();
           return true;
         }
@@ -107,8 +107,8 @@ namespace slipstick::qp::detail
             return false;
         }
       move_by_part(t);
-      unjudged = t < 1;
-      stuck    = false;
+      is_candidate = t < 1;
+      stuck        = false;
       refused.clear();
       if (t < options.shortest_step)
         predict(line.refused());
@@ -159,7 +159,7 @@ namespace slipstick::qp::detail
       now        = std::move(start.from);
       next       = std::move(start.to);
       line       = std::move(start.line);
-      predict(now.x, start.told);
+      predict(now.x, start.predicted_from);
       return start.t;
     }
 
@@ -215,7 +215,7 @@ namespace slipstick::qp::detail
     void predict(const Vector &at, const Vector &gradient)
     {
       const double before = set.step_length();
-      told                = gradient;
+      predicted_from      = gradient;
       set.predict(at, gradient);
       if (set.step_length() == before || !(line.present() > 0))
         return;
@@ -234,10 +234,10 @@ namespace slipstick::qp::detail
 
     LineSearch<Vector, ActiveSet<Vector, Problem>> line;
     Watchdog<Vector, ActiveSet<Vector, Problem>>   watchdog;
-    SetHistory refused;       // sets whose steps do not lower the residual of the present point
-    bool       is_rough;      // whether the start is, and no step has raised the residual deliberately yet
-    bool       unjudged;      // is_unjudged()
-    bool       stuck = false; // is_stuck()
-    Vector     told;          // gradient of the last prediction
+    SetHistory refused;        // sets whose steps do not lower the residual of the present point
+    bool       is_rough;       // whether the start is, and no step has raised the residual deliberately yet
+    bool       is_candidate;   // may_be_solution()
+    bool       stuck = false;  // is_stuck()
+    Vector     predicted_from; // gradient of the last prediction
   };
 } // namespace slipstick::qp::detail

@@ -143,7 +143,7 @@ namespace slipstick::qp
             const auto face = faces.regular(path.is_stuck());
             if (!face)
               return Status::infeasible;
-            if (path.is_unjudged() && solves_already(*face))
+            if (path.may_be_solution() && solves_already(*face))
               return converged_at_next();
             faces.solve(*face, path.merit(), stop.tolerance_of_faces(), now, next);
             ++counts.outer_iterations;

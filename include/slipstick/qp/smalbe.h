@@ -98,7 +98,7 @@ namespace slipstick::qp
       Status iterate()
       {
         StagnationWatch stagnates(options.stagnation_window, options.stagnation_progress);
-        StagnationWatch crawls(options.penalty_window, options.penalty_progress);
+        StagnationWatch feasibility_stagnates(options.penalty_window, options.penalty_progress);
         for (;;)
           {
             const Status inner = minimise();
@@ -115,7 +115,7 @@ namespace slipstick::qp
             if (inner == Status::stagnated && feasibility <= std::max(feasible, noise))
               return Status::stagnated;
             const bool gives_up = stagnates(std::max(gP, feasibility));
-            const bool is_slow  = crawls(feasibility) && feasibility > feasible;
+            const bool is_slow  = feasibility_stagnates(feasibility) && feasibility > feasible;
             if ((gives_up || is_slow) && is_contradictory())
               return Status::infeasible;
             if (gives_up)
@@ -124,7 +124,7 @@ namespace slipstick::qp
             if (is_slow)
               {
                 raise_penalty();
-                crawls = StagnationWatch(options.penalty_window, options.penalty_progress);
+                feasibility_stagnates = StagnationWatch(options.penalty_window, options.penalty_progress);
               }
           }
       }

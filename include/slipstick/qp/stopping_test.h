@@ -71,7 +71,7 @@ namespace slipstick::qp
       {
         best = Best{at, residual};
         if (left <= options.least_part * goal.tolerance ||
-            (tells_forces(left, size) && (!is_right || is_right(at.x, error()))))
+            (is_small_beside_forces(left, size) && (!is_right || is_right(at.x, error()))))
           return true;
         is_met    = true;
         tolerance = options.tightening * left;
@@ -84,8 +84,8 @@ namespace slipstick::qp
       /// faces are solved to a smaller residual.
       void check_start_of_face(const double residual, const double with_bounds)
       {
-        if (residual <= goal.tolerance && with_bounds > options.astray * std::max(goal.tolerance, last_with_bounds) &&
-            ++n_astray > 1)
+        if (residual <= goal.tolerance &&
+            with_bounds > options.divergence_factor * std::max(goal.tolerance, last_with_bounds) && ++n_divergences > 1)
           tolerance = std::min(tolerance, options.tightening * residual);
         last_with_bounds = with_bounds;
       }
@@ -106,7 +106,7 @@ namespace slipstick::qp
     private:
       // Whether the residual is small compared with the forces, too: if open gaps determine the reference, the forces
       // may be negligible beside it.
-      bool tells_forces(const double left, const double size) const
+      bool is_small_beside_forces(const double left, const double size) const
       {
         return left * goal.reference <= options.gaps_over_forces * goal.tolerance * norm * size;
       }
@@ -120,7 +120,7 @@ namespace slipstick::qp
       bool                is_met = false;
       std::optional<Best> best;
       double              last_with_bounds = std::numeric_limits<double>::infinity();
-      unsigned int        n_astray         = 0;
+      unsigned int        n_divergences    = 0;
     };
   } // namespace detail
 } // namespace slipstick::qp

@@ -21,10 +21,10 @@ namespace slipstick::qp::detail
     /// State of the method where whole steps began.
     struct Start
     {
-      NewtonPoint<Vector>     from, to; // the step that was cut
-      Vector                  told;     // gradient that determined its set
-      LineSearch<Vector, Set> line;     // its state there
-      double                  t;        // part of the step that the line search left
+      NewtonPoint<Vector>     from, to;       // the step that was cut
+      Vector                  predicted_from; // gradient that determined its set
+      LineSearch<Vector, Set> line;           // its state there
+      double                  t;              // part of the step that the line search left
     };
 
     /// @param options_ is kept by reference.
@@ -51,7 +51,7 @@ namespace slipstick::qp::detail
 
     /// Whether the next whole step may be taken. If the residual is low enough, it is the last one, and the line search
     /// takes over.
-    bool goes_on(const LineSearch<Vector, Set> &line)
+    bool continues(const LineSearch<Vector, Set> &line)
     {
       if (!(line.whole() <= (1 - options->sufficient_decrease) * start->line.most()))
         return line.whole() <= options->least_progress * line.present();

@@ -29,10 +29,10 @@ namespace slipstick::tfeti
     /// The free rows and as many of the others as are needed to hold the bodies that the free rows leave loose. Bodies
     /// driven by loads move until contact stops them; otherwise rows with the smallest gaps [of any unit] are
     /// preferred. Returns the free rows alone if no body is loose or no rows can hold the loose ones.
-    /// @param well also hold bodies that the free rows hold only weakly. @param turns rows treated as turned.
+    /// @param include_weakly_held also hold bodies that the free rows hold only weakly. @param turns rows treated as turned.
     std::vector<bool> hold(const std::vector<bool>     &free,
                            const std::vector<double>   &gaps,
-                           const bool                   well,
+                           const bool                   include_weakly_held,
                            const std::vector<qp::Turn> &turns = {}) const;
 
     /// Adds as many candidates to the free rows as are needed to hold the loose motions: those whose shares, times
