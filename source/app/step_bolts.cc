@@ -61,9 +61,9 @@ namespace slipstick::app
   } // namespace
 
   template <int dim>
-  std::unique_ptr<StepSolution> StepSolver<dim>::tighten_bolts(const unsigned int      step,
-                                                               const std::uint64_t     multiplications_before,
-                                                               std::unique_ptr<Answer> answer)
+  std::unique_ptr<StepSolution> StepSolver<dim>::tighten_bolts(const unsigned int            step,
+                                                               const std::uint64_t           multiplications_before,
+                                                               std::unique_ptr<StepSolution> answer)
   {
     const auto                  &scene     = discrete_scene();
     auto                        &so_far    = problem.tightening();
@@ -91,12 +91,12 @@ namespace slipstick::app
                          tensions[k],
                          so_far.shortening()[k]);
         log.line("bolts        " + text);
-        if (is_right || the_solution.status != qp::Status::converged)
+        if (is_right || dual_solution.status != qp::Status::converged)
           return answer;
         if (attempt == max_attempts)
           {
             log.warning("the bolts do not reach their prescribed forces");
-            the_solution.status = qp::Status::iteration_limit;
+            dual_solution.status = qp::Status::iteration_limit;
             return answer;
           }
         const double misses = so_far.miss();
@@ -114,13 +114,13 @@ namespace slipstick::app
           of_solver = std::max(sharpest, sharper * of_solver);
         const DualData before(dual());
         problem.reload(t);
-        options.tolerance        = of_solver;
-        the_solution.multipliers = answer->recovery.multipliers;
+        options.tolerance         = of_solver;
+        dual_solution.multipliers = answer->recovery.multipliers;
         if (const auto factor = multiple(before, dual())) // only bolts load the bodies: the solution is a multiple, too
           {
-            the_solution.multipliers *= *factor;
-            if (the_solution.gradient)
-              *the_solution.gradient *= *factor;
+            dual_solution.multipliers *= *factor;
+            if (dual_solution.gradient)
+              *dual_solution.gradient *= *factor;
           }
         answer = continue_to_smaller_residual(step,
                                               multiplications_before,

@@ -67,27 +67,27 @@ namespace slipstick::app
     , prunes(options.prune_contact)
     , dual_options(options.dual)
     , n_given(scene_.supports.size())
-    , the_kept_part(first_kept_part)
+    , kept_fraction(first_kept_part)
   {
     print_header(log, scene, comm);
     clock.enter("mesh");
-    the_mesh   = std::make_unique<mesh::Mesh<dim>>(mesh::make_mesh(scene, comm, refinement));
-    the_spaces = std::make_unique<mechanics::Spaces<dim>>(*the_mesh, scene.discretization.degree);
-    print_mesh(log, scene, *the_mesh, *the_spaces);
-    for (auto &pair : interface::find_contacts(scene, *the_mesh, *the_spaces))
+    mesh_ptr   = std::make_unique<mesh::Mesh<dim>>(mesh::make_mesh(scene, comm, refinement));
+    spaces_ptr = std::make_unique<mechanics::Spaces<dim>>(*mesh_ptr, scene.discretization.degree);
+    print_mesh(log, scene, *mesh_ptr, *spaces_ptr);
+    for (auto &pair : interface::find_contacts(scene, *mesh_ptr, *spaces_ptr))
       {
         log.line("contact      found between " + pair.name);
         scene.contacts.push_back(std::move(pair));
       }
-    interface::check_overlap(scene, *the_mesh, *the_spaces);
-    interface::check_obstacle_pairs(scene, *the_mesh, *the_spaces);
-    interface::check_shared_sides(scene, *the_mesh, *the_spaces);
+    interface::check_overlap(scene, *mesh_ptr, *spaces_ptr);
+    interface::check_obstacle_pairs(scene, *mesh_ptr, *spaces_ptr);
+    interface::check_shared_sides(scene, *mesh_ptr, *spaces_ptr);
   }
 
   template <int dim>
   void StepProblem<dim>::build(const double t)
   {
-    if (prunes && the_kept_part < all_kept)
+    if (prunes && kept_fraction < all_kept)
       try
         {
           make_dual(t);
@@ -97,9 +97,9 @@ namespace slipstick::app
         {
           if (pruned.rows->size() == 0)
             throw;
-          the_kept_part = all_kept;
+          kept_fraction = all_kept;
         }
-    the_kept_part = all_kept;
+    kept_fraction = all_kept;
     make_dual(t);
   }
 
@@ -112,18 +112,18 @@ namespace slipstick::app
     for (const auto &load : loads)
       square += load.squaredNorm();
     const double size = std::sqrt(dealii::Utilities::MPI::sum(square, comm));
-    if (size <= rounding * the_largest_load)
+    if (size <= rounding * largest_load_so_far)
       for (auto &load : loads)
         load.setZero();
-    the_largest_load = std::max(the_largest_load, size);
+    largest_load_so_far = std::max(largest_load_so_far, size);
   }
 
   template <int dim>
   std::vector<Eigen::VectorXd> StepProblem<dim>::loads_at(const double t)
   {
-    auto loads = mechanics::assemble_loads(scene, *the_mesh, *the_spaces, t);
-    if (the_bolts)
-      the_bolts->add_loads(bolts_so_far.shortening(), loads);
+    auto loads = mechanics::assemble_loads(scene, *mesh_ptr, *spaces_ptr, t);
+    if (all_bolts)
+      all_bolts->add_loads(bolts_so_far.shortening(), loads);
     drop_rounding(loads);
     if (!balanced.empty())
       balance(loads);
@@ -159,7 +159,7 @@ namespace slipstick::app
     std::vector<Eigen::VectorXd> motions;
     for (const auto &motion : unheld)
       motions.push_back(motion.amplitudes);
-    for (auto &support : mechanics::auxiliary_supports(*the_mesh, *the_spaces, motions, unheld.front().frames))
+    for (auto &support : mechanics::auxiliary_supports(*mesh_ptr, *spaces_ptr, motions, unheld.front().frames))
       scene.supports.push_back(std::move(support));
     make_dual_as_it_is(t);
     held_still = std::move(unheld);
@@ -199,11 +199,11 @@ namespace slipstick::app
       subdomains->set_loads(loads_at(t));
     else
       {
-        auto matrices = mechanics::assemble(scene, *the_mesh, *the_spaces, t);
+        auto matrices = mechanics::assemble(scene, *mesh_ptr, *spaces_ptr, t);
         if (!scene.pretensions.empty())
           {
-            the_bolts.emplace(scene, matrices, comm);
-            bolts_so_far = mechanics::Tightening(the_bolts->stiffnesses(), the_bolts->lengths());
+            all_bolts.emplace(scene, matrices, comm);
+            bolts_so_far = mechanics::Tightening(all_bolts->stiffnesses(), all_bolts->lengths());
           }
         std::vector<Eigen::VectorXd> loads;
         for (const auto &subdomain : matrices)
@@ -218,21 +218,21 @@ namespace slipstick::app
     print_constraints(log, rows.active);
 
     clock.enter("dual setup");
-    the_dual.reset();
-    the_dual = std::make_unique<tfeti::DualProblem>(subdomains,
+    dual_ptr.reset();
+    dual_ptr = std::make_unique<tfeti::DualProblem>(subdomains,
                                                     std::move(rows.active),
                                                     dual_options,
                                                     names_of(scene.bodies),
                                                     comm);
-    factorization += the_dual->set_up().factorization_seconds;
-    print_dual(log, *the_dual);
+    factorization += dual_ptr->set_up().factorization_seconds;
+    print_dual(log, *dual_ptr);
   }
 
   template <int dim>
   interface::ContactRows StepProblem<dim>::contact_rows(const double t) {
     if (!contacts)
-      contacts = interface::pair_bodies(scene, *the_mesh, *the_spaces);
-    return interface::contact_rows(scene, *the_mesh, *the_spaces, *contacts, t, the_kept_part);
+      contacts = interface::pair_bodies(scene, *mesh_ptr, *spaces_ptr);
+    return interface::contact_rows(scene, *mesh_ptr, *spaces_ptr, *contacts, t, kept_fraction);
   }
 
   template <int dim>
@@ -243,14 +243,14 @@ namespace slipstick::app
     auto       rows  = contact_rows(t);
     const bool is_same =
       scene.supports.size() == n_given &&
-      dealii::Utilities::MPI::min(rows.active.label == the_dual->constraints().label ? 1 : 0, comm) > 0;
+      dealii::Utilities::MPI::min(rows.active.label == dual_ptr->constraints().label ? 1 : 0, comm) > 0;
     if (is_same) // gaps that depend on the load factor may prune other nodes
       {
         pruned = std::move(rows.pruned);
         held   = std::move(rows.held);
         interface::refuse_held_penetration(scene, held, comm);
         clock.enter("dual setup");
-        the_dual->set_step(std::move(loads), std::move(rows.active.c));
+        dual_ptr->set_step(std::move(loads), std::move(rows.active.c));
       }
     else
       make_dual(t);
@@ -261,18 +261,18 @@ namespace slipstick::app
   template <int dim>
   void StepProblem<dim>::start_slip_from(const std::vector<Eigen::VectorXd> &u)
   {
-    auto       c     = the_dual->constraints().c;
-    const auto jumps = the_dual->dual_operator().jumps(u);
+    auto       c     = dual_ptr->constraints().c;
+    const auto jumps = dual_ptr->dual_operator().jumps(u);
     for (unsigned int r = 0; r < c.size(); ++r)
-      if (the_dual->constraints().kind[r] == tfeti::RowKind::tangential)
+      if (dual_ptr->constraints().kind[r] == tfeti::RowKind::tangential)
         c[r] = jumps.local_element(r);
-    the_dual->set_right_hand_side(std::move(c));
+    dual_ptr->set_right_hand_side(std::move(c));
   }
 
   template <int dim>
   void StepProblem<dim>::keep_more(const double t)
   {
-    the_kept_part = the_kept_part < largest_kept_part ? growth_of_kept_part * the_kept_part : all_kept;
+    kept_fraction = kept_fraction < largest_kept_part ? growth_of_kept_part * kept_fraction : all_kept;
     make_dual(t);
   }
 
@@ -286,7 +286,7 @@ namespace slipstick::app
   void StepProblem<dim>::reload(const double t)
   {
     clock.enter("assembly");
-    the_dual->set_step(loads_at(t), the_dual->constraints().c);
+    dual_ptr->set_step(loads_at(t), dual_ptr->constraints().c);
   }
 
   template <int dim>

@@ -145,21 +145,21 @@ namespace slipstick::app
     state.history      = history;
     state.rows         = rows;
     state.labels       = dual().constraints().label;
-    state.multipliers  = values_of(the_solution.multipliers);
-    state.has_gradient = the_solution.gradient.has_value();
+    state.multipliers  = values_of(dual_solution.multipliers);
+    state.has_gradient = dual_solution.gradient.has_value();
     if (state.has_gradient)
-      state.gradient = values_of(*the_solution.gradient);
-    state.reference          = the_solution.reference;
-    state.weighted_reference = the_solution.weighted_reference;
-    state.largest_forces     = the_solution.largest_forces;
-    state.largest_traction   = the_solution.largest_traction;
+      state.gradient = values_of(*dual_solution.gradient);
+    state.reference          = dual_solution.reference;
+    state.weighted_reference = dual_solution.weighted_reference;
+    state.largest_forces     = dual_solution.largest_forces;
+    state.largest_traction   = dual_solution.largest_traction;
     state.bolts              = tightening().state();
     for (const auto &part : u)
       state.u.emplace_back(part.data(), part.data() + part.size());
-    if (the_solution.directions)
-      for (std::size_t j = 0; j < the_solution.directions->size(); ++j)
+    if (dual_solution.directions)
+      for (std::size_t j = 0; j < dual_solution.directions->size(); ++j)
         {
-          const auto &direction = (*the_solution.directions)[j];
+          const auto &direction = (*dual_solution.directions)[j];
           state.directions.push_back({values_of(direction.p), values_of(direction.Fp), direction.error});
         }
     return state;
@@ -182,24 +182,24 @@ namespace slipstick::app
     });
     for (const auto &part : state.u)
       u.push_back(Eigen::Map<const Eigen::VectorXd>(part.data(), part.size()));
-    the_solution.multipliers = vector_of(state.multipliers, dual());
+    dual_solution.multipliers = vector_of(state.multipliers, dual());
     if (state.has_gradient)
-      the_solution.gradient = vector_of(state.gradient, dual());
-    the_solution.reference          = state.reference;
-    the_solution.weighted_reference = state.weighted_reference;
-    the_solution.largest_forces     = state.largest_forces;
-    the_solution.largest_traction   = state.largest_traction;
+      dual_solution.gradient = vector_of(state.gradient, dual());
+    dual_solution.reference          = state.reference;
+    dual_solution.weighted_reference = state.weighted_reference;
+    dual_solution.largest_forces     = state.largest_forces;
+    dual_solution.largest_traction   = state.largest_traction;
     problem.tightening().restore(state.bolts);
     if (state.directions.empty())
       return;
-    the_solution.directions =
+    dual_solution.directions =
       std::make_shared<qp::DirectionStore<tfeti::DistributedVector>>(options.newton.n_directions);
     for (const auto &[p, Fp, error] : state.directions)
-      the_solution.directions->push(vector_of(p, dual()),
-                                    vector_of(Fp, dual()),
-                                    error,
-                                    qp::dependent_compliances(dual(), 0),
-                                    dual().reduction());
+      dual_solution.directions->push(vector_of(p, dual()),
+                                     vector_of(Fp, dual()),
+                                     error,
+                                     qp::dependent_compliances(dual(), 0),
+                                     dual().reduction());
   }
 
   template <int dim>
@@ -220,7 +220,7 @@ namespace slipstick::app
     if (problem.bolts())
       answer = tighten_bolts(step, multiplications_before, std::move(answer));
     history.add(answer->contact->checks);
-    the_solution.multipliers = answer->recovery.multipliers;
+    dual_solution.multipliers = answer->recovery.multipliers;
     if (step + 1 < discrete_scene().load_factors.size())
       keep_for_next_step(answer->recovery, t);
     return answer;
@@ -234,19 +234,19 @@ namespace slipstick::app
       return pair.law.has_tangential_row();
     });
     auto        exact    = recovery;
-    if (slips && the_solution.status == qp::Status::converged && the_solution.directions)
-      the_solution.counts += contact::close_gaps(problem.dual(),
-                                                 contact::SlipLaw(discrete_scene(), dual(), t),
-                                                 the_solution.free,
-                                                 options.pcpg,
-                                                 exact,
-                                                 the_solution.directions.get());
-    u                        = std::move(exact.u);
-    the_solution.multipliers = std::move(exact.multipliers);
+    if (slips && dual_solution.status == qp::Status::converged && dual_solution.directions)
+      dual_solution.counts += contact::close_gaps(problem.dual(),
+                                                  contact::SlipLaw(discrete_scene(), dual(), t),
+                                                  dual_solution.free,
+                                                  options.pcpg,
+                                                  exact,
+                                                  dual_solution.directions.get());
+    u                         = std::move(exact.u);
+    dual_solution.multipliers = std::move(exact.multipliers);
   }
 
   template <int dim>
-  void StepSolver<dim>::evaluate(Answer &answer, const contact::DualSolution &from, const double t) const
+  void StepSolver<dim>::evaluate(StepSolution &answer, const contact::DualSolution &from, const double t) const
   {
     const auto            &scene = discrete_scene();
     const contact::SlipLaw law(scene, dual(), t);
@@ -276,7 +276,7 @@ namespace slipstick::app
     auto recovery = tfeti::recover_if_held(dual(), iterate.multipliers, iterate.free);
     if (!recovery)
       return false;
-    Answer answer;
+    StepSolution answer;
     answer.recovery = *std::move(recovery);
     evaluate(answer, iterate, t);
     const auto &checks           = answer.contact->checks;
@@ -290,28 +290,28 @@ namespace slipstick::app
     if (algebraic_error > allowed_part * discretization_error || !(of_tractions <= allowed_traction_error) ||
         !(checks.worst().second <= check_limit(1)))
       return false;
-    accepted = std::make_unique<Answer>(std::move(answer));
+    accepted = std::make_unique<StepSolution>(std::move(answer));
     return true;
   }
 
   template <int dim>
   std::unique_ptr<StepSolution> StepSolver<dim>::solve_step(const unsigned int  step,
                                                             const std::uint64_t multiplications_before,
-                                                            const bool          goes_on)
+                                                            const bool          continues)
   {
     const double t               = discrete_scene().load_factors[step];
-    bool         is_warm         = goes_on || (step > 0 && problem.advance(t, u));
+    bool         is_warm         = continues || (step > 0 && problem.advance(t, u));
     bool         is_carried_over = false;
-    if (step == 0 && !goes_on && !other_mesh.nodes.empty())
+    if (step == 0 && !continues && !other_mesh.nodes.empty())
       if (auto start = contact::start_from(other_mesh, dual(), contact_names(discrete_scene()).pairs))
         {
-          the_solution    = *std::move(start);
+          dual_solution   = *std::move(start);
           is_carried_over = is_warm = true;
         }
-    qp::Counts discarded = goes_on ? the_solution.counts : qp::Counts();
+    qp::Counts discarded = continues ? dual_solution.counts : qp::Counts();
     discretization_error = infinity;
     contact::AccuracyTest test;
-    if (options.stops_at_discretization_error && !goes_on)
+    if (options.stops_at_discretization_error && !continues)
       test = [this, t](const contact::DualSolution &iterate, const double residual_energy) {
         return is_accurate(iterate, residual_energy, t);
       };
@@ -323,7 +323,7 @@ namespace slipstick::app
             clock.enter("solve");
             accepted.reset();
             const contact::SlipLaw law(discrete_scene(), dual(), t);
-            the_solution =
+            dual_solution =
               contact::solve_refined(problem.dual(),
                                      law,
                                      options,
@@ -333,11 +333,11 @@ namespace slipstick::app
                                                           step,
                                                           multiplications_before + discarded.hessian_multiplications,
                                                           rows),
-                                     is_warm ? &the_solution : nullptr,
+                                     is_warm ? &dual_solution : nullptr,
                                      test);
-            discarded += the_solution.counts;
-            the_solution.counts = discarded;
-            if (is_carried_over && is_warm && the_solution.status != qp::Status::converged)
+            discarded += dual_solution.counts;
+            dual_solution.counts = discarded;
+            if (is_carried_over && is_warm && dual_solution.status != qp::Status::converged)
               {
                 log.line("solve        the contact of the mesh before was no good start: solving from nothing");
                 continue;
@@ -346,7 +346,7 @@ namespace slipstick::app
             auto answer = std::move(accepted);
             if (!answer)
               {
-                answer           = std::make_unique<Answer>();
+                answer           = std::make_unique<StepSolution>();
                 answer->recovery = recovered(law.depends_on_pressure());
               }
             take_out_still_motions(*answer, t);
@@ -370,7 +370,7 @@ namespace slipstick::app
 
   // Motions that additional supports hold at a node: there, deformation would show as a motion.
   template <int dim>
-  void StepSolver<dim>::take_out_still_motions(Answer &answer, const double t)
+  void StepSolver<dim>::take_out_still_motions(StepSolution &answer, const double t)
   {
     constexpr double part_of_limit = 0.01;
     if (problem.still_motions().empty())
@@ -378,14 +378,14 @@ namespace slipstick::app
     double size = 0;
     for (const auto &part : answer.recovery.u)
       size = std::max(size, part.size() > 0 ? part.lpNorm<Eigen::Infinity>() : 0.);
-    const double limit = check_limit(tolerance_of(discrete_scene().solver, the_solution));
+    const double limit = check_limit(tolerance_of(discrete_scene().solver, dual_solution));
     tfeti::remove_motions(problem.dual(),
                           problem.still_motions(),
-                          the_solution.free,
+                          dual_solution.free,
                           part_of_limit * limit * dealii::Utilities::MPI::max(size, comm),
                           answer.recovery.u);
     if (answer.stress)
-      evaluate(answer, the_solution, t);
+      evaluate(answer, dual_solution, t);
   }
 
   // If the solution has not converged, work of the loads along a free motion does not prove that there is no
@@ -394,38 +394,38 @@ namespace slipstick::app
   template <int dim>
   tfeti::Recovery StepSolver<dim>::recovered(const bool bounds_follow)
   {
-    const bool  is_proof = problem.is_pruned() || (the_solution.status == qp::Status::converged && !bounds_follow);
-    const auto &x        = the_solution.multipliers;
-    const auto &free     = the_solution.free;
+    const bool  is_proof = problem.is_pruned() || (dual_solution.status == qp::Status::converged && !bounds_follow);
+    const auto &x        = dual_solution.multipliers;
+    const auto &free     = dual_solution.free;
     if (is_proof)
       return tfeti::recover(dual(), x, free, true); // unresisted motions without loads are set to zero
     if (auto recovery = tfeti::recover_if_held(dual(), x, free))
       return *std::move(recovery);
-    if (the_solution.status == qp::Status::converged)
-      the_solution.status = qp::Status::stagnated;
+    if (dual_solution.status == qp::Status::converged)
+      dual_solution.status = qp::Status::stagnated;
     return tfeti::recover(dual(), x, std::vector<bool>(free.size(), true));
   }
 
   template <int dim>
-  std::unique_ptr<StepSolution> StepSolver<dim>::checked(std::unique_ptr<Answer> answer, const double t) const
+  std::unique_ptr<StepSolution> StepSolver<dim>::checked(std::unique_ptr<StepSolution> answer, const double t) const
   {
     if (!answer->stress)
-      evaluate(*answer, the_solution, t);
+      evaluate(*answer, dual_solution, t);
     return answer;
   }
 
   template <int dim>
   std::unique_ptr<StepSolution> StepSolver<dim>::continue_to_smaller_residual(
-    const unsigned int      step,
-    const std::uint64_t     multiplications_before,
-    std::unique_ptr<Answer> answer)
+    const unsigned int            step,
+    const std::uint64_t           multiplications_before,
+    std::unique_ptr<StepSolution> answer)
   {
-    const double limit = check_limit(tolerance_of(discrete_scene().solver, the_solution));
-    for (unsigned int n = 0; n < max_tightenings && the_solution.status == qp::Status::converged; ++n)
+    const double limit = check_limit(tolerance_of(discrete_scene().solver, dual_solution));
+    for (unsigned int n = 0; n < max_tightenings && dual_solution.status == qp::Status::converged; ++n)
       {
         const auto   worst = answer->contact->checks.worst_entry();
         const double reached =
-          std::min(options.tolerance, std::max(the_solution.projected_gradient, the_solution.equality));
+          std::min(options.tolerance, std::max(dual_solution.projected_gradient, dual_solution.equality));
         if (worst.value <= limit || worst.is_balance)
           break;
         // also if the check is NaN
@@ -440,19 +440,19 @@ namespace slipstick::app
                         worst.value,
                         limit,
                         options.tolerance));
-        const auto   before      = the_solution;
-        const double kept        = problem.kept_part();
-        the_solution.multipliers = answer->recovery.multipliers;
+        const auto   before       = dual_solution;
+        const double kept         = problem.kept_part();
+        dual_solution.multipliers = answer->recovery.multipliers;
         auto next = checked(solve_step(step, multiplications_before, true), discrete_scene().load_factors[step]);
         if (problem.kept_part() != kept ||
-            (the_solution.status == qp::Status::converged &&
+            (dual_solution.status == qp::Status::converged &&
              (worst.value > of_no_answer || next->contact->checks.worst().second < worst.value)))
           answer = std::move(next); // the first solution has been solved again with rows for more contact nodes
         else
           { // it has converged to the requested tolerance
-            const auto counts   = the_solution.counts;
-            the_solution        = before;
-            the_solution.counts = counts;
+            const auto counts    = dual_solution.counts;
+            dual_solution        = before;
+            dual_solution.counts = counts;
             break;
           }
       }
@@ -460,16 +460,17 @@ namespace slipstick::app
   }
 
   template <int dim>
-  bool StepSolver<dim>::close_gaps(Answer &answer, const unsigned int step, const double limit)
+  bool StepSolver<dim>::close_gaps(StepSolution &answer, const unsigned int step, const double limit)
   {
     const contact::SlipLaw law(discrete_scene(), dual(), discrete_scene().load_factors[step]);
     double                 worst = answer.contact->checks.worst().second;
     for (unsigned int n = 0; n < max_closings && worst > limit; ++n)
       {
-        Answer next;
+        StepSolution next;
         next.recovery = answer.recovery;
-        the_solution.counts += contact::close_gaps(problem.dual(), law, the_solution.free, options.pcpg, next.recovery);
-        evaluate(next, the_solution, discrete_scene().load_factors[step]);
+        dual_solution.counts +=
+          contact::close_gaps(problem.dual(), law, dual_solution.free, options.pcpg, next.recovery);
+        evaluate(next, dual_solution, discrete_scene().load_factors[step]);
         const double left = next.contact->checks.worst().second;
         log.line(
           format("checks       gaps closed by a correction of the displacement: largest %.1e, was %.1e", left, worst));

@@ -70,20 +70,20 @@ namespace slipstick::app
     /// Continues from a run that ended with these values of kept_part() and largest_load().
     void restore(const double part, const double load)
     {
-      the_kept_part    = part;
-      the_largest_load = load;
+      kept_fraction       = part;
+      largest_load_so_far = load;
     }
 
     /// Contact nodes get rows if their gap exceeds the smallest gap of the pair by less than this fraction of the slave
     /// boundary's length.
     double kept_part() const
     {
-      return the_kept_part;
+      return kept_fraction;
     }
     /// Largest load of the steps so far [N].
     double largest_load() const
     {
-      return the_largest_load;
+      return largest_load_so_far;
     }
     /// The scene with the contact pairs found by the search.
     const scene::Scene<dim> &discrete_scene() const
@@ -92,19 +92,19 @@ namespace slipstick::app
     }
     const mesh::Mesh<dim> &mesh() const
     {
-      return *the_mesh;
+      return *mesh_ptr;
     }
     const mechanics::Spaces<dim> &spaces() const
     {
-      return *the_spaces;
+      return *spaces_ptr;
     }
     tfeti::DualProblem &dual()
     {
-      return *the_dual;
+      return *dual_ptr;
     }
     const tfeti::DualProblem &dual() const
     {
-      return *the_dual;
+      return *dual_ptr;
     }
     /// Contact nodes of this rank whose gap supports prescribe.
     const tfeti::HeldContacts &held_contacts() const
@@ -129,7 +129,7 @@ namespace slipstick::app
     /// Null if the scene has none.
     const mechanics::Bolts<dim> *bolts() const
     {
-      return the_bolts ? &*the_bolts : nullptr;
+      return all_bolts ? &*all_bolts : nullptr;
     }
     mechanics::Tightening &tightening()
     {
@@ -142,7 +142,7 @@ namespace slipstick::app
     /// The part of a displacement that strains the bodies: without the shortening of bolts.
     std::vector<Eigen::VectorXd> elastic_part(const std::vector<Eigen::VectorXd> &u) const
     {
-      return the_bolts ? the_bolts->elastic_part(u, bolts_so_far.shortening()) : u;
+      return all_bolts ? all_bolts->elastic_part(u, bolts_so_far.shortening()) : u;
     }
     /// Total of all load steps so far [s].
     double factorization_seconds() const
@@ -175,13 +175,13 @@ namespace slipstick::app
     const tfeti::DualOptions dual_options;
 
     // the same in all load steps
-    std::unique_ptr<mesh::Mesh<dim>>            the_mesh;
-    std::unique_ptr<mechanics::Spaces<dim>>     the_spaces;
+    std::unique_ptr<mesh::Mesh<dim>>            mesh_ptr;
+    std::unique_ptr<mechanics::Spaces<dim>>     spaces_ptr;
     std::optional<interface::BodyContacts<dim>> contacts;
     std::shared_ptr<tfeti::Subdomains>          subdomains;
-    std::optional<mechanics::Bolts<dim>>        the_bolts;
+    std::optional<mechanics::Bolts<dim>>        all_bolts;
 
-    std::unique_ptr<tfeti::DualProblem> the_dual;
+    std::unique_ptr<tfeti::DualProblem> dual_ptr;
     tfeti::Constraints                  pruned;  // normal rows of the contact nodes without multipliers
     tfeti::HeldContacts                 held;    // contact nodes whose gap supports prescribe
     unsigned int                        n_given; // number of supports
@@ -190,8 +190,8 @@ namespace slipstick::app
     bool                                is_undriven = false;
     std::vector<tfeti::RigidMotion>     balanced; // motions along which the loads of the scene do no work
     mechanics::Tightening               bolts_so_far;
-    double                              the_kept_part;
-    double                              the_largest_load = 0; // [N]
-    double                              factorization    = 0; // [s]
+    double                              kept_fraction;
+    double                              largest_load_so_far = 0; // [N]
+    double                              factorization       = 0; // [s]
   };
 } // namespace slipstick::app

@@ -29,8 +29,6 @@ namespace slipstick::app
   class StepSolver
   {
   public:
-    using Answer = StepSolution;
-
     /// Generates the mesh, and finds the contact pairs if the scene requests an automatic search.
     /// @param solves_adjoints whether other problems will be solved with the same matrices afterwards.
     /// @param refinement local refinement, if any.
@@ -55,7 +53,7 @@ namespace slipstick::app
 
     /// Solves the next load step, until the checks of its solution pass or cannot be improved any further.
     /// @param multiplications_before multiplications by F in the previous steps.
-    std::unique_ptr<Answer> solve(const unsigned int step, const std::uint64_t multiplications_before);
+    std::unique_ptr<StepSolution> solve(const unsigned int step, const std::uint64_t multiplications_before);
 
     /// Replaces build(): restores the state after load step @p step of an earlier run. @throws InputError if the state
     /// does not fit.
@@ -109,7 +107,7 @@ namespace slipstick::app
     /// Solution of the last step.
     const contact::DualSolution &solution() const
     {
-      return the_solution;
+      return dual_solution;
     }
     /// Forces and shortenings of the bolts after the last step.
     const mechanics::Tightening &tightening() const
@@ -124,15 +122,15 @@ namespace slipstick::app
 
   private:
     /// Repeats the step with different shortenings of the bolts until the prescribed bolt forces are reached.
-    std::unique_ptr<Answer> tighten_bolts(const unsigned int      step,
-                                          const std::uint64_t     multiplications_before,
-                                          std::unique_ptr<Answer> answer);
+    std::unique_ptr<StepSolution> tighten_bolts(const unsigned int            step,
+                                                const std::uint64_t           multiplications_before,
+                                                std::unique_ptr<StepSolution> answer);
 
     /// Recovers the displacement of the solution. Its status becomes `stagnated` if its rows do not hold the bodies
     /// although others may.
     /// @param bounds_follow whether bounds follow the pressure.
     tfeti::Recovery recovered(bool bounds_follow);
-    void            take_out_still_motions(Answer &answer, const double t);
+    void            take_out_still_motions(StepSolution &answer, const double t);
 
     /// Displacements and forces from which the next load step starts. With friction they are corrected on the active
     /// set of the solution: nodes that neither stick firmly nor slip, as after a reversal of the load, would otherwise
@@ -140,7 +138,7 @@ namespace slipstick::app
     void keep_for_next_step(const tfeti::Recovery &recovery, const double t);
 
     /// Computes checks and stresses of a solution recovered from @p from.
-    void evaluate(Answer &answer, const contact::DualSolution &from, const double t) const;
+    void evaluate(StepSolution &answer, const contact::DualSolution &from, const double t) const;
 
     /// Whether the algebraic error of an iterate is a small part of its discretisation error, and the iterate passes
     /// the checks. The last estimate of the step, which errors of earlier iterates can only have increased, is tested
@@ -148,23 +146,23 @@ namespace slipstick::app
     bool is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t);
 
     /// Solves the current step, adding rows for more contact nodes as long as pruned ones penetrate.
-    /// @param goes_on whether to start from the present solution of this step.
-    std::unique_ptr<Answer> solve_step(const unsigned int  step,
-                                       const std::uint64_t multiplications_before,
-                                       const bool          goes_on);
+    /// @param continues whether to start from the present solution of this step.
+    std::unique_ptr<StepSolution> solve_step(const unsigned int  step,
+                                             const std::uint64_t multiplications_before,
+                                             const bool          continues);
 
-    std::unique_ptr<Answer> checked(std::unique_ptr<Answer> answer, const double t) const;
+    std::unique_ptr<StepSolution> checked(std::unique_ptr<StepSolution> answer, const double t) const;
 
     /// Continues from a solution whose checks fail, to smaller residuals: the tolerance is relative to |Pd|, which may
     /// be far above the corresponding part of the displacement (slender parts). Ends when this no longer helps.
-    std::unique_ptr<Answer> continue_to_smaller_residual(const unsigned int      step,
-                                                         const std::uint64_t     multiplications_before,
-                                                         std::unique_ptr<Answer> answer);
+    std::unique_ptr<StepSolution> continue_to_smaller_residual(const unsigned int            step,
+                                                               const std::uint64_t           multiplications_before,
+                                                               std::unique_ptr<StepSolution> answer);
 
     /// Corrects the displacement of a solution, with its active set, until its checks are within the limit or stop
     /// decreasing.
     /// @return whether they are within the limit.
-    bool close_gaps(Answer &answer, const unsigned int step, const double limit);
+    bool close_gaps(StepSolution &answer, const unsigned int step, const double limit);
 
     const Log                          &log;
     StageClock                         &clock;
@@ -172,9 +170,9 @@ namespace slipstick::app
     scene::SolverOptions                options;
     StepProblem<dim>                    problem;
     double                              discretization_error; // last estimate in this step [sqrt(N mm)]
-    contact::DualSolution               the_solution;
+    contact::DualSolution               dual_solution;
     contact::ContactOfMesh              other_mesh; // without nodes: none
-    std::unique_ptr<Answer>             accepted;   // by the accuracy test in this step
+    std::unique_ptr<StepSolution>       accepted;   // by the accuracy test in this step
     std::vector<Eigen::VectorXd>        u;          // of the last step
     contact::History                    history;    // of the previous steps
     std::vector<output::ConvergenceRow> rows;
