@@ -124,7 +124,7 @@ namespace slipstick::app
                                scene.bodies[place.body].name.c_str(),
                                place.what.c_str(),
                                dim == 2 ? "an edge" : "a part of the surface"));
-        log.line("             warning: " + notes.back());
+        log.remark("warning: " + notes.back());
       }
   }
 
@@ -149,8 +149,8 @@ namespace slipstick::app
     if (rows.size() == 1)
       {
         for (const auto &remark : steps.mesh().remarks)
-          if (remark.rfind("warning: ", 0) != 0) // those are printed with the results
-            log.line("             " + remark);
+          if (!remark.is_warning) // warnings are printed with the results
+            log.remark(remark.text);
         log.line("              mesh      cells   unknowns  energy norm   error    time [s]");
       }
     is_accurate = is_known && row.error <= options.accuracy && summary.status == output::RunStatus::converged;

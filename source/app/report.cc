@@ -91,9 +91,9 @@ namespace slipstick::app
                          name_of(scene.decomposition.method).c_str(),
                          spaces.n_dofs)));
     for (const auto &remark : mesh.remarks)
-      log.line(line("", remark));
+      log.remark(remark.line());
     for (const auto &warning : scene::warnings(scene))
-      log.line(line("", warning));
+      log.remark("warning: " + warning);
     for (unsigned int b = 0; b < scene.bodies.size(); ++b)
       {
         std::string names;
@@ -106,14 +106,12 @@ namespace slipstick::app
   template <int dim>
   std::vector<std::string> warnings_before(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh)
   {
-    const std::string        mark = "warning: ";
     std::vector<std::string> texts;
-    auto                     all = mesh.remarks;
+    for (const auto &remark : mesh.remarks)
+      if (remark.is_warning)
+        texts.push_back(remark.text);
     for (const auto &warning : scene::warnings(scene))
-      all.push_back(warning);
-    for (const auto &text : all)
-      if (text.compare(0, mark.size(), mark) == 0)
-        texts.push_back(text.substr(mark.size()));
+      texts.push_back(warning);
     return texts;
   }
 
@@ -235,7 +233,7 @@ namespace slipstick::app
       }
     const bool   limit     = solution.status == qp::Status::iteration_limit;
     const double reached   = std::max(solution.projected_gradient, solution.equality);
-    const bool   is_linear = solution.algorithm == "pcg";
+    const bool   is_linear = solution.algorithm == scene::Algorithm::pcg;
     const bool   balances  = solution.equality <= tolerance;
     if (reached <= tolerance || (!is_linear && !limit && !balances)) // no tolerance would help
       {
@@ -263,9 +261,9 @@ namespace slipstick::app
              reached,
              tolerance) +
       largest + "; the results are not a solution\n  remedy: " +
-      (!limit                        ? raise
-       : solution.algorithm == "pcg" ? "raise Solver/PCG/Max iterations"
-                                     : "raise Solver/SMALBE/Max outer iterations or Max inner iterations"));
+      (!limit      ? raise
+       : is_linear ? "raise Solver/PCG/Max iterations"
+                   : "raise Solver/SMALBE/Max outer iterations or Max inner iterations"));
   }
 
   namespace

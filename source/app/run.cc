@@ -146,7 +146,7 @@ namespace slipstick::app
   void Run<dim>::print_warnings(const Log &to) const
   {
     for (const std::string &text : warnings)
-      to.line("             warning: " + text);
+      to.remark("warning: " + text);
   }
 
   template <int dim>
@@ -275,7 +275,7 @@ namespace slipstick::app
     for (const auto &[about, text] : texts)
       if (warned_about.insert(about).second)
         {
-          log.line("             warning: " + text);
+          log.remark("warning: " + text);
           warnings.push_back(text);
         }
   }

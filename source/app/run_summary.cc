@@ -121,7 +121,7 @@ namespace slipstick::app
     s.problem.dual               = {n.total(), n.gluing + n.prescribed, n.normal, n.tangential};
     s.problem.contact_candidates = n.candidates;
 
-    s.solver.algorithm                   = solution.algorithm;
+    s.solver.algorithm                   = name_of(solution.algorithm);
     s.solver.preconditioner              = name_of(contact::resolved_options(scene).dual.preconditioner);
     s.solver.dual_operator               = dual.dual_operator().is_explicit() ? "explicit" : "implicit";
     s.solver.tolerance                   = tolerance;

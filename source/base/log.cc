@@ -15,6 +15,11 @@
 
 namespace slipstick
 {
+  namespace
+  {
+    constexpr std::size_t width_of_stages = 13; // of the name of the stage at the start of a line
+  }
+
   Log::Log(const MPI_Comm comm, const Verbosity verbosity)
     : prints(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
     , verbosity(verbosity)
@@ -24,6 +29,11 @@ namespace slipstick
   {
     if (prints && verbosity != Verbosity::quiet)
       std::cout << text << std::endl;
+  }
+
+  void Log::remark(const std::string &text) const
+  {
+    line(std::string(width_of_stages, ' ') + text);
   }
 
   void Log::detail(const std::string &text) const

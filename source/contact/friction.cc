@@ -67,7 +67,9 @@ namespace slipstick::contact
       DualSolution run(const DualSolution *start)
       {
         const auto feasible = feasible_start(start);
-        solution.algorithm  = options.algorithm == scene::Algorithm::semismooth_newton ? "semismooth newton" : "smalbe";
+        solution.algorithm  = options.algorithm == scene::Algorithm::semismooth_newton
+                                ? scene::Algorithm::semismooth_newton
+                                : scene::Algorithm::smalbe;
         set_bounds(law.bounds(feasible));
         if (all_forces_vanish(dual, feasible, box, solution.slip_bound))
           {

@@ -50,7 +50,7 @@ namespace slipstick::contact
     DualSolution solution;
     solution.free          = std::vector<bool>(start.locally_owned_size(), true);
     solution.slip_bound    = std::vector<double>(start.locally_owned_size(), 0.);
-    solution.algorithm     = "pcg";
+    solution.algorithm     = scene::Algorithm::pcg;
     const auto   face      = dual.face(solution.free);
     auto         b         = homogenised_load(dual, start);
     const double reference = tfeti::residual_norm(dual, b);

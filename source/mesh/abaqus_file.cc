@@ -224,9 +224,10 @@ namespace slipstick::mesh
       for (const auto &[name, n] : ignored)
         all += (all.empty() ? "" : ", ") + name + (n > 1 ? " (" + std::to_string(n) + ")" : "");
       if (!all.empty())
-        mesh.remarks.push_back(
-          "warning: mesh file " + mesh.file +
-          ": only its mesh is used; materials, supports, loads and steps come from the scene. Not used: " + all);
+        mesh.remarks.emplace_back(
+          "mesh file " + mesh.file +
+            ": only its mesh is used; materials, supports, loads and steps come from the scene. Not used: " + all,
+          true);
     }
 
     MeshFile AbaqusReader::read()

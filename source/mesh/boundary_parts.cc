@@ -103,8 +103,8 @@ namespace slipstick::mesh
                          std::string("give a condition in ") + (dim == 2 ? "x and y" : "x, y and z") +
                            ", as placed and before loading, that holds in the middle of some " + face_name + "s");
       if (n_cut > 0)
-        mesh.remarks.push_back(
-          format("warning: %s: '%s' changes within %u %s%s of %s, such as that around %s; %s "
+        mesh.remarks.emplace_back(
+          format("%s: '%s' changes within %u %s%s of %s, such as that around %s; %s "
                  "%s belongs to the part as a whole if its middle does: put a node of the mesh there",
                  user.c_str(),
                  part.condition.c_str(),
@@ -114,7 +114,8 @@ namespace slipstick::mesh
                  name.c_str(),
                  point_text(cut, dim).c_str(),
                  dim == 2 ? "an" : "a",
-                 face_name));
+                 face_name),
+          true);
       mesh.boundary_ids[to_string(part)] = own;
     }
   } // namespace

@@ -158,16 +158,14 @@ namespace slipstick::mesh
     }
 
     /// Adds a warning about the two bodies that exceed the limits most, if there are any.
-    /// @param size diagonals of the bounding boxes of the bodies [mm].
     template <int dim>
-    void remark_on_units(const scene::Scene<dim>   &scene,
-                         const std::vector<double> &size,
-                         std::vector<std::string>  &remarks)
+    void remark_on_units(const scene::Scene<dim> &scene, Mesh<dim> &mesh)
     {
-      const auto modulus = [&](const unsigned int body) { // materials may not be defined yet when meshes are made
+      const auto &size    = mesh.sizes;
+      const auto  modulus = [&](const unsigned int body) { // materials may not be defined yet when meshes are made
         const unsigned int material = scene.bodies[body].material;
         return material < scene.materials.size() ? scene.materials[material].young_modulus
-                                                 : scene::Material().young_modulus;
+                                                  : scene::Material().young_modulus;
       };
       double       worst = 1; // relative to its limit
       unsigned int small = 0, large = 0;
@@ -192,8 +190,9 @@ namespace slipstick::mesh
         return "body " + scene.bodies[b].name + " is " + number_text(size[b]) + " mm across with a Young modulus of " +
                number_text(modulus(b)) + " MPa";
       };
-      remarks.push_back("warning: " + describe(large) + ", " + describe(small) +
-                        ": check that their meshes and materials use the same units (Scale, Young modulus)");
+      mesh.remarks.emplace_back(describe(large) + ", " + describe(small) +
+                                  ": check that their meshes and materials use the same units (Scale, Young modulus)",
+                                true);
     }
 
     /// Every rank generates its own blocks.
@@ -213,10 +212,9 @@ namespace slipstick::mesh
         }
       mesh.combined_ids.resize(scene.bodies.size());
       mesh.points.resize(scene.bodies.size());
-      std::vector<double> sizes;
       for (const auto &body : scene.bodies)
-        sizes.push_back(body.size.norm());
-      remark_on_units(scene, sizes, mesh.remarks);
+        mesh.sizes.push_back(body.size.norm());
+      remark_on_units(scene, mesh);
 
       const unsigned int N =
         scene.decomposition.method == scene::DecompositionMethod::none ? 1 : scene.decomposition.blocks;
@@ -316,7 +314,7 @@ namespace slipstick::mesh
     template <int dim>
     std::vector<MeshPiece<dim>> cut_bodies(const scene::Scene<dim>    &scene,
                                            std::vector<BodyMesh<dim>> &bodies,
-                                           std::vector<std::string>   &remarks)
+                                           std::vector<Remark>        &remarks)
     {
       // connected pieces with one type of cells: the minimum number of subdomains
       std::vector<MeshPiece<dim>> wholes;
@@ -414,10 +412,9 @@ namespace slipstick::mesh
             for (const auto &[name, v] : body.points)
               names.back().points[name] = {body.piece.vertices[v], body.piece.global_vertices[v]};
           }
-        std::vector<double> sizes;
         for (const auto &body : bodies)
-          sizes.push_back(size_of(body.piece));
-        remark_on_units(scene, sizes, mesh.remarks);
+          mesh.sizes.push_back(size_of(body.piece));
+        remark_on_units(scene, mesh);
         if (scene.decomposition.subdomains > mesh.n_cells &&
             scene.decomposition.method != scene::DecompositionMethod::none)
           throw InputError("Decomposition/Subdomains = " + std::to_string(scene.decomposition.subdomains) +
@@ -434,6 +431,7 @@ namespace slipstick::mesh
         for (unsigned int s = mesh.first_subdomain[r]; s < mesh.first_subdomain[r + 1]; ++s)
           to_send[r].push_back(std::move(pieces[s]));
       mesh.n_cells  = dealii::Utilities::MPI::broadcast(mesh.comm, mesh.n_cells);
+      mesh.sizes    = dealii::Utilities::MPI::broadcast(mesh.comm, mesh.sizes);
       names         = dealii::Utilities::MPI::broadcast(mesh.comm, names);
       auto received = dealii::Utilities::MPI::some_to_some(mesh.comm, to_send);
       to_send.clear();

@@ -136,8 +136,9 @@ namespace slipstick::mesh
                          "set Plane state = axisymmetric, or mesh the bodies with plane elements");
       const auto warn = [&](const std::set<std::string> &types, const std::string &kind) {
         if (!types.empty())
-          file.remarks.push_back("warning: mesh file " + file.file + " has elements of plane " + kind + " (" +
-                                 names(types) + "), and the scene is computed " + computed_in + ": see Plane state");
+          file.remarks.emplace_back("mesh file " + file.file + " has elements of plane " + kind + " (" + names(types) +
+                                      "), and the scene is computed " + computed_in + ": see Plane state",
+                                    true);
       };
       if (scene.plane_state != scene::PlaneState::plane_stress)
         warn(file.plane_stress_types, "stress");
@@ -229,9 +230,9 @@ namespace slipstick::mesh
   } // namespace
 
   template <int dim>
-  std::vector<std::string> unused_parts(const scene::Scene<dim> &scene, const std::map<std::string, MeshFile> &files)
+  std::vector<Remark> unused_parts(const scene::Scene<dim> &scene, const std::map<std::string, MeshFile> &files)
   {
-    std::vector<std::string> remarks;
+    std::vector<Remark> remarks;
     for (const auto &of_path : files) // lambdas capture no structured bindings in C++17
       {
         const std::string                  &path = of_path.first;
@@ -332,18 +333,18 @@ namespace slipstick::mesh
       }
   }
 
-  template void                     place_in_scene(const scene::Scene<2> &, const unsigned int, MeshPiece<2> &);
-  template void                     place_in_scene(const scene::Scene<3> &, const unsigned int, MeshPiece<3> &);
-  template std::vector<std::string> unused_parts(const scene::Scene<2> &, const std::map<std::string, MeshFile> &);
-  template std::vector<std::string> unused_parts(const scene::Scene<3> &, const std::map<std::string, MeshFile> &);
-  template BodyMesh<2>              make_body(const scene::Scene<2> &,
-                                              const unsigned int,
-                                              std::map<std::string, MeshFile> &,
-                                              std::set<CellPath> *,
-                                              std::vector<CellPath> *);
-  template BodyMesh<3>              make_body(const scene::Scene<3> &,
-                                              const unsigned int,
-                                              std::map<std::string, MeshFile> &,
-                                              std::set<CellPath> *,
-                                              std::vector<CellPath> *);
+  template void                place_in_scene(const scene::Scene<2> &, const unsigned int, MeshPiece<2> &);
+  template void                place_in_scene(const scene::Scene<3> &, const unsigned int, MeshPiece<3> &);
+  template std::vector<Remark> unused_parts(const scene::Scene<2> &, const std::map<std::string, MeshFile> &);
+  template std::vector<Remark> unused_parts(const scene::Scene<3> &, const std::map<std::string, MeshFile> &);
+  template BodyMesh<2>         make_body(const scene::Scene<2> &,
+                                         const unsigned int,
+                                         std::map<std::string, MeshFile> &,
+                                         std::set<CellPath> *,
+                                         std::vector<CellPath> *);
+  template BodyMesh<3>         make_body(const scene::Scene<3> &,
+                                         const unsigned int,
+                                         std::map<std::string, MeshFile> &,
+                                         std::set<CellPath> *,
+                                         std::vector<CellPath> *);
 } // namespace slipstick::mesh

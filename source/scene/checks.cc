@@ -175,7 +175,7 @@ namespace slipstick::scene
     if (scene.plane_state != PlaneState::plane_stress && scene.discretization.element == ElementKind::standard)
       for (const Material &material : scene.materials)
         if (material.poisson_ratio > locking_poisson_ratio)
-          texts.push_back(std::string("warning: standard elements lock ") +
+          texts.push_back(std::string("standard elements lock ") +
                           (dim == 3                                        ? "in solids"
                            : scene.plane_state == PlaneState::plane_strain ? "in plane strain"
                                                                            : "in bodies of revolution") +

@@ -285,7 +285,9 @@ TEST(ContactSolve, observer_sees_every_outer_step_on_every_rank)
                                            contact::resolved_options(scene),
                                            [&](const qp::OuterStep &step) { EXPECT_EQ(step.outer, ++n); });
       // projected conjugate gradients are one outer step, of which every inner step is reported
-      EXPECT_EQ(n, solution.algorithm == "pcg" ? solution.counts.cg_steps : solution.counts.outer_iterations);
+      EXPECT_EQ(n,
+                solution.algorithm == scene::Algorithm::pcg ? solution.counts.cg_steps
+                                                            : solution.counts.outer_iterations);
       EXPECT_GT(n, 0u);
     }
 }
@@ -305,8 +307,8 @@ TEST(ContactSolve, multiplications_are_all_counted)
 
 TEST(ContactSolve, linear_scene_goes_to_conjugate_gradients)
 {
-  EXPECT_EQ(Solved(cut(bent_box(8), blocks(2))).solution.algorithm, "pcg");
-  EXPECT_EQ(Solved(cut(pushed_box("20"), blocks(2))).solution.algorithm, "semismooth newton");
+  EXPECT_EQ(Solved(cut(bent_box(8), blocks(2))).solution.algorithm, scene::Algorithm::pcg);
+  EXPECT_EQ(Solved(cut(pushed_box("20"), blocks(2))).solution.algorithm, scene::Algorithm::semismooth_newton);
 }
 
 // no loads, no contact

@@ -203,7 +203,7 @@ TEST(AdaptiveSolid, shapes_do_not_wear_off_and_round_bodies_stay_round)
       auto                        mesh   = AdaptiveSolid::made(scene, refined, paths);
       const double                coarse = AdaptiveSolid::shape(mesh.piece), volume = AdaptiveSolid::volume(mesh.piece);
       ASSERT_EQ(mesh.remarks.size(), 1u);
-      EXPECT_NE(mesh.remarks[0].find("six tetrahedra"), std::string::npos) << mesh.remarks[0];
+      EXPECT_NE(mesh.remarks[0].text.find("six tetrahedra"), std::string::npos) << mesh.remarks[0].text;
       for (unsigned int step = 0; step < 6; ++step)
         {
           const std::size_t                           before = mesh.piece.cells.size();

@@ -303,7 +303,7 @@ TEST(CurvedSolid, cells_that_would_turn_over_keep_straight_edges)
       });
       EXPECT_TRUE(mesh.piece.line_middles.empty());
       ASSERT_EQ(mesh.remarks.size(), 1u);
-      EXPECT_NE(mesh.remarks[0].find("edges of 1 cells that this would invert stay straight"), std::string::npos);
+      EXPECT_NE(mesh.remarks[0].text.find("edges of 1 cells that this would invert stay straight"), std::string::npos);
     }
 }
 

@@ -232,7 +232,7 @@ TEST(MeshFiles, subdomains_of_a_mixed_body_have_one_kind_of_cells)
             {
               std::string remarks;
               for (const auto &remark : mesh.remarks)
-                remarks += remark;
+                remarks += remark.text;
               EXPECT_SAYS(remarks, "quadrilaterals");
             }
         }
@@ -436,7 +436,7 @@ TEST(MeshFiles, units_that_do_not_fit_are_remarked)
       scene.bodies[1].scale = scale;
       const auto mesh       = mesh::make_mesh(cut(scene, metis(2)), MPI_COMM_SELF);
       ASSERT_EQ(mesh.remarks.size(), 1u);
-      EXPECT_SAYS(mesh.remarks[0], "units");
+      EXPECT_SAYS(mesh.remarks[0].text, "units");
     }
   scene.bodies[1].scale = 1e-2; // parts do differ in size
   EXPECT_TRUE(mesh::make_mesh(cut(scene, metis(2)), MPI_COMM_SELF).remarks.empty());
@@ -697,7 +697,7 @@ TEST(MeshFiles, lines_off_the_outline_are_refused_where_they_are_used_and_listed
     std::string                           remarks;
     const std::string                     said = refusal([&] {
       for (const auto &remark : mesh::make_body(scene, 0, files).remarks)
-        remarks += remark;
+        remarks += remark.text;
     });
     std::filesystem::remove(name);
     return said + remarks;
@@ -725,7 +725,7 @@ TEST(MeshFiles, points_of_several_nodes_and_cells_of_no_body)
   scene.point_loads.push_back(load);
   const auto mesh = mesh::make_mesh(scene, MPI_COMM_SELF);
   ASSERT_EQ(mesh.remarks.size(), 1u);
-  EXPECT_SAYS(mesh.remarks[0], "cells that belong to no body: '7' (1)");
+  EXPECT_SAYS(mesh.remarks[0].text, "cells that belong to no body: '7' (1)");
   scene.point_loads[0].where.point = "4";
   EXPECT_SAYS(refusal([&] { mesh::make_mesh(scene, MPI_COMM_SELF); }), "point '4' of body '1' in mesh file");
   std::filesystem::remove(name);
@@ -782,7 +782,7 @@ TEST(MeshFiles, every_item_of_an_abaqus_file_is_used_refused_or_listed)
     auto        file = mesh::MeshFile();
     said             = refusal([&] { file = mesh::parse_abaqus("a.inp", text); });
     for (const auto &remark : file.remarks)
-      said += remark;
+      said += remark.line();
     return said;
   };
   EXPECT_EQ(read("", ""), "nothing was refused");
@@ -833,7 +833,10 @@ TEST(MeshFiles, elements_that_contradict_the_plane_state_are_warned_of)
       const auto remarks = mesh::make_mesh(scene, MPI_COMM_SELF).remarks;
       ASSERT_EQ(remarks.size(), state == scene::PlaneState::plane_stress ? 1u : 0u);
       for (const auto &remark : remarks)
-        EXPECT_SAYS(remark, "warning: mesh file " + name.string() + " has elements of plane strain (CPE3)");
+        {
+          EXPECT_TRUE(remark.is_warning);
+          EXPECT_SAYS(remark.text, "mesh file " + name.string() + " has elements of plane strain (CPE3)");
+        }
     }
   std::ofstream(name) << "*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n*ELEMENT, TYPE=CAX3, ELSET=Plate\n1, 1, 2, 3\n";
   const auto message = refusal([&] { mesh::make_mesh(scene, MPI_COMM_SELF); });

@@ -25,6 +25,9 @@ namespace slipstick
     /// A line at normal verbosity.
     void line(const std::string &text) const;
 
+    /// A line at normal verbosity that belongs to a stage, indented like the text of the stages' own lines.
+    void remark(const std::string &text) const;
+
     /// A line at verbose verbosity only.
     void detail(const std::string &text) const;
 

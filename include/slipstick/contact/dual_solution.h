@@ -3,12 +3,12 @@
 
 #include <slipstick/qp/direction_store.h>
 #include <slipstick/qp/types.h>
+#include <slipstick/scene/scene.h>
 #include <slipstick/tfeti/dual_problem.h>
 
 #include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace slipstick::contact
@@ -25,14 +25,14 @@ namespace slipstick::contact
     std::vector<double> slip_bound; // [N], owned rows: bounds satisfied by the multipliers
     std::vector<bool>   free;       // owned rows: the multiplier is strictly inside its bounds
     qp::Counts          counts;
-    double              projected_gradient = 0; // |gP| / |P d|
-    double              reference          = 0; // reference value of the residuals
-    double              weighted_reference = 0; // the same with the weights of DualProblem::residual_weights()
-    double              largest_forces     = 0; // |multipliers| of all steps so far [N]
-    double              largest_traction   = 0; // L2 norm over a pair, maximum of all steps so far [sqrt(N MPa)]
-    double              equality           = 0; // |G x - e| / |P d|, scaled
-    unsigned long long  active_constraints = 0; // inequality rows at a bound, over all ranks
-    std::string         algorithm;              // "smalbe", "semismooth newton", "pcg"
+    double              projected_gradient  = 0; // |gP| / |P d|
+    double              reference           = 0; // reference value of the residuals
+    double              weighted_reference  = 0; // the same with the weights of DualProblem::residual_weights()
+    double              largest_forces      = 0; // |multipliers| of all steps so far [N]
+    double              largest_traction    = 0; // L2 norm over a pair, maximum of all steps so far [sqrt(N MPa)]
+    double              equality            = 0; // |G x - e| / |P d|, scaled
+    unsigned long long  active_constraints  = 0; // inequality rows at a bound, over all ranks
+    scene::Algorithm    algorithm           = scene::Algorithm::automatic; // that was used; not automatic
     unsigned int        fallbacks           = 0;
     unsigned int        friction_iterations = 0; // updates of the slip bounds
     double              bound_change        = 0; // relative change in the last update

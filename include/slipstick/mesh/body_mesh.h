@@ -17,9 +17,9 @@ namespace slipstick::mesh
     std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>> combined_ids; // as in Mesh
     std::map<std::string, unsigned int>                                        points;       // by name: local vertex
     std::map<typename MeshPiece<dim>::Face, dealii::Point<dim>>
-                             middles; // mid nodes in the file: of edges of the outline, in space of faces
-    std::vector<std::string> remarks;
-    std::string              about_names; // MeshFile::about_names
+                        middles; // mid nodes in the file: of edges of the outline, in space of faces
+    std::vector<Remark> remarks;
+    std::string         about_names; // MeshFile::about_names
 
     // by name: why a boundary or point cannot be used (parts of it are not on the outline; it consists of several
     // points)
@@ -35,9 +35,9 @@ namespace slipstick::mesh
   template <int dim>
   BodyMesh<dim> body_from_file(const scene::Body<dim> &body, const MeshFile &file);
 
-  /// Adds a remark for every file with cells that no body of the scene uses.
+  /// A remark for every file with cells that no body of the scene uses.
   template <int dim>
-  std::vector<std::string> unused_parts(const scene::Scene<dim> &scene, const std::map<std::string, MeshFile> &files);
+  std::vector<Remark> unused_parts(const scene::Scene<dim> &scene, const std::map<std::string, MeshFile> &files);
 
   /// The mesh of a body of built-in shape (see shapes.h), refined @p refinements times, not yet placed.
   template <int dim>

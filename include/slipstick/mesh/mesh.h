@@ -1,6 +1,7 @@
 // The torn mesh: one deal.II triangulation per subdomain; each rank stores its own subdomains only.
 #pragma once
 
+#include <slipstick/base/remark.h>
 #include <slipstick/mesh/face_surface.h>
 #include <slipstick/scene/scene.h>
 
@@ -61,8 +62,9 @@ namespace slipstick::mesh
     std::vector<std::map<dealii::types::boundary_id, std::set<dealii::types::boundary_id>>>
       combined_ids;                                             // by body: id of faces with several names, their ids
     std::vector<std::map<std::string, NamedPoint<dim>>> points; // by body and name
+    std::vector<double>                                 sizes;  // of the bodies: diagonals of their bounding boxes [mm]
     std::uint64_t                                       n_cells = 0; // over all ranks
-    std::vector<std::string>                            remarks;     // for the log, on rank 0
+    std::vector<Remark>                                 remarks;     // for the log, on rank 0
 
     unsigned int n_subdomains() const
     {

@@ -1,6 +1,8 @@
 // Mesh files: Gmsh's .msh, Abaqus' .inp, .vtk, .unv and .ucd.
 #pragma once
 
+#include <slipstick/base/remark.h>
+
 #include <deal.II/base/point.h>
 
 #include <algorithm>
@@ -63,7 +65,7 @@ namespace slipstick::mesh
     std::map<std::pair<int, int>, std::string>       names;             // by dimension and physical number
     bool                                             is_curved = false; // has nodes besides the corners
     std::map<std::string, std::vector<unsigned int>> node_sets; // by name: nodes whose edges or faces are a boundary
-    std::vector<std::string>                         remarks;   // unused content of the file, for the log
+    std::vector<Remark>                              remarks;   // unused content of the file, for the log
     std::string           about_names; // of the format: why a name may be missing; for remedies, or empty
     std::set<std::string> plane_stress_types, plane_strain_types, axisymmetric_types; // element types, by use
 
