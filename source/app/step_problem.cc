@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace slipstick::app
 {
@@ -42,6 +43,21 @@ namespace slipstick::app
       for (const auto &body : bodies)
         names.push_back(body.name);
       return names;
+    }
+
+    /// The size of the smallest body that may touch an obstacle is that of the features of the obstacle which matter.
+    template <int dim>
+    void set_extents_of_obstacles(const std::vector<double> &sizes, scene::Scene<dim> &scene)
+    {
+      std::map<unsigned int, double> extents; // by obstacle
+      for (const auto &pair : scene.contacts)
+        if (!pair.master)
+          {
+            double &extent = extents.emplace(pair.obstacle, sizes[pair.slave.body]).first->second;
+            extent         = std::min(extent, sizes[pair.slave.body]);
+          }
+      for (const auto &[obstacle, extent] : extents)
+        scene.obstacles[obstacle].extent = extent;
     }
 
     std::string in_words(const std::vector<tfeti::RigidMotion> &motions, const std::vector<std::string> &body_names)
@@ -74,6 +90,7 @@ namespace slipstick::app
     mesh_ptr   = std::make_unique<mesh::Mesh<dim>>(mesh::make_mesh(scene, comm, refinement));
     spaces_ptr = std::make_unique<mechanics::Spaces<dim>>(*mesh_ptr, scene.discretization.degree);
     print_mesh(log, scene, *mesh_ptr, *spaces_ptr);
+    set_extents_of_obstacles(mesh_ptr->sizes, scene);
     for (auto &pair : interface::find_contacts(scene, *mesh_ptr, *spaces_ptr))
       {
         log.line("contact      found between " + pair.name);

@@ -1,7 +1,9 @@
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/text.h>
 #include <slipstick/interface/obstacle.h>
 #include <slipstick/scene/triangulated_surface.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +13,15 @@ namespace slipstick::interface
   {
     using Point  = dealii::Point<2>;
     using Tensor = dealii::Tensor<1, 2>;
+
+    // Steps of the differences that give the slope of a height function, as a part of the size of the bodies or of the
+    // coordinate, whichever is larger: the error of the slope is about 1e-10.
+    constexpr double slope_step = 1e-5;
+    // The search for the nearest point of a height function ends when it moves by less than this part of these lengths;
+    // the gap is then exact to rounding, since its error is quadratic.
+    constexpr double foot_tolerance = 1e-10;
+    // It converges linearly, and slowly where the radius of curvature is not much larger than the distance.
+    constexpr unsigned int most_foot_points = 100;
 
     Tensor unit(const double x, const double y)
     {
@@ -22,11 +33,14 @@ namespace slipstick::interface
 
     /// Distance to a circle, a ball or (for the ray perpendicular to its axis) a cylinder.
     template <int dim>
-    ObstacleContact<dim> with_circle(const scene::Obstacle<dim> &obstacle, const dealii::Tensor<1, dim> &ray)
+    ObstacleContact<dim> with_circle(const scene::Obstacle<dim>   &obstacle,
+                                     const dealii::Point<dim>     &x,
+                                     const dealii::Tensor<1, dim> &ray)
     {
       const double distance = ray.norm();
       if (!(distance > 0))
-        throw InputError("a contact node lies at the centre of obstacle " + obstacle.name + ", where it has no normal",
+        throw InputError("the contact node at " + point_text(x, dim) + " lies at the centre of obstacle " +
+                           obstacle.name + ", where it has no normal",
                          "move the obstacle, or give the contact another slave boundary");
       if (obstacle.shape == scene::ObstacleShape::hole || obstacle.shape == scene::ObstacleShape::bore)
         return {-ray / distance, obstacle.radius - distance};
@@ -72,62 +86,46 @@ namespace slipstick::interface
       return {-sign * ray / ray.norm(), sign * ray.norm()};
     }
 
-    ObstacleContact<2> with_function(const scene::Field<2> &height, const Point &x, const double t)
+    /// @p foot: approximation of the nearest point of the surface y = h(x) or y = h(x, z); its height is not used.
+    template <int dim>
+    ObstacleContact<dim> with_tangent(const scene::Obstacle<dim> &obstacle,
+                                      const dealii::Point<dim>   &foot,
+                                      const dealii::Point<dim>   &x,
+                                      const double                t)
     {
-      const auto h     = [&](const double at) { return height.value(Point(at, x[1]), t); };
-      const auto slope = [&](const double at) {
-        const double step = 1e-5 * std::max(1., std::abs(at)); // error of the slope about 1e-10
-        return (h(at + step) - h(at - step)) / (2 * step);
-      };
-      const auto onto_tangent = [&](const double at) -> ObstacleContact<2> {
-        const Tensor normal = unit(slope(at), -1);
-        return {normal, (Point(at, h(at)) - x) * normal};
-      };
-      double foot = x[0];
-      for (unsigned int i = 0; i < 100; ++i)
-        {
-          const double m    = slope(foot);
-          const double next = foot + ((x[0] - foot) + (x[1] - h(foot)) * m) / (1 + m * m);
-          const double step = std::abs(next - foot);
-          foot              = next;
-          if (step <= 1e-10 * std::max(1., std::abs(foot)))
-            return onto_tangent(foot);
-        }
-      return onto_tangent(x[0]);
+      const auto             h = [&](const dealii::Point<dim> &at) { return obstacle.height.value(at, t); };
+      dealii::Tensor<1, dim> normal;
+      for (unsigned int d = 0; d < dim; ++d)
+        if (d != 1)
+          {
+            dealii::Tensor<1, dim> step;
+            step[d]   = slope_step * std::max(obstacle.extent, std::abs(foot[d]));
+            normal[d] = (h(foot + step) - h(foot - step)) / (2 * step[d]);
+          }
+      normal[1] = -1;
+      normal /= normal.norm();
+      auto on_surface = foot;
+      on_surface[1]   = h(foot);
+      return {normal, (on_surface - x) * normal};
     }
 
-    /// The same in space: y = h(x, z).
-    ObstacleContact<3> with_function(const scene::Field<3> &height, const dealii::Point<3> &x, const double t)
+    template <int dim>
+    ObstacleContact<dim> with_function(const scene::Obstacle<dim> &obstacle,
+                                       const dealii::Point<dim>   &x,
+                                       const double                t)
     {
-      using Vector            = dealii::Tensor<1, 3>; // in the plane of x and z
-      const auto h            = [&](const Vector &at) { return height.value(dealii::Point<3>(at[0], x[1], at[2]), t); };
-      const auto onto_tangent = [&](const Vector &at) {
-        Vector normal;
-        for (const unsigned int d : {0, 2})
-          {
-            const double step = 1e-5 * std::max(1., std::abs(at[d])); // error of the slope about 1e-10
-            Vector       way;
-            way[d]    = step;
-            normal[d] = (h(at + way) - h(at - way)) / (2 * step);
-          }
-        normal[1] = -1;
-        normal /= normal.norm();
-        return ObstacleContact<3>{normal, (dealii::Point<3>(at[0], h(at), at[2]) - x) * normal};
-      };
-      Vector above = x;
-      above[1]     = 0;
-      Vector foot  = above;
-      for (unsigned int i = 0; i < 100; ++i)
+      auto foot = x;
+      for (unsigned int i = 0; i < most_foot_points; ++i)
         {
-          const auto contact = onto_tangent(foot);
-          Vector     next    = x + contact.gap * contact.normal; // nearest point of the tangential plane
-          next[1]            = 0;
-          const double step  = (next - foot).norm();
+          const auto contact = with_tangent(obstacle, foot, x, t);
+          auto       next    = x + contact.gap * contact.normal; // nearest point of the tangent
+          next[1]            = x[1];
+          const double step  = next.distance(foot);
           foot               = next;
-          if (step <= 1e-10 * std::max(1., foot.norm()))
-            return onto_tangent(foot);
+          if (step <= foot_tolerance * std::max(obstacle.extent, foot.norm()))
+            return with_tangent(obstacle, foot, x, t);
         }
-      return onto_tangent(above);
+      return with_tangent(obstacle, x, x, t);
     }
   } // namespace
 
@@ -138,13 +136,13 @@ namespace slipstick::interface
       {
         case scene::ObstacleShape::circle:
         case scene::ObstacleShape::hole:
-          return with_circle<2>(obstacle, obstacle.center - x);
+          return with_circle(obstacle, x, obstacle.center - x);
         case scene::ObstacleShape::half_plane:
           return {-obstacle.normal, (x - obstacle.center) * obstacle.normal};
         case scene::ObstacleShape::polyline:
           return with_polyline(obstacle.points, x);
         case scene::ObstacleShape::function:
-          return with_function(obstacle.height, x, t);
+          return with_function(obstacle, x, t);
         case scene::ObstacleShape::cylinder: // not available in 2D
         case scene::ObstacleShape::bore:
         case scene::ObstacleShape::stl:
@@ -162,14 +160,14 @@ namespace slipstick::interface
       {
         case scene::ObstacleShape::circle:
         case scene::ObstacleShape::hole:
-          return with_circle<3>(obstacle, ray);
+          return with_circle(obstacle, x, ray);
         case scene::ObstacleShape::half_plane:
           return {-obstacle.normal, -ray * obstacle.normal};
         case scene::ObstacleShape::cylinder:
         case scene::ObstacleShape::bore:
-          return with_circle<3>(obstacle, ray - (ray * obstacle.normal) * obstacle.normal);
+          return with_circle(obstacle, x, ray - (ray * obstacle.normal) * obstacle.normal);
         case scene::ObstacleShape::function:
-          return with_function(obstacle.height, x, t);
+          return with_function(obstacle, x, t);
         case scene::ObstacleShape::stl:
           {
             const auto there = obstacle.surface->nearest(x);

@@ -216,6 +216,7 @@ namespace slipstick::scene
     dealii::Tensor<1, dim>          normal;     // unit length; half plane: towards the bodies; cylinder: its axis
     std::vector<dealii::Point<dim>> points;     // polyline, at least two [mm]
     Field<dim>                      height;     // function [mm], of x (and z) and t
+    double                          extent = 1; // function: size of the bodies that may touch it [mm], see obstacle.cc
     std::string                     file;       // stl: path as found
 
     /// stl: in its position; shared by copies
