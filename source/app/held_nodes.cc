@@ -58,7 +58,7 @@ namespace slipstick::app
       if (const double force = dealii::Utilities::MPI::sum(forces[k], comm);
           force > part_that_counts * dealii::Utilities::MPI::sum(all[k], comm))
         texts["held " + scene.contacts[k].name] = format(
-          "Contact %s: supports hold some of its nodes just where they touch, so that only the sum of both forces there is "
+          "Contact %s: supports and contact act at the same nodes, so that only the sum of both forces there is "
           "determined; %.4g N of it, an equal share, are counted as contact (without friction under Coulomb's law); "
           "leave the supported boundary out of the contact, or free the support along the normal",
           scene.contacts[k].name.c_str(),

@@ -339,7 +339,8 @@ namespace slipstick::app
             dual_solution.counts = discarded;
             if (is_carried_over && is_warm && dual_solution.status != qp::Status::converged)
               {
-                log.line("solve        the contact of the mesh before was no good start: solving from nothing");
+                log.line(
+                  "solve        the contact state of the previous mesh is not a usable starting point: restarting from zero");
                 continue;
               }
             clock.enter("recovery");
