@@ -26,16 +26,6 @@ namespace slipstick::mesh
     return combined != combined_ids[where.body].end() && combined->second.count(named) > 0;
   }
 
-  template <int dim>
-  bool on_boundary(const Mesh<dim>                 &mesh,
-                   const unsigned int               body,
-                   const std::string               &name,
-                   const dealii::types::boundary_id id)
-  {
-    return mesh.on_boundary({body, name}, id);
-  }
-
   template struct Mesh<2>;
   template struct Mesh<3>;
-  template bool on_boundary(const Mesh<2> &, const unsigned int, const std::string &, const dealii::types::boundary_id);
 } // namespace slipstick::mesh

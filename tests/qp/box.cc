@@ -78,7 +78,7 @@ TEST(Box, longest_step_is_infinite_where_nothing_stops_it)
 
 TEST(Box, fixed_entries_count_once_as_active)
 {
-  const auto active = count_active(box, Vector{-1, 1, 0, 2, 3, 0, 0}, serial);
+  const auto active = own_active(box, Vector{-1, 1, 0, 2, 3, 0, 0});
   EXPECT_EQ(active.lower, 3u);
   EXPECT_EQ(active.upper, 2u);
 }

@@ -266,10 +266,22 @@ namespace slipstick::qp::test
     return minus(A * x, b);
   }
 
+  /// |gP|
+  inline double projected_gradient_norm(const Box<Vector> &box, const Vector &x, const Vector &g)
+  {
+    double sum = 0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      {
+        const double gp = projected_gradient(x[i], g[i], box.lower[i], box.upper[i]);
+        sum += gp * gp;
+      }
+    return std::sqrt(sum);
+  }
+
   /// |gP|, from a recomputed gradient.
   inline double kkt_residual(const Matrix &A, const Vector &x, const Vector &b, const Box<Vector> &box)
   {
-    return projected_gradient_norm(box, x, gradient(A, x, b), SerialReduction());
+    return projected_gradient_norm(box, x, gradient(A, x, b));
   }
 
   inline bool is_within(const Box<Vector> &box, const Vector &x)

@@ -174,31 +174,6 @@ namespace slipstick::qp
     return active;
   }
 
-  /// Numbers of entries at their bounds, over all processes. One reduction.
-  template <typename Vector, typename Reduction>
-  ActiveEntries count_active(const Box<Vector> &box, const Vector &x, const Reduction &reduction)
-  {
-    const auto own    = own_active(box, x);
-    const auto active = reduction.sum(std::array<double, 2>{{double(own.lower), double(own.upper)}});
-    return {static_cast<std::size_t>(active[0]), static_cast<std::size_t>(active[1])};
-  }
-
-  /// |gP|, over all processes. One reduction.
-  template <typename Vector, typename Reduction>
-  double projected_gradient_norm(const Box<Vector> &box, const Vector &x, const Vector &g, const Reduction &reduction)
-  {
-    const auto        l = box.lower.begin(), u = box.upper.begin();
-    const auto        xi = x.begin(), gi = g.begin();
-    const std::size_t n   = local_size(x);
-    double            sum = 0;
-    for (std::size_t i = 0; i < n; ++i)
-      {
-        const double gp = projected_gradient(xi[i], gi[i], l[i], u[i]);
-        sum += gp * gp;
-      }
-    return std::sqrt(reduction.sum(std::array<double, 1>{{sum}})[0]);
-  }
-
   /// p := derivative of the projection at y, times p: free entries are unchanged, the others become 0.
   template <typename Vector>
   void multiply_derivative(const Box<Vector> &box, const Vector &y, Vector &p)
