@@ -190,7 +190,7 @@ namespace slipstick::app
     for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
       for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
         for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != mesh::cut_id)
+          if (mesh::is_on_outline(cell->face(f)))
             for (unsigned int k = 0; k < subjects.size(); ++k)
               if (subjects[k].where.body == mesh.subdomains[p]->body &&
                   mesh.on_boundary(subjects[k].where, cell->face(f)->boundary_id()))

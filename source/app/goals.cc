@@ -133,7 +133,7 @@ namespace slipstick::app
         const auto &subdomain = *solver.mesh().subdomains[p];
         for (const auto &cell : solver.spaces().dof_handlers[p]->active_cell_iterators())
           for (const unsigned int face : cell->face_indices())
-            if (cell->face(face)->at_boundary() && cell->face(face)->boundary_id() != mesh::cut_id)
+            if (mesh::is_on_outline(cell->face(face)))
               f(cell->active_cell_index(), mechanics::surface_part(subdomain, solver.spaces(), cell, face));
       }
 

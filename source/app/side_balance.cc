@@ -63,7 +63,7 @@ namespace slipstick::app
         if (bodies[subdomain->body])
           for (const auto &cell : subdomain->triangulation.active_cell_iterators())
             for (const unsigned int f : cell->face_indices())
-              if (const auto face = cell->face(f); face->at_boundary() && face->boundary_id() != mesh::cut_id)
+              if (const auto face = cell->face(f); mesh::is_on_outline(face))
                 {
                   std::vector<mesh::GlobalVertex> vertices;
                   for (const unsigned int v : cell->vertex_indices())

@@ -50,19 +50,16 @@ namespace slipstick::interface
     {
       std::vector<Move<dim>> own;
       for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
-        for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
-          for (const unsigned int f : cell->face_indices())
-            if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != mesh::cut_id)
-              spaces.for_each_face_node(*mesh.subdomains[p],
-                                        cell->face(f),
-                                        [&](const unsigned int        node,
-                                            const mechanics::NodeKey &key,
-                                            const dealii::Point<dim> &) {
-                                          own.emplace_back();
-                                          own.back().key = key;
-                                          for (unsigned int d = 0; d < dim; ++d)
-                                            own.back().u[d] = u[p][dim * node + d];
-                                        });
+        spaces.for_each_outline_node(mesh,
+                                     p,
+                                     [&](const unsigned int        node,
+                                         const mechanics::NodeKey &key,
+                                         const dealii::Point<dim> &) {
+                                       own.emplace_back();
+                                       own.back().key = key;
+                                       for (unsigned int d = 0; d < dim; ++d)
+                                         own.back().u[d] = u[p][dim * node + d];
+                                     });
       Moves<dim> all;
       for (const auto &list : dealii::Utilities::MPI::all_gather(mesh.comm, own))
         for (const auto &move : list)

@@ -79,14 +79,11 @@ namespace slipstick::mechanics
         {
           const auto            &subdomain = *mesh.subdomains[p];
           std::set<unsigned int> on_outline;
-          for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
-            for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != mesh::cut_id)
-                spaces.for_each_face_node(subdomain,
-                                          cell->face(f),
-                                          [&](const unsigned int node, const NodeKey &, const dealii::Point<dim> &) {
-                                            on_outline.insert(node);
-                                          });
+          spaces.for_each_outline_node(mesh,
+                                       p,
+                                       [&](const unsigned int node, const NodeKey &, const dealii::Point<dim> &) {
+                                         on_outline.insert(node);
+                                       });
           std::vector<dealii::types::global_dof_index> dofs;
           std::vector<unsigned int>                    nodes;
           for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())

@@ -94,7 +94,7 @@ namespace slipstick::mechanics
     for (unsigned int p = 0; p < mesh.subdomains.size(); ++p)
       for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
         for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != mesh::cut_id)
+          if (mesh::is_on_outline(cell->face(f)))
             {
               const auto facet = surface_part(*mesh.subdomains[p], spaces, cell, f);
               for (unsigned int i = 0; i < facet.n_corners(); ++i)

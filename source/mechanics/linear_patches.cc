@@ -93,7 +93,7 @@ namespace slipstick::mechanics
                   }
               }
             for (const auto &face : cell->face_iterators())
-              if (face->at_boundary() && face->boundary_id() != mesh::cut_id)
+              if (mesh::is_on_outline(face))
                 for (const unsigned int v : face->vertex_indices())
                   Moments::add_square(normal_of<dim>(face), sum.row(face->vertex_index(v)), at_normals);
             first += element.stress.size();

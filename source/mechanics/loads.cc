@@ -106,7 +106,7 @@ namespace slipstick::mechanics
                                            dealii::update_normal_vectors | dealii::update_JxW_values);
         for (const auto &cell : dof_handler.active_cell_iterators())
           for (const unsigned int f : cell->face_indices())
-            if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != mesh::cut_id)
+            if (mesh::is_on_outline(cell->face(f)))
               for (unsigned int k = 0; k < scene.tractions.size(); ++k)
                 if (const auto &traction = scene.tractions[k];
                     traction.where.body == number && mesh.on_boundary(traction.where, cell->face(f)->boundary_id()))

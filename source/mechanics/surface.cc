@@ -139,7 +139,7 @@ namespace slipstick::mechanics
       if (wanted[mesh.subdomains[p]->body])
         for (const auto &cell : spaces.dof_handlers[p]->active_cell_iterators())
           for (const unsigned int f : cell->face_indices())
-            if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != mesh::cut_id)
+            if (mesh::is_on_outline(cell->face(f)))
               own.push_back(surface_edge(*mesh.subdomains[p], spaces, cell, f));
     for (const auto &list : dealii::Utilities::MPI::all_gather(mesh.comm, own))
       all.insert(all.end(), list.begin(), list.end());

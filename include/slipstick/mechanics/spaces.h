@@ -113,6 +113,17 @@ namespace slipstick::mechanics
         }
     }
 
+    /// Calls f(node, key, position) for the nodes of all faces on the outline, of subdomain @p p of this rank; for nodes
+    /// of several faces more than once.
+    template <class F>
+    void for_each_outline_node(const mesh::Mesh<dim> &mesh, const unsigned int p, const F &f) const
+    {
+      for (const auto &cell : dof_handlers[p]->active_cell_iterators())
+        for (const unsigned int k : cell->face_indices())
+          if (mesh::is_on_outline(cell->face(k)))
+            for_each_face_node(*mesh.subdomains[p], cell->face(k), f);
+    }
+
   private:
     static NodeKey key_between(const mesh::GlobalVertex a, const mesh::GlobalVertex b)
     {

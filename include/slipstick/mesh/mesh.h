@@ -24,6 +24,13 @@ namespace slipstick::mesh
   /// Boundary id of the faces along which a body was cut into subdomains.
   constexpr dealii::types::boundary_id cut_id = 1000000;
 
+  /// Whether a face (an iterator) is on the outline of its body, not on a cut.
+  template <class Face>
+  bool is_on_outline(const Face &face)
+  {
+    return face->at_boundary() && face->boundary_id() != cut_id;
+  }
+
   template <int dim>
   struct SubdomainMesh
   {
