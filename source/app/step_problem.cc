@@ -45,7 +45,7 @@ namespace slipstick::app
       return names;
     }
 
-    /// The size of the smallest body that may touch an obstacle is that of the features of the obstacle which matter.
+    /// Obstacles know the smallest body that may touch them.
     template <int dim>
     void set_extents_of_obstacles(const std::vector<double> &sizes, scene::Scene<dim> &scene)
     {

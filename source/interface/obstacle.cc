@@ -14,8 +14,10 @@ namespace slipstick::interface
     using Point  = dealii::Point<2>;
     using Tensor = dealii::Tensor<1, 2>;
 
-    // Steps of the differences that give the slope of a height function, as a part of the size of the bodies or of the
-    // coordinate, whichever is larger: the error of the slope is about 1e-10.
+    // Size of the features of height functions that count [mm]; for smaller bodies it is that of the bodies.
+    constexpr double size_of_features = 1;
+    // Steps of the differences that give the slope of a height function, as a part of this size or of the coordinate,
+    // whichever is larger: the error of the slope is about 1e-10.
     constexpr double slope_step = 1e-5;
     // The search for the nearest point of a height function ends when it moves by less than this part of these lengths;
     // the gap is then exact to rounding, since its error is quadratic.
@@ -86,6 +88,13 @@ namespace slipstick::interface
       return {-sign * ray / ray.norm(), sign * ray.norm()};
     }
 
+    /// The length to which steps are relative, at a coordinate or a distance from the origin.
+    template <int dim>
+    double scale(const scene::Obstacle<dim> &obstacle, const double coordinate)
+    {
+      return std::max(std::min(size_of_features, obstacle.extent), std::abs(coordinate));
+    }
+
     /// @p foot: approximation of the nearest point of the surface y = h(x) or y = h(x, z); its height is not used.
     template <int dim>
     ObstacleContact<dim> with_tangent(const scene::Obstacle<dim> &obstacle,
@@ -99,7 +108,7 @@ namespace slipstick::interface
         if (d != 1)
           {
             dealii::Tensor<1, dim> step;
-            step[d]   = slope_step * std::max(obstacle.extent, std::abs(foot[d]));
+            step[d]   = slope_step * scale(obstacle, foot[d]);
             normal[d] = (h(foot + step) - h(foot - step)) / (2 * step[d]);
           }
       normal[1] = -1;
@@ -122,7 +131,8 @@ namespace slipstick::interface
           next[1]            = x[1];
           const double step  = next.distance(foot);
           foot               = next;
-          if (step <= foot_tolerance * std::max(obstacle.extent, foot.norm()))
+          const double away  = dim == 2 ? foot[0] : std::hypot(foot[0], foot[dim - 1]);
+          if (step <= foot_tolerance * scale(obstacle, away))
             return with_tangent(obstacle, foot, x, t);
         }
       return with_tangent(obstacle, x, x, t);
