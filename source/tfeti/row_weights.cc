@@ -347,21 +347,54 @@ namespace slipstick::tfeti
       }
   }
 
+  RowWeights::Block RowWeights::turned_group(const std::vector<const Block *> &parts,
+                                             const std::vector<qp::Turn>      &turns)
+  {
+    Block                               group;
+    std::map<std::size_t, unsigned int> position; // by row
+    std::vector<Eigen::Triplet<double>> of_W, of_Q;
+    for (const Block *part : parts)
+      {
+        const unsigned int first = group.rows.size();
+        for (unsigned int k = 0; k < part->rows.size(); ++k)
+          {
+            position[part->rows[k]] = first + k;
+            group.rows.push_back(part->rows[k]);
+            for (Eigen::SparseMatrix<double>::InnerIterator entry(part->matrix, k); entry; ++entry)
+              of_W.emplace_back(first + entry.row(), first + k, entry.value());
+          }
+      }
+    std::vector<double> diagonal(group.rows.size(), 1.);
+    for (const qp::Turn &turn : turns)
+      {
+        const unsigned int first = position.at(turn.first), second = position.at(turn.second);
+        diagonal[first] = diagonal[second] = turn.cosine;
+        of_Q.emplace_back(first, second, turn.sine);
+        of_Q.emplace_back(second, first, -turn.sine);
+      }
+    for (unsigned int k = 0; k < diagonal.size(); ++k)
+      of_Q.emplace_back(k, k, diagonal[k]);
+    Eigen::SparseMatrix<double> W(group.rows.size(), group.rows.size()), Q(W.rows(), W.cols());
+    W.setFromTriplets(of_W.begin(), of_W.end());
+    Q.setFromTriplets(of_Q.begin(), of_Q.end());
+    group.matrix = (Q * W * Q.transpose()).eval();
+    return group;
+  }
+
   std::vector<RowWeights::Block> RowWeights::turned(const std::vector<qp::Turn> &turns,
                                                     std::set<unsigned int>      &singles,
                                                     std::set<unsigned int>      &taken) const
   {
-    std::vector<const Block *>                                    parts; // with turned rows
-    std::vector<Block>                                            of_singles;
-    std::map<unsigned int, std::pair<unsigned int, unsigned int>> place; // by row: part, position in it
-    std::set<unsigned int>                                        rows;
-    const auto                                                    add = [&](const Block &part) {
-      for (unsigned int k = 0; k < part.rows.size(); ++k)
-        place[part.rows[k]] = {parts.size(), k};
-      parts.push_back(&part);
-    };
+    std::set<unsigned int> rows;
     for (const qp::Turn &turn : turns)
       rows.insert({static_cast<unsigned int>(turn.first), static_cast<unsigned int>(turn.second)});
+    std::vector<const Block *>          parts;   // with these rows
+    std::map<std::size_t, unsigned int> part_of; // by row
+    const auto                          add = [&](const Block &part) {
+      for (const unsigned int row : part.rows)
+        part_of[row] = parts.size();
+      parts.push_back(&part);
+    };
     for (unsigned int b = 0; b < blocks.size(); ++b)
       if (std::any_of(blocks[b].rows.begin(), blocks[b].rows.end(), [&](const auto row) {
             return rows.count(row) > 0;
@@ -370,7 +403,7 @@ namespace slipstick::tfeti
           add(blocks[b]);
           taken.insert(b);
         }
-    of_singles.reserve(rows.size()); // parts points to them
+    std::list<Block> of_singles;
     for (unsigned int k = 0; k < single_rows.size(); ++k)
       if (rows.count(single_rows[k]) > 0)
         {
@@ -383,60 +416,25 @@ namespace slipstick::tfeti
           singles.insert(k);
         }
 
-    DisjointSets                         groups(parts.size());
-    std::vector<std::list<unsigned int>> parts_of(parts.size()); // by root of the group, those of first rows first
+    DisjointSets                          groups(parts.size());
+    std::vector<std::list<const Block *>> parts_of(parts.size()); // by root of the group, those of first rows first
+    std::vector<std::vector<qp::Turn>>    turns_of(parts.size()); // by root
     for (unsigned int p = 0; p < parts.size(); ++p)
-      parts_of[p] = {p};
+      parts_of[p] = {parts[p]};
     for (const qp::Turn &turn : turns)
-      if (const unsigned int a = groups.root(place.at(turn.first).first), b = groups.root(place.at(turn.second).first);
-          a != b)
+      if (const unsigned int a = groups.root(part_of.at(turn.first)), b = groups.root(part_of.at(turn.second)); a != b)
         {
           groups.join(a, b);
           parts_of[a].splice(parts_of[a].end(), parts_of[b]);
           if (groups.root(a) == b)
             std::swap(parts_of[a], parts_of[b]);
         }
-    std::vector<std::vector<qp::Turn>> turns_of(parts.size()); // by root
     for (const qp::Turn &turn : turns)
-      turns_of[groups.root(place.at(turn.first).first)].push_back(turn);
-
-    using Matrix = Eigen::SparseMatrix<double>;
-    std::vector<Block>        result;
-    std::vector<unsigned int> start(parts.size()); // of the rows of a part in its group
+      turns_of[groups.root(part_of.at(turn.first))].push_back(turn);
+    std::vector<Block> result;
     for (unsigned int g = 0; g < parts.size(); ++g)
-      {
-        if (parts_of[g].empty())
-          continue;
-        Block                               group;
-        std::vector<Eigen::Triplet<double>> of_W, of_Q;
-        for (const unsigned int p : parts_of[g])
-          {
-            start[p] = group.rows.size();
-            group.rows.insert(group.rows.end(), parts[p]->rows.begin(), parts[p]->rows.end());
-            for (unsigned int k = 0; k < parts[p]->rows.size(); ++k)
-              for (Matrix::InnerIterator entry(parts[p]->matrix, k); entry; ++entry)
-                of_W.emplace_back(start[p] + entry.row(), start[p] + k, entry.value());
-          }
-        const auto position = [&](const std::size_t row) {
-          const auto [part, k] = place.at(row);
-          return start[part] + k;
-        };
-        std::vector<double> diagonal(group.rows.size(), 1.);
-        for (const qp::Turn &turn : turns_of[g])
-          {
-            const unsigned int first = position(turn.first), second = position(turn.second);
-            diagonal[first] = diagonal[second] = turn.cosine;
-            of_Q.emplace_back(first, second, turn.sine);
-            of_Q.emplace_back(second, first, -turn.sine);
-          }
-        for (unsigned int k = 0; k < diagonal.size(); ++k)
-          of_Q.emplace_back(k, k, diagonal[k]);
-        Matrix W(group.rows.size(), group.rows.size()), Q(W.rows(), W.cols());
-        W.setFromTriplets(of_W.begin(), of_W.end());
-        Q.setFromTriplets(of_Q.begin(), of_Q.end());
-        group.matrix = (Q * W * Q.transpose()).eval();
-        result.push_back(std::move(group));
-      }
+      if (!parts_of[g].empty())
+        result.push_back(turned_group({parts_of[g].begin(), parts_of[g].end()}, turns_of[g]));
     return result;
   }
 

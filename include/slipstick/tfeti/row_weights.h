@@ -113,6 +113,9 @@ namespace slipstick::tfeti
                             const Eigen::SparseMatrix<double>       &matrix,
                             const std::function<bool(unsigned int)> &is_active);
 
+    /// Disjoint blocks that turns couple, as one block in turned form.
+    static Block turned_group(const std::vector<const Block *> &parts, const std::vector<qp::Turn> &turns);
+
     /// The blocks with turned rows, in turned form; blocks coupled by turns are merged.
     /// @param singles, taken return the numbers of the single rows and of the blocks that were used.
     std::vector<Block> turned(const std::vector<qp::Turn> &turns,
