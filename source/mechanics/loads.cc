@@ -107,19 +107,27 @@ namespace slipstick::mechanics
         for (const auto &cell : dof_handler.active_cell_iterators())
           for (const unsigned int f : cell->face_indices())
             if (mesh::is_on_outline(cell->face(f)))
-              for (unsigned int k = 0; k < scene.tractions.size(); ++k)
-                if (const auto &traction = scene.tractions[k];
-                    traction.where.body == number && mesh.on_boundary(traction.where, cell->face(f)->boundary_id()))
-                  {
-                    if (!is_constant(traction))
-                      {
-                        add_formula(traction, surface_part(subdomain, spaces, cell, f), cell->face(f), k);
-                        continue;
-                      }
-                    values.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell), f);
-                    element.nodes_of(cell, dofs, nodes);
-                    add_traction(traction, values, sums[k]);
-                  }
+              add_tractions_on(cell, f, values);
+      }
+
+      void add_tractions_on(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+                            const unsigned int                                            f,
+                            dealii::FEFaceValues<dim>                                    &values)
+      {
+        for (unsigned int k = 0; k < scene.tractions.size(); ++k)
+          {
+            const auto &traction = scene.tractions[k];
+            if (traction.where.body != number || !mesh.on_boundary(traction.where, cell->face(f)->boundary_id()))
+              continue;
+            if (is_constant(traction))
+              {
+                values.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell), f);
+                element.nodes_of(cell, dofs, nodes);
+                add_traction(traction, values, sums[k]);
+              }
+            else
+              add_formula(traction, surface_part(subdomain, spaces, cell, f), cell->face(f), k);
+          }
       }
 
       static bool is_constant(const scene::Traction<dim> &traction)
