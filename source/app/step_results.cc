@@ -23,12 +23,6 @@ namespace slipstick::app
     // stresses are means over cells, so that the largest may be at a node adjacent to the singular point.
     constexpr double cells_of_singularity = 1.5;
 
-    // Forces on supports that hold otherwise unresisted motions are reported if above this fraction of the largest
-    // force.
-    constexpr double negligible_held_force = 1e-6;
-
-    constexpr double displacement_rounding = 1e-12; // of displacements, relative
-
     template <int dim>
     std::array<double, 3> in_space(const dealii::Tensor<1, dim> &x)
     {
@@ -36,46 +30,6 @@ namespace slipstick::app
       for (unsigned int d = 0; d < dim; ++d)
         all[d] = x[d];
       return all;
-    }
-
-    /// Adds the resultant on the motions that nothing resists. No load acts along them, but friction across a gap may,
-    /// since the two sides of the gap are at different places.
-    template <int dim>
-    void add_held_motions(const StepSolver<dim>        &solver,
-                          const StepSolution           &answer,
-                          const std::vector<Resultant> &reactions,
-                          output::ForceSummary         &sums,
-                          Warnings                     &warnings)
-    {
-      if (solver.n_given_supports() == solver.discrete_scene().supports.size())
-        return;
-      const auto size = [](const Resultant &sum) {
-        return dim == 2 ? std::hypot(sum.force[0], sum.force[1]) : std::hypot(sum.force[0], sum.force[1], sum.force[2]);
-      };
-      Resultant held;
-      for (unsigned int h = solver.n_given_supports(); h < solver.discrete_scene().supports.size(); ++h)
-        held += reactions[h];
-      // the smallest significant force: rounding of the displacement over the compliance |PFP|
-      double largest =
-        displacement_rounding * answer.contact->checks.max_displacement / solver.dual().norm() / negligible_held_force;
-      double pressed = 0;
-      for (const auto &node : answer.contact->nodes)
-        pressed += std::abs(node.pressure) * node.area;
-      largest = std::max(largest, dealii::Utilities::MPI::sum(pressed, solver.dual().communicator()));
-      for (const auto &load : sums.loads)
-        largest = std::max(largest, size(load.sum));
-      for (const auto &reaction : reactions)
-        largest = std::max(largest, size(reaction));
-      if (size(held) <= negligible_held_force * largest)
-        return;
-      sums.supports.push_back({"held motions", "support", held});
-      warnings.emplace(
-        "held motions",
-        format("friction across gaps leaves %.3g N (%.2g %% of the largest force) along the motions that are set to "
-               "zero: it acts on the two sides at two places; add a support against these motions, or mesh the "
-               "sides without the gap",
-               size(held),
-               100 * size(held) / largest));
     }
 
     using NodeOfPair = TotalSlip::key_type;
@@ -166,7 +120,6 @@ namespace slipstick::app
                                               n_holders);
     for (unsigned int h = 0; h < solver.n_given_supports(); ++h)
       sums.supports.push_back({scene.supports[h].name, "support", reactions[h]});
-    add_held_motions(solver, answer, reactions, sums, warnings);
     for (unsigned int h = n_supports; h < n_holders; ++h)
       sums.foundations.push_back({scene.foundations[h - n_supports].name, "foundation", reactions[h]});
     return sums;

@@ -19,7 +19,7 @@ namespace slipstick::contact
                                           const double               N,
                                           const double               T)
     {
-      if (!point.has_master)
+      if (!point.has_master || point.rotates)
         return {{0, 0, 0}};
       std::array<double, 3> force{
         {-(N * point.normal[0] - T * point.normal[1]), -(N * point.normal[1] + T * point.normal[0]), 0}};

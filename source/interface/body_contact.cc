@@ -1,5 +1,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/interface/body_contact.h>
+#include <slipstick/interface/gap_rotation.h>
 #include <slipstick/interface/held_slaves.h>
 #include <slipstick/interface/pair_checks.h>
 
@@ -68,6 +69,8 @@ namespace slipstick::interface
       check_sides(scene, mesh, pair, sides, all, rows);
       if constexpr (dim == 3)
         give_held_rows_to_neighbours(scene, mesh, all, sides.slave, rows);
+      if (!mesh::Kinematics<dim>(scene.plane_state).is_revolution()) // bodies of revolution do not rotate
+        find_rotation_weights(sides.slave, sides.master, rows);
       return rows;
     }
 
@@ -79,6 +82,12 @@ namespace slipstick::interface
       {
         const mechanics::NodeKey first = find(a), second = find(b);
         parent[std::max(first, second)] = std::min(first, second);
+      }
+
+      void join(const mechanics::NodeKey &a, const Weights &weights)
+      {
+        for (const auto &[key, weight] : weights)
+          join(a, key);
       }
 
       mechanics::NodeKey find(mechanics::NodeKey key)
@@ -116,9 +125,12 @@ namespace slipstick::interface
         {
           contacts.rows[k] = rows_of(scene, mesh, scene.contacts[k], all);
           for (const auto &row : contacts.rows[k])
-            for (const Weights *weights : {&row.slave_weights, &row.master_weights})
-              for (const auto &[key, weight] : *weights)
-                groups.join(row.slave, key);
+            {
+              groups.join(row.slave, row.slave_weights);
+              groups.join(row.slave, row.master_weights);
+              for (const Weights &weights : row.rotation_weights)
+                groups.join(row.slave, weights);
+            }
         }
 
     std::map<mechanics::NodeKey, unsigned int> first; // subdomain, by root

@@ -1,6 +1,9 @@
 #include <slipstick/base/cross.h>
 #include <slipstick/interface/convex_polygon.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace slipstick::interface
 {
   namespace
@@ -63,6 +66,20 @@ namespace slipstick::interface
       if (const auto along = next(polygon, i) - polygon[i]; cross(along, x - polygon[i]) < -tolerance * along.norm())
         return false;
     return !polygon.empty();
+  }
+
+  double distance(const ConvexPolygon &polygon, const dealii::Point<2> &x)
+  {
+    if (contains(polygon, x))
+      return 0;
+    double least = std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+      {
+        const auto   along = next(polygon, i) - polygon[i], to = x - polygon[i];
+        const double square = along.norm_square(), t = square > 0 ? std::clamp(along * to / square, 0., 1.) : 0.;
+        least = std::min(least, (to - t * along).norm());
+      }
+    return least;
   }
 
   ConvexPolygon intersection(const ConvexPolygon &a, const ConvexPolygon &b)

@@ -174,6 +174,60 @@ namespace slipstick::interface
             parts.push_back({from, to, *m});
           from = to;
         }
-    return parts;
+    return nearest_level(e, std::move(parts));
+  }
+
+  std::vector<CurvePairing::Segment> CurvePairing::nearest_level(const unsigned int e, std::vector<Segment> parts) const
+  {
+    struct Ends // of a segment
+    {
+      double gap[2], slope;
+    };
+    const double      chord = slave[e].chord();
+    std::vector<Ends> ends;
+    for (const auto &part : parts)
+      {
+        const double inside = same_place * (part.to - part.from); // rounding may move the ends off the master edge
+        const auto   first = hit(e, part.from + inside, part.master), last = hit(e, part.to - inside, part.master);
+        const auto   middle = hit(e, 0.5 * (part.from + part.to), part.master);
+        const double at     = middle ? middle->gap : 0.;
+        ends.push_back({{first ? first->gap : at, last ? last->gap : at}, 0.});
+        ends.back().slope = (ends.back().gap[1] - ends.back().gap[0]) / ((part.to - part.from) * chord);
+      }
+    const auto distance = [&](const std::size_t k) {
+      return std::min(std::abs(ends[k].gap[0]), std::abs(ends[k].gap[1]));
+    };
+    // a steep part is a flank between two levels, unless all are steep
+    const auto order = [&](const std::size_t k) {
+      return std::make_pair(std::abs(ends[k].slope) > steepest_slope, distance(k));
+    };
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < parts.size(); ++k)
+      if (order(k) < order(nearest))
+        nearest = k;
+    std::vector<bool> is_on_level(parts.size(), false);
+    const auto        follow = [&](const int way) { // from the nearest segment to one end of the edge
+      std::size_t last = nearest;
+      for (std::size_t k = nearest + way; k < parts.size(); k += way) // below 0 it exceeds the size
+        {
+                 const double between = (way > 0 ? parts[k].from - parts[last].to : parts[last].from - parts[k].to) * chord;
+                 const double jump = ends[k].gap[way < 0] - ends[last].gap[way > 0];
+                 if (std::abs(jump) > between + smallest_jump * chord ||
+              std::abs(ends[k].slope - ends[nearest].slope) > steepest_slope)
+            continue;
+          is_on_level[k] = true;
+                 last           = k;
+        }
+    };
+    if (parts.empty())
+      return parts;
+    is_on_level[nearest] = true;
+    follow(1);
+    follow(-1);
+    std::vector<Segment> level;
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      if (is_on_level[k])
+        level.push_back(parts[k]);
+    return level;
   }
 } // namespace slipstick::interface

@@ -67,6 +67,7 @@ namespace slipstick::interface
       row.slave_weights   = mean(row.slave_weights, row.measure, held.slave_weights, share);
       row.master_weights  = mean(row.master_weights, row.measure, held.master_weights, share);
       row.master_position = row.master_position + share / sum * (held.master_position - row.master_position);
+      row.apart += share / sum * (held.apart - row.apart);
       row.gap += share / sum * (held.gap - row.gap);
       row.neglected_sagitta = std::max(row.neglected_sagitta, held.neglected_sagitta);
       row.measure           = sum;

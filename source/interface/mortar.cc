@@ -32,7 +32,7 @@ namespace slipstick::interface
         , slave(slave_)
         , master(master_)
         , gauss(n_gauss)
-        , sums(pairing.nodes().size())
+        , parts_of_nodes(pairing.nodes().size())
       {
         for (const auto *side : {&slave, &master})
           for (const auto &edge : *side)
@@ -49,25 +49,10 @@ namespace slipstick::interface
 
       std::vector<MortarRow<2>> rows() const
       {
-        std::vector<MortarRow<2>> result;
-        for (unsigned int i = 0; i < sums.size(); ++i)
-          if (has_row(pairing.nodes()[i], sums[i]))
-            {
-              auto row = row_of(pairing.nodes()[i], sums[i], nodes);
-              row.gap += row.normal * sums[i].rise / sums[i].measure;
-              row.neglected_sagitta = sums[i].neglected_sagitta;
-              result.push_back(std::move(row));
-            }
-        return result;
+        return rows_of_nodes(pairing.nodes(), parts_of_nodes, nodes);
       }
 
     private:
-      struct Sums : NodeIntegrals
-      {
-        Tensor rise; // <phi_i (rise of the master - rise of the slave) n>
-        double neglected_sagitta = 0;
-      };
-
       /// Adds the contributions of slave edge e to the integrals of its nodes.
       void integrate(const unsigned int e, const std::vector<CurvePairing::Segment> &parts)
       {
@@ -126,21 +111,18 @@ namespace slipstick::interface
         const Eigen::MatrixXd D = dual * slave_, of_curves = dual * rises;
         for (unsigned int i = 0; i < n_test; ++i)
           {
-            Sums &node = sums[pairing.nodes_of(e)[i]];
-            node.measure += measures[i];
-            node.length += lengths[i];
+            NodeIntegrals<2> node;
+            node.measure = measures[i];
+            node.length  = lengths[i];
             for (unsigned int d = 0; d < 2; ++d)
-              node.rise[d] += of_curves(i, d);
-            node.neglected_sagitta = std::max(node.neglected_sagitta, neglected_sagitta);
+              node.rise[d] = of_curves(i, d);
+            node.neglected_sagitta = neglected_sagitta;
             for (unsigned int k = 0; k < edge.n_nodes; ++k)
               if (!(n_test == edge.n_nodes && i != k)) // biorthogonal
                 node.slave[edge.keys[k]] += n_test == edge.n_nodes ? measures[i] : D(i, k);
-          }
-        for (const auto &[key, sum] : other)
-          {
-            const Eigen::VectorXd M = dual * sum;
-            for (unsigned int i = 0; i < n_test; ++i)
-              sums[pairing.nodes_of(e)[i]].master[key] += M[i];
+            for (const auto &[key, sum] : other)
+              node.master[key] = dual.row(i).dot(sum);
+            parts_of_nodes[pairing.nodes_of(e)[i]].push_back(std::move(node));
           }
       }
 
@@ -164,8 +146,9 @@ namespace slipstick::interface
       const CurvePairing        pairing;
       const std::vector<Edge>  &slave, &master;
       const dealii::QGauss<1>   gauss;
-      std::vector<Sums>         sums; // by node of the pairing
       NodePlaces<2>             nodes;
+
+      std::vector<std::vector<NodeIntegrals<2>>> parts_of_nodes; // of every edge, by node of the pairing
 
       std::map<mechanics::NodeKey, std::pair<const Edge *, double>>
         places; // an edge of every node, and the position on it

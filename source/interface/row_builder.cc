@@ -1,4 +1,5 @@
 #include <slipstick/base/across.h>
+#include <slipstick/interface/gap_rotation.h>
 #include <slipstick/interface/held_contact.h>
 #include <slipstick/interface/row_builder.h>
 #include <slipstick/tfeti/dense.h>
@@ -245,6 +246,15 @@ namespace slipstick::interface
           row[dim * node + c] += weight * direction[c];
         for (const auto &[node, weight] : touch.master)
           row[dim * node + c] -= weight * direction[c];
+      }
+    const auto spans = spans_of_carriers<dim>(touch.apart, touch.normal);
+    for (unsigned int k = 0; k < n_carriers; ++k)
+      {
+        const auto &carrier      = touch.rotating[k];
+        const auto  coefficients = rotation_coefficients(carrier.weights, carrier.positions, spans[k], direction);
+        for (unsigned int j = 0; j < coefficients.size(); ++j)
+          for (unsigned int c = 0; c < dim; ++c)
+            row[dim * carrier.nodes[j] + c] -= coefficients[j][c];
       }
     return row;
   }

@@ -79,7 +79,7 @@ namespace slipstick::interface
         , master(master_)
         , exact(is_quadratic(slave_, master_) ? n_exact_quadratic : n_exact)
         , rational(is_quadratic(slave_, master_) ? n_rational_quadratic : n_rational)
-        , sums(pairing.nodes().size())
+        , parts_of_nodes(pairing.nodes().size())
       {
         for (const auto &facet : master)
           for (unsigned int i = 0; i < facet.n_nodes; ++i)
@@ -97,16 +97,7 @@ namespace slipstick::interface
 
       std::vector<MortarRow<3>> rows() const
       {
-        std::vector<MortarRow<3>> result;
-        for (unsigned int i = 0; i < sums.size(); ++i)
-          if (has_row(pairing.nodes()[i], sums[i]))
-            {
-              auto row = row_of(pairing.nodes()[i], sums[i], nodes);
-              row.gap += row.normal * sums[i].rise / sums[i].measure;
-              row.neglected_sagitta = sums[i].neglected_sagitta;
-              result.push_back(std::move(row));
-            }
-        return result;
+        return rows_of_nodes(pairing.nodes(), parts_of_nodes, nodes);
       }
 
       /// Rise of the surface above the facets at a node, along the normal of a row: nonzero only for nodes between the
@@ -127,12 +118,6 @@ namespace slipstick::interface
       }
 
     private:
-      struct Sums : NodeIntegrals
-      {
-        dealii::Tensor<1, 3> rise; // <phi_i (rise of the master - rise of the slave) n>
-        double               neglected_sagitta = 0;
-      };
-
       /// Integrals over one facet: <N_a N_b>, <N_a>, <N_a N_j(y)>, <N_a (rise of the master - rise of the slave)>.
       struct Moments
       {
@@ -201,22 +186,18 @@ namespace slipstick::interface
         const Eigen::VectorXd rises = phi.of_shapes * moments.rises;
         for (unsigned int i = 0; i < phi.areas.size(); ++i)
           {
-            Sums &node = sums[pairing.nodes_of(e)[i]];
-            node.rise += rises[i] * moments.normal;
-            node.neglected_sagitta = std::max(node.neglected_sagitta, moments.neglected_sagitta);
-            node.measure += phi.areas[i];
-            node.length += phi.areas[i];
+            NodeIntegrals<3> node;
+            node.rise              = rises[i] * moments.normal;
+            node.neglected_sagitta = moments.neglected_sagitta;
+            node.measure = node.length = phi.areas[i];
             if (phi.is_biorthogonal)
               node.slave[facet.keys[i]] += phi.areas[i];
             else
               for (unsigned int k = 0; k < facet.n_nodes; ++k)
                 node.slave[facet.keys[k]] += phi.slave(i, k);
-          }
-        for (const auto &[key, sum] : moments.master)
-          {
-            const Eigen::VectorXd M = phi.of_shapes * sum;
-            for (unsigned int i = 0; i < M.size(); ++i)
-              sums[pairing.nodes_of(e)[i]].master[key] += M[i];
+            for (const auto &[key, sum] : moments.master)
+              node.master[key] = phi.of_shapes.row(i).dot(sum);
+            parts_of_nodes[pairing.nodes_of(e)[i]].push_back(std::move(node));
           }
       }
 
@@ -259,8 +240,9 @@ namespace slipstick::interface
       const SurfacePairing                      pairing;
       const std::vector<Facet>                 &slave, &master;
       const dealii::QWitherdenVincentSimplex<2> exact, rational;
-      std::vector<Sums>                         sums; // by node of the pairing
       NodePlaces<3>                             nodes;
+
+      std::vector<std::vector<NodeIntegrals<3>>> parts_of_nodes; // of every facet, by node of the pairing
 
       std::map<mechanics::NodeKey, std::pair<const Facet *, unsigned int>>
         curved; // a facet for every node on a curved surface

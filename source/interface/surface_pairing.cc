@@ -181,6 +181,77 @@ namespace slipstick::interface
       }
   }
 
+  namespace
+  {
+    /// Whether the gap does not jump between two parts: at the corner of either that is nearest to the other it differs
+    /// by no more than the distance between them.
+    bool are_level(const SurfacePairing::View &view,
+                   const SurfacePairing::Part &a,
+                   const SurfacePairing::Part &b,
+                   const double                rounding)
+    {
+      double           nearest = std::numeric_limits<double>::max();
+      dealii::Point<2> at;
+      for (const auto &[from, to] : {std::pair(&a, &b), std::pair(&b, &a)})
+        for (const auto &x : from->polygon)
+          if (const double apart = distance(to->polygon, x); apart < nearest)
+            {
+              nearest = apart;
+              at      = x;
+            }
+      return std::abs(view.gap(a, at) - view.gap(b, at)) <= nearest + rounding;
+    }
+
+    /// Gradient of the gap of a part.
+    dealii::Tensor<1, 2> slope_of_gap(const SurfacePairing::View &view, const SurfacePairing::Part &part)
+    {
+      const auto           middle = centroid(part.polygon);
+      const double         step   = 0.5 * std::sqrt(area(part.polygon));
+      dealii::Tensor<1, 2> result;
+      for (unsigned int d = 0; d < 2; ++d)
+        {
+          dealii::Tensor<1, 2> off;
+          off[d]    = step;
+          result[d] = (view.gap(part, middle + off) - view.gap(part, middle - off)) / (2 * step);
+        }
+      return result;
+    }
+
+    void keep_nearest_level(SurfacePairing::View &view, const double size)
+    {
+      const auto distance_to = [&](const SurfacePairing::Part &part) {
+        double least = std::abs(view.gap(part, centroid(part.polygon)));
+        for (const auto &x : part.polygon)
+          least = std::min(least, std::abs(view.gap(part, x)));
+        return least;
+      };
+      if (view.parts.size() < 2)
+        return;
+      std::vector<std::pair<bool, double>> order; // a steep part is a flank between two levels, unless all are steep
+      for (const SurfacePairing::Part &part : view.parts)
+        order.emplace_back(slope_of_gap(view, part).norm() > steepest_slope, distance_to(part));
+      const std::size_t        n = order.size();
+      std::vector<std::size_t> level{
+        static_cast<std::size_t>(std::min_element(order.begin(), order.end()) - order.begin())};
+      std::vector<bool> is_kept(n, false);
+      is_kept[level[0]]   = true;
+      const auto of_first = slope_of_gap(view, view.parts[level[0]]);
+      for (std::size_t next = 0; next < level.size(); ++next)
+        for (std::size_t k = 0; k < n; ++k)
+          if (!is_kept[k] && (slope_of_gap(view, view.parts[k]) - of_first).norm() <= steepest_slope &&
+              are_level(view, view.parts[level[next]], view.parts[k], smallest_jump * size))
+            {
+              is_kept[k] = true;
+              level.push_back(k);
+            }
+      std::vector<SurfacePairing::Part> kept;
+      for (std::size_t k = 0; k < n; ++k)
+        if (is_kept[k])
+          kept.push_back(std::move(view.parts[k]));
+      view.parts = std::move(kept);
+    }
+  } // namespace
+
   SurfacePairing::View SurfacePairing::view(const unsigned int e) const
   {
     const Facet                  &facet  = slave[e];
@@ -209,6 +280,7 @@ namespace slipstick::interface
                 view.parts.push_back(std::move(part));
             }
       }
+    keep_nearest_level(view, facet.chord());
     return view;
   }
 } // namespace slipstick::interface

@@ -1,4 +1,5 @@
 #include <slipstick/base/across.h>
+#include <slipstick/interface/gap_rotation.h>
 #include <slipstick/interface/obstacle.h>
 #include <slipstick/interface/touches.h>
 
@@ -138,14 +139,29 @@ namespace slipstick::interface
       touch.slave.emplace_back(number.at(key), weight);
     for (const auto &[key, weight] : row.master_weights)
       touch.master.emplace_back(number.at(key), weight);
-    auto &point       = touch.point;
+    for (unsigned int k = 0; k < n_carriers; ++k)
+      for (const auto &[key, weight] : row.rotation_weights[k])
+        {
+          auto &rotating = touch.rotating[k];
+          rotating.nodes.push_back(number.at(key));
+          rotating.weights.push_back(weight);
+          rotating.positions.push_back(nodes[number.at(key)].point());
+        }
+    touch.apart       = row.apart;
+    const auto span   = spans_of_carriers<dim>(row.apart, row.normal)[0];
+    auto      &point  = touch.point;
     point.has_master  = true;
+    point.rotates     = std::any_of(touch.rotating.begin(), touch.rotating.end(), [](const auto &carrier) {
+      return !carrier.nodes.empty();
+    });
     point.master_body = where.master->body;
     for (unsigned int d = 0; d < dim; ++d)
       {
         point.master_position[d] = row.master_position[d];
         for (const auto &[slave, weight] : touch.slave)
           point.slave_position[d] += weight * nodes[slave].position[d];
+        if (point.rotates)
+          point.slave_position[d] -= span[d];
       }
     point.gap         = gap_of(where, nodes[i].point(), row.gap, t);
     point.is_measured = is_measured(where, nodes[i].point(), t);

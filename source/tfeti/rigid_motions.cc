@@ -16,10 +16,6 @@ namespace slipstick::tfeti
 {
   namespace
   {
-    // A translation common to all bodies moves a row if the jump is more than this part of the jump with one body.
-    constexpr double rounding_of_translation = 1e-9;
-    // Remainder of a unit vector in the span of others, up to the rounding of eigenvectors.
-    constexpr double rounding_of_vectors = 1e-6;
     // Resultants below this part of the sum of magnitudes are rounding of zero.
     constexpr double rounding_of_loads = 1e-13;
     // Resistance of rigid rows, relative to the resistance to the best held motion.
@@ -48,7 +44,7 @@ namespace slipstick::tfeti
       return frames;
     }
 
-    /// Contribution of one subdomain to the jumps of a row under the motions of its body.
+    /// Contribution of a body to the jumps of a row under its motions.
     struct RowPart
     {
       std::uint64_t       row  = 0; // global
@@ -67,7 +63,7 @@ namespace slipstick::tfeti
       return constraints.kind[owned_row] == RowKind::gluing;
     }
 
-    /// Parts of all rows that this rank owns, except gluing rows.
+    /// Parts of all rows that this rank owns, except gluing rows, sorted by row.
     std::vector<RowPart> parts_of_owned_rows(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
                                              const std::vector<LocalGluing>                      &gluing,
                                              const Constraints                                   &constraints,
@@ -97,8 +93,17 @@ namespace slipstick::tfeti
         for (auto &part : parts)
           if (!is_gluing(constraints, constraints.rows->global_to_local(part.row)))
             own.push_back(std::move(part));
-      std::sort(own.begin(), own.end(), [](const auto &a, const auto &b) { return a.row < b.row; });
-      return own;
+      std::stable_sort(own.begin(), own.end(), [](const auto &a, const auto &b) {
+        return std::tie(a.row, a.body) < std::tie(b.row, b.body);
+      });
+      std::vector<RowPart> sums; // one for every row and body
+      for (auto &part : own)
+        if (sums.empty() || sums.back().row != part.row || sums.back().body != part.body)
+          sums.push_back(std::move(part));
+        else
+          for (std::size_t k = 0; k < part.values.size(); ++k)
+            sums.back().values[k] += part.values[k];
+      return sums;
     }
   } // namespace
 
@@ -121,48 +126,13 @@ namespace slipstick::tfeti
       shares.push_back({constraints.rows->global_to_local(part.row),
                         part.body,
                         Eigen::Map<const Eigen::VectorXd>(part.values.data(), part.values.size())});
-    find_levers();
-  }
-
-  // Jump of a row under a rotation of all its bodies about one point. A row with no jump under common translations of
-  // several bodies connects these bodies.
-  void BodyMotions::find_levers()
-  {
-    if (motions_of_body != 3) // bodies of revolution do not rotate; solids do so about three axes
-      return;
-    for (auto begin = shares.begin(); begin != shares.end();)
-      {
-        const auto end =
-          std::find_if(begin, shares.end(), [row = begin->row](const Share &share) { return share.row != row; });
-        Eigen::VectorXd translation = Eigen::VectorXd::Zero(motions_of_body - 1);
-        double          rotation = 0, size = 0;
-        for (auto share = begin; share != end; ++share)
-          {
-            const BodyFrame &frame = frames[share->body];
-            translation += share->values.head(motions_of_body - 1);
-            rotation += frame.center[0] * share->values[1] - frame.center[1] * share->values[0] +
-                        frame.length * share->values[motions_of_body - 1];
-            size = std::max(size, share->values.head(motions_of_body - 1).norm());
-          }
-        const bool is_between = std::any_of(begin, end, [&](const Share &share) { return share.body != begin->body; });
-        if (is_between && translation.norm() <= rounding_of_translation * size)
-          begin->lever = rotation / frames[begin->body].length;
-        begin = end;
-      }
   }
 
   // Sum over rows of the outer product of their jumps with themselves; complete on every rank, summed in the order of
   // the ranks.
   Eigen::SparseMatrix<double> BodyMotions::resistance_of(const std::vector<bool>  &active,
-                                                         const bool                without_levers,
                                                          const std::vector<Share> &of_rows) const
   {
-    const auto at_one_point = [without_levers](const Share &share) {
-      Eigen::VectorXd values = share.values;
-      if (without_levers)
-        values[values.size() - 1] -= share.lever;
-      return values;
-    };
     std::map<std::pair<unsigned int, unsigned int>, Eigen::MatrixXd> own;
     for (auto begin = of_rows.begin(); begin != of_rows.end();)
       {
@@ -172,7 +142,7 @@ namespace slipstick::tfeti
           for (auto a = begin; a != end; ++a)
             for (auto b = begin; b != end; ++b)
               {
-                const Eigen::MatrixXd block = at_one_point(*a) * at_one_point(*b).transpose();
+                const Eigen::MatrixXd block = a->values * b->values.transpose();
                 const auto [place, is_new]  = own.emplace(std::pair(a->body, b->body), block);
                 if (!is_new)
                   place->second += block;
@@ -227,27 +197,12 @@ namespace slipstick::tfeti
                                                        const std::vector<bool>  &rigid,
                                                        const std::vector<Share> &of_rows) const
   {
-    const bool has_rigid       = dealii::Utilities::MPI::max(rigid.empty() ? 0 : 1, comm) > 0;
-    const auto null_vectors_of = [&](const bool without_levers) {
-      Eigen::SparseMatrix<double> all     = resistance_of(active, without_levers, of_rows);
-      const double                largest = std::max(largest_eigenvalue(all), 1.);
-      if (has_rigid)
-        all += weight_of_rigid_rows * largest * resistance_of(rigid, without_levers, of_rows);
-      return null_vectors(all, resistance * largest);
-    };
-    std::vector<Eigen::VectorXd> result = null_vectors_of(false);
-    if (dealii::Utilities::MPI::min(active.empty() ? 1 : 0, comm) == 0) // a rank may own no rows
-      return result;
-    for (auto &vector :
-         null_vectors_of(true)) // these need not contain the first: a row may resist more without its lever arm
-      {
-        for (unsigned int pass = 0; pass < 2; ++pass) // the second pass removes the rounding of the first
-          for (const auto &other : result)
-            vector -= other.dot(vector) * other;
-        if (vector.norm() > rounding_of_vectors)
-          result.push_back(vector.normalized());
-      }
-    return result;
+    const bool                  has_rigid = dealii::Utilities::MPI::max(rigid.empty() ? 0 : 1, comm) > 0;
+    Eigen::SparseMatrix<double> all       = resistance_of(active, of_rows);
+    const double                largest   = std::max(largest_eigenvalue(all), 1.);
+    if (has_rigid)
+      all += weight_of_rigid_rows * largest * resistance_of(rigid, of_rows);
+    return null_vectors(all, resistance * largest);
   }
 
   std::vector<RigidMotion> BodyMotions::free(const std::vector<bool>     &active,

@@ -25,6 +25,46 @@ def bar(**kinds):
     return scenes.box('bar', **kinds)
 
 
+def cells_mesh(name, xs, ys, is_cell, seat):
+    """Quadrilaterals of a lattice; boundary 'bottom' is that at ys[0], 'seat' are edges with upward normal where seat(x, y)."""
+    nodes, elements = {}, []
+
+    def node(i, j):
+        return nodes.setdefault((i, j), len(nodes) + 1)
+
+    for i in range(len(xs) - 1):
+        for j in range(len(ys) - 1):
+            if is_cell(i, j):
+                elements.append('3 2 9 9 {} {} {} {}'.format(node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)))
+                if j == 0:
+                    elements.append('1 2 1 1 {} {}'.format(node(i, 0), node(i + 1, 0)))
+                if not is_cell(i, j + 1) and seat((xs[i] + xs[i + 1]) / 2, ys[j + 1]):
+                    elements.append('1 2 2 2 {} {}'.format(node(i, j + 1), node(i + 1, j + 1)))
+    lines = ['$MeshFormat', '2.2 0 8', '$EndMeshFormat', '$PhysicalNames', '2', '1 1 "bottom"', '1 2 "seat"', '$EndPhysicalNames',
+             '$Nodes', str(len(nodes))]
+    lines += ['{} {!r} {!r} 0'.format(k, xs[i], ys[j]) for (i, j), k in nodes.items()]
+    lines += ['$EndNodes', '$Elements', str(len(elements))]
+    lines += ['{} {}'.format(k + 1, element) for k, element in enumerate(elements)]
+    path = new_path(name)
+    path.write_text('\n'.join(lines + ['$EndElements', '']))
+    return str(path)
+
+
+def plate_on_slots(cells, degree, exclude_floor=False, **kinds):
+    """A plate on a base with slots 3 mm deep, whose floors belong to the same boundary."""
+    xs = [0, 2, 4, 4.5, 6, 8, 10, 12, 14, 15.5, 16, 18, 20]
+    deep = {i for i in range(len(xs) - 1) if 4.5 <= xs[i] < 6 or 14 <= xs[i] < 15.5}
+    base = cells_mesh('base.msh', xs, [-6, -3, 0], lambda i, j: j == 0 or j == 1 and i not in deep,
+                      lambda x, y: y == 0 or not exclude_floor)
+    return scenes.box('plate', **{'plane_state': 'plane strain', 'materials': {'elastic': STEEL}, 'bodies': {
+        'base': {'Shape': 'mesh', 'File': base, 'Material': 'elastic'},
+        'plate': {'Origin': '0, 0', 'Size': '20, 2', 'Cells': '{}, 2'.format(cells), 'Material': 'elastic'}},
+        'supports': {'base': {'Boundary': 'base/bottom', 'Displacement x': '0', 'Displacement y': '0'}},
+        'tractions': {'weight': {'Boundary': 'plate/top', 'Traction y': '-1'}},
+        'contacts': {'seat': {'Slave': 'plate/bottom', 'Master': 'base/seat', 'Law': 'Coulomb', 'Friction coefficient': '0.2'}},
+        'Discretization': {'Degree': degree}, 'Decomposition': NONE, **kinds})
+
+
 def two_bars(upper=None, **kinds):
     """Another bar on top of the first, both held on their far sides."""
     held = {'Displacement x': '0', 'Displacement y': '0'}
@@ -87,6 +127,23 @@ def slit_ring(cells=48, layers=3, half_angle=0.001, **kinds):
                       tractions={'press': {'Boundary': 'ring/outer', 'Pressure': '10*(1 + 0.2*(x^2 - y^2)/100)'}},
                       supports={'pin': {'Body': 'ring', 'Point': '-10, 0', 'Displacement x': '0', 'Displacement y': '0'},
                                 'guide': {'Body': 'ring', 'Point': '-8, 0', 'Displacement y': '0'}}, **kinds)
+
+
+class Steps(unittest.TestCase):
+    """Steps of the master within an edge of the slave."""
+
+    def test_a_plate_over_slots(self):
+        """The floor of the slots pulled the gaps beside them to -0.5 mm."""
+        for degree in (1, 2):
+            for cells in (7, 9, 20):
+                u, force = [], []
+                for exclude_floor in (False, True):
+                    results = converged(plate_on_slots(cells, degree, exclude_floor)).summary['results']
+                    u.append(results['max_displacement'])
+                    force.append(results['contact'][0]['normal_force'])
+                self.assertAlmostEqual(u[0] / u[1], 1, delta=0.02)
+                self.assertLess(u[0], 3e-4)
+                self.assertAlmostEqual(force[0], 20, delta=0.01)
 
 
 class Case(unittest.TestCase):

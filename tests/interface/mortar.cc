@@ -1,4 +1,5 @@
 #include "curves.h"
+#include "rotation.h"
 
 #include <slipstick/base/exceptions.h>
 
@@ -380,4 +381,44 @@ TEST(Mortar, moments_of_the_sides_agree_to_the_square_of_the_mesh_size)
         }
       EXPECT_LT(previous, 1e-4);
     }
+}
+
+// Arcs that are apart by two cells, or touch in one point; matching nodes are opposite each other.
+TEST(Mortar, rows_across_gaps_resist_no_rotation)
+{
+  for (const unsigned int degree : {1, 2})
+    for (const auto discretization : {ContactDiscretization::mortar, ContactDiscretization::automatic})
+      for (const unsigned int n : {12, 16})
+        for (const double radius : {1.0, 1.02, 1.5})
+          {
+            const auto slave = arc(1, 200, 340, 12, degree, 0), master = arc(radius, 340, 200, n, degree, 1000);
+            expect_no_resistance_to_rotations<2>(rows(slave, master, 1, discretization), slave, master, radius > 1);
+          }
+}
+
+// A master with a step from 0 down to -0.5, within a slave edge or at a node of it; steep flanks are steps, too.
+TEST(Mortar, only_the_nearest_level_counts)
+{
+  for (const unsigned int degree : {1, 2})
+    for (const double step : {0.3, 0.5, 0.55, 0.7})
+      for (const double width : {0., 0.02})
+        {
+          auto high = top(-0.2, step, 3, degree), low = line({1.2, -0.5}, {step + width, -0.5}, 4, degree, 2000);
+          high.insert(high.end(), low.begin(), low.end());
+          if (width > 0)
+            for (const auto &edge : line({step + width, -0.5}, {step, 0}, 1, degree, 3000))
+              high.push_back(edge);
+          for (const auto &row : rows(bottom(0, 1, 4, degree), high, 1))
+            {
+              const double x = row.position[0], start = 0.25 * std::floor((x - 1e-12) / 0.25); // of its edge
+              EXPECT_NEAR(row.gap, start < step - 1e-12 ? 0 : 0.5, 1e-12) << x << ' ' << step << ' ' << width;
+            }
+        }
+}
+
+TEST(Mortar, gaps_that_change_steadily_are_one_level)
+{
+  const auto slave = arc(1, 200, 340, 12, 1, 0), master = arc(1.3, 350, 190, 17, 1, 1000);
+  for (const auto &row : rows(slave, master))
+    EXPECT_NEAR(row.measure, row.full_measure, 1e-12);
 }

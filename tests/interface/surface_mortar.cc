@@ -1,3 +1,5 @@
+#include "rotation.h"
+
 #include <slipstick/interface/facing_distance.h>
 #include <slipstick/interface/mortar.h>
 
@@ -234,4 +236,38 @@ TEST(SurfaceMortar, facing_distance)
   EXPECT_NEAR(*interface::facing_distance(slave, aside), 0.5, 1e-14);
   EXPECT_FALSE(interface::facing_distance(slave, aside, 0.4));
   EXPECT_FALSE(interface::facing_distance(slave, surface(4, 4, rectangle(0, 1, 0, 1, -0.3), true, of_master)));
+}
+
+// Quadrilaterals and triangles, matching and not, with gaps from a hundredth to five of their cells, plane and bent.
+TEST(SurfaceMortar, rows_across_gaps_resist_no_rotation)
+{
+  for (const double gap : {0.002, 0.1, 0.9})
+    for (const double bend : {0., 0.2})
+      for (const unsigned int n : {5, 4})
+        for (const bool is_split : {false, true})
+          {
+            const auto place = [&](const double z) {
+              return [=](const double s, const double t) { return Point(s, t, z + bend * (s - 0.5) * (s - t)); };
+            };
+            const auto slave  = surface(5, 5, place(0), true, 0, is_split);
+            const auto master = surface(n, n, place(-gap), false, of_master, is_split);
+            test::expect_no_resistance_to_rotations<3>(rows(slave, master, ContactDiscretization::automatic),
+                                                       slave,
+                                                       master,
+                                                       true);
+          }
+}
+
+TEST(SurfaceMortar, only_the_nearest_level_counts)
+{
+  for (const bool is_split : {false, true})
+    for (const double step : {0.3, 0.5, 0.7})
+      {
+        const auto slave  = surface(4, 3, rectangle(0, 1, 0, 1, 0), true, 0, is_split);
+        auto       master = surface(3, 2, rectangle(-0.2, step, -0.1, 1.1, 0), false, of_master, is_split);
+        for (const auto &facet : surface(2, 5, rectangle(step, 1.2, -0.1, 1.1, -0.5), false, 2 * of_master, is_split))
+          master.push_back(facet);
+        for (const auto &row : rows(slave, master))
+          EXPECT_NEAR(row.gap, row.position[0] < step + 0.25 - 1e-12 ? 0 : 0.5, 1e-12) << row.position;
+      }
 }

@@ -16,8 +16,8 @@ namespace slipstick::random
     // A motion that the rows resist less than this (relative) counts as free, as of a round body in a round hole: only how
     // far chords are from the arc resists it.
     constexpr double least_hold = 1e-5;
-    // Points that a row joins across a gap are apart by less than this part of a body.
-    constexpr double longest_lever = 1e-2;
+    // Rows that resist a motion by less than this part of the motion resisted most do not hold it.
+    constexpr double least_resistance = 1e-2;
     // A solution is one when all conditions hold to this.
     constexpr double solved_tolerance = 1e-11;
     // Rounding of displacements as files have them, relative to the largest: twice half a unit in the last place.
@@ -331,7 +331,7 @@ namespace slipstick::random
     given                             = Eigen::VectorXd::Zero(T.cols());
     if (displacement)
       {
-        hold_what_levers_hold(*displacement);
+        hold_free_motions(*displacement);
         return;
       }
     motions = Eigen::MatrixXd::Identity(T.cols(), T.cols());
@@ -352,10 +352,10 @@ namespace slipstick::random
         e[k] = 0;
   }
 
-  /// Takes motions that rows resist by less than a lever out of T and e; they are as in @p displacement.
-  void DenseSolver::hold_what_levers_hold(const Eigen::VectorXd &displacement)
+  /// Takes motions that rows do not hold out of T and e; they are as in @p displacement.
+  void DenseSolver::hold_free_motions(const Eigen::VectorXd &displacement)
   {
-    const Eigen::MatrixXd held = kernel_of(T / T.colwise().norm().maxCoeff(), longest_lever);
+    const Eigen::MatrixXd held = kernel_of(T / T.colwise().norm().maxCoeff(), least_resistance);
     given                      = held * (held.transpose() * amplitudes(displacement));
     d += T * given;
     precise_d    = d.cast<Precise>();

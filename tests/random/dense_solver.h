@@ -99,7 +99,7 @@ namespace slipstick::random
     using PreciseVector = Eigen::Matrix<Precise, Eigen::Dynamic, 1>;
 
     void            condense(const Eigen::VectorXd *displacement);
-    void            hold_what_levers_hold(const Eigen::VectorXd &displacement);
+    void            hold_free_motions(const Eigen::VectorXd &displacement);
     Eigen::VectorXd amplitudes(const Eigen::VectorXd &displacement) const;
     PreciseMatrix   solve_stiffness(const unsigned int body, const Eigen::MatrixXd &right) const;
     Eigen::VectorXd bounds(const Eigen::VectorXd &x) const;

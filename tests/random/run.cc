@@ -201,17 +201,7 @@ namespace slipstick::random
         result.fallbacks       = summary["solver"]["fallbacks"].get<unsigned int>();
         for (const auto &warning : summary["warnings"])
           result.holds_motions |= warning.get<std::string>().rfind("nothing resists", 0) == 0;
-        double largest = 0, on_held = 0;
-        for (const char *kind : {"loads", "supports", "foundations"})
-          for (const auto &sum : summary["results"][kind])
-            {
-              const double size = std::hypot(sum["force"][0].get<double>(), sum["force"][1].get<double>());
-              largest           = std::max(largest, size);
-              if (sum.value("support", "") == "held motions")
-                on_held = size;
-            }
-        result.on_held_motions = largest > 0 ? on_held / largest : 0.;
-        double worst           = 0;
+        double worst = 0;
         for (const auto &[name, value] : summary["residuals"].items())
           if (value.is_number() && value.get<double>() >= worst)
             {

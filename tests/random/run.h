@@ -19,8 +19,7 @@ namespace slipstick::random
     unsigned long long multiplications = 0; // with F
     unsigned int       fallbacks       = 0;
     std::string        worst_check;
-    bool               holds_motions   = false; // that nothing resists, with a warning
-    double             on_held_motions = 0;     // force on what holds them, over the largest force: what it is off by
+    bool               holds_motions = false; // that nothing resists, with a warning
   };
 
   /// Solves @p scene with app::run in @p directory, which is overwritten. Displacements come from the .vtu files (single

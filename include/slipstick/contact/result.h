@@ -72,9 +72,8 @@ namespace slipstick::contact
     Resultant             on_slave;                   // of the tractions, at the slave nodes
     double                normal_force     = 0;       // sum of pressure times area [N]
     double                tangential_force = 0;       // [N]
-    std::array<double, 3> moment_mismatch{{0, 0, 0}}; // sum of the moments on both sides [N mm]: with a linearised
-                                                      // gap, gap times force remains if a node and its mean on the
-                                                      // other side do not lie on one normal; in the plane about z
+    std::array<double, 3> moment_mismatch{{0, 0, 0}}; // sum of the moments on both sides [N mm]: rounding, except for
+                                                      // bodies of revolution; in the plane about z
     double       max_pressure    = 0;                 // [MPa]
     double       contact_length  = 0;                 // of the nodes that are not open [mm]; in space their area [mm^2]
     unsigned int contact_nodes   = 0;                 // closed

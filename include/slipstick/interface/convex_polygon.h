@@ -26,6 +26,9 @@ namespace slipstick::interface
   /// Whether x is inside, or outside by at most @p tolerance.
   bool contains(const ConvexPolygon &polygon, const dealii::Point<2> &x, const double tolerance = 0);
 
+  /// Distance of x from the polygon; 0 inside.
+  double distance(const ConvexPolygon &polygon, const dealii::Point<2> &x);
+
   /// Intersection of two polygons (Sutherland, Hodgman 1974); empty or of zero area when they only touch.
   ConvexPolygon intersection(const ConvexPolygon &a, const ConvexPolygon &b);
 

@@ -15,6 +15,12 @@ namespace slipstick::interface
     double ahead = 0, behind = 0;
   };
 
+  // Jumps of the gap within a slave edge or facet by more than this fraction of its size are steps of the master.
+  constexpr double smallest_jump = 1e-6;
+  // Parts of the master that rise or fall more steeply than this above the part nearest to a slave edge or facet do not
+  // belong to the same level (45 degrees).
+  constexpr double steepest_slope = 1;
+
   /// Pairs slave and master edges by rays from the slave along a continuous field of normals: at the nodes the mean of
   /// both sides' normals, interpolated by the linear shape functions. Two equal bodies then touch along their plane of
   /// symmetry, whichever is the slave; with the slave's own normals, closing a gap between curved bodies would cause an
@@ -56,7 +62,9 @@ namespace slipstick::interface
       return own.of_part[e];
     }
 
-    /// The parts of slave edge e that are faced by one master edge within reach; the first crossing counts.
+    /// The parts of slave edge e that are faced by one master edge within reach; the first crossing counts. Where the
+    /// distance jumps, as at a step or a slot of the master that is narrower than the edge, only the nearest level
+    /// counts: one linear gap cannot describe both.
     std::vector<Segment> segments(const unsigned int e) const;
 
     /// The intersection of the ray from slave edge e at s with master edge m.
@@ -78,6 +86,7 @@ namespace slipstick::interface
                                         const double                     s,
                                         const std::vector<unsigned int> &candidates) const;
     std::vector<unsigned int>   candidates(const unsigned int e) const;
+    std::vector<Segment>        nearest_level(const unsigned int e, std::vector<Segment> parts) const;
     void                        average_normals();
 
     const std::vector<Edge> &slave, &master;

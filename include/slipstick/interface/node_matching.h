@@ -25,7 +25,7 @@ namespace slipstick::interface
 
     std::map<mechanics::NodeKey, dealii::Point<dim>> slave, master; // [mm]
 
-    /// Sets gap and mean master position of a row from its weights.
+    /// Sets gap, mean master position and the vector from there to the slave point of a row from its weights.
     void measure(MortarRow<dim> &row) const
     {
       dealii::Point<dim> x;
@@ -34,7 +34,8 @@ namespace slipstick::interface
         x += weight * Tensor(slave.at(key));
       for (const auto &[key, weight] : row.master_weights)
         row.master_position += weight * Tensor(master.at(key));
-      row.gap = row.normal * (row.master_position - x);
+      row.apart = x - row.master_position;
+      row.gap   = -(row.normal * row.apart);
     }
 
     /// The master node opposite a slave node, and its lateral distance [mm].
@@ -55,25 +56,72 @@ namespace slipstick::interface
   // Edges, facets and nodes are omitted if at most this fraction of them is covered.
   constexpr double smallest_cover = 1e-10;
 
-  /// The integrals over all edges or facets for one slave node.
+  /// The integrals for one slave node, over one of its edges or facets or over all of them.
+  template <int dim>
   struct NodeIntegrals
   {
-    double                               measure = 0;   // D_i
-    double                               length  = 0;   // the same in the plane; in space an area
-    std::map<mechanics::NodeKey, double> slave, master; // D_ik, M_ij
+    double                               measure = 0;           // D_i
+    double                               length  = 0;           // the same in the plane; in space an area
+    std::map<mechanics::NodeKey, double> slave, master;         // D_ik, M_ij
+    dealii::Tensor<1, dim>               rise;                  // <phi_i (rise of the master - rise of the slave) n>
+    double                               neglected_sagitta = 0; // [mm]
+
+    NodeIntegrals &operator+=(const NodeIntegrals &other)
+    {
+      measure += other.measure;
+      length += other.length;
+      rise += other.rise;
+      neglected_sagitta = std::max(neglected_sagitta, other.neglected_sagitta);
+      for (const auto &[key, value] : other.slave)
+        slave[key] += value;
+      for (const auto &[key, value] : other.master)
+        master[key] += value;
+      return *this;
+    }
   };
+
+  // Edges or facets of a node see the same level of the master if their gaps there differ by at most this fraction of
+  // their size.
+  constexpr double same_level = 0.1;
+
+  /// The sum over the edges or facets of a node that see the nearest level of the master: at a step, contact is on one
+  /// side, and the mean of both gaps would be a clearance that does not exist.
+  template <int dim>
+  NodeIntegrals<dim> on_nearest_level(const std::vector<NodeIntegrals<dim>> &parts,
+                                      const SurfaceNode<dim>                &node,
+                                      const NodePlaces<dim>                 &places)
+  {
+    const auto is_judged = [&](const auto &part) { return part.measure > smallest_cover * node.scale; };
+    const auto gap_of    = [&](const auto &part) {
+      dealii::Tensor<1, dim> apart;
+      for (const auto &[key, value] : part.master)
+        apart += value / part.measure * dealii::Tensor<1, dim>(places.master.at(key));
+      for (const auto &[key, value] : part.slave)
+        apart -= value / part.measure * dealii::Tensor<1, dim>(places.slave.at(key));
+      return node.normal * apart;
+    };
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto &part : parts)
+      if (is_judged(part) && std::abs(gap_of(part)) < std::abs(nearest))
+        nearest = gap_of(part);
+    NodeIntegrals<dim> sum;
+    for (const auto &part : parts)
+      if (!is_judged(part) || std::abs(gap_of(part) - nearest) <= same_level * node.size)
+        sum += part;
+    return sum;
+  }
 
   /// Whether the node has a row. In the plane nodes with no share of their edges (on the axis of revolution) have none.
   /// Corners of triangles of degree 2 have one where some of the triangles are partly covered.
   template <int dim>
-  bool has_row(const SurfaceNode<dim> &node, const NodeIntegrals &sum)
+  bool has_row(const SurfaceNode<dim> &node, const NodeIntegrals<dim> &sum)
   {
     return (dim == 3 || node.measure > 0) && sum.measure > smallest_cover * node.scale;
   }
 
-  /// The row of a slave node, with the gap of the edges or facets.
+  /// The row of a slave node.
   template <int dim>
-  MortarRow<dim> row_of(const SurfaceNode<dim> &node, const NodeIntegrals &sum, const NodePlaces<dim> &places)
+  MortarRow<dim> row_of(const SurfaceNode<dim> &node, const NodeIntegrals<dim> &sum, const NodePlaces<dim> &places)
   {
     MortarRow<dim> row;
     row.slave          = node.key;
@@ -87,7 +135,22 @@ namespace slipstick::interface
     row.slave_weights  = normalised(sum.slave, sum.measure);
     row.master_weights = normalised(sum.master, sum.measure);
     places.measure(row);
+    row.gap += row.normal * sum.rise / sum.measure;
+    row.neglected_sagitta = sum.neglected_sagitta;
     return row;
+  }
+
+  /// The rows of all nodes from the integrals over their edges or facets.
+  template <int dim>
+  std::vector<MortarRow<dim>> rows_of_nodes(const std::vector<SurfaceNode<dim>>                &nodes,
+                                            const std::vector<std::vector<NodeIntegrals<dim>>> &parts,
+                                            const NodePlaces<dim>                              &places)
+  {
+    std::vector<MortarRow<dim>> rows;
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      if (const auto sum = on_nearest_level(parts[i], nodes[i], places); has_row(nodes[i], sum))
+        rows.push_back(row_of(nodes[i], sum, places));
+    return rows;
   }
 
   /// The weight of @p node in @p weights, 0 if it is not contained.

@@ -75,7 +75,8 @@ namespace slipstick::interface
     };
 
     /// The master facets that face a slave facet within reach, projected along the mean normal of its nodes; parts
-    /// overlap if master facets lie one behind the other.
+    /// overlap if master facets lie one behind the other. Where the distance jumps, as at a step or a slot of the
+    /// master, only the nearest level counts (as in CurvePairing).
     struct View
     {
       Plane             plane; // through the centre of the facet

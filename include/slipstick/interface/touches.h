@@ -8,6 +8,15 @@
 
 namespace slipstick::interface
 {
+  /// The nodes that tell the rotation of one side across a gap (gap_rotation.h).
+  template <int dim>
+  struct RotatingNodes
+  {
+    std::vector<unsigned int>           nodes;
+    std::vector<double>                 weights;
+    std::vector<dealii::Tensor<1, dim>> positions; // [mm]
+  };
+
   /// One opposite side that a slave node may touch.
   template <int dim>
   struct ContactCandidate
@@ -15,6 +24,8 @@ namespace slipstick::interface
     unsigned int                                 pair = 0, side = 0;
     dealii::Tensor<1, dim>                       normal;
     std::vector<std::pair<unsigned int, double>> slave, master; // nodes and weights
+    std::array<RotatingNodes<dim>, n_carriers>   rotating;      // by carrier
+    dealii::Tensor<1, dim>                       apart;         // slave point minus master point [mm]
     tfeti::ContactPoint                          point;
     bool                                         has_tangent = false;
   };

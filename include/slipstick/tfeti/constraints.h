@@ -42,15 +42,17 @@ namespace slipstick::tfeti
     std::array<double, 3> normal{{0, 0, 0}};  // outward normal of the slave body
     bool                  has_master = false; // true: another body; false: an obstacle
     unsigned int          slave_body = 0, master_body = 0;
-    std::array<double, 3> slave_position{{0, 0, 0}};  // weighted mean of the slave nodes, where the force acts, ...
-    std::array<double, 3> master_position{{0, 0, 0}}; // ... and of the master nodes
-    double                gap           = 0;          // reference configuration [mm]
-    bool                  is_measured   = false;      // whether the gap follows from positions of nodes alone
-    double                area          = 0;          // tributary: length times thickness, or of revolution [mm^2]
-    double                length        = 0;          // tributary length [mm]
-    double                traction_area = 0;          // reference area of tractions: `area`, but at least half of the
-                                                      // node's full tributary area: the force on a sliver over the
-                                                      // area of that sliver is meaningless [mm^2]
+    std::array<double, 3> slave_position{{0, 0, 0}};  // where the force acts: mean of the slave nodes, or half the gap on
+    std::array<double, 3> master_position{{0, 0, 0}}; // mean of the master nodes
+    bool                  rotates = false; // its rows contain the rotations of both sides across the gap, so that the
+                                           // forces on both sides have no moment
+    double gap           = 0;              // reference configuration [mm]
+    bool   is_measured   = false;          // whether the gap follows from positions of nodes alone
+    double area          = 0;              // tributary: length times thickness, or of revolution [mm^2]
+    double length        = 0;              // tributary length [mm]
+    double traction_area = 0;              // reference area of tractions: `area`, but at least half of the
+                                           // node's full tributary area: the force on a sliver over the
+                                           // area of that sliver is meaningless [mm^2]
     double                               traction_length = 0; // reference length of tractions, by the same rule [mm]
     std::array<std::uint64_t, 2>         key{{0, 0}};         // identifies the node in the mesh
     unsigned int                         normal_row     = invalid_row; // owned rows; invalid if a support replaces it

@@ -9,8 +9,9 @@
 
 namespace slipstick::tfeti
 {
-  /// A rigid motion of one or more bodies: amplitudes of translation x, translation y and rotation of every body; for
-  /// bodies of revolution only the translation along the axis.
+  /// A rigid motion of one or more bodies: amplitudes of the motions of every body, in the plane translation x,
+  /// translation y and rotation, in space three translations and three rotations, of bodies of revolution the
+  /// translation along the axis.
   struct RigidMotion
   {
     Eigen::VectorXd        amplitudes; // per body as many as it has motions; unit length
@@ -66,8 +67,7 @@ namespace slipstick::tfeti
       return names_of_bodies;
     }
 
-    /// Motions that no active row of B resists. A row between bodies never resists a motion that the bodies have in
-    /// common: a gap or an overlap between the joined points has a lever arm, but no stiffness. Collective.
+    /// Motions that no active row of B resists. Collective.
     /// @param active rows (owned by this rank) that take part; empty: all.
     /// @param resistance below which a motion counts as free: squared jumps of the rows under a unit motion, over the
     ///        largest of all motions. Rounding by default.
@@ -109,25 +109,21 @@ namespace slipstick::tfeti
     {
       unsigned int    row; // owned
       unsigned int    body;
-      Eigen::VectorXd values;    // of its motions
-      double          lever = 0; // part of the rotation in `values` that is due to the distance of the joined points
+      Eigen::VectorXd values; // of its motions
     };
 
-    void                         find_levers();
     std::vector<Share>           turned(const std::vector<qp::Turn> &turns) const;
     std::vector<Eigen::VectorXd> unresisted(const std::vector<bool>  &active,
                                             const double              resistance,
                                             const std::vector<bool>  &rigid,
                                             const std::vector<Share> &of_rows) const;
-    Eigen::SparseMatrix<double>  resistance_of(const std::vector<bool>  &active,
-                                               const bool                without_levers,
-                                               const std::vector<Share> &of_rows) const;
+    Eigen::SparseMatrix<double> resistance_of(const std::vector<bool> &active, const std::vector<Share> &of_rows) const;
 
     const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains;
     std::vector<std::string>                             names_of_bodies;
     MPI_Comm                                             comm;
     unsigned int                                         n_owned_rows;
-    unsigned int                                         motions_of_body; // 3 in the plane, 1 where it is revolved
+    unsigned int                                         motions_of_body; // 3 in the plane, 6 in space, 1 of revolution
     unsigned int                                         n_motions;       // of all bodies
     std::vector<BodyFrame>                               frames;
     std::vector<Share>                                   shares; // sorted by row
