@@ -4,6 +4,7 @@
 #include <slipstick/base/text.h>
 #include <slipstick/mesh/boundary_parts.h>
 #include <slipstick/mesh/curved_faces.h>
+#include <slipstick/mesh/edge_middles.h>
 #include <slipstick/mesh/kinematics.h>
 #include <slipstick/mesh/make_body.h>
 #include <slipstick/mesh/refinement.h>
@@ -326,6 +327,15 @@ namespace slipstick::mesh
         refine_towards_boundaries(body, mesh);
         if (refined)
           refine_cells(mesh, *refined, *paths);
+        const unsigned int n_of_refinement = n_unbent(mesh.piece);
+        bend_edges(mesh.piece);
+        // cells of degree 1 do not follow curves, only new nodes do
+        if (const unsigned int n = scene.discretization.degree == 1 ? n_of_refinement : n_unbent(mesh.piece); n > 0)
+          mesh.remarks.push_back(format("warning: body %s: %u edges of its outline are straight though the outline is "
+                                        "curved, as their cells are too thin to follow it: use more cells along the "
+                                        "curve or fewer across it",
+                                        body.name.c_str(),
+                                        n));
         mesh.piece.body = b;
         place_in_scene(scene, b, mesh.piece);
         add_boundary_parts(scene, b, mesh);

@@ -5,6 +5,19 @@ namespace slipstick::mesh
 {
   namespace
   {
+    std::vector<MeshPiece<3>::Line> lines_of(const MeshPiece<3>::Cell &cell)
+    {
+      return lines_of_cell(cell);
+    }
+
+    std::vector<MeshPiece<2>::Line> lines_of(const MeshPiece<2>::Cell &cell)
+    {
+      std::vector<MeshPiece<2>::Line> lines;
+      for (unsigned int f = 0; f < n_corners<2>(cell); ++f)
+        lines.push_back(face_of_cell<2>(cell, f));
+      return lines;
+    }
+
     /// Sub-piece of the given cells.
     template <int dim>
     MeshPiece<dim> extract(
@@ -36,14 +49,13 @@ namespace slipstick::mesh
                 }
               v = entry->second;
             }
-          if constexpr (dim == 3)
-            if (!whole.line_middles.empty())
-              for (const auto &[a, b] : lines_of_cell(whole.cells[c]))
-                if (const auto found = whole.line_middles.find({{a, b}}); found != whole.line_middles.end())
-                  {
-                    const auto ends                                 = std::minmax(local.at(a), local.at(b));
-                    piece.line_middles[{{ends.first, ends.second}}] = found->second;
-                  }
+          if (!whole.line_middles.empty())
+            for (const auto &[a, b] : lines_of(whole.cells[c]))
+              if (const auto found = whole.line_middles.find({{a, b}}); found != whole.line_middles.end())
+                {
+                  const auto ends                                 = std::minmax(local.at(a), local.at(b));
+                  piece.line_middles[{{ends.first, ends.second}}] = found->second;
+                }
           piece.cells.push_back(cell);
         }
       for (auto &face : piece.boundary_faces)

@@ -1,6 +1,8 @@
+#include <slipstick/mesh/edge_middles.h>
 #include <slipstick/mesh/hexahedra_refinement.h>
 #include <slipstick/mesh/refinement.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -16,8 +18,8 @@ namespace slipstick::mesh
       using Cell = typename MeshPiece<dim>::Cell;
       using Face = typename MeshPiece<dim>::Face;
 
-      explicit Refiner(const MeshPiece<dim> &coarse)
-        : coarse(coarse)
+      explicit Refiner(const MeshPiece<dim> &piece)
+        : coarse(bent(piece))
         , boundary(boundary_by_vertices(coarse))
       {
         fine.subdomain = coarse.subdomain;
@@ -106,16 +108,28 @@ namespace slipstick::mesh
       }
 
     private:
+      static MeshPiece<dim> bent(MeshPiece<dim> piece)
+      {
+        if constexpr (dim == 2)
+          bend_edges(piece);
+        return piece;
+      }
+
       /// At @p s in [0, 1] from @p a to @p b, a < b; on the curve of the edge if it has one.
       dealii::Point<dim> edge_point(const unsigned int a, const unsigned int b, const double s) const
       {
         const auto face = boundary.find({{a, b}});
         if (face != boundary.end() && face->second.curve && face->second.bends_cell)
           return face->second.curve.point(s);
-        return coarse.vertices[a] + s * (coarse.vertices[b] - coarse.vertices[a]);
+        const auto straight = coarse.vertices[a] + s * (coarse.vertices[b] - coarse.vertices[a]);
+        const auto middle   = coarse.line_middles.find({{a, b}});
+        if (middle == coarse.line_middles.end())
+          return straight;
+        const auto rise = middle->second - (coarse.vertices[a] + 0.5 * (coarse.vertices[b] - coarse.vertices[a]));
+        return straight + 4 * s * (1 - s) * rise;
       }
 
-      const MeshPiece<dim>                                       &coarse;
+      const MeshPiece<dim>                                        coarse;   // with bent edges
       const std::map<Face, typename MeshPiece<dim>::BoundaryFace> boundary; // by vertices
       MeshPiece<dim>                                              fine;
       std::map<std::array<unsigned int, 4>, unsigned int>         edge_vertices; // by edge, k, n
@@ -265,9 +279,32 @@ namespace slipstick::mesh
       return touches;
     }
 
+    /// Marks all corners of strongly bent quadrilaterals that have a marked one.
+    void mark_strongly_bent(const MeshPiece<2> &piece, std::vector<bool> &marked)
+    {
+      const auto bent = strongly_bent(piece);
+      for (bool changed = true; changed;)
+        {
+          changed = false;
+          for (unsigned int c = 0; c < piece.cells.size(); ++c)
+            if (bent[c])
+              {
+                const auto n = std::count_if(piece.cells[c].begin(), piece.cells[c].end(), [&](const unsigned int v) {
+                  return marked[v];
+                });
+                if (n == 0 || n == 4)
+                  continue;
+                for (const unsigned int v : piece.cells[c])
+                  marked[v] = true;
+                changed = true;
+              }
+        }
+    }
+
     template <int dim>
     RefinedPiece<dim> triangles_at(const MeshPiece<dim> &piece, std::vector<bool> red)
     {
+      const auto bent = strongly_bent(piece);
       // a triangle with two bisected edges is divided into four; repeat until nothing changes
       std::set<typename MeshPiece<dim>::Face> halved;
       for (bool changed = true; changed;)
@@ -278,7 +315,7 @@ namespace slipstick::mesh
               unsigned int n = 0;
               for (unsigned int f = 0; f < 3; ++f)
                 n += halved.count(face_of_cell<dim>(piece.cells[c], f));
-              if (n < 3 && (red[c] || n == 2))
+              if (n < 3 && (red[c] || n == 2 || (n == 1 && bent[c])))
                 {
                   red[c] = changed = true;
                   for (unsigned int f = 0; f < 3; ++f)
@@ -344,6 +381,8 @@ namespace slipstick::mesh
       if (marked[c])
         for (const unsigned int v : piece.cells[c])
           marked_vertex[v] = true;
+    if constexpr (dim == 2)
+      mark_strongly_bent(piece, marked_vertex);
     Refiner<dim> refiner(piece);
     for (unsigned int c = 0; c < piece.cells.size(); ++c)
       {

@@ -1,6 +1,5 @@
 #include <slipstick/base/cross.h>
 #include <slipstick/base/text.h>
-#include <slipstick/mesh/edge_middles.h>
 #include <slipstick/mesh/smooth_outline.h>
 
 #include <deal.II/base/mpi.h>
@@ -317,8 +316,8 @@ namespace slipstick::mesh
           find_flats();
           find_tangents();
         }
-      std::map<Piece::Face, std::pair<Curve, const Edge *>> curves;
-      unsigned int                                          n_bent = 0;
+      std::map<Piece::Face, Curve> curves;
+      unsigned int                 n_bent = 0;
       for (const auto &edge : edges)
         {
           Curve curve = by_middles ? through_middle(edge) : spline(edge);
@@ -331,15 +330,13 @@ namespace slipstick::mesh
           else if (!curve && is_coarse_circle(edge))
             curve.neglected_sagitta = 0.5 * edge.length * std::tan(std::abs(edge.turn) / 4);
           n_bent += bool(curve);
-          curves[{{edge.from, edge.to}}] = {curve, &edge};
+          curves[{{edge.from, edge.to}}] = curve;
         }
       for (auto &face : mesh.piece.boundary_faces)
         {
           const auto found = curves.find(face.vertices);
-          const auto &[curve, edge] =
-            found != curves.end() ? found->second : curves.at({{face.vertices[1], face.vertices[0]}});
-          face.curve      = found != curves.end() ? curve : curve.reversed();
-          face.bends_cell = has_room_for<2>(curve, mesh.piece, mesh.piece.cells[edge->cell], edge->face);
+          face.curve =
+            found != curves.end() ? found->second : curves.at({{face.vertices[1], face.vertices[0]}}).reversed();
         }
       if (n_bent > 0)
         mesh.remarks.push_back("body " + body.name + ": " + std::to_string(n_bent) + " of " +

@@ -26,10 +26,7 @@ namespace slipstick::mesh
     mesh->triangulation.create_triangulation(piece.vertices, cells, dealii::SubCellData());
 
     // all faces are cuts initially; boundaries are marked by their vertices
-    const auto   boundary = boundary_by_vertices(piece);
-    Middles<dim> middles;
-    if constexpr (dim == 2)
-      middles = middles_of_edges(piece, boundary);
+    const auto boundary = boundary_by_vertices(piece);
     for (const auto &cell : mesh->triangulation.active_cell_iterators())
       for (const auto &face : cell->face_iterators())
         if (face->at_boundary())
@@ -45,13 +42,19 @@ namespace slipstick::mesh
               continue;
             if (const auto &curve = found->second.curve; curve || curve.neglected_sagitta > 0)
               mesh->curves[key] = curve;
-            if constexpr (dim == 2)
-              if (middles.count(key) > 0)
-                face->set_manifold_id(EdgeMiddles<dim>::id);
           }
     if constexpr (dim == 2)
-      if (!middles.empty())
-        mesh->triangulation.set_manifold(EdgeMiddles<dim>::id, EdgeMiddles<dim>(middles));
+      if (!piece.line_middles.empty())
+        {
+          for (const auto &cell : mesh->triangulation.active_cell_iterators())
+            for (const auto &face : cell->face_iterators())
+              {
+                const unsigned int a = face->vertex_index(0), b = face->vertex_index(1);
+                if (piece.line_middles.count({{std::min(a, b), std::max(a, b)}}) > 0)
+                  face->set_manifold_id(EdgeMiddles<dim>::id);
+              }
+          mesh->triangulation.set_manifold(EdgeMiddles<dim>::id, EdgeMiddles<dim>(piece.line_middles));
+        }
     if constexpr (dim == 3)
       follow_middles(piece, boundary, mesh->triangulation);
     return mesh;

@@ -1,5 +1,6 @@
 // Curves of edges: arcs, parabolas through mid nodes, splines; refinement onto them.
 #include <slipstick/mechanics/surface.h>
+#include <slipstick/mesh/edge_middles.h>
 #include <slipstick/mesh/refinement.h>
 #include <slipstick/mesh/smooth_outline.h>
 #include <slipstick/mesh/triangulate.h>
@@ -217,6 +218,7 @@ TEST(SmoothOutline, mid_nodes_of_files_are_kept)
       whole.comm                 = MPI_COMM_SELF;
       whole.first_subdomain      = {0, 1};
       mesh.piece.global_vertices = {0, 1, 2, 3};
+      mesh::bend_edges(mesh.piece);
       whole.subdomains.push_back(mesh::triangulate(mesh.piece));
       const mechanics::Spaces<2> spaces(whole, 2);
       const auto                 outline = mechanics::outlines(whole, spaces, {true});

@@ -10,9 +10,9 @@ namespace slipstick::mesh
   /// Lower limit of the Jacobian of a cell with curved edges, relative to that with straight edges.
   constexpr double smallest_jacobian = 0.2;
 
-  /// Vertices in ascending order.
+  /// By the vertices of edges, ascending.
   template <int dim>
-  using Middles = std::map<typename MeshPiece<dim>::Face, dealii::Point<dim>>;
+  using Middles = std::map<typename MeshPiece<dim>::Line, dealii::Point<dim>>;
 
   /// Manifold with given midpoints on some edges, flat for all others. Mappings of degree 2 need nothing else.
   template <int dim>
@@ -32,19 +32,17 @@ namespace slipstick::mesh
     const Middles<dim> middles;
   };
 
-  /// Midpoints of the curves of boundary faces (@p boundary, boundary_by_vertices() of the piece), except faces that do
-  /// not bend their cell, and all faces of a cell that a mapping of degree 2 would invert or flatten
-  /// somewhere, as where two edges on one circle meet at nearly 180 degrees.
-  template <int dim>
-  Middles<dim> middles_of_edges(
-    const MeshPiece<dim>                                                                 &piece,
-    const std::map<typename MeshPiece<dim>::Face, typename MeshPiece<dim>::BoundaryFace> &boundary);
+  /// Sets the midpoints of edges (MeshPiece::line_middles): of boundary edges those of their curves and, where a cell
+  /// is thin compared with the rise of its curved edge above the chord, of further edges inside the body, whose rise
+  /// decreases from cell to cell: cells stay close to affine, however thin they are. Boundary edges of a cell that a
+  /// mapping of degree 2 would still invert or flatten somewhere, as where two edges on one circle meet at nearly 180
+  /// degrees, stay straight (BoundaryFace::bends_cell).
+  void bend_edges(MeshPiece<2> &piece);
 
-  /// Whether the sagitta of a curve over face @p f of @p cell is small compared with the height of the cell over that
-  /// face.
-  template <int dim>
-  bool has_room_for(const EdgeCurve<dim>                &curve,
-                    const MeshPiece<dim>                &piece,
-                    const typename MeshPiece<dim>::Cell &cell,
-                    const unsigned int                   f);
+  /// Cells with an edge that rises by more than a tenth of the height above it. Transition cells of a local refinement
+  /// would have no room beside such an edge: these cells are divided regularly or not at all.
+  std::vector<bool> strongly_bent(MeshPiece<2> piece);
+
+  /// Number of boundary edges that are straight though their boundary is curved.
+  unsigned int n_unbent(const MeshPiece<2> &piece);
 } // namespace slipstick::mesh

@@ -58,7 +58,7 @@ namespace slipstick::mesh
     std::vector<BoundaryFace>       boundary_faces;  // of the body; all other faces are cuts
     bool                            ordered = false; // lines of neighbouring cells already have the same direction
 
-    /// Solids: the midpoints of curved edges, which are all on the boundary of the body. Other edges are straight.
+    /// The midpoints of curved edges; in space all of them are on the boundary of the body. Other edges are straight.
     std::map<Line, dealii::Point<dim>> line_middles;
 
     /// For sending between ranks (Boost serialization, through deal.II's MPI utilities).
