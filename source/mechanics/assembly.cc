@@ -224,6 +224,25 @@ namespace slipstick::mechanics
                            (dim == 2 ? "quadrilaterals" : "hexahedra"));
     }
 
+    /// The volume of every cell (times thickness or circumference) in equal parts at its nodes.
+    template <int dim>
+    Eigen::VectorXd volumes_of_nodes(const dealii::DoFHandler<dim> &dof_handler,
+                                     const mesh::Kinematics<dim>   &kinematics,
+                                     const double                   thickness)
+    {
+      Eigen::VectorXd                              volumes = Eigen::VectorXd::Zero(dof_handler.n_dofs() / dim);
+      std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        {
+          cell->get_dof_indices(dofs);
+          for (const auto dof : dofs)
+            if (dof % dim == 0)
+              volumes[dof / dim] +=
+                thickness * cell->measure() * kinematics.measure(cell->center()) * dim / dofs.size();
+        }
+      return volumes;
+    }
+
     template <int dim>
     std::vector<unsigned int> boundary_dofs(const dealii::DoFHandler<dim> &dof_handler)
     {
@@ -264,11 +283,10 @@ namespace slipstick::mechanics
         system.stiffness     = assemble_stiffness(scene, subdomain.body, spaces.of(p), dof_handler);
         system.load          = std::move(loads[p]);
         system.boundary_dofs = boundary_dofs(dof_handler);
-        rigid_modes(spaces.of(p),
-                    dof_handler,
-                    frames[subdomain.body],
-                    mesh::Kinematics<dim>(scene.plane_state),
-                    system);
+
+        const mesh::Kinematics<dim> kinematics(scene.plane_state);
+        system.volumes = volumes_of_nodes(dof_handler, kinematics, scene.bodies[subdomain.body].thickness);
+        rigid_modes(spaces.of(p), dof_handler, frames[subdomain.body], kinematics, system);
         systems.push_back(std::move(system));
       }
     return systems;

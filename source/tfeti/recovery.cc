@@ -32,7 +32,7 @@ namespace slipstick::tfeti
       return dual.loose_bodies().hold_by(loose, is_candidate, equal, free);
     }
 
-    /// The amplitudes of the part of u along loose motions.
+    /// The amplitudes of the part of u along loose motions, in the mean over the volume.
     Eigen::VectorXd amplitudes_in(const DualProblem                  &dual,
                                   const std::vector<RigidMotion>     &loose,
                                   const std::vector<Eigen::VectorXd> &u)
@@ -45,8 +45,9 @@ namespace slipstick::tfeti
           Eigen::MatrixXd motions(u[p].size(), n);
           for (std::size_t m = 0; m < n; ++m)
             motions.col(m) = dual.body_motions().displacements(p, loose[m].amplitudes);
-          gram.leftCols(n) += motions.transpose() * motions;
-          gram.col(n) += motions.transpose() * u[p];
+          const Eigen::MatrixXd weighted = systems[p]->volumes().asDiagonal() * motions;
+          gram.leftCols(n) += weighted.transpose() * motions;
+          gram.col(n) += weighted.transpose() * u[p];
         }
       MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, dual.communicator());
       const Eigen::VectorXd amount     = shortest_solution(gram.leftCols(n), gram.col(n));

@@ -166,6 +166,14 @@ namespace slipstick::tfeti
       factorised({}).solve(columns);
   }
 
+  Eigen::VectorXd SubdomainSystem::volumes() const
+  {
+    if (matrices.volumes.size() == 0)
+      return Eigen::VectorXd::Ones(n_unknowns());
+    const Eigen::Index dim = n_unknowns() / matrices.volumes.size();
+    return matrices.volumes.transpose().replicate(dim, 1).reshaped();
+  }
+
   std::array<double, 3> SubdomainSystem::position(const unsigned int unknown) const
   {
     std::array<double, 3> x{{0, 0, 0}};

@@ -60,6 +60,7 @@ namespace slipstick::tfeti
     Eigen::MatrixXd           kernel;        // n x k: motions of unit size about the subdomain's centre
     Eigen::MatrixXd           body_modes;    // k x k: kernel * body_modes = rigid motions of the body on this subdomain
     Eigen::MatrixXd           positions;     // of the nodes, one per column [mm]; for messages
+    Eigen::VectorXd           volumes;       // of the nodes, parts of their cells [mm^3]; empty: all the same
     BodyFrame                 frame;         // of the body's motions
     std::vector<unsigned int> boundary_dofs; // unknowns on the boundary of the subdomain, sorted
   };

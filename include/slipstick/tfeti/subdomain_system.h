@@ -121,6 +121,8 @@ namespace slipstick::tfeti
     {
       return matrices.kernel;
     }
+    /// Volumes at the nodes, for every unknown [mm^3]; 1 if they are not known.
+    Eigen::VectorXd volumes() const;
     const Eigen::MatrixXd &body_modes() const
     {
       return matrices.body_modes;
