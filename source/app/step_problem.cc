@@ -270,7 +270,7 @@ namespace slipstick::app
         dual_ptr->set_step(std::move(loads), std::move(rows.active.c));
       }
     else
-      make_dual(t);
+      build(t);
     start_slip_from(u);
     return is_same;
   }
@@ -290,7 +290,7 @@ namespace slipstick::app
   void StepProblem<dim>::keep_more(const double t)
   {
     kept_fraction = kept_fraction < largest_kept_part ? growth_of_kept_part * kept_fraction : all_kept;
-    make_dual(t);
+    build(t);
   }
 
   template <int dim>

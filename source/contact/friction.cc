@@ -10,6 +10,8 @@
 #include <slipstick/tfeti/diagnosis.h>
 #include <slipstick/tfeti/face.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -24,14 +26,20 @@ namespace slipstick::contact
 
     // Loads below this fraction of those of earlier steps are zero up to rounding.
     constexpr double rounding_of_loads = 1e-12;
+    // Without loads, forces below this part of those of earlier load steps, or below the tolerance, are rounding.
+    constexpr double largest_part_of_rounding = 1e-6;
     // Newton steps on sliding solids after which the solver checks whether friction can bear the loads at all: if it
     // cannot, more steps find nothing.
     constexpr unsigned int steps_before_overload = 30;
     // The check uses the normal forces of the problem with this many times the friction (the first that has
     // a solution), ...
     constexpr std::array<double, 3> more_friction{{4, 64, 1024}};
-    // ... and then with this many times the friction that those normal forces require.
+    // ... then with this many times the friction that those normal forces require, ...
     constexpr double margin_of_friction = 1.1;
+    // ... and then with this many times the additional friction that the last normal forces require, ...
+    constexpr double margin_of_additional_friction = 2;
+    // ... until the part of the loads that friction bears changes by less than this fraction of what is missing.
+    constexpr double settled_part = 0.1;
 
     /// Whether any pair is not bonded. Bonded pairs alone make a linear problem, whatever algorithm is selected.
     template <int dim>
@@ -72,21 +80,30 @@ namespace slipstick::contact
                                 : scene::Algorithm::smalbe;
         set_bounds(law.bounds(feasible));
         if (all_forces_vanish(dual, feasible, box, solution.slip_bound))
-          {
-            solution.multipliers = dual.zero();
-            return finished();
-          }
+          solution.multipliers = dual.zero();
+        else
+          search(feasible, start);
+        if (start && feasible.linfty_norm() == 0 && only_rounding_remains())
+          release();
+        return finished();
+      }
+
+    private:
+      void search(const Vector &feasible, const DualSolution *start)
+      {
         if (options.algorithm == scene::Algorithm::semismooth_newton)
           {
             const auto from = newton_start(feasible, start);
             if (solution.weighted_reference == 0) // neither load nor gap: the start is the solution
               {
                 solution.multipliers = from;
-                return finished();
+                return;
               }
             if (newton_from(from, feasible, start))
-              return finished();
+              return;
             refuse_overload(feasible, start);
+            if (newton_from_nearby())
+              return;
             ++solution.fallbacks;
             follow_bounds_to_the_end(fallback_start(from, feasible), feasible);
           }
@@ -94,10 +111,32 @@ namespace slipstick::contact
           follow_bounds_to_the_end(feasible, feasible);
         if (solution.status != qp::Status::converged)
           refuse_overload(feasible, start);
-        return finished();
       }
 
-    private:
+      /// Whether the forces found are nothing beside those of earlier load steps, and zero forces are a solution as
+      /// well: bodies that were unloaded. Otherwise rounding would decide where loose bodies end.
+      bool only_rounding_remains() const
+      {
+        const double least   = std::min(options.tolerance, largest_part_of_rounding);
+        double       overlap = 0;
+        for (unsigned int r = 0; r < dual.constraints().kind.size(); ++r)
+          if (const auto kind = dual.constraints().kind[r]; kind != tfeti::RowKind::tangential)
+            overlap =
+              std::max(overlap, is_equality(kind) ? std::abs(dual.d().local_element(r)) : dual.d().local_element(r));
+        return solution.multipliers.l2_norm() <= least * forces_before &&
+               dealii::Utilities::MPI::max(overlap, dual.communicator()) == 0;
+      }
+
+      void release()
+      {
+        solution.multipliers        = dual.zero();
+        solution.status             = qp::Status::converged;
+        solution.projected_gradient = 0;
+        solution.bound_change       = 0;
+        solution.gradient.reset();
+        set_bounds(law.bounds(solution.multipliers));
+      }
+
       /// The admissible forces nearest to zero that balance the loads.
       Vector feasible_start(const DualSolution *start)
       {
@@ -113,8 +152,9 @@ namespace slipstick::contact
       }
 
       /// After no solution was found: throws if friction is too weak for the loads along a motion that nothing else
-      /// resists. The normal forces of the failed search only raise the suspicion; those of a solution with more
-      /// friction decide.
+      /// resists. The normal forces of the failed search only raise the suspicion. Those of solutions with more
+      /// friction decide, where they no longer change with less of it: normal forces may depend on friction, as those
+      /// under a wedge do. Otherwise the last of these solutions becomes `nearby`.
       void refuse_overload(const Vector &feasible, const DualSolution *start)
       {
         if (is_no_overload || !law.depends_on_pressure() || !weakest_motion(dual, law, solution.multipliers, 1))
@@ -122,16 +162,25 @@ namespace slipstick::contact
         is_no_overload = true; // unless an error is thrown below
         for (const double more : more_friction)
           {
-            const auto held = forces_with_scaled_friction(more, feasible, start);
-            if (!held)
+            nearby = with_friction(more, feasible, start);
+            if (!nearby)
               continue;
-            auto overload = weakest_motion(dual, law, *held, 1);
-            if (!overload)
-              return;
-            const double least = margin_of_friction / overload->held;
-            if (least < more) // closer to sliding, the normal forces are closer to those of this problem
-              if (const auto nearer = forces_with_scaled_friction(least, feasible, start))
-                overload = weakest_motion(dual, law, *nearer, 1);
+            auto   overload = weakest_motion(dual, law, nearby->multipliers, 1);
+            double factor = more, before = -qp::infinity;
+            while (overload && std::abs(overload->held - before) > settled_part * (1 - overload->held))
+              {
+                const double less = factor == more ? margin_of_friction / overload->held
+                                                   : 1 + margin_of_additional_friction * (1 / overload->held - 1);
+                if (!(less < factor))
+                  break;
+                auto closer = with_friction(less, feasible, &*nearby);
+                if (!closer)
+                  return;
+                factor   = less;
+                before   = overload->held;
+                nearby   = std::move(closer);
+                overload = weakest_motion(dual, law, nearby->multipliers, 1);
+              }
             if (!overload)
               return;
             throw NoEquilibrium(
@@ -142,10 +191,18 @@ namespace slipstick::contact
           }
       }
 
-      /// The forces with @p more times the friction, if the algorithm finds them.
-      std::optional<Vector> forces_with_scaled_friction(const double        more,
-                                                        const Vector       &feasible,
-                                                        const DualSolution *start)
+      /// Newton's method from the solution with more friction, if there is one.
+      bool newton_from_nearby()
+      {
+        if (!nearby)
+          return false;
+        set_bounds(law.bounds(nearby->multipliers));
+        gradient = nearby->gradient;
+        return newton(nearby->multipliers, true);
+      }
+
+      /// The solution with @p more times the friction, if the algorithm finds it.
+      std::optional<DualSolution> with_friction(const double more, const Vector &feasible, const DualSolution *start)
       {
         const SlipLaw          with_more = law.scaled(more);
         const ProgressObserver count     = [this](Progress progress) { counted()(progress.step); };
@@ -154,7 +211,7 @@ namespace slipstick::contact
         const bool             is_held = held.converges(feasible, start);
         solution.counts += held.solution.counts;
         multiplications_beside += held.solution.counts.hessian_multiplications;
-        return is_held ? std::optional(std::move(held.solution.multipliers)) : std::nullopt;
+        return is_held ? std::optional(std::move(held.solution)) : std::nullopt;
       }
 
       /// The algorithm without fallback. @return convergence.
@@ -228,7 +285,8 @@ namespace slipstick::contact
         return is_solved;
       }
 
-      bool is_no_overload = false; // problems with more friction did not show that friction is too weak
+      bool                        is_no_overload = false; // more friction did not show that friction is too weak
+      std::optional<DualSolution> nearby;                 // a solution with a little more friction
     };
   } // namespace
 

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import pathlib
 import re
 import signal
 import subprocess
@@ -166,6 +167,17 @@ class Proportional(unittest.TestCase):
         self.assertAlmostEqual(found['results']['contact'][0]['tangential_force'], 1.69 * 27, delta=1e-3)
         self.assertLessEqual(found['solver']['hessian_multiplications'], 150)
         self.assertEqual(found['solver']['fallbacks'], 0)
+
+
+class Unloaded(unittest.TestCase):
+
+    def test_nothing_remains(self):
+        """Forces of rounding decided where the body ended: status 3 at 1e-8."""
+        for friction, tolerance in (('0.3', '1e-8'), ('0.2', '1e-8'), ('0.3', '1e-4'), ('0.3', '1e-10')):
+            result = converged(pathlib.Path(__file__).parent / 'unloaded_cube.prm',
+                               {'Contact c/Friction coefficient': friction, 'Solver/Tolerance': tolerance})
+            self.assertLess(result.summary['results']['max_displacement'], 1e-12)
+            self.assertEqual(len(result.summary['steps']), 2)
 
 
 class Conditions(unittest.TestCase):

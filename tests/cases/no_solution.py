@@ -1,6 +1,7 @@
 """Scenes without equilibrium end with status 4, solves that stop early with status 3; both say so in summary.json."""
 
 import math
+import pathlib
 import re
 import unittest
 
@@ -93,6 +94,14 @@ class FrictionTooWeak(unittest.TestCase):
     def test_normal_forces_of_a_search_that_ended_prove_nothing(self):
         result = self.twisted(0.9, **{'Solver/Algorithm': 'smalbe', 'Solver/SMALBE/Max outer iterations': 1})
         self.assertEqual(result.status, 3, result)
+
+
+class NormalForcesThatFriction(unittest.TestCase):
+
+    def test_changes(self):
+        """A wedge below its limit: "friction is too weak" once, at the normal forces of more friction."""
+        results = solve(pathlib.Path(__file__).parent / 'wedge_jack.prm').summary['results']
+        self.assertAlmostEqual(results['contact'][0]['normal_force'], 252.03, delta=0.01)
 
 
 class LimitOfEquilibrium(unittest.TestCase):

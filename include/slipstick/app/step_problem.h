@@ -39,7 +39,8 @@ namespace slipstick::app
       is_undriven = true;
     }
 
-    /// Builds the problem at load factor t. @throws InputError, NoEquilibrium.
+    /// Builds the problem at load factor t, with the rows of all contact nodes if pruned ones are needed to hold a body.
+    /// @throws InputError, NoEquilibrium.
     void build(const double t);
 
     /// Sets loads and right-hand sides of a later step; slip is measured from @p u, the end of the previous step.
@@ -151,7 +152,8 @@ namespace slipstick::app
     }
 
   private:
-    /// Builds the dual problem without the rows of pruned contact nodes, unless these are needed to hold a body.
+    /// Builds the dual problem without the rows of pruned contact nodes; with auxiliary supports if nothing else holds
+    /// a body. @throws NoEquilibrium if pruned nodes may hold it.
     void make_dual(const double t);
     void make_dual_as_it_is(const double t);
 
