@@ -190,11 +190,11 @@ namespace slipstick::app
                         *bar.error > 0 ? rounded_up(*bar.error) : 0.,
                         bar.unit.c_str()));
       else
-        log.line(format("             %-36s %14.6g    no bar: %s (%s)",
+        log.line(format("             %-36s %14.6g %s, no bar: %s",
                         bar.quantity.c_str(),
                         bar.value,
-                        bar.reason.c_str(),
-                        bar.unit.c_str()));
+                        bar.unit.c_str(),
+                        bar.reason.c_str()));
     for (const auto &bar : bars)
       if (!bar.note.empty())
         log.line(format("             %s: away from singular points, which summary.json lists", bar.quantity.c_str()));

@@ -15,6 +15,9 @@ namespace slipstick::app
   {
     // A finer mesh may resolve a quantity without an estimate (a pressure at a single node).
     constexpr unsigned int most_without_estimate = 3; // consecutive meshes
+    // ... of at least this size: a contact that coarser ones do not resolve looks like a peak, ...
+    template <int dim>
+    constexpr unsigned int least_unknowns_without_estimate = dim == 2 ? 3000 : 10000;
     // ... unless its value grows by less than this factor from mesh to mesh: a pressure at a corner grows without limit.
     constexpr double settling = 1.1;
     // Cells with large errors in the energy norm are divided, too, if two meshes have not reduced the error of the goals
@@ -94,6 +97,8 @@ namespace slipstick::app
             notes.insert(notes.end(), unknown.begin(), unknown.end());
             steps->finish(rows, notes, reached ? "" : missed);
             steps->print_warnings(log);
+            for (const std::string &note : unknown)
+              log.remark("warning: " + note);
             steps->print(log);
             if (!reached)
               log.warning(missed);
@@ -231,7 +236,8 @@ namespace slipstick::app
     const auto goals = goals_of(steps);
     const bool is_resolvable =
       std::any_of(goals.begin(), goals.end(), [](const GoalError &goal) { return goal.is_resolvable; });
-    n_without = is_known || is_resolvable || may_settle ? 0 : n_without + 1;
+    const bool is_coarse = rows.back().unknowns < least_unknowns_without_estimate<dim>;
+    n_without            = is_known || is_resolvable || may_settle || is_coarse ? 0 : n_without + 1;
     if (n_without == most_without_estimate)
       return so_far;
     const std::string limit = mark_next(steps, summary);

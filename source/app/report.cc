@@ -390,7 +390,7 @@ namespace slipstick::app
                     rounded_place(error.position, dim).c_str(),
                     error.body.c_str()));
     log.line(format("%s after %llu F-multiplications in %u outer steps; equilibrium error %.1e; %.2f s, %.0f MB",
-                    output::to_string(summary.status).c_str(),
+                    summary.is_inaccurate ? "accuracy not reached" : output::to_string(summary.status).c_str(),
                     static_cast<unsigned long long>(summary.solver.hessian_multiplications),
                     summary.solver.outer_iterations,
                     std::max({summary.residuals.nodal_equilibrium,

@@ -159,7 +159,8 @@ namespace slipstick::app
     finished_steps->warnings.insert(finished_steps->warnings.end(), notes.begin(), notes.end());
     if (!missed.empty())
       {
-        finished_steps->status = output::RunStatus::not_converged;
+        finished_steps->is_inaccurate = finished_steps->status == output::RunStatus::converged;
+        finished_steps->status        = output::RunStatus::not_converged;
         finished_steps->warnings.push_back(missed);
       }
     output::write_summary(directory, *finished_steps);

@@ -273,7 +273,15 @@ namespace slipstick::scene
       const auto names = quantity_names(scene);
       for (const std::string &goal : adaptivity.goals)
         if (std::find(names.begin(), names.end(), goal) == names.end())
-          throw parameters.error("Goal", "there is no quantity '" + goal + "'", suggest_name(goal, names));
+          {
+            const std::string last = goal.substr(goal.rfind('.') + 1);
+            for (const char *size : {"contact_length", "stick_length", "contact_area", "stick_area"})
+              if (last == size)
+                throw parameters.error("Goal",
+                                       "lengths and areas of contact, such as '" + goal + "', cannot be goals",
+                                       "use a force, a largest pressure or a norm of the pair instead");
+            throw parameters.error("Goal", "there is no quantity '" + goal + "'", suggest_name(goal, names));
+          }
       const bool has_bolts = !scene.pretensions.empty(); // as in app::goal_errors
       if (std::find(adaptivity.goals.begin(), adaptivity.goals.end(), "strain_energy") != adaptivity.goals.end() &&
           !adaptivity.skips_unknown && (has_bolts || !scene.temperatures.empty()))

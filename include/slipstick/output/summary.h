@@ -210,7 +210,8 @@ namespace slipstick::output
     std::string     case_name;
     std::string     version;
     unsigned int    ranks  = 1;
-    RunStatus       status = RunStatus::not_converged;
+    RunStatus       status        = RunStatus::not_converged;
+    bool            is_inaccurate = false; // every mesh was solved, but the accuracy asked for is not reached
     ProblemSummary  problem;
     SolverSummary   solver;
     ResidualSummary residuals;
