@@ -134,7 +134,9 @@ TEST_F(Directory, files_written_together_appear_when_all_are_complete)
   directory.write_together([&](const OutputDirectory &to) {
     write(to, "after");
     if (is_root())
-      EXPECT_EQ(content(directory.path("x")), "before");
+      {
+        EXPECT_EQ(content(directory.path("x")), "before");
+      }
   });
   for (const char *name : {"x", "y"})
     EXPECT_EQ(content(directory.path(name)), "after");
