@@ -42,18 +42,29 @@ namespace slipstick::tfeti
       double       value;
     };
 
-    /// Summands of W from one subdomain: pairs of rows that touch the same unknown.
+    /// Summands of W from one subdomain: sums over the unknowns that both rows touch.
     std::vector<Weight> weights_of(const SubdomainSystem &subdomain, const LocalGluing &gluing, const Partitioner &rows)
     {
-      std::vector<std::vector<std::pair<std::uint64_t, double>>> by_unknown(subdomain.touched().size());
+      using Values = std::vector<std::pair<unsigned int, double>>; // by unknown, or by row (local numbers)
+      std::vector<Values>            by_unknown(subdomain.touched().size());
+      std::map<unsigned int, Values> by_row;
       for (const auto &entry : gluing.entries)
-        by_unknown[entry.touched].emplace_back(rows->local_to_global(entry.row), entry.value);
-      std::vector<Weight>   weights;
-      const Eigen::VectorXd diagonal = subdomain.touched_diagonal();
+        by_unknown[entry.touched].emplace_back(entry.row, entry.value);
       for (unsigned int k = 0; k < by_unknown.size(); ++k)
         for (const auto &[row, a] : by_unknown[k])
-          for (const auto &[column, b] : by_unknown[k])
-            weights.push_back({row, column, a * b / diagonal[k]});
+          by_row[row].emplace_back(k, a);
+      const Eigen::VectorXd          diagonal = subdomain.touched_diagonal();
+      std::vector<Weight>            weights;
+      std::map<unsigned int, double> sums; // of one row, by column
+      for (const auto &[row, values] : by_row)
+        {
+          sums.clear();
+          for (const auto &[k, a] : values)
+            for (const auto &[column, b] : by_unknown[k])
+              sums[column] += a * b / diagonal[k];
+          for (const auto &[column, value] : sums)
+            weights.push_back({rows->local_to_global(row), rows->local_to_global(column), value});
+        }
       return weights;
     }
   } // namespace
