@@ -196,22 +196,20 @@ namespace slipstick::mesh
       piece.line_middles[line] = chord(line) + rise;
   }
 
-  std::vector<bool> strongly_bent(MeshPiece<2> piece)
+  std::vector<bool> strongly_bent(const MeshPiece<2> &piece)
   {
     constexpr double  large = 0.1;
     std::vector<bool> result(piece.cells.size(), false);
-    bend_edges(piece);
-    if (!piece.line_middles.empty())
-      for (unsigned int c = 0; c < piece.cells.size(); ++c)
-        for (unsigned int f = 0; f < n_corners<2>(piece.cells[c]); ++f)
-          {
-            const auto &cell   = piece.cells[c];
-            const auto  middle = piece.line_middles.find(face_of_cell<2>(cell, f));
-            if (middle == piece.line_middles.end())
-              continue;
-            const Tensor rise = Tensor(middle->second) - 0.5 * (vertex(piece, cell, f) + vertex(piece, cell, f + 1));
-            result[c]         = result[c] || rise.norm() > large * height_above(piece, cell, f);
-          }
+    for (unsigned int c = 0; !piece.line_middles.empty() && c < piece.cells.size(); ++c)
+      for (unsigned int f = 0; f < n_corners<2>(piece.cells[c]); ++f)
+        {
+          const auto &cell   = piece.cells[c];
+          const auto  middle = piece.line_middles.find(face_of_cell<2>(cell, f));
+          if (middle == piece.line_middles.end())
+            continue;
+          const Tensor rise = Tensor(middle->second) - 0.5 * (vertex(piece, cell, f) + vertex(piece, cell, f + 1));
+          result[c]         = result[c] || rise.norm() > large * height_above(piece, cell, f);
+        }
     return result;
   }
 

@@ -27,6 +27,12 @@ namespace slipstick::mesh
         fine.vertices  = coarse.vertices;
       }
 
+      /// The coarse piece, with bent edges.
+      const MeshPiece<dim> &bent_piece() const
+      {
+        return coarse;
+      }
+
       void add(const Cell &cell)
       {
         fine.cells.push_back(cell);
@@ -279,7 +285,7 @@ namespace slipstick::mesh
       return touches;
     }
 
-    /// Marks all corners of strongly bent quadrilaterals that have a marked one.
+    /// Marks all corners of strongly bent quadrilaterals that have a marked one. @param piece with bent edges.
     void mark_strongly_bent(const MeshPiece<2> &piece, std::vector<bool> &marked)
     {
       const auto bent = strongly_bent(piece);
@@ -304,7 +310,8 @@ namespace slipstick::mesh
     template <int dim>
     RefinedPiece<dim> triangles_at(const MeshPiece<dim> &piece, std::vector<bool> red)
     {
-      const auto bent = strongly_bent(piece);
+      Refiner<dim> refiner(piece);
+      const auto   bent = strongly_bent(refiner.bent_piece());
       // a triangle with two bisected edges is divided into four; repeat until nothing changes
       std::set<typename MeshPiece<dim>::Face> halved;
       for (bool changed = true; changed;)
@@ -323,7 +330,6 @@ namespace slipstick::mesh
                 }
             }
         }
-      Refiner<dim> refiner(piece);
       for (unsigned int c = 0; c < piece.cells.size(); ++c)
         {
           const auto               &cell = piece.cells[c];
@@ -381,9 +387,9 @@ namespace slipstick::mesh
       if (marked[c])
         for (const unsigned int v : piece.cells[c])
           marked_vertex[v] = true;
-    if constexpr (dim == 2)
-      mark_strongly_bent(piece, marked_vertex);
     Refiner<dim> refiner(piece);
+    if constexpr (dim == 2)
+      mark_strongly_bent(refiner.bent_piece(), marked_vertex);
     for (unsigned int c = 0; c < piece.cells.size(); ++c)
       {
         divide_by_marks(refiner, piece.cells[c], marked_vertex);

@@ -267,7 +267,9 @@ TEST(SurfaceMortar, only_the_nearest_level_counts)
         auto       master = surface(3, 2, rectangle(-0.2, step, -0.1, 1.1, 0), false, of_master, is_split);
         for (const auto &facet : surface(2, 5, rectangle(step, 1.2, -0.1, 1.1, -0.5), false, 2 * of_master, is_split))
           master.push_back(facet);
-        for (const auto &row : rows(slave, master))
+        const auto all = rows(slave, master);
+        EXPECT_EQ(all.size(), 20u);
+        for (const auto &row : all)
           EXPECT_NEAR(row.gap, row.position[0] < step + 0.25 - 1e-12 ? 0 : 0.5, 1e-12) << row.position;
       }
 }

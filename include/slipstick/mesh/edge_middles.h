@@ -40,8 +40,9 @@ namespace slipstick::mesh
   void bend_edges(MeshPiece<2> &piece);
 
   /// Cells with an edge that rises by more than a tenth of the height above it. Transition cells of a local refinement
-  /// would have no room beside such an edge: these cells are divided regularly or not at all.
-  std::vector<bool> strongly_bent(MeshPiece<2> piece);
+  /// would have no room beside such an edge: these cells are divided regularly or not at all. @param piece after
+  /// bend_edges().
+  std::vector<bool> strongly_bent(const MeshPiece<2> &piece);
 
   /// Number of boundary edges that are straight though their boundary is curved.
   unsigned int n_unbent(const MeshPiece<2> &piece);
