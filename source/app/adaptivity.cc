@@ -1,4 +1,5 @@
 #include <slipstick/app/adaptivity.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/mechanics/singular_points.h>
 
 #include <deal.II/base/mpi.h>
@@ -111,7 +112,7 @@ namespace slipstick::app
             vertices.push_back(mesh.subdomains[p]->global_vertices[cell->vertex_index(v)]);
           own.emplace_back(errors.of_cells[p][cell->active_cell_index()], mesh::cell_key(std::move(vertices)));
         }
-    const auto  gathered = dealii::Utilities::MPI::gather(mesh.comm, own);
+    const auto  gathered = gather(mesh.comm, own);
     std::size_t n_marked = 0;
     if (dealii::Utilities::MPI::this_mpi_process(mesh.comm) == 0)
       {

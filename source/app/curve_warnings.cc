@@ -1,4 +1,5 @@
 #include <slipstick/app/curve_warnings.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
 #include <slipstick/interface/body_contact.h>
@@ -116,7 +117,7 @@ namespace slipstick::app
                     worst.push_back(points[i].position[2]);
                 }
             }
-        for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.comm, worst))
+        for (const auto &of_rank : all_gather(mesh.comm, worst))
           worst = std::max(worst, of_rank);
         if (worst[0] > 0)
           texts["curves " + pair.name] = text_of(pair, worst, pressure > 0);

@@ -1,5 +1,6 @@
 #include <slipstick/app/formula_warnings.h>
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
 #include <slipstick/mechanics/surface_facet.h>
@@ -196,7 +197,7 @@ namespace slipstick::app
                   mesh.on_boundary(subjects[k].where, cell->face(f)->boundary_id()))
                 findings[k].take(
                   compare<dim>(*subjects[k].formula, mechanics::surface_part(*mesh.subdomains[p], spaces, cell, f), t));
-    for (const auto &list : dealii::Utilities::MPI::all_gather(mesh.comm, findings))
+    for (const auto &list : all_gather(mesh.comm, findings))
       for (unsigned int k = 0; k < subjects.size(); ++k)
         findings[k].take(list[k]);
     for (unsigned int k = 0; k < subjects.size(); ++k)

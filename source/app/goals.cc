@@ -2,6 +2,7 @@
 #include <slipstick/app/goals.h>
 #include <slipstick/app/stress_functionals.h>
 #include <slipstick/base/collective.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/contact/adjoint.h>
 #include <slipstick/interface/gap_defect.h>
 
@@ -109,7 +110,7 @@ namespace slipstick::app
             if (const double part = -factor * found->second * y.local_element(point.normal_row); part != 0)
               own.push_back({{point.pair, point.key}, part / defects.n_parts[point.pair].at(point.key)});
         std::map<std::pair<unsigned int, mechanics::NodeKey>, double> parts;
-        for (const auto &list : dealii::Utilities::MPI::all_gather(solver.mesh().comm, own))
+        for (const auto &list : all_gather(solver.mesh().comm, own))
           for (const auto &[of, part] : list)
             parts[of] += part;
         if (parts.empty())

@@ -1,5 +1,6 @@
 #include <slipstick/app/side_balance.h>
 #include <slipstick/base/box_tree.h>
+#include <slipstick/base/gather.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -78,7 +79,7 @@ namespace slipstick::app
                   own.push_back(std::move(one));
                 }
       std::vector<OutlineFace<dim>> all;
-      for (const auto &part : dealii::Utilities::MPI::gather(mesh.comm, own))
+      for (const auto &part : gather(mesh.comm, own))
         all.insert(all.end(), part.begin(), part.end());
       return all;
     }

@@ -1,5 +1,6 @@
 #include <slipstick/app/curve_warnings.h>
 #include <slipstick/app/solution_warnings.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
 #include <slipstick/mechanics/deformation.h>
@@ -69,7 +70,7 @@ namespace slipstick::app
           numbers.push_back(o.edge);
         }
       std::vector<OfPair> all(own.size());
-      for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
+      for (const auto &of_rank : all_gather(comm, numbers))
         {
           const double *n = of_rank.data();
           for (auto &pair : all)
@@ -135,13 +136,13 @@ namespace slipstick::app
                 places.insert(point.position);
               }
       for (const auto &of_rank :
-           dealii::Utilities::MPI::all_gather(dual.communicator(),
+           all_gather(dual.communicator(),
                                               std::vector<unsigned int>(pairs.begin(), pairs.end())))
         pairs.insert(of_rank.begin(), of_rank.end());
       std::vector<double> own;
       for (const auto &x : places)
         own.insert(own.end(), x.begin(), x.end());
-      for (const auto &of_rank : dealii::Utilities::MPI::all_gather(dual.communicator(), own))
+      for (const auto &of_rank : all_gather(dual.communicator(), own))
         for (unsigned int i = 0; i < of_rank.size(); i += 3)
           places.insert(std::array<double, 3>{{of_rank[i], of_rank[i + 1], of_rank[i + 2]}});
       if (pairs.empty())

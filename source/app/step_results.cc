@@ -1,5 +1,6 @@
 #include <slipstick/app/contact_faces.h>
 #include <slipstick/app/step_results.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/base/text.h>
 #include <slipstick/contact/resultants.h>
 #include <slipstick/interface/arc_length.h>
@@ -132,8 +133,8 @@ namespace slipstick::app
                                      std::vector<mechanics::NodeKey> &keys_of_nodes)
   {
     const auto &scene = solver.discrete_scene();
-    const auto  nodes = dealii::Utilities::MPI::gather(solver.mesh().comm, own.nodes);
-    const auto  keys  = dealii::Utilities::MPI::gather(solver.mesh().comm, own.keys);
+    const auto  nodes = gather(solver.mesh().comm, own.nodes);
+    const auto  keys  = gather(solver.mesh().comm, own.keys);
     std::vector<std::pair<contact::ContactNode, NodeOfPair>> all;
     for (unsigned int rank = 0; rank < nodes.size(); ++rank)
       for (unsigned int i = 0; i < nodes[rank].size(); ++i)

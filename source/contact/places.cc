@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/contact/places.h>
 
 #include <deal.II/base/mpi.h>
@@ -51,7 +52,7 @@ namespace slipstick::contact
                                   static_cast<double>(place.in_pair),
                                   static_cast<double>(place.pair)};
     Largest                   all;
-    for (const auto &n : dealii::Utilities::MPI::all_gather(comm, own))
+    for (const auto &n : all_gather(comm, own))
       {
         const Place where = {n[1] > 0,
                              static_cast<unsigned int>(n[2]),

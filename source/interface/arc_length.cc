@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/interface/arc_length.h>
 
 #include <deal.II/base/mpi.h>
@@ -131,7 +132,7 @@ namespace slipstick::interface
                                                                             const mechanics::Spaces<dim> &spaces)
   {
     std::vector<std::vector<OutlineEdge<dim>>> by_pair(scene.contacts.size());
-    for (const auto &list : dealii::Utilities::MPI::gather(mesh.comm, local_edges(scene, mesh, spaces)))
+    for (const auto &list : gather(mesh.comm, local_edges(scene, mesh, spaces)))
       for (const auto &edge : list)
         by_pair[edge.pair].push_back(edge);
     std::map<std::pair<unsigned int, mechanics::NodeKey>, double> result;

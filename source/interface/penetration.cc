@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/interface/edge_tree.h>
 #include <slipstick/interface/obstacle.h>
 #include <slipstick/interface/obstacle_penetration.h>
@@ -61,7 +62,7 @@ namespace slipstick::interface
                                          own.back().u[d] = u[p][dim * node + d];
                                      });
       Moves<dim> all;
-      for (const auto &list : dealii::Utilities::MPI::all_gather(mesh.comm, own))
+      for (const auto &list : all_gather(mesh.comm, own))
         for (const auto &move : list)
           for (unsigned int d = 0; d < dim; ++d)
             all[move.key][d] = move.u[d];

@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/mechanics/auxiliary_supports.h>
 
 #include <deal.II/base/mpi.h>
@@ -124,7 +125,7 @@ namespace slipstick::mechanics
               if (candidate.comes_before(best[k]))
                 best[k] = candidate;
             }
-        for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.comm, best))
+        for (const auto &of_rank : all_gather(mesh.comm, best))
           for (unsigned int k = 0; k < 2; ++k)
             if (of_rank[k].comes_before(best[k]))
               best[k] = of_rank[k];

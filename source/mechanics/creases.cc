@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/mechanics/creases.h>
 
 #include <deal.II/base/mpi.h>
@@ -103,9 +104,9 @@ namespace slipstick::mechanics
     std::vector<Crease> own, all;
     join(halves, is_of_interest, own); // the others are at cuts between ranks
     std::vector<HalfCrease> at_cuts;
-    for (const auto &list : dealii::Utilities::MPI::all_gather(mesh.comm, halves))
+    for (const auto &list : all_gather(mesh.comm, halves))
       at_cuts.insert(at_cuts.end(), list.begin(), list.end());
-    for (const auto &list : dealii::Utilities::MPI::all_gather(mesh.comm, own))
+    for (const auto &list : all_gather(mesh.comm, own))
       all.insert(all.end(), list.begin(), list.end());
     join(at_cuts, is_of_interest, all);
     std::sort(all.begin(), all.end(), [](const Crease &a, const Crease &b) {

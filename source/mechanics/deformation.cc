@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/mechanics/cell_values.h>
 #include <slipstick/mechanics/deformation.h>
 #include <slipstick/mechanics/rigid_modes.h>
@@ -30,7 +31,7 @@ namespace slipstick::mechanics
       for (unsigned int d = 0; d < dim; ++d)
         own.push_back(peak.position[d]);
       peak = {};
-      for (const auto &numbers : dealii::Utilities::MPI::all_gather(comm, own))
+      for (const auto &numbers : all_gather(comm, own))
         {
           dealii::Point<dim> position;
           for (unsigned int d = 0; d < dim; ++d)

@@ -1,4 +1,5 @@
 #include <slipstick/base/collective.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/mechanics/adaptive_cubature.h>
 #include <slipstick/mechanics/adaptive_quadrature.h>
 #include <slipstick/mechanics/loads.h>
@@ -285,7 +286,7 @@ namespace slipstick::mechanics
           numbers.insert(numbers.end(), place.begin(), place.end());
         }
       std::vector<LoadResultant> all(own.size());
-      for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
+      for (const auto &of_rank : all_gather(comm, numbers))
         for (unsigned int k = 0; k < all.size(); ++k)
           {
             const double *n = of_rank.data() + (Resultant::n_numbers + 4) * k;

@@ -1,4 +1,5 @@
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/base/log.h>
 #include <slipstick/mechanics/points.h>
 
@@ -101,7 +102,7 @@ namespace slipstick::mechanics
           {
             find_in_subdomain(spaces, mesh, p, at[k], best[k]);
           }
-    for (const auto &others : dealii::Utilities::MPI::all_gather(mesh.comm, best))
+    for (const auto &others : all_gather(mesh.comm, best))
       for (unsigned int k = 0; k < points.size(); ++k)
         if (others[k].size > 0 && (best[k].size == 0 || others[k].comes_before(best[k])))
           best[k] = others[k];

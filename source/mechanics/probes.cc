@@ -1,4 +1,5 @@
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
 #include <slipstick/mechanics/nearest_in_cell.h>
@@ -51,7 +52,7 @@ namespace slipstick::mechanics
           }
       }
     const unsigned int  rank     = dealii::Utilities::MPI::this_mpi_process(mesh.comm);
-    const auto          of_ranks = dealii::Utilities::MPI::all_gather(mesh.comm, distances);
+    const auto          of_ranks = all_gather(mesh.comm, distances);
     std::vector<double> all_diameters(diameters.size());
     dealii::Utilities::MPI::max(diameters, mesh.comm, all_diameters);
     for (unsigned int j = 0; j < which.size(); ++j)

@@ -1,4 +1,5 @@
 #include <slipstick/base/box_tree.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/base/nearest.h>
 #include <slipstick/mechanics/bond_ends.h>
 #include <slipstick/mechanics/creases.h>
@@ -229,7 +230,7 @@ namespace slipstick::mechanics
               }
           }
       }
-    for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.comm, spots))
+    for (const auto &of_rank : all_gather(mesh.comm, spots))
       for (unsigned int k = 0; k < spots.size(); ++k)
         if (of_rank[k].comes_before(spots[k]))
           spots[k] = of_rank[k];
@@ -279,7 +280,7 @@ namespace slipstick::mechanics
                 return true;
               });
       }
-    for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.comm, nearest))
+    for (const auto &of_rank : all_gather(mesh.comm, nearest))
       for (std::size_t k = 0; k < places.size(); ++k)
         nearest[k] = std::min(nearest[k], of_rank[k]);
     std::vector<CellAtPlace> found;

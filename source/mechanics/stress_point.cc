@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/mechanics/cell_stress.h>
 #include <slipstick/mechanics/nearest_in_cell.h>
 #include <slipstick/mechanics/stress_point.h>
@@ -102,7 +103,7 @@ namespace slipstick::mechanics
   std::optional<Stress<dim>> StressPoint<dim>::fitted(const std::vector<Eigen::VectorXd> &u) const
   {
     std::vector<double> all;
-    for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.comm, samples(u)))
+    for (const auto &of_rank : all_gather(mesh.comm, samples(u)))
       all.insert(all.end(), of_rank.begin(), of_rank.end());
     const unsigned int n = dim + n_components;
     using Rows           = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -198,7 +199,7 @@ namespace slipstick::mechanics
         if (best.empty() || shape < best)
           best = shape;
       }
-    for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.comm, best))
+    for (const auto &of_rank : all_gather(mesh.comm, best))
       if (best.empty() || (!of_rank.empty() && of_rank < best))
         best = of_rank;
     return Eigen::Map<const Eigen::Matrix<double, dim, dim>>(best.data() + dim);

@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/mechanics/surface.h>
 
 #include <deal.II/base/mpi.h>
@@ -141,7 +142,7 @@ namespace slipstick::mechanics
           for (const unsigned int f : cell->face_indices())
             if (mesh::is_on_outline(cell->face(f)))
               own.push_back(surface_edge(*mesh.subdomains[p], spaces, cell, f));
-    for (const auto &list : dealii::Utilities::MPI::all_gather(mesh.comm, own))
+    for (const auto &list : all_gather(mesh.comm, own))
       all.insert(all.end(), list.begin(), list.end());
     std::sort(all.begin(), all.end());
     return all;

@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/base/nearest.h>
 #include <slipstick/mechanics/surface_facet.h>
 
@@ -227,7 +228,7 @@ namespace slipstick::mechanics
           for (const unsigned int f : cell->face_indices())
             if (mesh::is_on_outline(cell->face(f)))
               own.push_back(surface_part(*mesh.subdomains[p], spaces, cell, f));
-    for (const auto &list : dealii::Utilities::MPI::all_gather(mesh.comm, own))
+    for (const auto &list : all_gather(mesh.comm, own))
       all.insert(all.end(), list.begin(), list.end());
     std::sort(all.begin(), all.end());
     return all;

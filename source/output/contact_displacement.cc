@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/output/contact_displacement.h>
 
 #include <deal.II/base/mpi.h>
@@ -47,8 +48,8 @@ namespace slipstick::output
         keys.push_back(key);
         values.push_back(value);
       }
-    const auto    keys_of_ranks   = dealii::Utilities::MPI::gather(mesh.comm, keys);
-    const auto    values_of_ranks = dealii::Utilities::MPI::gather(mesh.comm, values);
+    const auto    keys_of_ranks   = gather(mesh.comm, keys);
+    const auto    values_of_ranks = gather(mesh.comm, values);
     Displacements found;
     for (std::size_t rank = 0; rank < keys_of_ranks.size(); ++rank)
       for (std::size_t i = 0; i < keys_of_ranks[rank].size(); ++i)

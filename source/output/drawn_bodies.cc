@@ -1,4 +1,5 @@
 #include <slipstick/base/across.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/base/log.h>
 #include <slipstick/output/drawn_bodies.h>
 
@@ -64,7 +65,7 @@ namespace slipstick::output
               for (unsigned int d = 0; d < 2; ++d)
                 own.push_back(cell->vertex(n == 4 ? around[k] : k)[d]);
           }
-      for (const auto &of_rank : dealii::Utilities::MPI::gather(mesh.comm, own))
+      for (const auto &of_rank : gather(mesh.comm, own))
         for (auto next = of_rank.begin(); next != of_rank.end();)
           {
             cells.emplace_back();

@@ -1,5 +1,6 @@
 #include <slipstick/base/across.h>
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/output/load_places.h>
 
 #include <deal.II/base/mpi.h>
@@ -122,7 +123,7 @@ namespace slipstick::output
           candidate[d + 1] = rounded(place[d], size);
         best = std::min(best, candidate);
       });
-      for (const Candidate &candidate : dealii::Utilities::MPI::all_gather(mesh.comm, best))
+      for (const Candidate &candidate : all_gather(mesh.comm, best))
         best = std::min(best, candidate);
       for (unsigned int d = 0; d < dim; ++d)
         centre[d] = best[d + 1];

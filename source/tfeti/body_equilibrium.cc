@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/tfeti/body_equilibrium.h>
 #include <slipstick/tfeti/gathered_by_label.h>
 
@@ -108,7 +109,7 @@ namespace slipstick::tfeti
           row[8] = bound.forces.cap;
         }
     std::vector<Row> result(shares.rows());
-    for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
+    for (const auto &of_rank : all_gather(comm, numbers))
       for (std::size_t i = 0; i < of_rank.size(); i += width)
         {
           const double *n                        = of_rank.data() + i;

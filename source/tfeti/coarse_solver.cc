@@ -1,4 +1,5 @@
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/gather.h>
 #include <slipstick/tfeti/cholesky.h>
 #include <slipstick/tfeti/coarse_solver.h>
 
@@ -31,7 +32,7 @@ namespace slipstick::tfeti
       MPI_Type_commit(&entry);
       std::vector<int> n, first = {0};
       for (const unsigned int n_of_rank :
-           dealii::Utilities::MPI::all_gather(comm, static_cast<unsigned int>(entries.size())))
+           all_gather(comm, static_cast<unsigned int>(entries.size())))
         {
           n.push_back(static_cast<int>(n_of_rank));
           first.push_back(first.back() + n.back());
@@ -115,7 +116,7 @@ namespace slipstick::tfeti
       , session(std::make_shared<CholmodSession>(Ordering::nested_dissection))
     {
       std::vector<unsigned int> changing;
-      for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, changes))
+      for (const auto &of_rank : all_gather(comm, changes))
         {
           first_of_rank.push_back(n);
           n_of_rank.push_back(static_cast<int>(of_rank.size()));

@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/qp/types.h>
 #include <slipstick/tfeti/dense.h>
 #include <slipstick/tfeti/least_violation.h>
@@ -147,7 +148,7 @@ namespace slipstick::tfeti
       const DistributedVector          jump       = dual.dual_operator().jumps(at.u);
       const auto                       conditions = SlidingConditions(dual, loose, free, x, jump).conditions;
       std::vector<std::vector<double>> all;
-      for (const auto &part : dealii::Utilities::MPI::all_gather(dual.communicator(), conditions))
+      for (const auto &part : all_gather(dual.communicator(), conditions))
         all.insert(all.end(), part.begin(), part.end());
       Eigen::VectorXd values(all.size());
       Eigen::MatrixXd rates(all.size(), loose.size());

@@ -1,3 +1,4 @@
+#include <slipstick/base/gather.h>
 #include <slipstick/base/log.h>
 #include <slipstick/tfeti/null_vectors.h>
 #include <slipstick/tfeti/rigid_motions.h>
@@ -157,7 +158,7 @@ namespace slipstick::tfeti
       }
     const std::size_t                   n = motions_of_body;
     std::vector<Eigen::Triplet<double>> entries;
-    for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
+    for (const auto &of_rank : all_gather(comm, numbers))
       for (std::size_t at = 0; at < of_rank.size(); at += 2 + n * n)
         for (std::size_t k = 0; k < n * n; ++k)
           entries.emplace_back(of_rank[at] * n + k % n, of_rank[at + 1] * n + k / n, of_rank[at + 2 + k]);

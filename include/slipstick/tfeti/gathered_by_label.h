@@ -1,8 +1,9 @@
 // Gathers values of the rows of all ranks.
 #pragma once
 
+#include <slipstick/base/gather.h>
+
 #include <deal.II/base/exceptions.h>
-#include <deal.II/base/mpi.h>
 
 #include <cstdint>
 #include <map>
@@ -19,8 +20,8 @@ namespace slipstick::tfeti
                                                    const MPI_Comm                    comm)
   {
     std::map<std::uint64_t, Value> all;
-    const auto                     labels_of = dealii::Utilities::MPI::all_gather(comm, labels);
-    const auto                     values_of = dealii::Utilities::MPI::all_gather(comm, values);
+    const auto                     labels_of = all_gather(comm, labels);
+    const auto                     values_of = all_gather(comm, values);
     for (unsigned int rank = 0; rank < labels_of.size(); ++rank)
       for (unsigned int i = 0; i < labels_of[rank].size(); ++i)
         {
