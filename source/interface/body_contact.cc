@@ -1,5 +1,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/interface/body_contact.h>
+#include <slipstick/interface/corners.h>
 #include <slipstick/interface/gap_rotation.h>
 #include <slipstick/interface/held_slaves.h>
 #include <slipstick/interface/pair_checks.h>
@@ -55,20 +56,22 @@ namespace slipstick::interface
         refuse_pair(scene, pair, sides, 0.);
       const double near = pair.reach ? *pair.reach : automatic_reach(sides.slave, sides.master, *distance);
       // more distant nodes have no rows at first, but are checked again with the solution
-      const double reach = pair.reach || !pair.law.acts_where_closed_alone()
-                             ? near
-                             : std::max(near, widest_reach(sides.slave, sides.master, *distance));
-      auto         rows  = mortar_rows(sides.slave,
+      const double reach   = pair.reach || !pair.law.acts_where_closed_alone()
+                               ? near
+                               : std::max(near, widest_reach(sides.slave, sides.master, *distance));
+      Corners      corners = corners_of(scene, mesh, pair.slave, sides.slave, sides.slave_outline);
+      corners.merge(corners_of(scene, mesh, *pair.master, sides.master, sides.master_outline));
+      auto rows = mortar_rows(sides.slave,
                               sides.master,
                               {reach, near},
                               pair.discretization,
                               pair.name,
-                              mesh::Kinematics<dim>(scene.plane_state));
+                              mesh::Kinematics<dim>(scene.plane_state),
+                              corners);
       if (rows.empty())
         refuse_pair(scene, pair, sides, reach);
       check_sides(scene, mesh, pair, sides, all, rows);
-      if constexpr (dim == 3)
-        give_held_rows_to_neighbours(scene, mesh, all, sides.slave, rows);
+      give_held_rows_to_neighbours<dim>(scene, mesh, all, sides.slave, rows);
       if (!mesh::Kinematics<dim>(scene.plane_state).is_revolution()) // bodies of revolution do not rotate
         find_rotation_weights(sides.slave, sides.master, rows);
       return rows;

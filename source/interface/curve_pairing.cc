@@ -35,23 +35,24 @@ namespace slipstick::interface
   CurvePairing::CurvePairing(const std::vector<Edge>   &slave_,
                              const std::vector<Edge>   &master_,
                              const Reach               &reach_,
-                             const mesh::Kinematics<2> &kinematics)
+                             const mesh::Kinematics<2> &kinematics,
+                             const Corners             &corners)
     : slave(slave_)
     , master(master_)
     , reach(reach_)
     , tree(master_)
     , own(slave_, kinematics)
   {
-    average_normals();
+    average_normals(corners);
   }
 
   /// Replaces the slave's normals by the means of both sides wherever the slave's own normal meets a master that faces
-  /// it.
-  void CurvePairing::average_normals()
+  /// it, and by that of one side at a corner of the other.
+  void CurvePairing::average_normals(const Corners &corners)
   {
     const SurfaceNodes<2> of_master(master);
     std::vector<Tensor>   facing(own.nodes.size());
-    std::vector<bool>     is_done(own.nodes.size(), false);
+    std::vector<bool>     is_done(own.nodes.size(), false), is_at_corner_of_master(own.nodes.size(), false);
     for (unsigned int e = 0; e < slave.size(); ++e)
       {
         const auto near = candidates(e);
@@ -72,20 +73,21 @@ namespace slipstick::interface
             for (const unsigned int m : near)
               if (const auto found = hit(e, s, m); found && std::abs(found->gap - gap) <= same_place * slave[e].chord())
                 {
-                  const Tensor n     = of_master.normal(m, master[m].n_nodes, master[m].shape(found->s));
+                  const auto   N     = master[m].shape(found->s);
+                  const Tensor n     = of_master.normal(m, master[m].n_nodes, N);
                   const double along = n * own.nodes[at].normal / n.norm();
                   if (along < std::min(best, facing_cosine))
                     {
-                      best       = along;
-                      facing[at] = n / n.norm();
+                      best                       = along;
+                      facing[at]                 = n / n.norm();
+                      is_at_corner_of_master[at] = is_at_corner(master[m], N, corners);
                     }
                 }
           }
       }
     for (unsigned int i = 0; i < facing.size(); ++i)
       {
-        const Tensor sum    = own.nodes[i].normal - facing[i];
-        own.nodes[i].normal = sum / sum.norm();
+        own.nodes[i].normal = mean_normal(own.nodes[i], facing[i], is_at_corner_of_master[i], corners);
       }
   }
 

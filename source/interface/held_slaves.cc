@@ -14,38 +14,41 @@ namespace slipstick::interface
 {
   namespace
   {
-    using Row = MortarRow<3>;
-
     // A normal is held if its part in free directions is below this.
     constexpr double held_normal = 1e-6;
     // Neighbours are equally near if their distances differ by less than this fraction.
     constexpr double equally_near = 1e-6;
 
+    template <int dim>
+    using HeldComponents = std::map<mechanics::NodeKey, std::array<bool, dim>>;
+
     /// Components prescribed by supports, by node of the body.
-    std::map<mechanics::NodeKey, std::array<bool, 3>> held_components(const scene::Scene<3>                      &scene,
-                                                                      const mesh::Mesh<3>                        &mesh,
-                                                                      const std::vector<mechanics::SurfaceFacet> &all,
-                                                                      const unsigned int                          body)
+    template <int dim>
+    HeldComponents<dim> held_components(const scene::Scene<dim>                         &scene,
+                                        const mesh::Mesh<dim>                           &mesh,
+                                        const std::vector<mechanics::BoundaryPart<dim>> &all,
+                                        const unsigned int                               body)
     {
-      std::map<mechanics::NodeKey, std::array<bool, 3>> held;
+      HeldComponents<dim> held;
       for (const auto &support : scene.supports)
         if (!support.point && support.where.body == body)
-          for (const auto &facet : mechanics::parts_on(mesh, all, support.where))
-            for (unsigned int i = 0; i < facet.n_nodes; ++i)
-              for (unsigned int c = 0; c < 3; ++c)
+          for (const auto &part : mechanics::parts_on(mesh, all, support.where))
+            for (unsigned int i = 0; i < part.n_nodes; ++i)
+              for (unsigned int c = 0; c < dim; ++c)
                 if (support.components[c])
-                  held[facet.keys[i]][c] = true;
+                  held[part.keys[i]][c] = true;
       return held;
     }
 
     /// Whether supports hold the slave node along its normal.
-    bool is_held(const Row &row, const std::map<mechanics::NodeKey, std::array<bool, 3>> &held)
+    template <int dim>
+    bool is_held(const MortarRow<dim> &row, const HeldComponents<dim> &held)
     {
       const auto found = held.find(row.slave);
       if (found == held.end())
         return false;
       double squares = 0;
-      for (unsigned int c = 0; c < 3; ++c)
+      for (unsigned int c = 0; c < dim; ++c)
         squares += found->second[c] ? 0. : row.normal[c] * row.normal[c];
       return squares <= held_normal * held_normal;
     }
@@ -61,7 +64,8 @@ namespace slipstick::interface
     }
 
     /// row += part times the held one, both weighted by their measures.
-    void take(const Row &held, const double part, Row &row)
+    template <int dim>
+    void take(const MortarRow<dim> &held, const double part, MortarRow<dim> &row)
     {
       const double share = part * held.measure, sum = row.measure + share;
       row.slave_weights   = mean(row.slave_weights, row.measure, held.slave_weights, share);
@@ -76,27 +80,29 @@ namespace slipstick::interface
       row.full_length += part * held.full_length;
     }
 
-    /// For nodes whose rows are removed: the nodes of the same facets.
+    /// For nodes whose rows are removed: the nodes of the same edges or facets.
+    template <int dim>
     std::map<mechanics::NodeKey, std::set<mechanics::NodeKey>> neighbours_of(
-      const std::vector<Row>                     &rows,
-      const std::vector<bool>                    &goes,
-      const std::vector<mechanics::SurfaceFacet> &slave)
+      const std::vector<MortarRow<dim>>               &rows,
+      const std::vector<bool>                         &goes,
+      const std::vector<mechanics::BoundaryPart<dim>> &slave)
     {
       std::map<mechanics::NodeKey, std::set<mechanics::NodeKey>> neighbours;
       for (std::size_t i = 0; i < rows.size(); ++i)
         if (goes[i])
           neighbours[rows[i].slave];
-      for (const auto &facet : slave)
-        for (unsigned int i = 0; i < facet.n_nodes; ++i)
-          if (const auto found = neighbours.find(facet.keys[i]); found != neighbours.end())
-            found->second.insert(facet.keys.begin(), facet.keys.begin() + facet.n_nodes);
+      for (const auto &part : slave)
+        for (unsigned int i = 0; i < part.n_nodes; ++i)
+          if (const auto found = neighbours.find(part.keys[i]); found != neighbours.end())
+            found->second.insert(part.keys.begin(), part.keys.begin() + part.n_nodes);
       return neighbours;
     }
 
     /// The candidates nearest to a row.
-    std::vector<std::size_t> nearest(const std::vector<Row>         &rows,
-                                     const Row                      &row,
-                                     const std::vector<std::size_t> &candidates)
+    template <int dim>
+    std::vector<std::size_t> nearest(const std::vector<MortarRow<dim>> &rows,
+                                     const MortarRow<dim>              &row,
+                                     const std::vector<std::size_t>    &candidates)
     {
       const auto distance = [&](const std::size_t k) { return rows[k].position.distance(row.position); };
       double     least    = std::numeric_limits<double>::infinity();
@@ -110,11 +116,12 @@ namespace slipstick::interface
     }
   } // namespace
 
-  void give_held_rows_to_neighbours(const scene::Scene<3>                      &scene,
-                                    const mesh::Mesh<3>                        &mesh,
-                                    const std::vector<mechanics::SurfaceFacet> &all,
-                                    const std::vector<mechanics::SurfaceFacet> &slave,
-                                    std::vector<Row>                           &rows)
+  template <int dim>
+  void give_held_rows_to_neighbours(const scene::Scene<dim>                         &scene,
+                                    const mesh::Mesh<dim>                           &mesh,
+                                    const std::vector<mechanics::BoundaryPart<dim>> &all,
+                                    const std::vector<mechanics::BoundaryPart<dim>> &slave,
+                                    std::vector<MortarRow<dim>>                     &rows)
   {
     if (rows.empty() || slave.empty())
       return;
@@ -122,7 +129,7 @@ namespace slipstick::interface
     std::vector<bool> goes(rows.size());
     std::map<std::pair<mechanics::NodeKey, unsigned int>, std::size_t> place; // of the rows that are not held
     for (std::size_t i = 0; i < rows.size(); ++i)
-      if (!is_held(rows[i], held))
+      if (!is_held<dim>(rows[i], held))
         place[{rows[i].slave, rows[i].side}] = i;
       else
         goes[i] = rows[i].master_weights.size() > 1;
@@ -130,8 +137,8 @@ namespace slipstick::interface
       return;
     const auto neighbours = neighbours_of(rows, goes, slave);
 
-    const std::vector<Row> given = rows;
-    std::vector<Row>       kept;
+    const std::vector<MortarRow<dim>> given = rows;
+    std::vector<MortarRow<dim>>       kept;
     for (std::size_t i = 0; i < given.size(); ++i)
       if (goes[i])
         {
@@ -149,4 +156,15 @@ namespace slipstick::interface
         kept.push_back(std::move(rows[i]));
     rows = std::move(kept);
   }
+
+  template void give_held_rows_to_neighbours(const scene::Scene<2> &,
+                                             const mesh::Mesh<2> &,
+                                             const std::vector<mechanics::BoundaryPart<2>> &,
+                                             const std::vector<mechanics::BoundaryPart<2>> &,
+                                             std::vector<MortarRow<2>> &);
+  template void give_held_rows_to_neighbours(const scene::Scene<3> &,
+                                             const mesh::Mesh<3> &,
+                                             const std::vector<mechanics::BoundaryPart<3>> &,
+                                             const std::vector<mechanics::BoundaryPart<3>> &,
+                                             std::vector<MortarRow<3>> &);
 } // namespace slipstick::interface

@@ -26,9 +26,10 @@ namespace slipstick::interface
       MortarIntegrals(const std::vector<Edge>   &slave_,
                       const std::vector<Edge>   &master_,
                       const Reach               &reach,
-                      const mesh::Kinematics<2> &kinematics_)
+                      const mesh::Kinematics<2> &kinematics_,
+                      const Corners             &corners)
         : kinematics(kinematics_)
-        , pairing(slave_, master_, reach, kinematics)
+        , pairing(slave_, master_, reach, kinematics, corners)
         , slave(slave_)
         , master(master_)
         , gauss(n_gauss)
@@ -122,8 +123,31 @@ namespace slipstick::interface
                 node.slave[edge.keys[k]] += n_test == edge.n_nodes ? measures[i] : D(i, k);
             for (const auto &[key, sum] : other)
               node.master[key] = dual.row(i).dot(sum);
+            widen_gap(node, e, i, parts);
             parts_of_nodes[pairing.nodes_of(e)[i]].push_back(std::move(node));
           }
+      }
+
+      /// For a node beyond the part of its edge that faces the master, where the integrals extrapolate: the gap is at
+      /// least that at the nearest place that faces the master. Otherwise a sloping master would reach the node.
+      void widen_gap(NodeIntegrals<2>                         &node,
+                     const unsigned int                        e,
+                     const unsigned int                        i,
+                     const std::vector<CurvePairing::Segment> &parts) const
+      {
+        const auto  &part      = i == 0 ? parts.front() : parts.back();
+        const double end       = i == 0 ? part.from : part.to;
+        const bool   is_beyond = i == 0 ? end > whole_edge : end < 1 - whole_edge;
+        const double inside    = end + (i == 0 ? 1 : -1) * whole_edge * (part.to - part.from);
+        const auto   there     = i < 2 && is_beyond ? pairing.hit(e, inside, part.master) : std::nullopt;
+        if (!there)
+          return;
+        const Tensor n       = pairing.direction(e, inside);
+        const double gap     = there->gap + master[part.master].rise(there->s, n) - slave[e].rise(inside, n);
+        const Tensor of_node = pairing.nodes()[pairing.nodes_of(e)[i]].normal;
+        const double missing = gap - gap_of(node, of_node, nodes);
+        if (missing > whole_edge * slave[e].chord())
+          node.rise += node.measure * missing * of_node;
       }
 
     public:
@@ -161,9 +185,10 @@ namespace slipstick::interface
                                         const Reach                                  &reach,
                                         const scene::ContactDiscretization            discretization,
                                         const std::string                            &name,
-                                        const mesh::Kinematics<2>                    &kinematics)
+                                        const mesh::Kinematics<2>                    &kinematics,
+                                        const Corners                                &corners)
   {
-    const MortarIntegrals integrals(slave, master, reach, kinematics);
+    const MortarIntegrals integrals(slave, master, reach, kinematics, corners);
     return matched(integrals.rows(),
                    integrals.places_of_nodes(),
                    discretization,

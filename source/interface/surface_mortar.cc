@@ -73,8 +73,11 @@ namespace slipstick::interface
     class SurfaceIntegrals
     {
     public:
-      SurfaceIntegrals(const std::vector<Facet> &slave_, const std::vector<Facet> &master_, const Reach &reach)
-        : pairing(slave_, master_, reach)
+      SurfaceIntegrals(const std::vector<Facet> &slave_,
+                       const std::vector<Facet> &master_,
+                       const Reach              &reach,
+                       const Corners            &corners)
+        : pairing(slave_, master_, reach, corners)
         , slave(slave_)
         , master(master_)
         , exact(is_quadratic(slave_, master_) ? n_exact_quadratic : n_exact)
@@ -190,6 +193,7 @@ namespace slipstick::interface
             node.rise              = rises[i] * moments.normal;
             node.neglected_sagitta = moments.neglected_sagitta;
             node.measure = node.length = phi.areas[i];
+            node.whole                 = phi.whole[i];
             if (phi.is_biorthogonal)
               node.slave[facet.keys[i]] += phi.areas[i];
             else
@@ -206,6 +210,7 @@ namespace slipstick::interface
       {
         Eigen::MatrixXd of_shapes;
         Eigen::VectorXd areas;
+        Eigen::VectorXd whole; // areas if the facet were fully covered
         Eigen::MatrixXd slave;
         bool            is_biorthogonal = false; // <phi_i N_k> is areas[i] for i = k and otherwise 0
       };
@@ -227,6 +232,8 @@ namespace slipstick::interface
           is_linear ? linear_functions(facet) : Eigen::MatrixXd::Identity(facet.n_nodes, facet.n_nodes).eval();
         const Eigen::MatrixXd mass = phi.of_shapes * moments.mass * phi.of_shapes.transpose();
         phi.areas                  = phi.of_shapes * moments.areas;
+        const auto whole           = facet.tributary_areas();
+        phi.whole                  = phi.of_shapes * Eigen::Map<const Eigen::VectorXd>(whole.data(), facet.n_nodes);
         if (!is_linear && facet.n_nodes == 6 && facet.is_bent())
           give_to_edges(phi.areas);
         const bool is_independent = independence(mass) > least_eigenvalue;
@@ -254,9 +261,10 @@ namespace slipstick::interface
                                         const Reach                       &reach,
                                         const scene::ContactDiscretization discretization,
                                         const std::string                 &name,
-                                        const mesh::Kinematics<3> &)
+                                        const mesh::Kinematics<3> &,
+                                        const Corners &corners)
   {
-    const SurfaceIntegrals integrals(slave, master, reach);
+    const SurfaceIntegrals integrals(slave, master, reach, corners);
     return matched(integrals.rows(),
                    integrals.places_of_nodes(),
                    discretization,

@@ -118,14 +118,15 @@ namespace slipstick::interface
 
   SurfacePairing::SurfacePairing(const std::vector<Facet> &slave_,
                                  const std::vector<Facet> &master_,
-                                 const Reach              &reach_)
+                                 const Reach              &reach_,
+                                 const Corners            &corners)
     : slave(slave_)
     , master(master_)
     , reach(reach_)
     , tree(facet_tree(master_))
     , own(slave_)
   {
-    average_normals();
+    average_normals(corners);
   }
 
   std::vector<unsigned int> SurfacePairing::candidates(const std::vector<dealii::Point<3>> &points,
@@ -139,12 +140,13 @@ namespace slipstick::interface
     return tree.near(BoxTree<3>::widened(BoxTree<3>::box_around(around), margin * size));
   }
 
-  std::optional<SurfacePairing::Tensor> SurfacePairing::facing_normal(const SurfaceNode<3>  &node,
-                                                                      const SurfaceNodes<3> &of_master) const
+  std::optional<SurfacePairing::Facing> SurfacePairing::facing_normal(const SurfaceNode<3>  &node,
+                                                                      const SurfaceNodes<3> &of_master,
+                                                                      const Corners         &corners) const
   {
     const Plane           plane(node.position, node.normal);
     double                nearest = std::numeric_limits<double>::max();
-    std::optional<Tensor> found;
+    std::optional<Facing> found;
     for (const unsigned int m : candidates({node.position}, node.normal, node.size))
       {
         if (middle_normal(master[m]) * node.normal >= facing_cosine)
@@ -158,26 +160,27 @@ namespace slipstick::interface
         const double gap = facet.height_at({0, 0});
         if (gap > reach.ahead || gap < -reach.behind || std::abs(gap) > nearest + on_edge * node.size)
           continue;
-        Tensor n = of_master.normal(m, master[m].n_nodes, master[m].shape(facet.place_at({0, 0})));
+        const auto N = master[m].shape(facet.place_at({0, 0}));
+        Tensor     n = of_master.normal(m, master[m].n_nodes, N);
         n /= n.norm();
         // on an edge of the master take the side that is most opposed to the slave, independent of the numbering of
         // facets
-        if (!found || std::abs(gap) < nearest - on_edge * node.size || n * node.normal < *found * node.normal)
-          found = n;
+        if (!found || std::abs(gap) < nearest - on_edge * node.size || n * node.normal < found->normal * node.normal)
+          found = {n, is_at_corner(master[m], N, corners)};
         nearest = std::min(nearest, std::abs(gap));
       }
     return found;
   }
 
   /// Replaces the slave's normals by the means of both sides wherever the slave's own normal hits a master that faces
-  /// it.
-  void SurfacePairing::average_normals()
+  /// it, and by that of one side at a corner or an edge of the other.
+  void SurfacePairing::average_normals(const Corners &corners)
   {
     const SurfaceNodes<3> of_master(master);
     for (auto &node : own.nodes)
       {
-        const Tensor sum = node.normal - facing_normal(node, of_master).value_or(Tensor());
-        node.normal      = sum / sum.norm();
+        const Facing facing = facing_normal(node, of_master, corners).value_or(Facing());
+        node.normal         = mean_normal(node, facing.normal, facing.is_at_corner, corners);
       }
   }
 

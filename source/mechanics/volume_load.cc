@@ -11,8 +11,9 @@ namespace slipstick::mechanics
 {
   namespace
   {
-    // Points per direction of the finer quadrature used to check body forces.
-    constexpr unsigned int finer_order = 6;
+    // Points per direction of the finer quadrature used to check body forces. On tetrahedra deal.II has no rules beyond
+    // the second: a larger number gives one without points.
+    constexpr unsigned int finer_order = 6, finer_order_of_tetrahedra = 5;
 
     template <int dim>
     bool is_constant(const scene::BodyForce<dim> &load)
@@ -127,9 +128,9 @@ namespace slipstick::mechanics
     });
     if (!any)
       return result;
-    const auto      finer = element.cell.is_simplex()
-                              ? dealii::Quadrature<dim>(dealii::QWitherdenVincentSimplex<dim>(finer_order))
-                              : dealii::Quadrature<dim>(dealii::QGauss<dim>(finer_order));
+    const auto      finer = element.cell.is_simplex() ? dealii::Quadrature<dim>(dealii::QWitherdenVincentSimplex<dim>(
+                                                     dim == 3 ? finer_order_of_tetrahedra : finer_order))
+                                                      : dealii::Quadrature<dim>(dealii::QGauss<dim>(finer_order));
     CellValues<dim> coarse(*element.mapping, *element.scalar, element.loads, dealii::update_quadrature_points),
       fine(*element.mapping, *element.scalar, finer, dealii::update_quadrature_points);
     for (const auto &cell : dof_handler.active_cell_iterators())

@@ -9,6 +9,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -28,26 +29,38 @@ namespace slipstick::mesh
     constexpr double most_cells          = 1e9;   // above this 32-bit counters may overflow
     constexpr double bytes_per_subdomain = 100e3; // its mesh and lists, for any number of cells
     constexpr double many_subdomains     = 1e4;   // above this the message mentions them
-    constexpr double bytes_of_a_cell     = 40;    // in a mesh file
+    constexpr double bytes_of_a_cell     = 40;    // in a mesh file, at least
     constexpr double around_an_edge      = 13;    // cells added per edge refined by 3, all levels together
     constexpr double around_a_face       = 6;     // the same in space per face: a cell becomes 27, the next one 22
     constexpr double usable              = 0.9;   // part of the free memory
     constexpr double finest = 1e-8; // edge length of cells over their distance from the origin: 8 digits remain
 
+    // Nodes per triangle or tetrahedron of a large mesh, by degree; quadrilaterals and hexahedra have degree^dim.
+    constexpr std::array<double, 2> nodes_per_triangle{{0.5, 2}}, nodes_per_tetrahedron{{0.2, 1.4}};
+
     struct Count
     {
       double cells = 0, outline = 0; // before refinements towards boundaries
+      bool   is_simplex = false;     // triangles or tetrahedra only
     };
+
+    double nodes_per_cell(const unsigned int dim, const unsigned int degree, const bool is_simplex)
+    {
+      if (is_simplex)
+        return (dim == 2 ? nodes_per_triangle : nodes_per_tetrahedron)[degree - 1];
+      return std::pow(degree, dim);
+    }
 
     Count count_of_file(const std::string &path, const unsigned int dim)
     {
       const MeshFile                                                file = read_mesh_file(path);
       std::map<std::pair<unsigned int, unsigned int>, unsigned int> n_cells;
-      Count                                                         count;
+      Count                                                         count{0, 0, true};
       for (const auto &cell : file.elements)
         if (cell.dim == dim)
           {
             ++count.cells;
+            count.is_simplex = count.is_simplex && cell.n == dim + 1;
             for (unsigned int k = 0; k < cell.n; ++k)
               ++n_cells[std::minmax(cell.corners[k], cell.corners[(k + 1) % cell.n])];
           }
@@ -65,8 +78,9 @@ namespace slipstick::mesh
       });
     }
 
+    /// @param reads_files counts the cells in mesh files; otherwise they are estimated from the size of the file.
     template <int dim>
-    Count count_of(const scene::Scene<dim> &scene, const scene::Body<dim> &body)
+    Count count_of(const scene::Scene<dim> &scene, const scene::Body<dim> &body, const bool reads_files)
     {
       const double refined = std::ldexp(1., scene.discretization.refinements + body.refinements);
       Count        count;
@@ -125,16 +139,16 @@ namespace slipstick::mesh
           case scene::Shape::mesh:
             {
               std::error_code error;
-              if (refined > 1 || body.boundary_refinements > 0)
+              if (reads_files || refined > 1 || body.boundary_refinements > 0)
                 count = count_of_file(body.file, dim);
               else
                 count.cells = std::filesystem::file_size(body.file, error) / bytes_of_a_cell;
               const double n = bodies_in_file(scene, body);
-              count          = {count.cells / n, count.outline / n};
+              count          = {count.cells / n, count.outline / n, count.is_simplex};
               break;
             }
         }
-      return {count.cells * refined * refined, count.outline * refined};
+      return {count.cells * refined * refined, count.outline * refined, count.is_simplex};
     }
 
     std::string rounded(const double value)
@@ -146,18 +160,20 @@ namespace slipstick::mesh
   } // namespace
 
   template <int dim>
-  SizeEstimate estimate_size(const scene::Scene<dim> &scene)
+  SizeEstimate estimate_size(const scene::Scene<dim> &scene, const bool reads_files)
   {
     SizeEstimate size;
     double       most = 0;
     for (const auto &body : scene.bodies)
       {
-        const Count  count   = count_of(scene, body);
+        const Count  count   = count_of(scene, body, reads_files);
         const double towards = body.refined_boundaries.empty() ? 0
                                : dim == 2
                                  ? count.outline * around_an_edge * (std::pow(3., body.boundary_refinements) - 1)
                                  : count.outline * around_a_face * (std::pow(9., body.boundary_refinements) - 1);
         size.cells += count.cells + towards;
+        size.unknowns +=
+          (count.cells + towards) * dim * nodes_per_cell(dim, scene.discretization.degree, count.is_simplex);
         if (count.cells + towards > most)
           {
             most         = count.cells + towards;
@@ -165,7 +181,6 @@ namespace slipstick::mesh
                            (towards > count.cells ? ", most of them by Refine levels" : "");
           }
       }
-    size.unknowns = size.cells * dim * std::pow(scene.discretization.degree, dim);
     double n_subdomains =
       std::max<double>(scene.bodies.size(),
                        size.unknowns / (dim * (dim == 2 ? cells_per_subdomain : cells_per_subdomain_in_space)));
@@ -193,9 +208,11 @@ namespace slipstick::mesh
     collectively(comm, [&] {
       if (dealii::Utilities::MPI::this_mpi_process(comm) != 0)
         return;
-      const SizeEstimate size = estimate_size(scene);
-      const std::string  asks = "the scene has about " + rounded(size.unknowns) + " unknowns (" + size.largest + ")";
-      const std::string  less = "use fewer Cells, Blocks, Refinements or Refine levels";
+      SizeEstimate size = estimate_size(scene);
+      if (size.cells > most_cells || size.memory_mb > usable * free)
+        size = estimate_size(scene, true);
+      const std::string asks = "the scene has about " + rounded(size.unknowns) + " unknowns (" + size.largest + ")";
+      const std::string less = "use fewer Cells, Blocks, Refinements or Refine levels, or a coarser mesh file";
       if (size.cells > most_cells)
         throw InputError(asks + ", more than can be counted (" + rounded(most_cells) + " cells)", less);
       if (!forced && size.memory_mb > usable * free)
@@ -224,9 +241,9 @@ namespace slipstick::mesh
     });
   }
 
-  template SizeEstimate estimate_size(const scene::Scene<2> &);
+  template SizeEstimate estimate_size(const scene::Scene<2> &, const bool);
   template void         check_size(const scene::Scene<2> &, const bool, const MPI_Comm);
-  template SizeEstimate estimate_size(const scene::Scene<3> &);
+  template SizeEstimate estimate_size(const scene::Scene<3> &, const bool);
   template void         check_size(const scene::Scene<3> &, const bool, const MPI_Comm);
   template void         check_positions(const scene::Scene<2> &, const Mesh<2> &);
   template void         check_positions(const scene::Scene<3> &, const Mesh<3> &);

@@ -1,6 +1,7 @@
 // Pairing of points on two curves that face each other.
 #pragma once
 
+#include <slipstick/interface/corners.h>
 #include <slipstick/interface/edge_tree.h>
 #include <slipstick/interface/facing_distance.h>
 #include <slipstick/interface/surface_nodes.h>
@@ -22,7 +23,7 @@ namespace slipstick::interface
   constexpr double steepest_slope = 1;
 
   /// Pairs slave and master edges by rays from the slave along a continuous field of normals: at the nodes the mean of
-  /// both sides' normals, interpolated by the linear shape functions. Two equal bodies then touch along their plane of
+  /// both sides' normals, at corners of one side the normal of the other, interpolated by the linear shape functions. Two equal bodies then touch along their plane of
   /// symmetry, whichever is the slave; with the slave's own normals, closing a gap between curved bodies would cause an
   /// apparent slip.
   class CurvePairing
@@ -49,7 +50,8 @@ namespace slipstick::interface
     CurvePairing(const std::vector<Edge>   &slave,
                  const std::vector<Edge>   &master,
                  const Reach               &reach,
-                 const mesh::Kinematics<2> &kinematics = {});
+                 const mesh::Kinematics<2> &kinematics = {},
+                 const Corners             &corners    = {});
 
     const std::vector<SurfaceNode<2>> &nodes() const
     {
@@ -87,7 +89,7 @@ namespace slipstick::interface
                                         const std::vector<unsigned int> &candidates) const;
     std::vector<unsigned int>   candidates(const unsigned int e) const;
     std::vector<Segment>        nearest_level(const unsigned int e, std::vector<Segment> parts) const;
-    void                        average_normals();
+    void                        average_normals(const Corners &corners);
 
     const std::vector<Edge> &slave, &master;
     const Reach              reach;

@@ -20,6 +20,7 @@ namespace slipstick::interface
   /// end node of a quadratic edge on the axis of revolution has D_i = 0 and no row: equal pressure exerts no force on
   /// it. Node to node: m is 1 at the opposite master node, d is 1 at the slave node. `automatic` chooses it if every
   /// slave node has an exactly opposite master node.
+  /// @param corners of both sides, at which the normal is that of the other side (corners_of()).
   /// @throws InputError, with @p name of the pair, when node to node is required and the meshes do not match.
   template <int dim>
   std::vector<MortarRow<dim>> mortar_rows(const std::vector<mechanics::SurfaceEdge<dim>> &slave,
@@ -27,7 +28,8 @@ namespace slipstick::interface
                                           const Reach                                    &reach,
                                           const scene::ContactDiscretization              discretization,
                                           const std::string                              &name,
-                                          const mesh::Kinematics<dim>                    &kinematics = {});
+                                          const mesh::Kinematics<dim>                    &kinematics = {},
+                                          const Corners                                  &corners    = {});
 
   /// The same in space, with areas instead of lengths. Every slave facet is paired in the plane through its centre
   /// normal to the mean normal of its nodes: both sides are projected onto it, and the overlap polygons are clipped and
@@ -39,5 +41,6 @@ namespace slipstick::interface
                                         const Reach                                &reach,
                                         const scene::ContactDiscretization          discretization,
                                         const std::string                          &name,
-                                        const mesh::Kinematics<3>                  &kinematics = {});
+                                        const mesh::Kinematics<3>                  &kinematics = {},
+                                        const Corners                              &corners    = {});
 } // namespace slipstick::interface

@@ -62,6 +62,7 @@ namespace slipstick::interface
   {
     double                               measure = 0;           // D_i
     double                               length  = 0;           // the same in the plane; in space an area
+    double                               whole   = 0;           // in space: D_i if the facets were fully covered
     std::map<mechanics::NodeKey, double> slave, master;         // D_ik, M_ij
     dealii::Tensor<1, dim>               rise;                  // <phi_i (rise of the master - rise of the slave) n>
     double                               neglected_sagitta = 0; // [mm]
@@ -70,6 +71,7 @@ namespace slipstick::interface
     {
       measure += other.measure;
       length += other.length;
+      whole += other.whole;
       rise += other.rise;
       neglected_sagitta = std::max(neglected_sagitta, other.neglected_sagitta);
       for (const auto &[key, value] : other.slave)
@@ -79,6 +81,18 @@ namespace slipstick::interface
       return *this;
     }
   };
+
+  /// The gap at a node along its normal @p n, from its integrals [mm].
+  template <int dim>
+  double gap_of(const NodeIntegrals<dim> &node, const dealii::Tensor<1, dim> &n, const NodePlaces<dim> &places)
+  {
+    dealii::Tensor<1, dim> apart = node.rise / node.measure;
+    for (const auto &[key, value] : node.master)
+      apart += value / node.measure * dealii::Tensor<1, dim>(places.master.at(key));
+    for (const auto &[key, value] : node.slave)
+      apart -= value / node.measure * dealii::Tensor<1, dim>(places.slave.at(key));
+    return n * apart;
+  }
 
   // Edges or facets of a node see the same level of the master if their gaps there differ by at most this fraction of
   // their size.
@@ -92,21 +106,14 @@ namespace slipstick::interface
                                       const NodePlaces<dim>                 &places)
   {
     const auto is_judged = [&](const auto &part) { return part.measure > smallest_cover * node.scale; };
-    const auto gap_of    = [&](const auto &part) {
-      dealii::Tensor<1, dim> apart;
-      for (const auto &[key, value] : part.master)
-        apart += value / part.measure * dealii::Tensor<1, dim>(places.master.at(key));
-      for (const auto &[key, value] : part.slave)
-        apart -= value / part.measure * dealii::Tensor<1, dim>(places.slave.at(key));
-      return node.normal * apart;
-    };
-    double nearest = std::numeric_limits<double>::infinity();
+    const auto gap       = [&](const auto &part) { return gap_of(part, node.normal, places); };
+    double     nearest   = std::numeric_limits<double>::infinity();
     for (const auto &part : parts)
-      if (is_judged(part) && std::abs(gap_of(part)) < std::abs(nearest))
-        nearest = gap_of(part);
+      if (is_judged(part) && std::abs(gap(part)) < std::abs(nearest))
+        nearest = gap(part);
     NodeIntegrals<dim> sum;
     for (const auto &part : parts)
-      if (!is_judged(part) || std::abs(gap_of(part) - nearest) <= same_level * node.size)
+      if (!is_judged(part) || std::abs(gap(part) - nearest) <= same_level * node.size)
         sum += part;
     return sum;
   }
@@ -130,8 +137,8 @@ namespace slipstick::interface
     row.normal         = node.normal;
     row.measure        = sum.measure;
     row.length         = sum.length;
-    row.full_measure   = node.measure;
-    row.full_length    = node.covered;
+    row.full_measure   = std::max(node.measure, sum.whole); // corners of triangles of degree 2 have a measure of 0
+    row.full_length    = std::max(node.covered, sum.whole);
     row.slave_weights  = normalised(sum.slave, sum.measure);
     row.master_weights = normalised(sum.master, sum.measure);
     places.measure(row);

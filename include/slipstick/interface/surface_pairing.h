@@ -91,7 +91,10 @@ namespace slipstick::interface
     };
 
     /// The facets are kept by reference.
-    SurfacePairing(const std::vector<Facet> &slave, const std::vector<Facet> &master, const Reach &reach);
+    SurfacePairing(const std::vector<Facet> &slave,
+                   const std::vector<Facet> &master,
+                   const Reach              &reach,
+                   const Corners            &corners = {});
 
     const std::vector<SurfaceNode<3>> &nodes() const
     {
@@ -107,13 +110,21 @@ namespace slipstick::interface
     View view(const unsigned int e) const;
 
   private:
-    void                      average_normals();
+    void                      average_normals(const Corners &corners);
     std::vector<unsigned int> candidates(const std::vector<dealii::Point<3>> &points,
                                          const Tensor                        &n,
                                          const double                         size) const;
 
-    /// Unit normal of the master at the point hit by the ray from a slave node, if any.
-    std::optional<Tensor> facing_normal(const SurfaceNode<3> &node, const SurfaceNodes<3> &of_master) const;
+    struct Facing
+    {
+      Tensor normal; // unit length
+      bool   is_at_corner = false;
+    };
+
+    /// The master at the point hit by the ray from a slave node, if any.
+    std::optional<Facing> facing_normal(const SurfaceNode<3>  &node,
+                                        const SurfaceNodes<3> &of_master,
+                                        const Corners         &corners) const;
 
     const std::vector<Facet> &slave, &master;
     const Reach               reach;

@@ -13,10 +13,11 @@ namespace slipstick::mesh
     std::string largest;       // the body with the most cells, and the reason
   };
 
-  /// Estimate from the numbers in the scene and, if bodies of mesh files are refined, the number of cells in the files.
+  /// Estimate from the numbers in the scene and the number of cells in mesh files. Files of bodies that are not refined
+  /// are read only with @p reads_files; otherwise their size tells the number of cells, too large by up to 10 times.
   /// @throws InputError as read_mesh_file() does.
   template <int dim>
-  SizeEstimate estimate_size(const scene::Scene<dim> &scene);
+  SizeEstimate estimate_size(const scene::Scene<dim> &scene, const bool reads_files = false);
 
   /// @throws InputError on all ranks if the estimated memory exceeds the available memory, unless @p forced, and in any
   /// case if the number of cells is too large to be counted. Collective.
