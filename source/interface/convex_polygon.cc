@@ -68,18 +68,30 @@ namespace slipstick::interface
     return !polygon.empty();
   }
 
-  double distance(const ConvexPolygon &polygon, const dealii::Point<2> &x)
+  dealii::Point<2> nearest_point(const ConvexPolygon &polygon, const dealii::Point<2> &x)
   {
     if (contains(polygon, x))
-      return 0;
-    double least = std::numeric_limits<double>::max();
+      return x;
+    double           least = std::numeric_limits<double>::max();
+    dealii::Point<2> nearest;
     for (std::size_t i = 0; i < polygon.size(); ++i)
       {
-        const auto   along = next(polygon, i) - polygon[i], to = x - polygon[i];
-        const double square = along.norm_square(), t = square > 0 ? std::clamp(along * to / square, 0., 1.) : 0.;
-        least = std::min(least, (to - t * along).norm());
+        const auto   along  = next(polygon, i) - polygon[i];
+        const double square = along.norm_square();
+        const double t      = square > 0 ? std::clamp(along * (x - polygon[i]) / square, 0., 1.) : 0.;
+        const auto   there  = polygon[i] + t * along;
+        if (const double apart = x.distance(there); apart < least)
+          {
+            least   = apart;
+            nearest = there;
+          }
       }
-    return least;
+    return nearest;
+  }
+
+  double distance(const ConvexPolygon &polygon, const dealii::Point<2> &x)
+  {
+    return x.distance(nearest_point(polygon, x));
   }
 
   ConvexPolygon intersection(const ConvexPolygon &a, const ConvexPolygon &b)

@@ -123,31 +123,33 @@ namespace slipstick::interface
                 node.slave[edge.keys[k]] += n_test == edge.n_nodes ? measures[i] : D(i, k);
             for (const auto &[key, sum] : other)
               node.master[key] = dual.row(i).dot(sum);
-            widen_gap(node, e, i, parts);
+            if (const auto next = beside(e, i, parts))
+              widen_gap(node, next->normal, next->gap, smallest_widening * edge.chord(), nodes);
             parts_of_nodes[pairing.nodes_of(e)[i]].push_back(std::move(node));
           }
       }
 
-      /// For a node beyond the part of its edge that faces the master, where the integrals extrapolate: the gap is at
-      /// least that at the nearest place that faces the master. Otherwise a sloping master would reach the node.
-      void widen_gap(NodeIntegrals<2>                         &node,
-                     const unsigned int                        e,
-                     const unsigned int                        i,
-                     const std::vector<CurvePairing::Segment> &parts) const
+      /// The gap at the nearest place that faces the master, along the normal there, if end i of edge e does not.
+      struct Beside
       {
-        const auto  &part      = i == 0 ? parts.front() : parts.back();
-        const double end       = i == 0 ? part.from : part.to;
-        const bool   is_beyond = i == 0 ? end > whole_edge : end < 1 - whole_edge;
-        const double inside    = end + (i == 0 ? 1 : -1) * whole_edge * (part.to - part.from);
-        const auto   there     = i < 2 && is_beyond ? pairing.hit(e, inside, part.master) : std::nullopt;
+        Tensor normal;
+        double gap = 0;
+      };
+
+      std::optional<Beside> beside(const unsigned int                        e,
+                                   const unsigned int                        i,
+                                   const std::vector<CurvePairing::Segment> &parts) const
+      {
+        const auto  &part   = i == 0 ? parts.front() : parts.back();
+        const double end    = i == 0 ? part.from : part.to;
+        const double inside = end + (i == 0 ? 1 : -1) * whole_edge * (part.to - part.from); // rounding
+        if (i > 1 || (i == 0 ? end <= whole_edge : end >= 1 - whole_edge))
+          return {};
+        const auto there = pairing.hit(e, inside, part.master);
         if (!there)
-          return;
-        const Tensor n       = pairing.direction(e, inside);
-        const double gap     = there->gap + master[part.master].rise(there->s, n) - slave[e].rise(inside, n);
-        const Tensor of_node = pairing.nodes()[pairing.nodes_of(e)[i]].normal;
-        const double missing = gap - gap_of(node, of_node, nodes);
-        if (missing > whole_edge * slave[e].chord())
-          node.rise += node.measure * missing * of_node;
+          return {};
+        const Tensor n = pairing.direction(e, inside);
+        return Beside{n, there->gap + master[part.master].rise(there->s, n) - slave[e].rise(inside, n)};
       }
 
     public:

@@ -131,6 +131,7 @@ namespace slipstick::interface
         Facet::Tensor                                 normal; // direction of the rises
         double                                        neglected_sagitta = 0;
         bool                                          is_whole          = false; // the facet is fully covered
+        std::map<unsigned int, double> gap_beside; // of corners beyond the covered part: where it is next
       };
 
       Moments moments_of(const unsigned int e) const
@@ -143,7 +144,8 @@ namespace slipstick::interface
                     Eigen::VectorXd::Zero(facet.n_nodes),
                     view.plane.normal,
                     0,
-                    false};
+                    false,
+                    {}};
         double                     covered = 0;
         for (const auto &part : view.parts)
           covered += area(part.polygon);
@@ -175,7 +177,34 @@ namespace slipstick::interface
                   dx * N_m[j] * test;
             });
           }
+        if (!sum.is_whole)
+          sum.gap_beside = gap_beside(facet, view);
         return sum;
+      }
+
+      /// For corners of a facet beyond its covered part: the gap at the nearest place that is covered.
+      std::map<unsigned int, double> gap_beside(const Facet &facet, const SurfacePairing::View &view) const
+      {
+        std::map<unsigned int, double> result;
+        for (unsigned int i = 0; i < facet.n_corners(); ++i)
+          {
+            const dealii::Point<2> corner  = view.plane.project(facet.node(i));
+            double                 nearest = std::numeric_limits<double>::max(), gap = 0;
+            for (const SurfacePairing::Part &part : view.parts)
+              {
+                const dealii::Point<2> x = nearest_point(part.polygon, corner);
+                if (const double apart = corner.distance(x); apart < nearest)
+                  {
+                    const Facet &to = master[part.master];
+                    nearest         = apart;
+                    gap             = view.gap(part, x) + to.rise(part.facet.place_at(x), view.plane.normal) -
+                          facet.rise(view.slave.place_at(x), view.plane.normal);
+                  }
+              }
+            if (nearest > whole_facet * facet.chord())
+              result[i] = gap;
+          }
+        return result;
       }
 
       /// Adds the contributions of slave facet e to the integrals of its nodes.
@@ -201,6 +230,8 @@ namespace slipstick::interface
                 node.slave[facet.keys[k]] += phi.slave(i, k);
             for (const auto &[key, sum] : moments.master)
               node.master[key] = phi.of_shapes.row(i).dot(sum);
+            if (const auto beside = moments.gap_beside.find(i); beside != moments.gap_beside.end())
+              widen_gap(node, moments.normal, beside->second, smallest_widening * facet.chord(), nodes);
             parts_of_nodes[pairing.nodes_of(e)[i]].push_back(std::move(node));
           }
       }

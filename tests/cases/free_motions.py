@@ -145,8 +145,8 @@ class FreeMotions(unittest.TestCase):
             probes={side: {'Body': 'block', 'Point': point} for side, point in (('east', '20, 15, 0'), ('west', '-20, 15, 0'))},
             Decomposition={'Method': 'none'}, Solver={'Tolerance': '1e-4'})
         result = self.converges(block, 'body block: rotation about the axis along (0, 1, 0)')
-        for probe in result.summary['results']['probes']:
-            self.assertAlmostEqual(probe['displacement'][2], 0, delta=1e-5)
+        east, west = (probe['displacement'] for probe in result.summary['results']['probes'])
+        self.assertAlmostEqual(east[2], west[2], delta=1e-9)  # which node is held along z is a matter of rounding
 
     def test_a_mesh_that_cuts_the_outline_unevenly(self):
         """The centroid of a polygon refined on one side is not the centre; a torque, however small, is refused."""

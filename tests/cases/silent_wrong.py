@@ -146,6 +146,53 @@ class Steps(unittest.TestCase):
                 self.assertAlmostEqual(force[0], 20, delta=0.01)
 
 
+class EndsOfSides(unittest.TestCase):
+    """Nodes at the ends of the slave: beyond the master, on a support, at a corner of the body."""
+
+    CLAMP = {'Displacement x': '0', 'Displacement y': '0'}
+
+    def corner_on_plate(self, lifted, slave='plate/top', master='square/bottom', degree='1', turned=10):
+        return converged(scenes.box('plate', plane_state='plane strain', materials={'steel': STEEL}, bodies={
+            'square': {'Origin': '0, 0', 'Size': '8, 8', 'Cells': '8, 8', 'Rotation': turned, 'Material': 'steel'},
+            'plate': {'Origin': '-10, -8', 'Size': '22, 8', 'Cells': '30, 8', 'Material': 'steel'}},
+            supports={'floor': {'Boundary': 'plate/bottom', **self.CLAMP},
+                      'hand': {'Boundary': 'square/top', **self.CLAMP, 'Displacement y': lifted}},
+            contacts={'pair': {'Slave': slave, 'Master': master}}, Discretization={'Degree': degree},
+            Decomposition=NONE, Solver={'Tolerance': '1e-8'})).summary['results']
+
+    def test_a_master_is_not_extended_beyond_its_end(self):
+        """The sloping side reached the node beside its end: 1140 and 7239 N between bodies that are apart."""
+        for degree in '12':
+            for turned in (10, 40):
+                results = self.corner_on_plate('0.02', degree=degree, turned=turned)
+                self.assertEqual(results['contact'][0]['normal_force'], 0)
+                self.assertAlmostEqual(results['max_displacement'], 0.02, delta=1e-9)
+
+    def test_a_corner_is_pressed_along_the_normal_of_the_other_side(self):
+        """A plate without friction bore a force along itself: the tangent of half the angle times the normal force."""
+        for degree in '12':
+            for turned in (3, 10, 40):
+                force = self.corner_on_plate('-0.01', 'square/bottom', 'plate/top', degree, turned)['contact'][0]['force']
+                self.assertGreater(abs(force[1]), 50)
+                self.assertLess(abs(force[0]), 1e-9 * abs(force[1]))
+
+    def test_a_support_holds_the_end_of_both_sides(self):
+        """Two plates make one cantilever under 10 N. The row of the held end tied the master's next nodes to each other: 47.4 N."""
+        sizes = {'Size': '10, 3', 'Material': 'steel'}
+        for cells in (5, 6, 7):
+            for law in ('bonded', 'frictionless'):
+                summary = converged(scenes.box('cantilever', materials={'steel': STEEL}, bodies={
+                    'low': {'Origin': '0, 0', **sizes, 'Cells': '{}, 3'.format(cells)},
+                    'high': {'Origin': '0, 3', **sizes, 'Cells': '5, 3'}},
+                    supports={'low': {'Boundary': 'low/left', **self.CLAMP}, 'high': {'Boundary': 'high/left', **self.CLAMP}},
+                    tractions={'load': {'Boundary': 'high/top', 'Traction y': '-1'}},
+                    contacts={'joint': {'Slave': 'high/bottom', 'Master': 'low/top', 'Law': law}},
+                    Decomposition=NONE, Solver={'Tolerance': '1e-8'})).summary
+                forces = [abs(support['force'][1]) for support in summary['results']['supports']]
+                self.assertAlmostEqual(sum(forces), 10, delta=1e-6)
+                self.assertLess(max(forces), 7, (cells, law, forces))
+
+
 class Case(unittest.TestCase):
 
     def refused(self, case, status, *words, ranks=1):

@@ -153,6 +153,44 @@ class AfterLoading(Case):
                     self.assertIn("bodies 'low' and 'high' overlap", result.stderr)
 
 
+class EndsOfSides(Case):
+
+    def corner_on_plate(self, lifted, **pair):
+        clamp = {'Displacement x': '0', 'Displacement y': '0', 'Displacement z': '0'}
+        return converged(solids.solid('plate', materials={'elastic': STEEL}, Decomposition={'Method': 'none'}, bodies={
+            'block': {'Size': '8, 8, 2', 'Cells': '8, 8, 2', 'Rotation': '10', 'Rotation axis': '0, 0, 1', 'Material': 'elastic'},
+            'plate': {'Origin': '-10, -8, -1', 'Size': '22, 8, 4', 'Cells': '30, 8, 4', 'Material': 'elastic'}},
+            supports={'floor': {'Boundary': 'plate/bottom', **clamp},
+                      'hand': {'Boundary': 'block/top', **clamp, 'Displacement y': lifted}},
+            contacts={'pair': {**pair, 'Law': 'frictionless'}}, Solver={'Tolerance': '1e-8'})).summary['results']
+
+    def test_a_master_is_not_extended_beyond_its_edge(self):
+        """2270 N between bodies that are apart."""
+        results = self.corner_on_plate('0.02', Slave='plate/top', Master='block/bottom')
+        self.assertEqual(results['contact'][0]['normal_force'], 0)
+
+    def test_an_edge_is_pressed_along_the_normal_of_the_other_side(self):
+        force = self.corner_on_plate('-0.01', Slave='block/bottom', Master='plate/top')['contact'][0]['force']
+        self.assertGreater(abs(force[1]), 100)
+        self.assertLess(math.hypot(force[0], force[2]), 1e-9 * abs(force[1]))
+
+    def test_pressures_on_slivers_of_tetrahedra_of_degree_2(self):
+        """A punch that ends 0.02 mm beyond nodes: 231973 MPa at corners of triangles, whose own area is zero."""
+        clamp = {'Displacement x': '0', 'Displacement y': '0', 'Displacement z': '0'}
+        for end in (15.02, 15.1):
+            mesh = solids.abaqus_block('base', (20, 8, 10), (4, 2, 2))
+            scene = solids.solid('punch', materials={'elastic': STEEL}, Decomposition={'Method': 'none'}, bodies={
+                'base': {'Shape': 'mesh', 'File': mesh, 'Material': 'elastic'},
+                'punch': {'Origin': '5, 8, 0', 'Size': '{}, 4, 10'.format(end - 5), 'Cells': '4, 2, 4', 'Material': 'elastic'}},
+                supports={'floor': {'Boundary': 'base/bottom', **clamp}, 'guide': {'Body': 'punch', 'Point': '5, 12, 0', **{
+                    key: value for key, value in clamp.items() if key != 'Displacement y'}}},
+                tractions={'load': {'Boundary': 'punch/top', 'Pressure': '60'}}, Discretization={'Degree': '2'},
+                contacts={'seat': {'Slave': 'base/top', 'Master': 'punch/bottom', 'Law': 'Coulomb', 'Friction coefficient': '0.3'}})
+            pair = converged(scene).summary['results']['contact'][0]
+            self.assertAlmostEqual(pair['normal_force'], 600 * (end - 5), delta=1)
+            self.assertLess(pair['max_pressure'], 600, end)
+
+
 class Loads(Case):
 
     def resultant(self, load, **kinds):
@@ -180,6 +218,15 @@ class Loads(Case):
             sums = self.resultant({'Traction y': '-sin(pi*x/10)*cos(z/10)'}, **degree, bodies={
                 'bar': {'Shape': 'mesh', 'File': mesh, 'Material': 'elastic'}})
             self.near(sums['force'], [0, -20 / math.pi * 10 * math.sin(1), 0], 1e-8)
+
+    def test_body_forces_on_tetrahedra(self):
+        """A constant was warned of as a formula that changes too fast: the rule that it was compared with has no points."""
+        mesh = solids.abaqus_block('block', (10, 4, 10), (3, 1, 3))
+        for degree in DEGREES:
+            result = converged(bar(bodies={'bar': {'Shape': 'mesh', 'File': mesh, 'Material': 'elastic'}}, contacts=BONDED, **degree,
+                                   body_forces={'f': {'Bodies': 'bar', 'Force y': '-1*(1 + x/10)'}}))
+            self.assertEqual(result.summary['warnings'], [])
+            self.near(force(result), [0, 600, 0], 1e-6)
 
     def test_a_formula_without_end_is_warned_of(self):
         case = bar(tractions={'p': {'Boundary': 'bar/top', 'Traction y': '-1 + 9*sin(1e7*x)*sin(3e6*z)'}}, contacts=BONDED)

@@ -162,9 +162,9 @@ class DraggedStrip(unittest.TestCase):
 
     def test_forces(self):
         for law, bound in (('Coulomb', {'Friction coefficient': '0.3'}), ('Tresca', {'Slip bound': '0.15'})):
-            for pull in ('1', '1000'):
+            for pull, tolerance in (('1', '1e-8'), ('1000', '1e-7')):  # of 1000 mm, rounding is above 1e-8 of the strains
                 scene = self.strip(8, '100, 2, 4', pull, Law=law, **bound)
-                found = converged(scene, {'Solver/Tolerance': '1e-8'}).summary
+                found = converged(scene, {'Solver/Tolerance': tolerance}).summary
                 self.assertAlmostEqual(found['results']['contact'][0]['force'][0], -60, delta=0.01, msg=f'{law} {pull}')
                 self.assertLessEqual(found['solver']['hessian_multiplications'], 300, f'{law} {pull}')
 

@@ -26,6 +26,9 @@ namespace slipstick::interface
   /// Whether x is inside, or outside by at most @p tolerance.
   bool contains(const ConvexPolygon &polygon, const dealii::Point<2> &x, const double tolerance = 0);
 
+  /// The point of the polygon that is nearest to x; x inside.
+  dealii::Point<2> nearest_point(const ConvexPolygon &polygon, const dealii::Point<2> &x);
+
   /// Distance of x from the polygon; 0 inside.
   double distance(const ConvexPolygon &polygon, const dealii::Point<2> &x);
 
