@@ -123,33 +123,29 @@ namespace slipstick::interface
                 node.slave[edge.keys[k]] += n_test == edge.n_nodes ? measures[i] : D(i, k);
             for (const auto &[key, sum] : other)
               node.master[key] = dual.row(i).dot(sum);
-            if (const auto next = beside(e, i, parts))
-              widen_gap(node, next->normal, next->gap, smallest_widening * edge.chord(), nodes);
+            // otherwise a sloping master would reach a node beside it
+            node.rise += node.measure * lost_beyond(e, i, parts);
             parts_of_nodes[pairing.nodes_of(e)[i]].push_back(std::move(node));
           }
       }
 
-      /// The gap at the nearest place that faces the master, along the normal there, if end i of edge e does not.
-      struct Beside
+      /// By how much the gap at end i of edge e, if it does not face the master, would be less than that at the nearest
+      /// place that does, extrapolated from the part that faces it; along the normal there.
+      Tensor lost_beyond(const unsigned int                        e,
+                         const unsigned int                        i,
+                         const std::vector<CurvePairing::Segment> &parts) const
       {
-        Tensor normal;
-        double gap = 0;
-      };
-
-      std::optional<Beside> beside(const unsigned int                        e,
-                                   const unsigned int                        i,
-                                   const std::vector<CurvePairing::Segment> &parts) const
-      {
-        const auto  &part   = i == 0 ? parts.front() : parts.back();
-        const double end    = i == 0 ? part.from : part.to;
-        const double inside = end + (i == 0 ? 1 : -1) * whole_edge * (part.to - part.from); // rounding
-        if (i > 1 || (i == 0 ? end <= whole_edge : end >= 1 - whole_edge))
+        const auto  &near = i == 0 ? parts.front() : parts.back(), &far = i == 0 ? parts.back() : parts.front();
+        const double inwards = i == 0 ? 1 : -1, first = i == 0 ? near.from : near.to, last = i == 0 ? far.to : far.from;
+        const double beyond = std::abs(first - Edge::node_coordinate(i)), faced = std::abs(last - first);
+        if (i > 1 || beyond <= whole_edge)
           return {};
-        const auto there = pairing.hit(e, inside, part.master);
-        if (!there)
+        const double s_near = first + inwards * whole_edge * faced,
+                     s_far  = last - inwards * whole_edge * faced; // rounding
+        const auto hit_near = pairing.hit(e, s_near, near.master), hit_far = pairing.hit(e, s_far, far.master);
+        if (!hit_near || !hit_far)
           return {};
-        const Tensor n = pairing.direction(e, inside);
-        return Beside{n, there->gap + master[part.master].rise(there->s, n) - slave[e].rise(inside, n)};
+        return std::max(0., (hit_far->gap - hit_near->gap) * beyond / faced) * pairing.direction(e, s_near);
       }
 
     public:

@@ -131,7 +131,7 @@ namespace slipstick::interface
         Facet::Tensor                                 normal; // direction of the rises
         double                                        neglected_sagitta = 0;
         bool                                          is_whole          = false; // the facet is fully covered
-        std::map<unsigned int, double> gap_beside; // of corners beyond the covered part: where it is next
+        std::map<unsigned int, double>                lost_beyond;               // of corners
       };
 
       Moments moments_of(const unsigned int e) const
@@ -178,31 +178,37 @@ namespace slipstick::interface
             });
           }
         if (!sum.is_whole)
-          sum.gap_beside = gap_beside(facet, view);
+          sum.lost_beyond = lost_beyond(facet, view);
         return sum;
       }
 
-      /// For corners of a facet beyond its covered part: the gap at the nearest place that is covered.
-      std::map<unsigned int, double> gap_beside(const Facet &facet, const SurfacePairing::View &view) const
+      /// For corners of a facet beyond its covered part: by how much the gap extrapolated from there is less than that at
+      /// the nearest place that is covered.
+      std::map<unsigned int, double> lost_beyond(const Facet &facet, const SurfacePairing::View &view) const
       {
         std::map<unsigned int, double> result;
         for (unsigned int i = 0; i < facet.n_corners(); ++i)
           {
-            const dealii::Point<2> corner  = view.plane.project(facet.node(i));
-            double                 nearest = std::numeric_limits<double>::max(), gap = 0;
-            for (const SurfacePairing::Part &part : view.parts)
+            const dealii::Point<2>      corner  = view.plane.project(facet.node(i));
+            double                      nearest = std::numeric_limits<double>::max();
+            const SurfacePairing::Part *part    = nullptr;
+            dealii::Point<2>            place;
+            for (const SurfacePairing::Part &candidate : view.parts)
               {
-                const dealii::Point<2> x = nearest_point(part.polygon, corner);
+                const dealii::Point<2> x = nearest_point(candidate.polygon, corner);
                 if (const double apart = corner.distance(x); apart < nearest)
                   {
-                    const Facet &to = master[part.master];
-                    nearest         = apart;
-                    gap             = view.gap(part, x) + to.rise(part.facet.place_at(x), view.plane.normal) -
-                          facet.rise(view.slave.place_at(x), view.plane.normal);
+                    nearest = apart;
+                    part    = &candidate;
+                    place   = x;
                   }
               }
-            if (nearest > whole_facet * facet.chord())
-              result[i] = gap;
+            if (nearest <= whole_facet * facet.chord())
+              continue;
+            const auto   inwards = (place - corner) * (std::sqrt(area(part->polygon)) / nearest);
+            const double rate    = (view.gap(*part, place + inwards) - view.gap(*part, place)) / inwards.norm();
+            if (rate > 0)
+              result[i] = rate * nearest;
           }
         return result;
       }
@@ -230,8 +236,9 @@ namespace slipstick::interface
                 node.slave[facet.keys[k]] += phi.slave(i, k);
             for (const auto &[key, sum] : moments.master)
               node.master[key] = phi.of_shapes.row(i).dot(sum);
-            if (const auto beside = moments.gap_beside.find(i); beside != moments.gap_beside.end())
-              widen_gap(node, moments.normal, beside->second, smallest_widening * facet.chord(), nodes);
+            // otherwise a sloping master would reach a node beside it
+            if (const auto lost = moments.lost_beyond.find(i); lost != moments.lost_beyond.end())
+              node.rise += node.measure * lost->second * moments.normal;
             parts_of_nodes[pairing.nodes_of(e)[i]].push_back(std::move(node));
           }
       }

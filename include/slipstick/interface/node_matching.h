@@ -94,23 +94,6 @@ namespace slipstick::interface
     return n * apart;
   }
 
-  // Nodes beyond the master get a wider gap if the difference exceeds this fraction of the edge or facet.
-  constexpr double smallest_widening = 1e-9;
-
-  /// For a node beyond the part of its edge or facet that faces the master, where the integrals extrapolate: makes the
-  /// gap along @p n at least @p beside, the gap at the nearest place that faces the master. Otherwise a sloping master
-  /// would reach the node.
-  template <int dim>
-  void widen_gap(NodeIntegrals<dim>           &node,
-                 const dealii::Tensor<1, dim> &n,
-                 const double                  beside,
-                 const double                  rounding,
-                 const NodePlaces<dim>        &places)
-  {
-    if (const double missing = beside - gap_of(node, n, places); missing > rounding)
-      node.rise += node.measure * missing * n;
-  }
-
   // Edges or facets of a node see the same level of the master if their gaps there differ by at most this fraction of
   // their size.
   constexpr double same_level = 0.1;
