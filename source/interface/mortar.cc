@@ -140,12 +140,18 @@ namespace slipstick::interface
         const double beyond = std::abs(first - Edge::node_coordinate(i)), faced = std::abs(last - first);
         if (i > 1 || beyond <= whole_edge)
           return {};
-        const double s_near = first + inwards * whole_edge * faced,
-                     s_far  = last - inwards * whole_edge * faced; // rounding
-        const auto hit_near = pairing.hit(e, s_near, near.master), hit_far = pairing.hit(e, s_far, far.master);
+        const double rounding = whole_edge * faced;
+        const double s_near = first + inwards * rounding, s_far = last - inwards * rounding;
+        const auto   hit_near = pairing.hit(e, s_near, near.master), hit_far = pairing.hit(e, s_far, far.master);
         if (!hit_near || !hit_far)
           return {};
-        return std::max(0., (hit_far->gap - hit_near->gap) * beyond / faced) * pairing.direction(e, s_near);
+        const auto gap =
+          [&](const double s, const CurvePairing::Hit &there, const unsigned int m) { // of the true curves
+            const Tensor n = pairing.direction(e, s);
+            return there.gap + master[m].rise(there.s, n) - slave[e].rise(s, n);
+          };
+        const double fall = gap(s_far, *hit_far, far.master) - gap(s_near, *hit_near, near.master);
+        return std::max(0., fall) * beyond / faced * pairing.direction(e, s_near);
       }
 
     public:

@@ -205,8 +205,13 @@ namespace slipstick::interface
               }
             if (nearest <= whole_facet * facet.chord())
               continue;
+            const Facet &to  = master[part->master];
+            const auto   gap = [&](const dealii::Point<2> &x) { // of the true surfaces
+              return view.gap(*part, x) + to.rise(part->facet.place_at(x), view.plane.normal) -
+                     facet.rise(view.slave.place_at(x), view.plane.normal);
+            };
             const auto   inwards = (place - corner) * (std::sqrt(area(part->polygon)) / nearest);
-            const double rate    = (view.gap(*part, place + inwards) - view.gap(*part, place)) / inwards.norm();
+            const double rate    = (gap(place + inwards) - gap(place)) / inwards.norm();
             if (rate > 0)
               result[i] = rate * nearest;
           }
