@@ -95,7 +95,7 @@ class Study(unittest.TestCase):
                     self.assertEqual(row['below_floor'], 'yes' if float(row['error']) < floor else 'no')
         good = [row for row in found if row['error'] and float(row['error']) + floor <= 0.05]
         best = min(good, key=lambda row: float(row['time_s']))
-        mesh = 'adaptive mesh from ' if 'Mesh=adaptive' in result.stdout.splitlines()[-1] else ''
+        mesh = 'adaptive mesh from ' if best['preset'].endswith('%') else ''  # which is fastest depends on the machine
         self.assertIn('degree {degree}, {mesh}{refinements} refinements'.format(mesh=mesh, **best), result.stdout)
         self.assertIn(best['time_s'] + ' s', result.stdout)
         self.assertIn('which is known to {:.2g} % itself'.format(100 * floor), result.stdout)
