@@ -1,4 +1,5 @@
 #include <slipstick/interface/corners.h>
+#include <slipstick/interface/held_slaves.h>
 #include <slipstick/mechanics/surface.h>
 
 #include <algorithm>
@@ -8,29 +9,8 @@ namespace slipstick::interface
 {
   namespace
   {
-    // A plane of symmetry is held along its normal up to this part of it.
-    constexpr double off_normal = 1e-6;
-
-    dealii::Tensor<1, 2> normal_at(const mechanics::SurfaceEdge<2> &edge, const unsigned int i)
-    {
-      return edge.outline_normal(mechanics::SurfaceEdge<2>::node_coordinate(i));
-    }
-
-    dealii::Tensor<1, 3> normal_at(const mechanics::SurfaceFacet &facet, const unsigned int i)
-    {
-      return facet.outline_normal(i);
-    }
-
-    template <int dim>
-    bool is_held_along(const scene::PrescribedDisplacement<dim> &support, const dealii::Tensor<1, dim> &normal)
-    {
-      if (support.normal)
-        return true;
-      double squares = 0;
-      for (unsigned int c = 0; c < dim; ++c)
-        squares += support.components[c] ? 0. : normal[c] * normal[c];
-      return squares <= off_normal * off_normal;
-    }
+    // Nodes are on the axis of revolution if their distance from it is at most this fraction of the edge.
+    constexpr double on_axis = 1e-6;
 
     /// Whether the body continues beyond a part of its outline: a plane of symmetry, or the axis of revolution.
     template <int dim>
@@ -39,12 +19,12 @@ namespace slipstick::interface
                           const mechanics::BoundaryPart<dim> &part,
                           const dealii::Tensor<1, dim>       &normal)
     {
-      const bool is_on_axis =
-        mesh::Kinematics<dim>(scene.plane_state).is_revolution() &&
-        std::max(std::abs(part.node(0)[0]), std::abs(part.node(1)[0])) <= off_normal * part.chord();
+      const bool is_on_axis = mesh::Kinematics<dim>(scene.plane_state).is_revolution() &&
+                              std::max(std::abs(part.node(0)[0]), std::abs(part.node(1)[0])) <= on_axis * part.chord();
       return is_on_axis || std::any_of(scene.supports.begin(), scene.supports.end(), [&](const auto &support) {
                return !support.point && support.where.body == part.body &&
-                      mesh.on_boundary(support.where, part.boundary) && is_held_along<dim>(support, normal);
+                      mesh.on_boundary(support.where, part.boundary) &&
+                      (support.normal || are_held<dim>(support.components, normal));
              });
     }
   } // namespace
@@ -60,18 +40,16 @@ namespace slipstick::interface
     std::map<mechanics::NodeKey, std::vector<Tensor>> normals; // of the side
     for (const auto &part : side)
       for (unsigned int i = 0; i < part.n_nodes; ++i)
-        normals[part.keys[i]].push_back(normal_at(part, i));
+        normals[part.keys[i]].push_back(outline_normal_at(part, i));
     Corners corners;
     for (const auto &part : outline)
       if (!mesh.on_boundary(where, part.boundary))
         for (unsigned int i = 0; i < part.n_nodes; ++i)
           if (const auto found = normals.find(part.keys[i]); found != normals.end())
             {
-              const Tensor normal = normal_at(part, i);
+              const Tensor normal = outline_normal_at(part, i);
               const bool   turns  = std::all_of(found->second.begin(), found->second.end(), [&](const Tensor &own) {
-                std::vector<Tensor> means;
-                mechanics::smooth_normals(std::vector<Tensor>{own, normal}, means);
-                return means.size() > 1;
+                return own * normal <= mechanics::corner_cosine;
               });
               if (turns && !continues_beyond(scene, mesh, part, normal))
                 corners.insert(part.keys[i]);

@@ -14,8 +14,6 @@ namespace slipstick::interface
 {
   namespace
   {
-    // A normal is held if its part in free directions is below this.
-    constexpr double held_normal = 1e-6;
     // Neighbours are equally near if their distances differ by less than this fraction.
     constexpr double equally_near = 1e-6;
 
@@ -47,10 +45,7 @@ namespace slipstick::interface
       const auto found = held.find(row.slave);
       if (found == held.end())
         return false;
-      double squares = 0;
-      for (unsigned int c = 0; c < dim; ++c)
-        squares += found->second[c] ? 0. : row.normal[c] * row.normal[c];
-      return squares <= held_normal * held_normal;
+      return are_held<dim>(found->second, row.normal);
     }
 
     Weights mean(const Weights &a, const double of_a, const Weights &b, const double of_b)

@@ -182,8 +182,8 @@ namespace slipstick::interface
         return sum;
       }
 
-      /// For corners of a facet beyond its covered part: by how much the gap extrapolated from there is less than that at
-      /// the nearest place that is covered.
+      /// For corners of a facet beyond its covered part: by how much the gap extrapolated from there is less than that
+      /// at the nearest place that is covered.
       std::map<unsigned int, double> lost_beyond(const Facet &facet, const SurfacePairing::View &view) const
       {
         std::map<unsigned int, double> result;

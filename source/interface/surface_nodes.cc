@@ -6,20 +6,6 @@
 
 namespace slipstick::interface
 {
-  namespace
-  {
-    /// Normal of the true curve of the edge.
-    dealii::Tensor<1, 2> own_normal(const mechanics::SurfaceEdge<2> &edge, const unsigned int i)
-    {
-      return edge.outline_normal(mechanics::SurfaceEdge<2>::node_coordinate(i));
-    }
-
-    dealii::Tensor<1, 3> own_normal(const mechanics::SurfaceFacet &facet, const unsigned int i)
-    {
-      return facet.outline_normal(i);
-    }
-  } // namespace
-
   template <int dim>
   SurfaceNodes<dim>::SurfaceNodes(const std::vector<Part> &surface, const mesh::Kinematics<dim> &kinematics)
     : of_part(surface.size())
@@ -51,7 +37,7 @@ namespace slipstick::interface
   {
     std::vector<Tensor> normals, means;
     for (const auto &[e, i] : places)
-      normals.push_back(own_normal(surface[e], i));
+      normals.push_back(outline_normal_at(surface[e], i));
     const auto         side  = mechanics::smooth_normals(normals, means);
     const unsigned int first = nodes.size();
     for (unsigned int g = 0; g < means.size(); ++g)

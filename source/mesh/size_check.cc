@@ -55,17 +55,21 @@ namespace slipstick::mesh
     {
       const MeshFile                                                file = read_mesh_file(path);
       std::map<std::pair<unsigned int, unsigned int>, unsigned int> n_cells;
-      Count                                                         count{0, 0, true};
+      Count                                                         count;
+      double                                                        n_simplices = 0;
       for (const auto &cell : file.elements)
         if (cell.dim == dim)
           {
             ++count.cells;
-            count.is_simplex = count.is_simplex && cell.n == dim + 1;
+            n_simplices += cell.n == dim + 1;
             for (unsigned int k = 0; k < cell.n; ++k)
               ++n_cells[std::minmax(cell.corners[k], cell.corners[(k + 1) % cell.n])];
           }
       for (const auto &entry : n_cells)
         count.outline += entry.second == 1;
+      count.is_simplex = n_simplices == count.cells;
+      if (dim == 2 && n_simplices > 0 && !count.is_simplex) // may become quadrilaterals, as make_body() divides them
+        count.cells = 3 * n_simplices + 4 * (count.cells - n_simplices);
       return count;
     }
 

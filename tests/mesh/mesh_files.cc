@@ -866,3 +866,13 @@ TEST(MeshFiles, parts_of_one_file_are_not_each_estimated_as_large_as_the_file)
   EXPECT_GT(mesh::estimate_size(all).cells, 0);
   EXPECT_NEAR(mesh::estimate_size(two_parts(formats[0])).cells, mesh::estimate_size(all).cells, 1e-9);
 }
+
+TEST(MeshFiles, cells_are_counted_where_the_size_of_the_file_is_not_enough)
+{
+  Scene all;
+  all.bodies          = {body_of(formats[0], "")};
+  const auto counted  = mesh::estimate_size(all, true);
+  const auto expected = mesh::make_mesh(cut(all, whole()), MPI_COMM_SELF).n_cells;
+  EXPECT_EQ(counted.cells, expected);
+  EXPECT_NE(mesh::estimate_size(all).cells, expected); // from the size of the file
+}

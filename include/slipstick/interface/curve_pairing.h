@@ -23,9 +23,9 @@ namespace slipstick::interface
   constexpr double steepest_slope = 1;
 
   /// Pairs slave and master edges by rays from the slave along a continuous field of normals: at the nodes the mean of
-  /// both sides' normals, at corners of one side the normal of the other, interpolated by the linear shape functions. Two equal bodies then touch along their plane of
-  /// symmetry, whichever is the slave; with the slave's own normals, closing a gap between curved bodies would cause an
-  /// apparent slip.
+  /// both sides' normals, at corners of one side the normal of the other, interpolated by the linear shape functions.
+  /// Two equal bodies then touch along their plane of symmetry, whichever is the slave; with the slave's own normals,
+  /// closing a gap between curved bodies would cause an apparent slip.
   class CurvePairing
   {
   public:

@@ -7,6 +7,17 @@
 
 namespace slipstick::interface
 {
+  /// Whether prescribed components hold a direction. @p Components one entry a component, true if it is prescribed.
+  template <int dim, class Components>
+  bool are_held(const Components &components, const dealii::Tensor<1, dim> &direction)
+  {
+    constexpr double held    = 1e-6; // the part in free directions is below this
+    double           squares = 0;
+    for (unsigned int c = 0; c < dim; ++c)
+      squares += components[c] ? 0. : direction[c] * direction[c];
+    return squares <= held * held;
+  }
+
   /// Removes the rows of slave nodes that supports hold along their normal and adds them to the nearest nodes on the
   /// same edges or facets that are not held. Such a row contains displacements of the master only. If the slave mesh is
   /// finer, there are more of these rows than master nodes in them: the forces on them are not unique, and if all are

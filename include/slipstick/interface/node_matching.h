@@ -82,18 +82,6 @@ namespace slipstick::interface
     }
   };
 
-  /// The gap at a node along its normal @p n, from its integrals [mm].
-  template <int dim>
-  double gap_of(const NodeIntegrals<dim> &node, const dealii::Tensor<1, dim> &n, const NodePlaces<dim> &places)
-  {
-    dealii::Tensor<1, dim> apart = node.rise / node.measure;
-    for (const auto &[key, value] : node.master)
-      apart += value / node.measure * dealii::Tensor<1, dim>(places.master.at(key));
-    for (const auto &[key, value] : node.slave)
-      apart -= value / node.measure * dealii::Tensor<1, dim>(places.slave.at(key));
-    return n * apart;
-  }
-
   // Edges or facets of a node see the same level of the master if their gaps there differ by at most this fraction of
   // their size.
   constexpr double same_level = 0.1;
@@ -106,8 +94,15 @@ namespace slipstick::interface
                                       const NodePlaces<dim>                 &places)
   {
     const auto is_judged = [&](const auto &part) { return part.measure > smallest_cover * node.scale; };
-    const auto gap       = [&](const auto &part) { return gap_of(part, node.normal, places); };
-    double     nearest   = std::numeric_limits<double>::infinity();
+    const auto gap       = [&](const auto &part) {
+      dealii::Tensor<1, dim> apart = part.rise / part.measure;
+      for (const auto &[key, value] : part.master)
+        apart += value / part.measure * dealii::Tensor<1, dim>(places.master.at(key));
+      for (const auto &[key, value] : part.slave)
+        apart -= value / part.measure * dealii::Tensor<1, dim>(places.slave.at(key));
+      return node.normal * apart;
+    };
+    double nearest = std::numeric_limits<double>::infinity();
     for (const auto &part : parts)
       if (is_judged(part) && std::abs(gap(part)) < std::abs(nearest))
         nearest = gap(part);

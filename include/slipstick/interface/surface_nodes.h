@@ -21,6 +21,17 @@ namespace slipstick::interface
     double                 scale   = 0; // the measure of the edges or facets there
   };
 
+  /// Outward unit normal of the true curve or surface at node i of an edge or facet.
+  inline dealii::Tensor<1, 2> outline_normal_at(const mechanics::SurfaceEdge<2> &edge, const unsigned int i)
+  {
+    return edge.outline_normal(mechanics::SurfaceEdge<2>::node_coordinate(i));
+  }
+
+  inline dealii::Tensor<1, 3> outline_normal_at(const mechanics::SurfaceFacet &facet, const unsigned int i)
+  {
+    return facet.outline_normal(i);
+  }
+
   /// The numbers of the nodes of an edge or facet.
   template <class Part>
   using PartNodes = std::array<unsigned int, std::tuple_size<decltype(Part::keys)>::value>;
