@@ -5,6 +5,7 @@
 #include <slipstick/base/gather.h>
 #include <slipstick/contact/adjoint.h>
 #include <slipstick/interface/gap_defect.h>
+#include <slipstick/interface/transfer_defect.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -20,6 +21,10 @@ namespace slipstick::app
   namespace
   {
     using Fields = std::vector<Eigen::VectorXd>;
+
+    // Where tractions jump, coefficients of orthonormal polynomials decrease as 1 / k and energies as 1 / k^3: all
+    // degrees together have 1.6 (degree 1) or 2.1 (degree 2) times the energy of the first that elements do not contain.
+    constexpr double all_degrees = 2;
 
     /// Energy products of the errors of the solution with those of other displacements.
     template <int dim>
@@ -88,6 +93,17 @@ namespace slipstick::app
       const double           t;
     };
 
+    /// Calls f(cell, edge or facet) for the outline of a subdomain.
+    template <int dim, class F>
+    void for_boundary_faces(const StepSolver<dim> &solver, const unsigned int p, const F &f)
+    {
+      const auto &subdomain = *solver.mesh().subdomains[p];
+      for (const auto &cell : solver.spaces().dof_handlers[p]->active_cell_iterators())
+        for (const unsigned int face : cell->face_indices())
+          if (mesh::is_on_outline(cell->face(face)))
+            f(cell->active_cell_index(), mechanics::surface_part(subdomain, solver.spaces(), cell, face));
+    }
+
     /// Effect of evaluating gaps at nodes only: derivative of the quantity with respect to the gap of a node times the
     /// gap defect there, attributed to the cells at the node.
     template <int dim>
@@ -116,7 +132,7 @@ namespace slipstick::app
         if (parts.empty())
           return;
         for (unsigned int p = 0; p < goal.cells.size(); ++p)
-          for_boundary_faces(p, [&](const unsigned int cell, const auto &face) {
+          for_boundary_faces(solver, p, [&](const unsigned int cell, const auto &face) {
             for (unsigned int k = 0; k < contacts.size(); ++k)
               if (contacts[k].slave.body == face.body && solver.mesh().on_boundary(contacts[k].slave, face.boundary))
                 for (unsigned int i = 0; i < face.n_nodes; ++i)
@@ -128,18 +144,120 @@ namespace slipstick::app
     private:
       using Share = std::pair<std::pair<unsigned int, mechanics::NodeKey>, double>;
 
-      template <class F>
-      void for_boundary_faces(const unsigned int p, const F &f) const
-      {
-        const auto &subdomain = *solver.mesh().subdomains[p];
-        for (const auto &cell : solver.spaces().dof_handlers[p]->active_cell_iterators())
-          for (const unsigned int face : cell->face_indices())
-            if (mesh::is_on_outline(cell->face(face)))
-              f(cell->active_cell_index(), mechanics::surface_part(subdomain, solver.spaces(), cell, face));
-      }
-
       const StepSolver<dim>           &solver;
       const interface::GapDefects<dim> defects;
+    };
+
+    /// Energy products of displacements due to what the elements do not represent of contact tractions
+    /// (interface::TransferDefect): a polynomial of degree k on a part of length h has about the wave number pi k / h. On
+    /// a half space, tractions of wave number w cause displacements of 2 (1 - nu^2) / (E w) times themselves.
+    template <int dim>
+    class TransferErrors
+    {
+    public:
+      explicit TransferErrors(const StepSolver<dim> &solver_)
+        : solver(solver_)
+      {
+        const auto &scene = solver.discrete_scene();
+        const auto  all =
+          mechanics::outlines(solver.mesh(), solver.spaces(), std::vector<bool>(scene.bodies.size(), true));
+        defects.resize(scene.contacts.size());
+        for (unsigned int k = 0; k < defects.size(); ++k)
+          if (scene.contacts[k].master)
+            defects[k] = interface::transfer_defects(scene, solver.mesh(), scene.contacts[k], all);
+      }
+
+      /// Adds factor times the product for two vectors of multipliers, attributed to the cells. Collective.
+      void add(const tfeti::DistributedVector &x,
+               const tfeti::DistributedVector &y,
+               const double                    factor,
+               GoalError                      &goal) const
+      {
+        const Tractions                                   of_x = tractions(x), of_y = tractions(y);
+        std::map<std::vector<mechanics::NodeKey>, double> parts; // by the nodes of the part
+        for (unsigned int k = 0; k < defects.size(); ++k)
+          for (const auto &defect : defects[k])
+            {
+              double product = 0;
+              for (unsigned int d = 0; d < 3; ++d)
+                product += component(of_x, k, defect, d).dot(defect.rest * component(of_y, k, defect, d));
+              if (product != 0)
+                parts[nodes_of(defect.part)] += factor * displacement_of_first_degree(defect.part) * product;
+            }
+        if (parts.empty())
+          return;
+        for (unsigned int p = 0; p < goal.cells.size(); ++p)
+          for_boundary_faces(solver, p, [&](const unsigned int cell, const auto &face) {
+            if (const auto found = parts.find(nodes_of(face)); found != parts.end())
+              goal.cells[p][cell] += found->second;
+          });
+      }
+
+    private:
+      using Place     = std::pair<unsigned int, mechanics::NodeKey>; // pair, node
+      using Tractions = std::map<Place, std::array<double, 3>>;
+
+      static std::vector<mechanics::NodeKey> nodes_of(const mechanics::BoundaryPart<dim> &part)
+      {
+        std::vector<mechanics::NodeKey> nodes(part.keys.begin(), part.keys.begin() + part.n_nodes);
+        std::sort(nodes.begin(), nodes.end());
+        return nodes;
+      }
+
+      static Eigen::VectorXd component(const Tractions                      &tractions,
+                                       const unsigned int                    pair,
+                                       const interface::TransferDefect<dim> &defect,
+                                       const unsigned int                    d)
+      {
+        Eigen::VectorXd result = Eigen::VectorXd::Zero(defect.rest.rows());
+        for (unsigned int i = 0; i < defect.nodes.size(); ++i)
+          if (const auto found = tractions.find({pair, defect.nodes[i]}); found != tractions.end())
+            result[i] = found->second[d];
+        return result;
+      }
+
+      /// Displacement over traction for a polynomial of degree 1, times the share of all degrees (doc/decisions/0150).
+      double displacement_of_first_degree(const mechanics::BoundaryPart<dim> &part) const
+      {
+        const auto  &scene    = solver.discrete_scene();
+        const auto  &body     = scene.bodies[part.body];
+        const auto  &material = scene.materials[body.material];
+        const double modulus  = material.young_modulus / (1 - material.poisson_ratio * material.poisson_ratio);
+        return all_degrees * 2 * part.chord() / (dealii::numbers::PI * modulus) * body.thickness;
+      }
+
+      /// Tractions at the slave nodes, on all ranks.
+      Tractions tractions(const tfeti::DistributedVector &x) const
+      {
+        std::vector<std::pair<Place, std::array<double, 3>>> own;
+        const auto                                          &rows = solver.dual().constraints();
+        for (const auto *points : {&rows.contact_points, &rows.bonded_points})
+          for (const auto &point : *points)
+            if (point.traction_area > 0)
+              own.push_back({{point.pair, point.key}, traction_at(point, x)});
+        Tractions result;
+        for (const auto &list : all_gather(solver.mesh().comm, own))
+          result.insert(list.begin(), list.end());
+        return result;
+      }
+
+      static std::array<double, 3> traction_at(const tfeti::ContactPoint &point, const tfeti::DistributedVector &x)
+      {
+        std::array<double, 3> traction{{0, 0, 0}};
+        const auto            add = [&](const unsigned int row, const std::array<double, 3> &direction) {
+          if (row != tfeti::invalid_row)
+            for (unsigned int d = 0; d < 3; ++d)
+              traction[d] += x.local_element(row) / point.traction_area * direction[d];
+        };
+        const auto &n = point.normal;
+        add(point.normal_row, n);
+        add(point.tangential_row, point.is_in_space() ? point.tangents[0] : std::array<double, 3>{{-n[1], n[0], 0}});
+        add(point.second_row, point.tangents[1]);
+        return traction;
+      }
+
+      const StepSolver<dim>                                   &solver;
+      std::vector<std::vector<interface::TransferDefect<dim>>> defects; // by pair
     };
 
     /// Estimate from the adjoint displacement @p z, if it exists.
@@ -147,6 +265,8 @@ namespace slipstick::app
     void complete(const StepSolution                            &answer,
                   const ErrorProducts<dim>                      &products,
                   const GapErrors<dim>                          &gaps,
+                  const TransferErrors<dim>                     &transfer,
+                  const tfeti::DistributedVector                &multipliers,
                   const std::optional<contact::Adjoint::Answer> &z,
                   GoalError                                     &goal)
     {
@@ -161,6 +281,7 @@ namespace slipstick::app
         for (const auto &part : answer.stress->subdomains)
           goal.cells.push_back(Eigen::VectorXd::Zero(part.error.size()));
       gaps.add(z->multipliers, 1, goal);
+      transfer.add(multipliers, z->multipliers, 1, goal);
       products.add_up(goal);
     }
 
@@ -172,6 +293,7 @@ namespace slipstick::app
                            const std::vector<double>                        &gaps,
                            const ErrorProducts<dim>                         &products,
                            const GapErrors<dim>                             &gap_errors,
+                           const TransferErrors<dim>                        &transfer,
                            contact::Adjoint                                 &adjoint,
                            const std::vector<mechanics::SingularPoint<dim>> &point_forces)
     {
@@ -193,6 +315,8 @@ namespace slipstick::app
         }
       for (const auto &part : answer.stress->subdomains)
         goal.cells.push_back(part.error.array().square() / 2);
+      const auto &multipliers = solver.solution().multipliers;
+      transfer.add(multipliers, multipliers, 0.5, goal);
       const double largest_gap =
         gaps.empty() ? 0. : std::abs(*std::max_element(gaps.begin(), gaps.end(), [](const double a, const double b) {
           return std::abs(a) < std::abs(b);
@@ -212,6 +336,7 @@ namespace slipstick::app
                 goal.cells[p] -= product[p];
             }
           gap_errors.add(w->multipliers, -1, goal);
+          transfer.add(multipliers, w->multipliers, -1, goal);
         }
       products.add_up(goal);
       return goal;
@@ -234,9 +359,10 @@ namespace slipstick::app
     auto                   functionals = of_scene.all();
     for (auto &functional : stress_functionals(solver, probes, answer, of_scene.point_forces(), peaks, t, quantities))
       functionals.push_back(std::move(functional));
-    const ErrorProducts<dim> products(solver, answer, t);
-    const GapErrors<dim>     gap_errors(solver, t);
-    const auto               ties =
+    const ErrorProducts<dim>  products(solver, answer, t);
+    const GapErrors<dim>      gap_errors(solver, t);
+    const TransferErrors<dim> transfer(solver);
+    const auto                ties =
       contact::following_friction(contact::SlipLaw(solver.discrete_scene(), solver.dual(), t), solver.solution());
     const auto jumps = solver.dual().dual_operator().jumps(answer.recovery.u);
     for (const auto &tie : ties)
@@ -260,14 +386,15 @@ namespace slipstick::app
               const auto z = functional.is_of_multipliers
                                ? adjoint.solve(functional.jumps)
                                : adjoint.solve(functional.loads, std::vector<double>(gaps.size(), 0.));
-              complete(answer, products, gap_errors, z, error);
+              complete(answer, products, gap_errors, transfer, solver.solution().multipliers, z, error);
             }
           errors.push_back(std::move(error));
         }
     if (wanted("strain_energy"))
       {
         if (adjoint.is_possible())
-          errors.push_back(energy_error(solver, answer, gaps, products, gap_errors, adjoint, of_scene.point_forces()));
+          errors.push_back(
+            energy_error(solver, answer, gaps, products, gap_errors, transfer, adjoint, of_scene.point_forces()));
         else
           {
             GoalError error;

@@ -58,17 +58,6 @@ namespace slipstick::interface
       return at_nodes;
     }
 
-    /// Whether another master facet is nearer at x. Of several at the same distance the first counts.
-    bool is_hidden(const SurfacePairing::View &view, const SurfacePairing::Part &part, const dealii::Point<2> &x)
-    {
-      const double gap = std::abs(view.gap(part, x));
-      for (const auto &other : view.parts)
-        if (&other != &part && contains(other.polygon, x))
-          if (const double to = std::abs(view.gap(other, x)); to < gap || (to == gap && other.master < part.master))
-            return true;
-      return false;
-    }
-
     /// The integrals of all slave facets, by node.
     class SurfaceIntegrals
     {
@@ -161,7 +150,7 @@ namespace slipstick::interface
             sum.neglected_sagitta =
               std::max(sum.neglected_sagitta, facet.surface.neglected_sagitta + to.surface.neglected_sagitta);
             integrate(part.polygon, rule, [&](const dealii::Point<2> &x, const double weight) {
-              if (is_stack && is_hidden(view, part, x))
+              if (is_stack && view.is_hidden(part, x))
                 return;
               const auto   s   = view.slave.place_at(x);
               const double dx  = weight / (facet.normal(s) * view.plane.normal);

@@ -286,4 +286,14 @@ namespace slipstick::interface
     keep_nearest_level(view, facet.chord());
     return view;
   }
+
+  bool SurfacePairing::View::is_hidden(const Part &part, const dealii::Point<2> &x) const
+  {
+    const double distance = std::abs(gap(part, x));
+    for (const Part &other : parts)
+      if (&other != &part && contains(other.polygon, x))
+        if (const double to = std::abs(gap(other, x)); to < distance || (to == distance && other.master < part.master))
+          return true;
+    return false;
+  }
 } // namespace slipstick::interface

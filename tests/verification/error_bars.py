@@ -134,6 +134,31 @@ class ErrorBars(unittest.TestCase):
             self.assertGreater(effectivity, 0.5, quantity)
             self.assertLess(effectivity, 2, quantity)
 
+    def test_a_stiff_body_that_ends_within_an_element(self):
+        """The elements of the layer smear tractions of the block over the cell in which it ends: without the defects of the
+        transfer (interface/transfer_defect.h) bars are 13 times too small."""
+        exchanged = {'Contact bond/Slave': 'low/top', 'Contact bond/Master': 'up/bottom'}
+        wide, at_nodes = ({'Body low/Origin': '%s, 0' % x, 'Body low/Size': '15, 2'} for x in (-1.1, -2.6))
+        scene = pathlib.Path(__file__).parent / 'stiff_block_on_layer.prm'
+
+        def solved(also):
+            return converged(scene, {**QUIET, **also}).summary
+
+        def cells(n):
+            return {'Body low/Cells': '%d, 20' % n, 'Body up/Cells': '90, 20'}
+
+        known = [solved(also)['results']['contact'][0]['normal_force']
+                 for also in (cells(105), {**wide, **cells(150)})]
+        for also, right in (({}, 0), ({'Discretization/Degree': 1}, 0), (exchanged, 0), (wide, 1), (at_nodes, 1)):
+            summary = solved({**also, 'Error bars': 'true'})
+            bar, = (bar for bar in summary['error_bars'] if bar['quantity'] == 'bond.normal_force')
+            effectivity = bar['error'] / abs(known[right] - bar['value'])
+            print(also, bar, known[right], effectivity, flush=True)
+            self.assertGreater(effectivity, 0.5)
+            self.assertLess(effectivity, 4)
+        summary = solved({'Accuracy': '1 %', 'Goal': 'bond.normal_force'})
+        self.assertLess(abs(summary['results']['contact'][0]['normal_force'] / known[0] - 1), 0.01)
+
     def test_probe(self):
         # on the outside of the ring, Lame: p 2 b^2 c / (E (c^2 - b^2))
         probe = {'Probes': 'outside', 'Probe outside/Body': 'ring', 'Probe outside/Point': '0, 40'}

@@ -88,6 +88,9 @@ namespace slipstick::interface
       {
         return part.facet.height_at(x) - slave.height_at(x);
       }
+
+      /// Whether another master facet is nearer at x. Of several at the same distance the first counts.
+      bool is_hidden(const Part &part, const dealii::Point<2> &x) const;
     };
 
     /// The facets are kept by reference.
