@@ -23,7 +23,7 @@ namespace slipstick::app
     using Fields = std::vector<Eigen::VectorXd>;
 
     // Where tractions jump, coefficients of orthonormal polynomials decrease as 1 / k and energies as 1 / k^3: all
-    // degrees together have 1.6 (degree 1) or 2.1 (degree 2) times the energy of the first that elements do not contain.
+    // degrees together have 1.6 (degree 1) or 2.1 (degree 2) times the energy of the first beyond that of the elements.
     constexpr double all_degrees = 2;
 
     /// Energy products of the errors of the solution with those of other displacements.
@@ -149,8 +149,8 @@ namespace slipstick::app
     };
 
     /// Energy products of displacements due to what the elements do not represent of contact tractions
-    /// (interface::TransferDefect): a polynomial of degree k on a part of length h has about the wave number pi k / h. On
-    /// a half space, tractions of wave number w cause displacements of 2 (1 - nu^2) / (E w) times themselves.
+    /// (interface::TransferDefect): a polynomial of degree k on a part of length h has about the wave number pi k / h.
+    /// On a half space, tractions of wave number w cause displacements of 2 (1 - nu^2) / (E w) times themselves.
     template <int dim>
     class TransferErrors
     {

@@ -7,7 +7,8 @@ using namespace slipstick;
 
 namespace
 {
-  /// A unit square or cube, and on a quarter of its top a body of one cell, or of two if it is not to end within a cell.
+  /// A unit square or cube, and a body of one cell on a quarter of its top.
+  /// @param is_resolved whether that quarter ends at nodes
   template <int dim>
   scene::Scene<dim> quarter(const unsigned int degree, const bool is_resolved)
   {
@@ -57,7 +58,7 @@ namespace
   }
 } // namespace
 
-// The coefficient of sqrt(5) (6 s^2 - 6 s + 1) is 3 sqrt(5) / 32; of the polynomial of degree 3 it is - 3 sqrt(7) / 256.
+// The coefficient of sqrt(5) (6 s^2 - 6 s + 1) is 3 sqrt(5) / 32, that of the polynomial of degree 3 -3 sqrt(7) / 256.
 TEST(TransferDefect, is_that_of_the_first_degree_beyond_the_elements)
 {
   EXPECT_NEAR(rest_of_uniform(quarter<2>(1, false)), 5 * 9. / 1024 / 2, 1e-13);
