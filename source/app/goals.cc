@@ -155,47 +155,63 @@ namespace slipstick::app
     class TransferErrors
     {
     public:
+      /// Collective.
       explicit TransferErrors(const StepSolver<dim> &solver_)
         : solver(solver_)
       {
-        const auto &scene = solver.discrete_scene();
-        const auto  all =
+        const auto &scene     = solver.discrete_scene();
+        const bool  has_pairs = std::any_of(scene.contacts.begin(), scene.contacts.end(), [](const auto &pair) {
+          return pair.master.has_value();
+        });
+        if (!has_pairs)
+          return;
+        const auto all =
           mechanics::outlines(solver.mesh(), solver.spaces(), std::vector<bool>(scene.bodies.size(), true));
-        defects.resize(scene.contacts.size());
-        for (unsigned int k = 0; k < defects.size(); ++k)
+        std::multimap<std::vector<mechanics::NodeKey>, Loaded> loaded; // by the nodes of the part
+        for (unsigned int k = 0; k < scene.contacts.size(); ++k)
           if (scene.contacts[k].master)
-            defects[k] = interface::transfer_defects(scene, solver.mesh(), scene.contacts[k], all);
+            for (auto &defect : interface::transfer_defects(scene, solver.mesh(), scene.contacts[k], all))
+              loaded.emplace(nodes_of(defect.part), Loaded{k, std::move(defect)});
+        is_needed = !loaded.empty();
+        for (unsigned int p = 0; is_needed && p < solver.mesh().subdomains.size(); ++p)
+          for_boundary_faces(solver, p, [&](const unsigned int cell, const auto &face) {
+            const auto [first, last] = loaded.equal_range(nodes_of(face));
+            for (auto part = first; part != last; ++part)
+              {
+                own.push_back(part->second);
+                own.back().p    = p;
+                own.back().cell = cell;
+              }
+          });
+        if (is_needed)
+          of_solution = tractions(solver.solution().multipliers);
       }
 
-      /// Adds factor times the product for two vectors of multipliers, attributed to the cells. Collective.
-      void add(const tfeti::DistributedVector &x,
-               const tfeti::DistributedVector &y,
-               const double                    factor,
-               GoalError                      &goal) const
+      /// Adds factor times the product of the solution with other multipliers, attributed to the cells. Collective.
+      void add(const tfeti::DistributedVector &y, const double factor, GoalError &goal) const
       {
-        const Tractions                                   of_x = tractions(x), of_y = tractions(y);
-        std::map<std::vector<mechanics::NodeKey>, double> parts; // by the nodes of the part
-        for (unsigned int k = 0; k < defects.size(); ++k)
-          for (const auto &defect : defects[k])
-            {
-              double product = 0;
-              for (unsigned int d = 0; d < 3; ++d)
-                product += component(of_x, k, defect, d).dot(defect.rest * component(of_y, k, defect, d));
-              if (product != 0)
-                parts[nodes_of(defect.part)] += factor * displacement_of_first_degree(defect.part) * product;
-            }
-        if (parts.empty())
+        if (!is_needed)
           return;
-        for (unsigned int p = 0; p < goal.cells.size(); ++p)
-          for_boundary_faces(solver, p, [&](const unsigned int cell, const auto &face) {
-            if (const auto found = parts.find(nodes_of(face)); found != parts.end())
-              goal.cells[p][cell] += found->second;
-          });
+        const Tractions of_y = tractions(y);
+        for (const Loaded &part : own)
+          {
+            double product = 0;
+            for (unsigned int d = 0; d < 3; ++d)
+              product += component(of_solution, part, d).dot(part.defect.rest * component(of_y, part, d));
+            goal.cells[part.p][part.cell] += factor * displacement_of_first_degree(part.defect.part) * product;
+          }
       }
 
     private:
       using Place     = std::pair<unsigned int, mechanics::NodeKey>; // pair, node
       using Tractions = std::map<Place, std::array<double, 3>>;
+
+      struct Loaded
+      {
+        unsigned int                   pair;
+        interface::TransferDefect<dim> defect;
+        unsigned int                   p = 0, cell = 0; // subdomain of this rank
+      };
 
       static std::vector<mechanics::NodeKey> nodes_of(const mechanics::BoundaryPart<dim> &part)
       {
@@ -204,14 +220,11 @@ namespace slipstick::app
         return nodes;
       }
 
-      static Eigen::VectorXd component(const Tractions                      &tractions,
-                                       const unsigned int                    pair,
-                                       const interface::TransferDefect<dim> &defect,
-                                       const unsigned int                    d)
+      static Eigen::VectorXd component(const Tractions &tractions, const Loaded &part, const unsigned int d)
       {
-        Eigen::VectorXd result = Eigen::VectorXd::Zero(defect.rest.rows());
-        for (unsigned int i = 0; i < defect.nodes.size(); ++i)
-          if (const auto found = tractions.find({pair, defect.nodes[i]}); found != tractions.end())
+        Eigen::VectorXd result = Eigen::VectorXd::Zero(part.defect.nodes.size());
+        for (unsigned int i = 0; i < part.defect.nodes.size(); ++i)
+          if (const auto found = tractions.find({part.pair, part.defect.nodes[i]}); found != tractions.end())
             result[i] = found->second[d];
         return result;
       }
@@ -256,8 +269,10 @@ namespace slipstick::app
         return traction;
       }
 
-      const StepSolver<dim>                                   &solver;
-      std::vector<std::vector<interface::TransferDefect<dim>>> defects; // by pair
+      const StepSolver<dim> &solver;
+      bool                   is_needed = false; // on any rank
+      std::vector<Loaded>    own;               // of the cells of this rank
+      Tractions              of_solution;
     };
 
     /// Estimate from the adjoint displacement @p z, if it exists.
@@ -266,7 +281,6 @@ namespace slipstick::app
                   const ErrorProducts<dim>                      &products,
                   const GapErrors<dim>                          &gaps,
                   const TransferErrors<dim>                     &transfer,
-                  const tfeti::DistributedVector                &multipliers,
                   const std::optional<contact::Adjoint::Answer> &z,
                   GoalError                                     &goal)
     {
@@ -281,7 +295,7 @@ namespace slipstick::app
         for (const auto &part : answer.stress->subdomains)
           goal.cells.push_back(Eigen::VectorXd::Zero(part.error.size()));
       gaps.add(z->multipliers, 1, goal);
-      transfer.add(multipliers, z->multipliers, 1, goal);
+      transfer.add(z->multipliers, 1, goal);
       products.add_up(goal);
     }
 
@@ -315,8 +329,7 @@ namespace slipstick::app
         }
       for (const auto &part : answer.stress->subdomains)
         goal.cells.push_back(part.error.array().square() / 2);
-      const auto &multipliers = solver.solution().multipliers;
-      transfer.add(multipliers, multipliers, 0.5, goal);
+      transfer.add(solver.solution().multipliers, 0.5, goal);
       const double largest_gap =
         gaps.empty() ? 0. : std::abs(*std::max_element(gaps.begin(), gaps.end(), [](const double a, const double b) {
           return std::abs(a) < std::abs(b);
@@ -336,7 +349,7 @@ namespace slipstick::app
                 goal.cells[p] -= product[p];
             }
           gap_errors.add(w->multipliers, -1, goal);
-          transfer.add(multipliers, w->multipliers, -1, goal);
+          transfer.add(w->multipliers, -1, goal);
         }
       products.add_up(goal);
       return goal;
@@ -386,7 +399,7 @@ namespace slipstick::app
               const auto z = functional.is_of_multipliers
                                ? adjoint.solve(functional.jumps)
                                : adjoint.solve(functional.loads, std::vector<double>(gaps.size(), 0.));
-              complete(answer, products, gap_errors, transfer, solver.solution().multipliers, z, error);
+              complete(answer, products, gap_errors, transfer, z, error);
             }
           errors.push_back(std::move(error));
         }

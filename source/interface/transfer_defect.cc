@@ -18,8 +18,10 @@ namespace slipstick::interface
 {
   namespace
   {
-    // Parts covered up to this fraction are covered as a whole.
+    // Parts are covered as a whole if at most this fraction is missing, ...
     constexpr double missing = 1e-9;
+    // ... and of bent facets, where polygons replace curved edges, this fraction (as in mortar integrals).
+    constexpr double missing_if_bent = 1e-3;
     // Gauss points per segment of an edge; parameter of the rule on triangles of facets (as in mortar integrals).
     constexpr unsigned int n_on_segment = 5, n_on_triangle = 5;
     // Tractions are resolved up to this many degrees beyond that of the elements. Of higher degrees nodal tractions say
@@ -40,27 +42,6 @@ namespace slipstick::interface
       }
     };
 
-    /// Those of the elements of a degree and of @p n_degrees more, by degree.
-    std::vector<Monomial> monomials(const mechanics::SurfaceEdge<2> &edge)
-    {
-      std::vector<Monomial> result;
-      for (unsigned int a = 0; a <= edge.n_nodes - 1 + n_degrees; ++a)
-        result.push_back({a, 0, a});
-      return result;
-    }
-
-    std::vector<Monomial> monomials(const mechanics::SurfaceFacet &facet)
-    {
-      const unsigned int    most        = (facet.is_quadratic() ? 2 : 1) + n_degrees;
-      const bool            is_triangle = facet.n_corners() == 3;
-      std::vector<Monomial> result;
-      for (unsigned int a = 0; a <= most; ++a)
-        for (unsigned int b = 0; b <= (is_triangle ? most - a : most); ++b)
-          result.push_back({a, b, is_triangle ? a + b : std::max(a, b)});
-      std::stable_sort(result.begin(), result.end(), [](const auto &a, const auto &b) { return a.degree < b.degree; });
-      return result;
-    }
-
     unsigned int degree_of(const mechanics::SurfaceEdge<2> &edge)
     {
       return edge.n_nodes - 1;
@@ -71,11 +52,32 @@ namespace slipstick::interface
       return facet.is_quadratic() ? 2 : 1;
     }
 
+    /// Those of the elements of a degree and of @p n_degrees more, by degree.
+    std::vector<Monomial> monomials(const mechanics::SurfaceEdge<2> &edge)
+    {
+      std::vector<Monomial> result;
+      for (unsigned int a = 0; a <= degree_of(edge) + n_degrees; ++a)
+        result.push_back({a, 0, a});
+      return result;
+    }
+
+    std::vector<Monomial> monomials(const mechanics::SurfaceFacet &facet)
+    {
+      const unsigned int    most        = degree_of(facet) + n_degrees;
+      const bool            is_triangle = facet.n_corners() == 3;
+      std::vector<Monomial> result;
+      for (unsigned int a = 0; a <= most; ++a)
+        for (unsigned int b = 0; b <= (is_triangle ? most - a : most); ++b)
+          result.push_back({a, b, is_triangle ? a + b : std::max(a, b)});
+      std::stable_sort(result.begin(), result.end(), [](const auto &a, const auto &b) { return a.degree < b.degree; });
+      return result;
+    }
+
     /// Calls f(measure, s, t) for points of a part; exact for products of two of its monomials if it is not bent.
     template <class F>
     void for_points(const mechanics::SurfaceEdge<2> &edge, const mesh::Kinematics<2> &kinematics, const F &f)
     {
-      const dealii::QGauss<1> rule(edge.n_nodes + n_degrees + 1);
+      const dealii::QGauss<1> rule(degree_of(edge) + n_degrees + 1);
       for (unsigned int q = 0; q < rule.size(); ++q)
         {
           const double s = rule.point(q)[0];
@@ -194,7 +196,7 @@ namespace slipstick::interface
                 const double dx =
                   gauss.weight(q) * (part.to - part.from) * edge.tangent(s).norm() * kinematics.measure(edge.point(s));
                 const auto y = pairing.hit(e, s, part.master);
-                if (!y)
+                if (!y) // rounding moved the point beyond the end of the segment
                   continue;
                 const auto N = edge.shape(s);
                 const auto T = is_whole ? N : std::array<double, 3>{{1 - s, s, 0}};
@@ -216,7 +218,8 @@ namespace slipstick::interface
           for (const auto &part : view.parts)
             covered += area(part.polygon);
           const double full     = area(view.slave.outline());
-          const bool   is_whole = covered > (1 - missing) * full, is_stack = covered > (1 + missing) * full;
+          const bool   is_whole = covered > (1 - (facet.is_bent() ? missing_if_bent : missing)) * full;
+          const bool   is_stack = covered > (1 + missing) * full;
           for (const auto &part : view.parts)
             integrate(part.polygon, rule, [&](const dealii::Point<2> &x, const double weight) {
               if (is_stack && view.is_hidden(part, x))
