@@ -89,6 +89,14 @@ namespace slipstick::app
                                  "it, or refine them"
                                : "no contact pair joins the two; declare one (Contacts), or move them apart");
       }
+    for (const auto &[body, deepest] : found.in_itself)
+      if (deepest.depth > std::max(allowed_without_contact * largest, coordinate_rounding * deepest.edge))
+        findings.warnings["through itself " + scene.bodies[body].name] =
+          format("body %s passes through itself by %.3g mm after loading, at %s: declare a contact pair (Contacts) "
+                 "between the boundaries that meet there",
+                 scene.bodies[body].name.c_str(),
+                 deepest.depth,
+                 place<dim>(deepest).c_str());
     return findings;
   }
 

@@ -4,6 +4,7 @@
 #include <slipstick/interface/obstacle_penetration.h>
 #include <slipstick/interface/pair_checks.h>
 #include <slipstick/interface/penetration.h>
+#include <slipstick/interface/self_penetration.h>
 #include <slipstick/interface/solid_surface.h>
 
 #include <deal.II/base/mpi.h>
@@ -297,6 +298,24 @@ namespace slipstick::interface
                 found.of_bodies[{a, b}] = *deepest;
             }
     }
+
+    template <int dim>
+    void find_in_itself(const scene::Scene<dim> &scene,
+                        const mesh::Mesh<dim>   &mesh,
+                        const unsigned int       body,
+                        const Parts<dim>        &before,
+                        const Parts<dim>        &now,
+                        Penetrations            &found)
+    {
+      std::set<unsigned int> exempt;
+      for (const auto &pair : scene.contacts)
+        if (pair.master && pair.master->body == body && pair.slave.body == body)
+          for (const auto &side : {pair.slave, *pair.master})
+            for (const auto &part : mechanics::parts_on(mesh, before, side))
+              exempt.insert(std::lower_bound(before.begin(), before.end(), part) - before.begin());
+      if (const auto deepest = self_penetration<dim>(before, now, exempt))
+        found.in_itself[body] = *deepest;
+    }
   } // namespace
 
   template <>
@@ -340,6 +359,8 @@ namespace slipstick::interface
           }
       }
     find_in_bodies(scene, bodies, t, found);
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+      find_in_itself<2>(scene, mesh, b, bodies[b]->before, bodies[b]->now, found);
     return found;
   }
 
@@ -353,8 +374,6 @@ namespace slipstick::interface
     Penetrations found;
     found.beyond_reach.resize(scene.contacts.size());
     found.in_obstacle.resize(scene.contacts.size());
-    if (scene.contacts.empty() && scene.bodies.size() < 2)
-      return found;
     const auto moves = moves_of_outlines(mesh, spaces, u);
     const auto all   = mechanics::outlines(mesh, spaces, std::vector<bool>(scene.bodies.size(), true));
     for (unsigned int k = 0; k < scene.contacts.size(); ++k)
@@ -381,16 +400,15 @@ namespace slipstick::interface
               find_points_of_obstacle(scene, pair, moved<3>(body, moves), now, t, found.in_obstacle[k]);
             }
         }
-    if (scene.bodies.size() > 1)
-      {
-        std::vector<Parts<3>> by_body(scene.bodies.size());
-        for (const auto &facet : all)
-          by_body[facet.body].push_back(facet);
-        std::vector<std::unique_ptr<const Solid>> bodies;
-        for (auto &facets : by_body)
-          bodies.push_back(std::make_unique<const Solid>(std::move(facets), moves));
-        find_in_bodies(scene, bodies, t, found);
-      }
+    std::vector<Parts<3>> by_body(scene.bodies.size());
+    for (const auto &facet : all)
+      by_body[facet.body].push_back(facet);
+    std::vector<std::unique_ptr<const Solid>> bodies;
+    for (auto &facets : by_body)
+      bodies.push_back(std::make_unique<const Solid>(std::move(facets), moves));
+    find_in_bodies(scene, bodies, t, found);
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+      find_in_itself<3>(scene, mesh, b, bodies[b]->before, bodies[b]->now, found);
     return found;
   }
 } // namespace slipstick::interface

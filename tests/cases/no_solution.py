@@ -51,6 +51,14 @@ class NoEquilibrium(unittest.TestCase):
         case = scenes.box(tractions={'pushed': PUSHED, 'weight': WEIGHT}, contacts={'circle': GIVING})
         self.refused(case, 'body box')
 
+    def test_blocks_pushed_along_floors_of_nearly_one_direction(self):
+        """The proof settled while normal forces on the tilted parts of the floor still grew: status 3 after 813 and 1446
+        multiplications."""
+        for name in ('tresca_overload', 'coulomb_overload'):
+            result = run(str(pathlib.Path(__file__).parent / (name + '.prm')))
+            self.assertEqual(result.status, 4, result)
+            self.assertIn('no contact forces within their bounds balance the loads, which move body b0: translation', result.stderr)
+
     def test_box_pushed_below_the_slip_bound_is_held(self):
         case = scenes.box(tractions={'pushed': {**PUSHED, 'Traction x': '0.1'}, 'weight': WEIGHT},
                           contacts={'circle': GIVING})

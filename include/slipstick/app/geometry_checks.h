@@ -14,7 +14,7 @@ namespace slipstick::app
     std::optional<std::string> failure;
 
     /// Texts of warnings with remedy, keyed by subject: obstacles that protrude between nodes, overlapping bodies that
-    /// are not joined by a pair.
+    /// are not joined by a pair, bodies that pass through themselves.
     std::map<std::string, std::string> warnings;
   };
 

@@ -26,6 +26,9 @@ namespace slipstick::interface
     /// By pair of bodies (the first is inside the second): the deepest node or edge midpoint, minus its depth before
     /// loading. Bodies joined by a bond or by a pair with an Offset or a Gap of its own are omitted.
     std::map<std::pair<unsigned int, unsigned int>, Penetration> of_bodies;
+
+    /// By body: the deepest place where it passes through itself, away from the sides of pairs of its own boundaries.
+    std::map<unsigned int, Penetration> in_itself;
   };
 
   /// @param u displacements of this rank's subdomains [mm], at load factor @p t. The same on all ranks. Collective.

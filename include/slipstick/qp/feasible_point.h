@@ -134,8 +134,8 @@ namespace slipstick::qp
           }
       }
 
-      // eps is reduced only while the residual decreases: y moves by r / eps per point, and its rounding error should
-      // remain small beside r.
+      // eps is reduced while the residual decreases or the rounding error of y, which moves by r / eps per point, is
+      // small beside r: without a point x, r settles at once but turns into a certificate only as y grows.
       Status proximal_points()
       {
         StagnationWatch stagnates(options.stagnation_window, options.stagnation_progress);
@@ -162,7 +162,8 @@ namespace slipstick::qp
               accuracy *= options.reduction;
             if (maximum == Maximum::not_found)
               eps = std::min(eps / options.reduction, options.first_regularization);
-            else if (norm_r < options.stagnation_progress * before)
+            else if (norm_r < options.stagnation_progress * before ||
+                     options.rounding * norm(y, reduction) < options.small_rounding * norm_r)
               eps = std::max(options.reduction * eps, options.least_regularization);
             before = norm_r;
             std::copy(y.begin(), y.end(), center.begin());
