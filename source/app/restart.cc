@@ -154,8 +154,8 @@ namespace slipstick
     template <class Archive>
     void serialize(Archive &a, StepState &x, const unsigned int)
     {
-      a &x.kept_part &x.largest_load &x.history &x.rows &x.labels &x.multipliers &x.has_gradient &x.gradient &x
-        .reference &x.weighted_reference &x.largest_forces &x.largest_traction &x.u &x.directions &x.bolts;
+      a &x.kept_part &x.largest_load &x.built_at &x.history &x.rows &x.labels &x.multipliers &x.has_gradient &x
+        .gradient &x.reference &x.weighted_reference &x.largest_forces &x.largest_traction &x.u &x.directions &x.bolts;
     }
     template <class Archive>
     void serialize(Archive &a, RunState &x, const unsigned int)
@@ -172,7 +172,7 @@ namespace slipstick::app
   {
     const std::string head_name = "restart.bin";
     // Number of the file format; it must change with the layout.
-    constexpr unsigned int format_number = 8;
+    constexpr unsigned int format_number = 9;
 
     /// Contents of restart.bin: identifies the run to which the files belong.
     struct Head

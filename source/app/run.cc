@@ -216,7 +216,7 @@ namespace slipstick::app
     warned_about   = std::move(state.warned_about);
     finished_steps = state.summary;
     kept_steps     = state.summary.steps.size();
-    solver.resume(kept_steps - 1, state.solver);
+    solver.resume(state.solver);
     log.line(format("resumed      after load step %u of %zu", kept_steps, scene.load_factors.size()));
     return std::move(state.summary);
   }

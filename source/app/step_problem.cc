@@ -228,9 +228,10 @@ namespace slipstick::app
         drop_rounding(loads); // the first loads: the reference for later ones
         subdomains = std::make_shared<tfeti::Subdomains>(std::move(matrices));
       }
-    auto rows = contact_rows(t);
-    pruned    = std::move(rows.pruned);
-    held      = std::move(rows.held);
+    auto rows           = contact_rows(t);
+    load_factor_of_rows = t;
+    pruned              = std::move(rows.pruned);
+    held                = std::move(rows.held);
     interface::refuse_held_penetration(scene, held, comm);
     print_constraints(log, rows.active);
 
@@ -253,26 +254,52 @@ namespace slipstick::app
   }
 
   template <int dim>
-  bool StepProblem<dim>::advance(const double t, const std::vector<Eigen::VectorXd> &u)
+  typename StepProblem<dim>::Rows StepProblem<dim>::compare(const tfeti::Constraints &rows) const
+  {
+    constexpr double rounding = 1e-9; // of coefficients, which are of the size of 1
+    const auto      &present  = dual_ptr->constraints();
+    const bool       is_same  = scene.supports.size() == n_given && rows.label == present.label;
+    bool             is_moved = !is_same || rows.blocks.size() != present.blocks.size();
+    for (unsigned int p = 0; p < rows.blocks.size() && !is_moved; ++p)
+      is_moved = !std::equal(rows.blocks[p].begin(),
+                             rows.blocks[p].end(),
+                             present.blocks[p].begin(),
+                             present.blocks[p].end(),
+                             [](const auto &a, const auto &b) {
+                               return a.row == b.row && a.dof == b.dof && std::abs(a.value - b.value) <= rounding;
+                             });
+    const std::array<unsigned int, 2> own{{is_same ? 0u : 1u, is_moved ? 1u : 0u}};
+    std::array<unsigned int, 2>       any{};
+    dealii::Utilities::MPI::max(dealii::ArrayView<const unsigned int>(own.data(), own.size()),
+                                comm,
+                                dealii::ArrayView<unsigned int>(any.data(), any.size()));
+    return any[0] > 0 ? Rows::others : any[1] > 0 ? Rows::moved : Rows::same;
+  }
+
+  template <int dim>
+  typename StepProblem<dim>::Rows StepProblem<dim>::advance(const double t, const std::vector<Eigen::VectorXd> &u)
   {
     clock.enter("assembly");
-    auto       loads = loads_at(t);
-    auto       rows  = contact_rows(t);
-    const bool is_same =
-      scene.supports.size() == n_given &&
-      dealii::Utilities::MPI::min(rows.active.label == dual_ptr->constraints().label ? 1 : 0, comm) > 0;
-    if (is_same) // gaps that depend on the load factor may prune other nodes
+    auto loads = loads_at(t);
+    auto rows  = contact_rows(t);
+    Rows which = compare(rows.active);
+    if (which == Rows::same) // gaps that depend on the load factor may prune other nodes
       {
         pruned = std::move(rows.pruned);
         held   = std::move(rows.held);
         interface::refuse_held_penetration(scene, held, comm);
         clock.enter("dual setup");
+        dual_ptr->set_gaps(rows.active.contact_points);
         dual_ptr->set_step(std::move(loads), std::move(rows.active.c));
       }
     else
-      build(t);
+      {
+        build(t);
+        if (compare(rows.active) == Rows::others) // with rows for pruned nodes
+          which = Rows::others;
+      }
     start_slip_from(u);
-    return is_same;
+    return which;
   }
 
   template <int dim>

@@ -142,6 +142,7 @@ namespace slipstick::app
     StepState state;
     state.kept_part    = problem.kept_part();
     state.largest_load = problem.largest_load();
+    state.built_at     = problem.built_at();
     state.history      = history;
     state.rows         = rows;
     state.labels       = dual().constraints().label;
@@ -166,12 +167,12 @@ namespace slipstick::app
   }
 
   template <int dim>
-  void StepSolver<dim>::resume(const unsigned int step, const StepState &state)
+  void StepSolver<dim>::resume(const StepState &state)
   {
     history = state.history;
     rows    = state.rows;
     problem.restore(state.kept_part, state.largest_load);
-    problem.build(discrete_scene().load_factors[step]);
+    problem.build(state.built_at);
     collectively(comm, [&] {
       bool fits = state.labels == dual().constraints().label && state.u.size() == dual().subdomains().size();
       for (std::size_t p = 0; fits && p < state.u.size(); ++p)
@@ -300,7 +301,7 @@ namespace slipstick::app
                                                             const bool          continues)
   {
     const double t               = discrete_scene().load_factors[step];
-    bool         is_warm         = continues || (step > 0 && problem.advance(t, u));
+    bool         is_warm         = continues || (step > 0 && advance(t));
     bool         is_carried_over = false;
     if (step == 0 && !continues && !other_mesh.nodes.empty())
       if (auto start = contact::start_from(other_mesh, dual(), contact_names(discrete_scene()).pairs))
@@ -367,6 +368,20 @@ namespace slipstick::app
         if (step > 0)
           problem.start_slip_from(u);
       }
+  }
+
+  template <int dim>
+  bool StepSolver<dim>::advance(const double t)
+  {
+    using Rows      = typename StepProblem<dim>::Rows;
+    const Rows rows = problem.advance(t, u);
+    if (rows == Rows::moved) // products with F are those of other rows
+      {
+        dual_solution.multipliers = vector_of(values_of(dual_solution.multipliers), dual());
+        dual_solution.gradient.reset();
+        dual_solution.directions.reset();
+      }
+    return rows != Rows::others;
   }
 
   // Motions that additional supports hold at a node: there, deformation would show as a motion.

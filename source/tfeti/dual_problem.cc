@@ -143,6 +143,12 @@ namespace slipstick::tfeti
     set_right_hand_side(std::move(c));
   }
 
+  void DualProblem::set_gaps(const std::vector<ContactPoint> &points)
+  {
+    for (unsigned int k = 0; k < points.size(); ++k)
+      rows.contact_points[k].gap = points[k].gap;
+  }
+
   void DualProblem::set_right_hand_side(std::vector<double> c)
   {
     rows.c = std::move(c);

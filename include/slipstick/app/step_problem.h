@@ -22,6 +22,14 @@ namespace slipstick::app
   class StepProblem
   {
   public:
+    /// What the rows of a load step have in common with those of the step before.
+    enum class Rows
+    {
+      same,  // all but gaps and prescribed displacements
+      moved, // the same nodes, whose multipliers fit, but other normals: obstacles move
+      others
+    };
+
     /// Generates the mesh, and finds the contact pairs if the scene requests an automatic search.
     /// @param refinement local refinement, if any.
     /// @throws InputError for inconsistent meshes and pairs.
@@ -44,8 +52,14 @@ namespace slipstick::app
     void build(const double t);
 
     /// Sets loads and right-hand sides of a later step; slip is measured from @p u, the end of the previous step.
-    /// @return whether the rows are those of the previous step, so that its multipliers fit.
-    bool advance(const double t, const std::vector<Eigen::VectorXd> &u);
+    /// Rows are built again if they have changed: obstacles may move.
+    Rows advance(const double t, const std::vector<Eigen::VectorXd> &u);
+
+    /// The load factor at which the present rows were built.
+    double built_at() const
+    {
+      return load_factor_of_rows;
+    }
 
     /// Adds rows for more contact nodes, because others penetrate or the bodies are not held without them.
     void keep_more(const double t);
@@ -166,6 +180,9 @@ namespace slipstick::app
     /// Sets loads of this rank's subdomains to zero if they are only rounding compared with those of earlier steps.
     void drop_rounding(std::vector<Eigen::VectorXd> &loads);
 
+    /// Compares rows with the present ones. Collective.
+    Rows compare(const tfeti::Constraints &rows) const;
+
     /// The contact rows at load factor t, except pruned ones.
     interface::ContactRows contact_rows(const double t);
 
@@ -194,6 +211,7 @@ namespace slipstick::app
     mechanics::Tightening               bolts_so_far;
     double                              kept_fraction;
     double                              largest_load_so_far = 0; // [N]
+    double                              load_factor_of_rows = 0;
     double                              factorization       = 0; // [s]
   };
 } // namespace slipstick::app

@@ -55,9 +55,9 @@ namespace slipstick::app
     /// @param multiplications_before multiplications by F in the previous steps.
     std::unique_ptr<StepSolution> solve(const unsigned int step, const std::uint64_t multiplications_before);
 
-    /// Replaces build(): restores the state after load step @p step of an earlier run. @throws InputError if the state
+    /// Replaces build(): restores the state after a load step of an earlier run. @throws InputError if the state
     /// does not fit.
-    void resume(const unsigned int step, const StepState &state);
+    void resume(const StepState &state);
 
     /// The state after a load step, for resume(). Not available for the last step of a scene.
     StepState state() const;
@@ -144,6 +144,9 @@ namespace slipstick::app
     /// the checks. The last estimate of the step, which errors of earlier iterates can only have increased, is tested
     /// first; a displacement is recovered only if this test is inconclusive.
     bool is_accurate(const contact::DualSolution &iterate, const double residual_energy, const double t);
+
+    /// Takes the problem to the next load step. @return whether the multipliers of the last one are a start.
+    bool advance(const double t);
 
     /// Solves the current step, adding rows for more contact nodes as long as pruned ones penetrate.
     /// @param continues whether to start from the present solution of this step.

@@ -14,6 +14,7 @@ namespace slipstick::app
   {
     double                              kept_part    = 0;       // of the contact nodes, see StepSolver
     double                              largest_load = 0;       // of the steps so far [N]
+    double                              built_at     = 0;       // load factor of the rows, see StepProblem
     contact::History                    history;                // of the steps so far
     std::vector<output::ConvergenceRow> rows;                   // of convergence.csv
     std::vector<std::uint64_t>          labels;                 // of the owned rows

@@ -77,6 +77,9 @@ namespace slipstick::tfeti
     /// K, B and everything that depends only on them are kept. Collective.
     void set_step(std::vector<Eigen::VectorXd> loads, std::vector<double> c);
 
+    /// The gaps of the contact points in @p points, of the same rows, replace the present ones.
+    void set_gaps(const std::vector<ContactPoint> &points);
+
     /// Changes only the right-hand sides c of the owned rows [mm]. Collective.
     void set_right_hand_side(std::vector<double> c);
 
