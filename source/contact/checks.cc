@@ -240,7 +240,12 @@ namespace slipstick::contact
                                                                  multipliers.local_element(r),
                                                                  slip_bound[r],
                                                                  noise);
-            held[r]                = is_equality(constraints.kind[r]) || wrong.local_element(r) != 0;
+            // slip in a wrong direction is the error of a force of at most twice the bound; the rest moves a body as a
+            // whole, without energy
+            if (const double most = 2 * slip_bound[r] * dual.norm();
+                constraints.kind[r] == tfeti::RowKind::tangential && !free[r])
+              wrong.local_element(r) = std::min(std::max(wrong.local_element(r), -most), most);
+            held[r] = is_equality(constraints.kind[r]) || wrong.local_element(r) != 0;
           }
         find_place_of_row(dual, row_of_jump, largest[jump]);
         auto energies              = tfeti::jump_energies(dual, wrong, held);

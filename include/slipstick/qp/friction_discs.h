@@ -21,7 +21,8 @@ namespace slipstick::qp::detail
   constexpr double rigid_compliance = 1e8;
 
   /// Sets the bounds of the tangential entries of a node for a radius. Those of a disc are meant as turned: x_s is held
-  /// at 0 if the radius is 0 or if it is at a bound of a slipping node, and has no bounds otherwise.
+  /// at 0 if the radius is 0 or if it is at a bound, also of a node whose first entry was freed; otherwise it has no
+  /// bounds.
   template <typename Vector>
   void set_radius(const PressureBound &bound, const double radius, const Sides &sides, Box<Vector> &box)
   {
@@ -29,7 +30,7 @@ namespace slipstick::qp::detail
     box.upper.begin()[bound.tangential] = radius;
     if (!bound.is_disc())
       return;
-    const bool is_held              = !(radius > 0) || (sides[bound.tangential] != 0 && sides[bound.second] != 0);
+    const bool is_held              = !(radius > 0) || sides[bound.second] != 0;
     box.lower.begin()[bound.second] = is_held ? 0. : -HUGE_VAL;
     box.upper.begin()[bound.second] = is_held ? 0. : HUGE_VAL;
   }
