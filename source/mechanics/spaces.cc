@@ -8,6 +8,7 @@
 #include <deal.II/fe/mapping_q.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace slipstick::mechanics
 {
@@ -94,6 +95,24 @@ namespace slipstick::mechanics
         return std::make_unique<dealii::MappingQ<dim>>(degree);
       return std::make_unique<SimplexMapping<dim>>(dealii::FE_SimplexP<dim>(degree));
     }
+    /// Rules with n = 2 in deal.II (of Witherden and Vincent: 4 points in the plane, 6 in space) are not symmetric, so
+    /// that results would depend on the order of the corners. Instead: that of order 2 with as many points as corners
+    /// (Hammer, Stroud 1956), which is exact for the stiffness of straight elements of degree 2.
+    template <int dim>
+    dealii::Quadrature<dim> symmetric_rule(const unsigned int n)
+    {
+      if (n != 2)
+        return dealii::QGaussSimplex<dim>(n);
+      constexpr unsigned int          n_corners = dim + 1;
+      const double                    small     = (1 - 1 / std::sqrt(dim + 2.)) / n_corners;
+      std::vector<dealii::Point<dim>> points(n_corners);
+      const double                    volume = dim == 2 ? 1. / 2 : 1. / 6;
+      for (unsigned int k = 0; k < n_corners; ++k)
+        for (unsigned int d = 0; d < dim; ++d)
+          points[k][d] = k == d + 1 ? 1 - dim * small : small;
+      return dealii::Quadrature<dim>(points, std::vector<double>(n_corners, volume / n_corners));
+    }
+
     template <int dim>
     bool is_curved(const dealii::Triangulation<dim> &triangulation)
     {
@@ -124,7 +143,7 @@ namespace slipstick::mechanics
   dealii::Quadrature<dim> Element<dim>::cell_quadrature(const unsigned int n) const
   {
     if (cell.is_simplex())
-      return dealii::QGaussSimplex<dim>(n);
+      return symmetric_rule<dim>(n);
     return dealii::QGauss<dim>(n);
   }
 
@@ -133,7 +152,7 @@ namespace slipstick::mechanics
   {
     if constexpr (dim == 3)
       if (cell.is_simplex())
-        return dealii::QGaussSimplex<dim - 1>(n);
+        return symmetric_rule<dim - 1>(n);
     return dealii::QGauss<dim - 1>(n);
   }
 

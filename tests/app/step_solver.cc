@@ -132,7 +132,7 @@ TEST(StepSolver, state_is_the_same_after_it_was_written_and_taken_over)
   path = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, path);
   const output::OutputDirectory directory(path, MPI_COMM_WORLD);
   app::write_restart(directory, scene, run, MPI_COMM_WORLD);
-  other.resume(0, app::read_restart(directory, scene, MPI_COMM_WORLD).solver);
+  other.resume(app::read_restart(directory, scene, MPI_COMM_WORLD).solver);
   MPI_Barrier(MPI_COMM_WORLD);
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
     std::filesystem::remove_all(path);

@@ -127,6 +127,32 @@ class Resumed(unittest.TestCase):
             self.assertIn('there is no run in', again.stderr)
             self.assertEqual(resumed.summary['status'], 'converged')  # and nothing was lost
 
+    def test_on_a_floor_that_moves(self):
+        """The rows of the first load step were used until contact nodes came or went, and those of the last one after --resume."""
+        def on_waves(law, factors):
+            return scenes.box(
+                name='waves', bodies={'box': {**scenes.BOX, 'Cells': '8, 8'}},
+                obstacles={'floor': {'Shape': 'function', 'Height': '0.2*sin(0.6*(x - t)) - 0.2'}},
+                supports={'wall': {'Boundary': 'box/left', 'Displacement x': '0'}},
+                contacts={'rest': {'Slave': 'box/bottom', 'Master': 'floor', **law}},
+                tractions={'down': {'Boundary': 'box/top', 'Traction y': '-2000 + 1e5*(t > {})'.format(FAILS / 2)}},
+                Solver={'Tolerance': '1e-10'}, Decomposition={'Method': 'none'}, Output={'VTU': 'false'},
+                **{'Load steps': {'Factors': factors}})
+
+        smooth = {'Law': 'frictionless'}
+        one, many = (converged(on_waves(smooth, factors)) for factors in ('4', '1, 2, 3, 4'))
+        for found, right in zip(many.summary['results']['contact'][0]['force'], one.summary['results']['contact'][0]['force']):
+            self.assertAlmostEqual(found, right, delta=1e-6 * one.summary['results']['contact'][0]['normal_force'])
+
+        rough = {'Law': 'Coulomb', 'Friction coefficient': '0.1'}
+        whole, case = converged(on_waves(rough, '1, 2, 3, 4')), on_waves(rough, '1, 2, 3, 4')
+        stopped = solve(on_waves(rough, '1, 2, {}'.format(FAILS)))
+        self.assertIn('restart.bin', stopped.files(), stopped)
+        resumed = run(case, '--resume', '--output', stopped.directory, directory=stopped.directory)
+        self.assertEqual(resumed.status, 0, resumed)
+        for table in ('history.csv', 'contact.csv'):
+            self.assertEqual((stopped.directory / table).read_text(), (whole.directory / table).read_text(), table)
+
     def test_other_meshes_and_damage(self):
         mesh = new_path('square.msh')
         mesh.write_text('\n'.join(

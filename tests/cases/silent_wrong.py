@@ -85,6 +85,10 @@ def disc_on_plate(reach, n=1):
         contacts={'joint': {'Slave': 'disc/arc', 'Master': 'plate/top', 'Reach': reach}})
 
 
+def shipped_mesh(name):
+    return str(pathlib.Path(__file__).parent / name)
+
+
 def only(found):
     assert len(found) == 1, found
     return found[0]
@@ -144,6 +148,27 @@ class Steps(unittest.TestCase):
                 self.assertAlmostEqual(u[0] / u[1], 1, delta=0.02)
                 self.assertLess(u[0], 3e-4)
                 self.assertAlmostEqual(force[0], 20, delta=0.01)
+
+
+class Itself(unittest.TestCase):
+    """A clip that a load closes beyond its slit of 1 mm, without a pair between its lips."""
+
+    def clip(self, pull, contact=False):
+        text = (pathlib.Path(__file__).parent / 'self_clip.prm').read_text().replace('self_clip.msh', shipped_mesh('self_clip.msh'))
+        text = text.replace('-0.5*abs(y)/y', pull + '*abs(y)/y')
+        if not contact:
+            text = re.sub('subsection Contact lips.*?end\\n', '', text.replace('set Contacts = lips\n', ''), flags=re.S)
+        path = new_path('clip.prm')
+        path.write_text(text)
+        return [text for text in converged(str(path)).summary['warnings'] if 'itself' in text]
+
+    def test_a_clip_that_closes(self):
+        text = only(self.clip('-5'))
+        self.assertIn('body c passes through itself by 1.75 mm after loading, at (11.4', text)
+        self.assertIn('declare a contact pair', text)
+        self.assertEqual(self.clip('5'), [])
+        self.assertEqual(self.clip('-0.05'), [])
+        self.assertEqual(self.clip('-5', contact=True), [])
 
 
 class EndsOfSides(unittest.TestCase):

@@ -202,6 +202,36 @@ class Rollers(unittest.TestCase):
             self.assertLess(summary['results']['max_displacement'], 0.01)  # it does not roll
 
 
+class Loose(unittest.TestCase):
+    """A block between a floor and a block that a support moves, both with friction."""
+
+    def between(self, factors, lower, **kinds):
+        return solid('between', 2, 0,
+                     bodies={'lo': {'Size': '4, 2, 4', 'Cells': '2, 1, 2', 'Material': 'steel', **lower},
+                             'up': {'Origin': '0.5, 2, 0.5', 'Size': '3, 2, 3', 'Cells': '2, 1, 2', 'Material': 'steel'}},
+                     obstacles={'floor': {'Shape': 'half space', 'Point': '0, 0, 0', 'Normal': '0, 1, 0'}},
+                     supports={'drive': {'Boundary': 'up/top', 'Displacement x': '0.005*t', 'Displacement y': '-0.02*min(t, 2-t)',
+                                         'Displacement z': '0.003*t'}},
+                     contacts={name: {'Slave': slave, 'Master': master, 'Law': 'Coulomb', 'Friction coefficient': '0.3'}
+                               for name, slave, master in (('c', 'up/bottom', 'lo/top'), ('f', 'lo/bottom', 'floor'))},
+                     Solver={'Tolerance': '1e-8'}, **{'Load steps': {'Factors': factors}}, **kinds)
+
+    def test_unloaded(self):
+        """The direction of friction forces of 1e-6 N was checked as if they bent the block: status 3 after up to 6036
+        multiplications."""
+        for factors, lower, degree in (('1, 2', {}, '1'), ('1, 1.5, 2', {}, '1'), ('1, 2', {}, '2'), ('1, 2', {'Cells': '3, 2, 3'}, '1')):
+            summary = converged(self.between(factors, lower, Discretization={'Degree': degree})).summary
+            self.assertLess(max(step['hessian_multiplications'] for step in summary['steps']), 100)
+            for pair in summary['results']['contact']:
+                self.assertLess(pair['normal_force'], 1e-4)  # 4e4 N in the first step
+
+    def test_pushed_within_its_gap(self):
+        """A node that was freed in part was put on an infinite bound: forces NaN, status 3."""
+        results = converged(str(pathlib.Path(__file__).parent / 'pushed_within_gap.prm')).summary['results']
+        for pair in results['contact']:
+            self.assertLess(pair['normal_force'], 1e-6)
+
+
 class TooWeak(unittest.TestCase):
 
     def test_friction_that_does_not_bear_the_load(self):

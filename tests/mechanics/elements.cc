@@ -4,6 +4,8 @@
 
 #include <deal.II/grid/manifold_lib.h>
 
+#include <numeric>
+
 using namespace slipstick;
 using namespace slipstick::test;
 using scene::ElementKind;
@@ -508,4 +510,71 @@ TEST(PointLoads, outside_of_the_body_are_refused)
   EXPECT_NE(message.find("Point load pull: the point (1.2, 0.5) is not on body 'box': the nearest node, (1, 0.5)"),
             std::string::npos)
     << message;
+}
+
+namespace
+{
+  /// The largest difference of integrals of a function of the barycentric coordinates over their permutations.
+  template <int dim>
+  double asymmetry(const dealii::Quadrature<dim> &rule)
+  {
+    std::array<unsigned int, dim + 1> order;
+    std::iota(order.begin(), order.end(), 0u);
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    do
+      {
+        double sum = 0;
+        for (unsigned int q = 0; q < rule.size(); ++q)
+          {
+            std::array<double, dim + 1> L{{1}};
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                L[d + 1] = rule.point(q)[d];
+                L[0] -= L[d + 1];
+              }
+            double f = rule.weight(q);
+            for (unsigned int i = 0; i <= dim; ++i)
+              f *= std::pow(L[order[i]] + 0.01, 1 + 2 * i);
+            sum += f;
+          }
+        least = std::min(least, sum);
+        most  = std::max(most, sum);
+    } while (std::next_permutation(order.begin(), order.end()));
+    return (most - least) / most;
+  }
+
+  template <int dim>
+  void expect_symmetric_rules()
+  {
+    const dealii::ReferenceCell cell =
+      dim == 2 ? dealii::ReferenceCells::Triangle : dealii::ReferenceCells::Tetrahedron;
+    for (const unsigned int degree : {1, 2})
+      {
+        const mechanics::Element<dim> element(cell, degree);
+        for (const auto *rule : {&element.stiffness, &element.loads, &element.stress})
+          EXPECT_LT(asymmetry(*rule), 1e-13) << dim << ' ' << degree;
+        for (const unsigned int n : {1, 2, 3, 4})
+          EXPECT_LT(asymmetry(element.cell_quadrature(n)), 1e-13) << dim << ' ' << n;
+        if constexpr (dim == 3)
+          for (const unsigned int n : {1, 2, 3, 4})
+            EXPECT_LT(asymmetry(element.face_quadrature(n)), 1e-13) << n;
+      }
+    // exact for squares: the integral of x^2 and of x y
+    const auto rule = mechanics::Element<dim>(cell, 2).cell_quadrature(2);
+    double     xx = 0, xy = 0;
+    for (unsigned int q = 0; q < rule.size(); ++q)
+      {
+        xx += rule.weight(q) * rule.point(q)[0] * rule.point(q)[0];
+        xy += rule.weight(q) * rule.point(q)[0] * rule.point(q)[1];
+      }
+    EXPECT_NEAR(xx, dim == 2 ? 1. / 12 : 1. / 60, 1e-15);
+    EXPECT_NEAR(xy, dim == 2 ? 1. / 24 : 1. / 120, 1e-15);
+  }
+} // namespace
+
+/// Those of deal.II with n = 2 are not.
+TEST(Quadrature, on_simplices_does_not_depend_on_the_order_of_the_corners)
+{
+  expect_symmetric_rules<2>();
+  expect_symmetric_rules<3>();
 }
