@@ -134,12 +134,14 @@ namespace slipstick::qp
           }
       }
 
-      // eps is reduced while the residual decreases or the rounding error of y, which moves by r / eps per point, is
-      // small beside r: without a point x, r settles at once but turns into a certificate only as y grows.
+      // eps is reduced while the residual decreases: y moves by r / eps per point, and its rounding error should remain
+      // small beside r. It is reduced as well if r stagnates where that is so: without a point x, r may turn into a
+      // certificate only as y grows.
       Status proximal_points()
       {
         StagnationWatch stagnates(options.stagnation_window, options.stagnation_progress);
         double          before   = HUGE_VAL; // |r| of the previous point
+        bool            hurries  = false;
         double          accuracy = options.maximum_tolerance;
         eps                      = options.first_regularization;
         for (;;)
@@ -157,13 +159,16 @@ namespace slipstick::qp
             if (newton_steps >= options.max_plain_steps + options.max_newton_steps)
               return Status::iteration_limit;
             if (maximum == Maximum::found && stagnates(norm_r))
-              return Status::stagnated;
+              {
+                if (options.rounding * norm(y, reduction) > options.small_rounding * norm_r)
+                  return Status::stagnated;
+                hurries = true;
+              }
             if (has_settled)
               accuracy *= options.reduction;
             if (maximum == Maximum::not_found)
               eps = std::min(eps / options.reduction, options.first_regularization);
-            else if (norm_r < options.stagnation_progress * before ||
-                     options.rounding * norm(y, reduction) < options.small_rounding * norm_r)
+            else if (hurries || norm_r < options.stagnation_progress * before)
               eps = std::max(options.reduction * eps, options.least_regularization);
             before = norm_r;
             std::copy(y.begin(), y.end(), center.begin());
