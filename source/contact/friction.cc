@@ -26,8 +26,9 @@ namespace slipstick::contact
 
     // Loads below this fraction of those of earlier steps are zero up to rounding.
     constexpr double rounding_of_loads = 1e-12;
-    // Without loads, forces below this part of those of earlier load steps, or below the tolerance, are rounding.
-    constexpr double largest_part_of_rounding = 1e-6;
+    // Without loads, forces below the tolerance times those of earlier load steps are rounding; the factor is at least
+    // and at most this.
+    constexpr double sure_rounding = 1e-6, largest_part_of_rounding = 1e-4;
     // Newton steps on sliding solids after which the solver checks whether friction can bear the loads at all: if it
     // cannot, more steps find nothing.
     constexpr unsigned int steps_before_overload = 30;
@@ -117,7 +118,7 @@ namespace slipstick::contact
       /// well: bodies that were unloaded. Otherwise rounding would decide where loose bodies end.
       bool only_rounding_remains() const
       {
-        const double least   = std::min(options.tolerance, largest_part_of_rounding);
+        const double least   = std::max(sure_rounding, std::min(options.tolerance, largest_part_of_rounding));
         double       overlap = 0;
         for (unsigned int r = 0; r < dual.constraints().kind.size(); ++r)
           if (const auto kind = dual.constraints().kind[r]; kind != tfeti::RowKind::tangential)
@@ -144,7 +145,7 @@ namespace slipstick::contact
         set_scales(loads, start);
         if (start && loads.l2_norm() <= rounding_of_loads * start->reference) // unloaded to zero
           return dual.zero();
-        auto point = qp::feasible_point(dual, loads, law.admissible(dual));
+        auto point = qp::feasible_point(dual, loads, law.admissible(dual), {}, true);
         if (point.status == qp::Status::infeasible)
           no_equilibrium(dual, point.certificate, point.residual);
         size_of_forces = point.x.l2_norm();
