@@ -133,7 +133,7 @@ namespace slipstick::mechanics
     , mapping(isoparametric<dim>(cell, is_curved ? degree : 1))
     , stiffness(cell_quadrature(cell.is_simplex() && (degree == 1 || dim == 3) ? degree : degree + 1))
     , loads(cell_quadrature(degree + 2))
-    , stress(cell_quadrature(degree))
+    , stress(cell_quadrature(cell.is_simplex() && degree == 2 && dim == 3 ? 3 : degree))
   {
     AssertThrow(degree == 1 || degree == 2,
                 dealii::ExcMessage("nodes of boundaries are identified by two vertices: degree 1 or 2"));
