@@ -258,8 +258,9 @@ namespace slipstick::app
   {
     constexpr double rounding = 1e-9; // of coefficients, which are of the size of 1
     const auto      &present  = dual_ptr->constraints();
-    const bool       is_same  = scene.supports.size() == n_given && rows.label == present.label;
-    bool             is_moved = !is_same || rows.blocks.size() != present.blocks.size();
+    const bool       is_same  = scene.supports.size() == n_given && rows.label == present.label &&
+                         rows.contact_points.size() == present.contact_points.size();
+    bool is_moved = !is_same || rows.blocks.size() != present.blocks.size();
     for (unsigned int p = 0; p < rows.blocks.size() && !is_moved; ++p)
       is_moved = !std::equal(rows.blocks[p].begin(),
                              rows.blocks[p].end(),

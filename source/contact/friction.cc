@@ -118,7 +118,7 @@ namespace slipstick::contact
       /// well: bodies that were unloaded. Otherwise rounding would decide where loose bodies end.
       bool only_rounding_remains() const
       {
-        const double least   = std::max(sure_rounding, std::min(options.tolerance, largest_part_of_rounding));
+        const double least   = std::clamp(options.tolerance, sure_rounding, largest_part_of_rounding);
         double       overlap = 0;
         for (unsigned int r = 0; r < dual.constraints().kind.size(); ++r)
           if (const auto kind = dual.constraints().kind[r]; kind != tfeti::RowKind::tangential)
@@ -145,7 +145,9 @@ namespace slipstick::contact
         set_scales(loads, start);
         if (start && loads.l2_norm() <= rounding_of_loads * start->reference) // unloaded to zero
           return dual.zero();
-        auto point = qp::feasible_point(dual, loads, law.admissible(dual), {}, true);
+        qp::FeasiblePointOptions how;
+        how.seeks_proof = true;
+        auto point      = qp::feasible_point(dual, loads, law.admissible(dual), how);
         if (point.status == qp::Status::infeasible)
           no_equilibrium(dual, point.certificate, point.residual);
         size_of_forces = point.x.l2_norm();

@@ -1,5 +1,6 @@
 #include <slipstick/base/box_tree.h>
 #include <slipstick/base/cross.h>
+#include <slipstick/interface/pair_checks.h>
 #include <slipstick/interface/part_pieces.h>
 #include <slipstick/interface/self_penetration.h>
 
@@ -10,6 +11,8 @@ namespace slipstick::interface
 {
   namespace
   {
+    // Rays are followed in pieces of this many chords: many of them are long but hit something near.
+    constexpr double piece_of_ray = 4;
     // Flanks of a slit may coincide: rays start this fraction of a chord below the surface.
     constexpr double below_surface = 1e-6;
 
@@ -67,7 +70,7 @@ namespace slipstick::interface
                                               const std::vector<mechanics::BoundaryPart<dim>> &now,
                                               const std::set<unsigned int>                    &exempt)
   {
-    // displacements without their mean limit the length of the rays
+    // the size of the body and displacements without their mean limit the length of the rays
     Tensor<dim>                             mean;
     double                                  n_nodes = 0;
     std::vector<typename BoxTree<dim>::Box> boxes;
@@ -91,6 +94,7 @@ namespace slipstick::interface
 
     std::optional<Penetration> deepest;
     const BoxTree<dim>         tree(boxes);
+    const double               reach = std::min(2 * largest, extent(before));
     for (unsigned int e = 0; e < before.size(); ++e)
       {
         if (exempt.count(e) > 0)
@@ -100,24 +104,28 @@ namespace slipstick::interface
         const double start = -below_surface * before[e].chord();
         const double own   = (now[e].middle() - x) * n;
         // the nearest place that x sees, and by how much it has come nearer
-        double nearest = 2 * largest, closing = 0, chord = 0;
-        for (const unsigned int f : tree.near(
-               BoxTree<dim>::box_around({dealii::Point<dim>(x + start * n), dealii::Point<dim>(x + nearest * n)})))
-          if (f != e && !share_a_node(before[e], before[f]))
-            for (const auto &piece : flat_pieces(before[f]))
-              {
-                std::array<dealii::Point<dim>, dim> corners;
-                for (unsigned int k = 0; k < dim; ++k)
-                  corners[k] = before[f].node(piece[k]);
-                const auto hit = meet(x, n, corners);
-                if (!hit || hit->distance < start || hit->distance > nearest)
-                  continue;
-                nearest = hit->distance;
-                chord   = before[f].chord();
-                closing = own;
-                for (unsigned int k = 0; k < dim; ++k)
-                  closing -= hit->shares[k] * (u(f, piece[k]) * n);
-              }
+        double nearest = reach, closing = 0, chord = 0, to = 0;
+        for (double from = start; from < nearest; from = to)
+          {
+            to = from + piece_of_ray * before[e].chord();
+            for (const unsigned int f : tree.near(
+                   BoxTree<dim>::box_around({dealii::Point<dim>(x + from * n), dealii::Point<dim>(x + to * n)})))
+              if (f != e && !share_a_node(before[e], before[f]))
+                for (const auto &piece : flat_pieces(before[f]))
+                  {
+                    std::array<dealii::Point<dim>, dim> corners;
+                    for (unsigned int k = 0; k < dim; ++k)
+                      corners[k] = before[f].node(piece[k]);
+                    const auto hit = meet(x, n, corners);
+                    if (!hit || hit->distance < start || hit->distance > nearest)
+                      continue;
+                    nearest = hit->distance;
+                    chord   = before[f].chord();
+                    closing = own;
+                    for (unsigned int k = 0; k < dim; ++k)
+                      closing -= hit->shares[k] * (u(f, piece[k]) * n);
+                  }
+          }
         take_deeper(deepest, closing - std::max(0., nearest), x, std::min(before[e].chord(), chord), 0.);
       }
     return deepest;

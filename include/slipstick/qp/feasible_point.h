@@ -44,16 +44,11 @@ namespace slipstick::qp
     class NearestPoint
     {
     public:
-      NearestPoint(const Problem              &problem_,
-                   const Vector               &x_e,
-                   const Set                  &set_,
-                   const FeasiblePointOptions &options_,
-                   const bool                  seeks_proof_)
+      NearestPoint(const Problem &problem_, const Vector &x_e, const Set &set_, const FeasiblePointOptions &options_)
         : problem(problem_)
         , reduction(problem.reduction())
         , set(set_)
         , options(options_)
-        , seeks_proof(seeks_proof_)
         , Qx_e(x_e)
         , y(zero_like(x_e))
         , center(y)
@@ -165,7 +160,7 @@ namespace slipstick::qp
               return Status::iteration_limit;
             if (maximum == Maximum::found && stagnates(norm_r))
               {
-                if (!seeks_proof || options.rounding * norm(y, reduction) > options.small_rounding * norm_r)
+                if (!options.seeks_proof || options.rounding * norm(y, reduction) > options.small_rounding * norm_r)
                   return Status::stagnated;
                 hurries = true;
               }
@@ -297,7 +292,6 @@ namespace slipstick::qp
       decltype(std::declval<const Problem &>().reduction()) reduction;
       const Set                                            &set;
       const FeasiblePointOptions                           &options;
-      const bool                                            seeks_proof;
 
       Vector       Qx_e, y, center, x, r, gradient, d, p, Ap, residual;
       double       eps = 0, reference = 0, norm_r = 0;
@@ -308,7 +302,6 @@ namespace slipstick::qp
 
   /// The point of the set (Box or ForceSet) with Q x = Q x_e that is nearest to zero. Uses only `problem.project_range`
   /// and `problem.reduction`.
-  /// @param seeks_proof whether to go on for a certificate where the residual stagnates
   /// status: infeasible with a certificate, see FeasiblePoint (without one if some lower > upper); iteration_limit or
   /// stagnated if neither a point nor a certificate was found.
   /// @code
@@ -328,19 +321,17 @@ namespace slipstick::qp
   FeasiblePoint<Vector> feasible_point(const Problem              &problem,
                                        const Vector               &x_e,
                                        const Set                  &set,
-                                       const FeasiblePointOptions &options     = {},
-                                       const bool                  seeks_proof = false)
+                                       const FeasiblePointOptions &options = {})
   {
-    return detail::NearestPoint<Vector, Problem, Set>(problem, x_e, set, options, seeks_proof).run();
+    return detail::NearestPoint<Vector, Problem, Set>(problem, x_e, set, options).run();
   }
 
   template <typename Vector, typename Problem>
   FeasiblePoint<Vector> feasible_point(const Problem              &problem,
                                        const Vector               &x_e,
                                        const Box<Vector>          &box,
-                                       const FeasiblePointOptions &options     = {},
-                                       const bool                  seeks_proof = false)
+                                       const FeasiblePointOptions &options = {})
   {
-    return detail::NearestPoint<Vector, Problem, Box<Vector>>(problem, x_e, box, options, seeks_proof).run();
+    return detail::NearestPoint<Vector, Problem, Box<Vector>>(problem, x_e, box, options).run();
   }
 } // namespace slipstick::qp
