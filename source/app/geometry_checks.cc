@@ -1,6 +1,7 @@
 #include <slipstick/app/geometry_checks.h>
 #include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
+#include <slipstick/interface/pair_checks.h>
 
 #include <algorithm>
 #include <cmath>
@@ -42,19 +43,22 @@ namespace slipstick::app
         const auto &pair = scene.contacts[k];
         if (pair.master)
           joined.insert(std::minmax(pair.slave.body, pair.master->body));
+        const std::string parameter =
+          pair.master ? interface::reach_of(scene, pair) : "Contact " + pair.name + "/Reach";
         if (const auto &deepest = found.beyond_reach[k];
             deepest && deepest->depth > std::max(allowed_beyond_reach * largest, coordinate_rounding * deepest->edge) &&
             !findings.failure)
           findings.failure =
             format("Contact %s: at %s a slave node that was left out because it is farther away than the Reach of "
                    "%g mm penetrates by %.3g mm; the results are not a solution\n"
-                   "  remedy: set Contact %s/Reach to %g mm or more, or to auto",
+                   "  remedy: set %s to %g mm or more%s",
                    pair.name.c_str(),
                    place<dim>(*deepest).c_str(),
                    *pair.reach,
                    deepest->depth,
-                   pair.name.c_str(),
-                   rounded_up(reserve * deepest->gap));
+                   parameter.c_str(),
+                   rounded_up(reserve * deepest->gap),
+                   parameter == "Contact search/Reach" ? "" : ", or to auto");
         if (const auto &deepest = found.in_obstacle[k];
             deepest && deepest->depth > std::max(allowed_between_nodes * std::min(largest, deepest->edge),
                                                  coordinate_rounding * deepest->edge))

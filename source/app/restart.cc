@@ -172,7 +172,7 @@ namespace slipstick::app
   {
     const std::string head_name = "restart.bin";
     // Number of the file format; it must change with the layout.
-    constexpr unsigned int format_number = 9;
+    constexpr unsigned int format_number = 10;
 
     /// Contents of restart.bin: identifies the run to which the files belong.
     struct Head

@@ -298,6 +298,7 @@ namespace slipstick::contact
       /// Checks the contact law at the nodes, except bonded ones.
       void check_nodes()
       {
+        const double noise = qp::force_rounding * multipliers.linfty_norm();
         for (unsigned int i = 0; i < constraints.contact_points.size(); ++i)
           {
             const auto  &point = constraints.contact_points[i];
@@ -305,7 +306,7 @@ namespace slipstick::contact
             const Place  place = {true, point.slave_body, point.position, true, true, point.pair};
             const double N = node.pressure * node.area, T = node.tangential_traction * node.area;
             largest[penetration].take(-node.gap, place);
-            largest[tension].take(-N, place);
+            largest[tension].take(-N > noise ? -N : 0., place);
             double work = 0;
             if (point.normal_row != tfeti::invalid_row)
               work += std::abs(N * node.gap);

@@ -2,6 +2,7 @@
 #include <slipstick/interface/body_contact.h>
 #include <slipstick/interface/corners.h>
 #include <slipstick/interface/gap_rotation.h>
+#include <slipstick/interface/held_rotation.h>
 #include <slipstick/interface/held_slaves.h>
 #include <slipstick/interface/pair_checks.h>
 
@@ -54,11 +55,12 @@ namespace slipstick::interface
       const auto           distance = facing_distance(sides.slave, sides.master);
       if (!distance) // also if a side is empty
         refuse_pair(scene, pair, sides, 0.);
-      const double near = pair.reach ? *pair.reach : automatic_reach(sides.slave, sides.master, *distance);
+      const double automatic = automatic_reach(sides.slave, sides.master, *distance);
+      const double widest    = std::max(automatic, widest_reach(sides.slave, sides.master, *distance));
+      // which open nodes have friction must not depend on the mesh
+      const double near = pair.reach ? *pair.reach : pair.law.acts_when_open ? widest : automatic;
       // more distant nodes have no rows at first, but are checked again with the solution
-      const double reach   = pair.reach || !pair.law.acts_where_closed_alone()
-                               ? near
-                               : std::max(near, widest_reach(sides.slave, sides.master, *distance));
+      const double reach   = pair.reach || !pair.law.acts_where_closed_alone() ? near : widest;
       Corners      corners = corners_of(scene, mesh, pair.slave, sides.slave, sides.slave_outline);
       corners.merge(corners_of(scene, mesh, *pair.master, sides.master, sides.master_outline));
       auto rows = mortar_rows(sides.slave,
@@ -73,7 +75,14 @@ namespace slipstick::interface
       check_sides(scene, mesh, pair, sides, all, rows);
       give_held_rows_to_neighbours<dim>(scene, mesh, all, sides.slave, rows);
       if (!mesh::Kinematics<dim>(scene.plane_state).is_revolution()) // bodies of revolution do not rotate
-        find_rotation_weights(sides.slave, sides.master, rows);
+        {
+          const auto is_held = [&](const unsigned int body) { return supports_hold_rotation(scene, mesh, all, body); };
+          // where rows are closed, a gap of the geometry is, too
+          const bool closes = pair.law.acts_where_closed_alone() && !pair.gap;
+          const bool only_strained =
+            closes && pair.slave.body != pair.master->body && is_held(pair.slave.body) && is_held(pair.master->body);
+          find_rotation_weights(sides.slave, sides.master, !only_strained, rows);
+        }
       return rows;
     }
 

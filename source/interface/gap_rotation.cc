@@ -118,6 +118,7 @@ namespace slipstick::interface
   template <int dim>
   void find_rotation_weights(const std::vector<mechanics::BoundaryPart<dim>> &slave,
                              const std::vector<mechanics::BoundaryPart<dim>> &master,
+                             const bool                                       gaps_rotate,
                              std::vector<MortarRow<dim>>                     &rows)
   {
     const SideNodes<dim> of_slave(slave), of_master(master);
@@ -131,9 +132,11 @@ namespace slipstick::interface
         const auto spans = spans_of_carriers<dim>(row.apart, row.normal);
         for (unsigned int k = 0; k < n_carriers; ++k)
           {
-            const bool        is_slave = k == 0;
-            const NodeExtent &at       = is_slave ? at_slave : at_master;
-            const double      span     = spans[k].norm();
+            const bool is_slave = k == 0;
+            if (!gaps_rotate && k < 2)
+              continue;
+            const NodeExtent &at   = is_slave ? at_slave : at_master;
+            const double      span = spans[k].norm();
             const double      radius =
               at.reach + radius_of_rotation * std::clamp(span, at.cells, most_cells<dim> * at.cells);
             if (span > rounding_of_points * at.cells)
@@ -190,9 +193,11 @@ namespace slipstick::interface
 
   template void                              find_rotation_weights(const std::vector<mechanics::BoundaryPart<2>> &,
                                                                    const std::vector<mechanics::BoundaryPart<2>> &,
+                                                                   const bool,
                                                                    std::vector<MortarRow<2>> &);
   template void                              find_rotation_weights(const std::vector<mechanics::BoundaryPart<3>> &,
                                                                    const std::vector<mechanics::BoundaryPart<3>> &,
+                                                                   const bool,
                                                                    std::vector<MortarRow<3>> &);
   template std::vector<dealii::Tensor<1, 2>> rotation_coefficients(const std::vector<double> &,
                                                                    const std::vector<dealii::Tensor<1, 2>> &,

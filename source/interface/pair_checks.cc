@@ -144,7 +144,7 @@ namespace slipstick::interface
                                   size + prescribed,
                                   size,
                                   prescribed),
-                         "move the bodies, or set Contact " + pair.name + "/Reach to more than that gap");
+                         "move the bodies, or set " + reach_of(scene, pair) + " to more than that gap");
     }
 
     /// Sampling points between the nodes with their outward normals.
@@ -299,13 +299,13 @@ namespace slipstick::interface
           format(" touch in single points, around which their gap grows beyond the reach of %g mm within "
                  "an element, so that no node has contact",
                  reach),
-        "raise Contact " + pair.name + "/Reach, or refine the sides there");
+        "raise " + reach_of(scene, pair) + ", or refine the sides there");
     throw InputError(between(scene, pair) +
                        format(" do not meet within the reach of %g mm along the normals of the slave; "
                               "where they face each other they are %g mm apart",
                               reach,
                               *distance),
-                     "raise Contact " + pair.name + "/Reach, move the bodies, or exchange slave and master");
+                     "raise " + reach_of(scene, pair) + ", move the bodies, or exchange slave and master");
   }
 
   template <int dim>

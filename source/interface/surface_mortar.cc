@@ -25,6 +25,11 @@ namespace slipstick::interface
     // The same for facets of degree 2, where products are of eighth order at most; the first rule is exact for ninth
     // order.
     constexpr unsigned int n_exact_quadratic = 5, n_rational_quadratic = 7;
+    // Where a sliver is covered, means with the functions of the nodes beside it extrapolate; with more than this (about 4
+    // on whole facets, 4 h / w on a strip of width w) gaps would be those of the curvature along the sliver.
+    constexpr double most_extrapolation = 400;
+    // Slopes of gaps are those over at least this fraction of a facet, also where only a sliver of it is covered.
+    constexpr double least_slope_length = 0.01;
     // A facet is fully covered if at most this fraction of it is missing.
     constexpr double whole_facet = 1e-9;
     // The same for bent facets, where polygons replace curved edges; small enough to exclude negative nodal areas.
@@ -199,7 +204,8 @@ namespace slipstick::interface
               return view.gap(*part, x) + to.rise(part->facet.place_at(x), view.plane.normal) -
                      facet.rise(view.slave.place_at(x), view.plane.normal);
             };
-            const auto   inwards = (place - corner) * (std::sqrt(area(part->polygon)) / nearest);
+            const double length  = std::max(std::sqrt(area(part->polygon)), least_slope_length * facet.chord());
+            const auto   inwards = (place - corner) * (length / nearest);
             const double rate    = (gap(place + inwards) - gap(place)) / inwards.norm();
             if (rate > 0)
               result[i] = rate * nearest;
@@ -214,10 +220,21 @@ namespace slipstick::interface
         const Moments moments = moments_of(e);
         if (moments.master.empty())
           return;
-        const TestFunctions   phi   = test_functions(facet, moments);
-        const Eigen::VectorXd rises = phi.of_shapes * moments.rises;
+        const TestFunctions   phi     = test_functions(facet, moments);
+        const Eigen::VectorXd rises   = phi.of_shapes * moments.rises;
+        const auto            is_kept = [&](const Eigen::Index i) {
+          return moments.is_whole || extrapolation(phi, moments, i) <= most_extrapolation;
+        };
+        double kept = 0, all = 0; // areas; the nodes that are left share that of the others
+        for (Eigen::Index i = 0; i < phi.areas.size(); ++i)
+          {
+            all += phi.areas[i];
+            kept += is_kept(i) ? phi.areas[i] : 0.;
+          }
         for (unsigned int i = 0; i < phi.areas.size(); ++i)
           {
+            if (!is_kept(i))
+              continue;
             NodeIntegrals<3> node;
             node.rise              = rises[i] * moments.normal;
             node.neglected_sagitta = moments.neglected_sagitta;
@@ -233,6 +250,8 @@ namespace slipstick::interface
             // otherwise a sloping master would reach a node beside it
             if (const auto lost = moments.lost_beyond.find(i); lost != moments.lost_beyond.end())
               node.rise += node.measure * lost->second * moments.normal;
+            if (kept < all)
+              node.scale(all / kept);
             parts_of_nodes[pairing.nodes_of(e)[i]].push_back(std::move(node));
           }
       }
@@ -246,6 +265,13 @@ namespace slipstick::interface
         Eigen::MatrixXd slave;
         bool            is_biorthogonal = false; // <phi_i N_k> is areas[i] for i = k and otherwise 0
       };
+
+      /// Largest mean with function i over the largest value, at most.
+      static double extrapolation(const TestFunctions &phi, const Moments &moments, const Eigen::Index i)
+      {
+        const Eigen::RowVectorXd of_shapes = phi.of_shapes.row(i);
+        return std::sqrt((of_shapes * moments.mass).dot(of_shapes) * moments.areas.sum()) / std::abs(phi.areas[i]);
+      }
 
       /// Corners of bent triangles of degree 2 have small areas of either sign: like those of plane ones they get no
       /// row.

@@ -20,6 +20,9 @@ namespace slipstick::interface
     constexpr double rounding_of_gaps = 16 * std::numeric_limits<double>::epsilon();
 
     /// Gap of a pair at a node: geometric or prescribed, plus the offset.
+    // A row follows the rotations of both sides if no more than this part of the vector between its points does not.
+    constexpr double rounding_of_spans = 1e-6;
+
     template <int dim>
     double gap_of(const scene::ContactPair<dim> &pair,
                   const dealii::Point<dim>      &x,
@@ -147,21 +150,19 @@ namespace slipstick::interface
           rotating.weights.push_back(weight);
           rotating.positions.push_back(nodes[number.at(key)].point());
         }
-    touch.apart       = row.apart;
-    const auto span   = spans_of_carriers<dim>(row.apart, row.normal)[0];
-    auto      &point  = touch.point;
-    point.has_master  = true;
-    point.rotates     = std::any_of(touch.rotating.begin(), touch.rotating.end(), [](const auto &carrier) {
-      return !carrier.nodes.empty();
-    });
+    touch.apart           = row.apart;
+    const auto spans      = carried_spans(row);
+    auto      &point      = touch.point;
+    point.has_master      = true;
+    const bool is_carried = spans[0].norm() + spans[1].norm() > 0;
+    point.rotates     = is_carried && (row.apart - spans[0] - spans[1]).norm() <= rounding_of_spans * row.apart.norm();
     point.master_body = where.master->body;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        point.master_position[d] = row.master_position[d];
+        point.master_position[d] = row.master_position[d] + spans[1][d];
         for (const auto &[slave, weight] : touch.slave)
           point.slave_position[d] += weight * nodes[slave].position[d];
-        if (point.rotates)
-          point.slave_position[d] -= span[d];
+        point.slave_position[d] -= spans[0][d];
       }
     point.gap         = gap_of(where, nodes[i].point(), row.gap, t);
     point.is_measured = is_measured(where, nodes[i].point(), t);

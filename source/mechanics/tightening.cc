@@ -14,7 +14,9 @@ namespace slipstick::mechanics
     constexpr double loose_part = 1e-3;
     // Factor by which the shortening of a loose bolt is increased in every attempt.
     constexpr double growth = 2;
-    // Lower limit of stiffnesses estimated from differences, relative to that of the bolt.
+    // Largest step, over the shortening or the step that this bolt alone would take.
+    constexpr double longest_step = 4;
+    // Lower limit of stiffnesses along a step that are learned, over those assumed.
     constexpr double least_part = 1e-3;
     // Minimum distance of an attempt from the nearer bound, relative to the interval.
     constexpr double from_bounds = 0.05;
@@ -82,26 +84,36 @@ namespace slipstick::mechanics
     return is_right;
   }
 
-  // Broyden update: J satisfies the last secant equation; rows of bolts that were loose are kept, unless the step
-  // starts from the force-free state.
+  // The tensions are the derivative of a convex energy with respect to the shortenings, so that J is symmetric and
+  // positive definite: BFGS update for the bolts that are not loose. The first one scales the initial guess before.
   void Tightening::learn()
   {
-    const Eigen::Index    n = s.size();
-    const Eigen::VectorXd step =
-      Eigen::Map<const Eigen::VectorXd>(s.data(), n) - Eigen::Map<const Eigen::VectorXd>(s_known.data(), n);
     const bool from_nothing = std::all_of(s_known.begin(), s_known.end(), [](const double x) { return x == 0; });
-    if (has_known && step.squaredNorm() > 0)
+    std::vector<Eigen::Index> bears;
+    for (std::size_t i = 0; i < s.size(); ++i)
+      if (wanted[i] && !is_loose(i, N) && (from_nothing || !is_loose(i, N_known)))
+        bears.push_back(i);
+    const Eigen::Index n = bears.size();
+    Eigen::VectorXd    step(n), change(n);
+    for (Eigen::Index a = 0; a < n; ++a)
       {
-        const Eigen::VectorXd expected = J * step;
-        for (Eigen::Index i = 0; i < n; ++i)
-          if (!is_loose(i, N) && (from_nothing || !is_loose(i, N_known)))
-            {
-              const double          diagonal = J(i, i);
-              const Eigen::VectorXd row =
-                J.row(i).transpose() + (N[i] - N_known[i] - expected[i]) / step.squaredNorm() * step;
-              if (row[i] > least_part * diagonal)
-                J.row(i) = row.transpose();
-            }
+        step[a]   = s[bears[a]] - s_known[bears[a]];
+        change[a] = N[bears[a]] - N_known[bears[a]];
+      }
+    Eigen::MatrixXd part     = J(bears, bears);
+    const double    energy   = step.dot(change);
+    double          expected = step.dot(part * step);
+    if (has_known && energy > least_part * expected)
+      {
+        if (!is_scaled)
+          {
+            part *= energy / expected;
+            expected = energy;
+          }
+        is_scaled                  = true;
+        const Eigen::VectorXd left = part * step;
+        part += change * change.transpose() / energy - left * left.transpose() / expected;
+        J(bears, bears) = part;
       }
     s_known   = s;
     N_known   = N;
@@ -132,7 +144,8 @@ namespace slipstick::mechanics
       {
         const unsigned int i     = given[a];
         const double       plain = missing[a] / J(i, i);
-        const double       by    = std::isfinite(step[a]) && std::abs(step[a]) <= 4 * std::abs(plain) ? step[a] : plain;
+        const double       most  = longest_step * std::max(std::abs(plain), std::abs(s[i]));
+        const double       by    = std::isfinite(step[a]) ? std::clamp(step[a], -most, most) : plain;
         if (m == 1)
           (missing[a] > 0 ? low : high) = s[i];
         s[i] += is_loose(i, N) && s[i] > 0 ? std::pow(growth, n_loose - 1) * plain : by;
@@ -162,7 +175,7 @@ namespace slipstick::mechanics
 
   std::vector<std::vector<double>> Tightening::state() const
   {
-    return {s, N, std::vector<double>(J.data(), J.data() + J.size())};
+    return {s, N, std::vector<double>(J.data(), J.data() + J.size()), {is_scaled ? 1. : 0.}};
   }
 
   void Tightening::restore(const std::vector<std::vector<double>> &state)
@@ -172,6 +185,7 @@ namespace slipstick::mechanics
     s = state[0];
     N = state[1];
     std::copy(state[2].begin(), state[2].end(), J.data());
+    is_scaled = state[3][0] > 0;
     has_known = false;
   }
 } // namespace slipstick::mechanics

@@ -13,6 +13,11 @@ namespace slipstick::tfeti
   {
     // Stiffness of a turned entry, relative to that without its compliance, below which M does not couple it.
     constexpr double least_carried = 0.1;
+
+    // G x is zero up to rounding if it is below this part of |x|. If the rows of the face hardly resist a motion, a
+    // single correction leaves more.
+    constexpr double       rounding         = 1e-14;
+    constexpr unsigned int most_corrections = 3;
   } // namespace
 
   Face DualProblem::face(const std::vector<bool>     &free,
@@ -134,9 +139,12 @@ namespace slipstick::tfeti
   void Face::balance(DistributedVector &x) const
   {
     DistributedVector step = problem.zero();
-    for (unsigned int pass = 0; pass < (metric.is_wide() ? 2 : 1); ++pass)
+    for (unsigned int pass = 0; pass < most_corrections; ++pass)
       {
-        balancing().particular(problem.e() - problem.projector().multiply(x), step);
+        const Eigen::VectorXd missing = problem.e() - problem.projector().multiply(x);
+        if (pass > 0 && is_rounding(missing, x))
+          return;
+        balancing().particular(missing, step);
         qp::turn_back(turns, step);
         x += step;
       }
@@ -148,9 +156,22 @@ namespace slipstick::tfeti
     for (const qp::Tie &tie : ties)
       p.local_element(tie.tied) = tie.factor * p.local_element(tie.to);
     DistributedVector range = problem.zero();
-    balancing().excess(p, range);
-    p -= range;
+    for (unsigned int pass = 0; pass < most_corrections; ++pass)
+      {
+        const Eigen::VectorXd left = balancing().multiply(p);
+        if (is_rounding(left, p))
+          break;
+        balancing().particular(left, range);
+        p -= range;
+      }
     qp::turn_back(turns, p);
+  }
+
+  bool Face::is_rounding(const Eigen::VectorXd &a, const DistributedVector &x) const
+  {
+    std::array<double, 2> squares{{a.squaredNorm(), qp::local_dot(x, x)}};
+    squares = reduction().sum(squares);
+    return squares[0] <= rounding * rounding * squares[1];
   }
 
   void Face::clear_held(DistributedVector &p) const

@@ -134,6 +134,22 @@ class FreeMotions(unittest.TestCase):
         force = self.converges(blocks, 'rotation about').summary['results']['contact'][0]['force']
         self.assertLess(abs(force[0]), 1e-6 * abs(force[1]))
 
+    def test_a_gap_that_a_translation_closes_changes_nothing(self):
+        """Friction of two held blocks: the gap followed the rotations of strained edges, 21 % more traction across 0.5 mm."""
+        found = []
+        for gap in (0., 0.5, 2.):
+            blocks = scenes.box('blocks', materials={'steel': STEEL}, bodies={
+                'low': {'Origin': '-6, -5', 'Size': '12, 5', 'Cells': '12, 4', 'Material': 'steel'},
+                'high': {'Origin': '-4, {}'.format(gap), 'Size': '8, 5', 'Cells': '8, 4', 'Material': 'steel'}},
+                supports={'floor': {'Boundary': 'low/bottom', 'Displacement x': '0', 'Displacement y': '0'},
+                          'press': {'Boundary': 'high/top', 'Displacement x': '0', 'Displacement y': '{}'.format(-gap - 0.01)}},
+                contacts={'touch': {'Slave': 'high/bottom', 'Master': 'low/top', 'Law': 'Coulomb', 'Friction coefficient': '0.5'}},
+                Discretization={'Degree': '2'}, Solver={'Tolerance': '1e-10'}, **SMALL)
+            found.append(self.converges(blocks).summary['results']['contact'][0])
+        for pair in found[1:]:
+            for key in ('max_pressure', 'normal_force', 'traction_norm'):
+                self.assertAlmostEqual(pair[key] / found[0][key], 1, delta=1e-6)
+
     def test_forces_of_rounding_do_not_turn_a_body(self):
         """A heated block on the top of a dome: its weight rests on one node, two others bear 1e-10 of it."""
         block = solids.solid('block', materials={'light': {'Library': 'aluminium'}}, bodies={

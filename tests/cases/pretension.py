@@ -163,6 +163,39 @@ class Pretension(unittest.TestCase):
             thread = [pair for pair in first['contact'] if pair['pair'] == 'thread'][0]
             self.assertAlmostEqual(thread['normal_force'], 800, delta=1e-3)
 
+    def test_clamps_that_bend(self):
+        """A clamp is softer than its bolt by far; two and three that share nothing need what one of them needs (status 3 once), and
+        so do two bolts, with different forces, in one clamp."""
+        def clamps(n, forces=(100,)):
+            bodies, contacts, supports, bolts = {}, {}, {}, {}
+            for x in (40 * k for k in range(n)):
+                plate = 'plate%d' % x
+                bodies[plate] = block(x - 12, x + 12, 0, 6, '6, 4', 'steel')
+                supports[plate] = {'Boundary': plate + '/left', **CLAMPED}
+                for force, at, left in zip(forces, (x + 14, x - 16), (x + 9, x - 16)):  # the second one over the left end
+                    name = 's%d' % (at + 100)
+                    bodies.update({name: block(at, at + 2, 0, 6, '2, 3', 'steel'), name + 'h': block(left, left + 7, 6, 8, '4, 2', 'steel'),
+                                   name + 'f': block(left, left + 7, -2, 0, '4, 2', 'steel')})
+                    contacts.update({name + 'bh': {'Slave': name + '/top', 'Master': name + 'h/bottom', 'Law': 'bonded'},
+                                     name + 'bf': {'Slave': name + '/bottom', 'Master': name + 'f/top', 'Law': 'bonded'},
+                                     name + 'ch': {'Slave': name + 'h/bottom', 'Master': plate + '/top', 'Law': 'frictionless'},
+                                     name + 'cf': {'Slave': name + 'f/top', 'Master': plate + '/bottom', 'Law': 'frictionless'}})
+                    bolts[name] = {'Body': name, 'Point': '{}, 3'.format(at + 1), 'Direction': '0, 1', 'Force': force}
+            content = scenes.text(materials={'steel': {'Young modulus': '2e5', 'Poisson ratio': '0.3'}}, bodies=bodies,
+                                  supports=supports, contacts=contacts,
+                                  **{'Decomposition': {'Method': 'none'}, 'Solver': {'Tolerance': '1e-8'}})
+            path = new_path('clamps.prm')
+            path.write_text(with_bolts(content, bolts))
+            return self.solved(path).summary
+        one = clamps(1)
+        for n in (2, 3):
+            several = clamps(n)
+            self.assertLessEqual(several['solver']['hessian_multiplications'], 2 * one['solver']['hessian_multiplications'])
+            for bolt in several['results']['pretensions']:
+                self.assertAlmostEqual(bolt['shortening'] / one['results']['pretensions'][0]['shortening'], 1, delta=1e-6)
+        for bolt, force in zip(clamps(1, (100, 170))['results']['pretensions'], (100, 170)):
+            self.assertAlmostEqual(bolt['force'] / force, 1, delta=1e-7)
+
     def test_beside_larger_loads(self):
         """The solver measures its error by all loads; the tension is found to its own tolerance."""
         content = scenes.text(materials=MATERIALS, bodies={'bar': block(0, 2, 0, 6, '4, 10')},

@@ -36,7 +36,7 @@ namespace slipstick::test
       for (const auto &part : *side)
         for (unsigned int i = 0; i < part.n_nodes; ++i)
           at[part.keys[i]] = part.node(i);
-    interface::find_rotation_weights<dim>(slave, master, rows);
+    interface::find_rotation_weights<dim>(slave, master, true, rows);
     ASSERT_FALSE(rows.empty());
     for (const auto &row : rows)
       for (unsigned int d = 0; d < dim; ++d)

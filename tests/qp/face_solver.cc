@@ -270,6 +270,20 @@ TEST(FaceSolver, products_are_those_of_F_where_that_is_nearly_singular)
   EXPECT_GT(n_converged, 40u); // of 96; without residual replacement all, but 44 with wrong residuals
 }
 
+TEST(FaceSolver, directions_satisfy_the_equalities_though_they_are_differences_of_others)
+{
+  for (unsigned int seed = 0; seed < 8; ++seed)
+    {
+      const Held             p(seed, 20, 3);
+      DirectionStore<Vector> store(200);
+      double                 factor = 0.4;
+      for (unsigned int k = 0; k < 30; ++k, factor += 1e-7) // faces that hardly differ, as where nodes slip
+        p.solve({0, 7}, {{2, 1, factor}, {5, 4, -factor}}, store, 1e-12);
+      for (std::size_t j = 0; j < store.size(); ++j)
+        EXPECT_LT(length(p.problem.G * store[j].p), 1e-13 * length(store[j].p)) << seed << ", direction " << j;
+    }
+}
+
 TEST(FaceSolver, the_same_face_again_costs_no_multiplication)
 {
   for (unsigned int seed = 0; seed < 20; ++seed)

@@ -2,7 +2,8 @@
 //
 // Where the points of a row are apart by r (slave minus master), a rotation omega of both bodies as a whole makes them
 // move by omega x r relative to each other. Rows subtract it, with the rotations of both sides around their points, so
-// that they resist no rigid motion and their forces have no moment.
+// that they resist no rigid motion and their forces have no moment. Where a gap closes between bodies whose
+// supports hold their rotations, it follows none: where points meet, r is zero (doc/decisions/0157).
 #pragma once
 
 #include <slipstick/interface/mortar_row.h>
@@ -26,10 +27,24 @@ namespace slipstick::interface
   /// Sets the rotation weights of the rows whose points are apart: those of the nodes around the point of each side, up
   /// to twice the span, or twice the size of the adjacent cells if that is larger. They decrease smoothly to zero there,
   /// so that they do not depend on the orientation of the scene.
+  /// @param gaps_rotate whether the gap along the normal follows rotations; the lateral part of r always does
   template <int dim>
   void find_rotation_weights(const std::vector<mechanics::BoundaryPart<dim>> &slave,
                              const std::vector<mechanics::BoundaryPart<dim>> &master,
+                             const bool                                       gaps_rotate,
                              std::vector<MortarRow<dim>>                     &rows);
+
+  /// The parts of the vector apart that follow rotations: of the slave, and of the master.
+  template <int dim>
+  std::array<dealii::Tensor<1, dim>, 2> carried_spans(const MortarRow<dim> &row)
+  {
+    const auto                            spans = spans_of_carriers<dim>(row.apart, row.normal);
+    std::array<dealii::Tensor<1, dim>, 2> result;
+    for (unsigned int k = 0; k < n_carriers; ++k)
+      if (!row.rotation_weights[k].empty())
+        result[k == 0 ? 0 : 1] += spans[k];
+    return result;
+  }
 
   /// Coefficients a_j with sum_j a_j . u_j = direction . (omega x apart): omega is the rotation that fits the
   /// displacements u_j at the positions best, by weighted least squares; zero about an axis on which all of them lie.

@@ -80,6 +80,17 @@ namespace slipstick::interface
         master[key] += value;
       return *this;
     }
+
+    /// As if the functions were multiplied by a factor.
+    void scale(const double factor)
+    {
+      measure *= factor;
+      length *= factor;
+      rise *= factor;
+      for (auto *side : {&slave, &master})
+        for (auto &[key, value] : *side)
+          value *= factor;
+    }
   };
 
   // Edges or facets of a node see the same level of the master if their gaps there differ by at most this fraction of

@@ -3,6 +3,9 @@
 
 #include <slipstick/interface/mortar.h>
 
+#include <algorithm>
+#include <string>
+
 namespace slipstick::interface
 {
   /// The two sides of a contact pair of bodies, and the whole outlines of these bodies.
@@ -31,6 +34,16 @@ namespace slipstick::interface
   /// "BODY/BOUNDARY"
   template <int dim>
   std::string describe(const scene::Scene<dim> &scene, const scene::BoundaryName &where);
+
+  /// The parameter with the reach of a pair of bodies, which may have been found by the contact search.
+  template <int dim>
+  std::string reach_of(const scene::Scene<dim> &scene, const scene::ContactPair<dim> &pair)
+  {
+    const auto name_of  = [&scene](const unsigned int body) { return scene.bodies[body].name; };
+    const auto [a, b]   = std::minmax(pair.slave.body, pair.master->body);
+    const bool is_found = scene.contact_search.automatic && pair.name == name_of(a) + "-" + name_of(b);
+    return (is_found ? "Contact search" : "Contact " + pair.name) + "/Reach";
+  }
 
   /// Whether every row has its master on the far side of the slave's body: deeper than a tenth of a mean slave edge
   /// although no point of one side is inside the other body (which would be an overlap). False if there are no rows.

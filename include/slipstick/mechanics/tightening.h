@@ -9,10 +9,10 @@
 
 namespace slipstick::mechanics
 {
-  /// Solves for the shortenings of n bolts that give prescribed tensions, by Broyden's ("good") method of 1965,
-  /// starting from the stiffness of the bolts alone; exact after the second solve if only the bolts load the bodies and
-  /// no gap has to close first. The shortening of a bolt without tension is doubled in every attempt; a single bolt
-  /// stays within the bounds found for it.
+  /// Solves for the shortenings of n bolts that give prescribed tensions, by the BFGS method (Broyden, Fletcher,
+  /// Goldfarb, Shanno 1970), starting from the stiffness of the bolts alone; exact after the second solve if a single
+  /// bolt, or several equal ones, load the bodies and no gap has to close first. The shortening of a bolt without
+  /// tension is doubled in every attempt; a single bolt stays within the bounds found for it.
   class Tightening
   {
   public:
@@ -70,7 +70,8 @@ namespace slipstick::mechanics
     std::vector<double>                s_known, N_known; // of the attempt before it
     Eigen::MatrixXd                    J;                // dN/ds [N/mm]
     std::vector<std::optional<double>> wanted;
-    bool                               has_known          = true; // s_known, N_known belong to the same loads
+    bool                               has_known          = true;  // s_known, N_known belong to the same loads
+    bool                               is_scaled          = false; // J, by a first pair of tensions and shortenings
     bool                               tensions_are_vague = false;
     unsigned int                       n_loose            = 0; // attempts without tension
     double low = -HUGE_VAL, high = HUGE_VAL;                   // of a single bolt: shortening too small, too large [mm]

@@ -41,20 +41,25 @@ namespace slipstick::qp::detail
     /// @return the reason, if there is no step or it does not reduce the residual
     std::optional<Status> step()
     {
-      Vector p = nearly ? preconditioned() : at.preconditioned(at.residual());
-      Vector Fp(p);
-      at.multiply(p, Fp);
-      Vector     q       = image(p, Fp);
-      const auto squares = at.reduction.sum(std::array<double, 2>{{local_dot(q, q), at.squares(p, Fp)}});
-      Own        made{std::move(p), std::move(Fp), std::move(q), rounding_of_product(squares[1])};
+      Vector p    = nearly ? preconditioned() : at.preconditioned(at.residual());
+      Own    made = with_image(std::move(p));
+      double size = norm(made.q, at.reduction);
       orthogonalise(made);
+      if (clean(made))
+        {
+          made = with_image(std::move(made.p));
+          size = norm(made.q, at.reduction);
+          orthogonalise(made);
+        }
       const double length = norm(made.q, at.reduction);
-      if (!(length > at.options.rounding * std::sqrt(squares[0])))
+      if (!(length > at.options.rounding * size))
         return Status::stagnated;
       for (Vector *v : {&made.p, &made.Fp, &made.q})
         combine(1. / length, *v, 0., *v);
       made.error /= length;
       const double along = dot(at.weighted(at.residual()), made.q, at.reduction);
+      if (length < at.options.exhausted * size && !(std::abs(along) > at.options.least_part * at.residual_norm()))
+        return Status::stagnated;
       own.push_back(std::move(made));
       if (!at.move(along, own.back().p, own.back().Fp, own.back().error))
         return Status::stagnated;
@@ -69,6 +74,30 @@ namespace slipstick::qp::detail
       Vector p, Fp, q;
       double error; // of Fp
     };
+
+    Own with_image(Vector p)
+    {
+      Vector Fp(p);
+      at.multiply(p, Fp);
+      Vector       q      = image(p, Fp);
+      const double square = at.reduction.sum(std::array<double, 1>{{at.squares(p, Fp)}})[0];
+      return {std::move(p), std::move(Fp), std::move(q), rounding_of_product(square)};
+    }
+
+    // Directions that cancel leave more than rounding of the conditions of the face and of G p = 0: p is moved back.
+    // @return whether the product is that of another p, more than its error tells
+    bool clean(Own &made) const
+    {
+      Vector cleaned(made.p);
+      at.face.clear_held(cleaned);
+      at.face.project_kernel(cleaned);
+      const double size = norm(cleaned, at.reduction);
+      add(-1., cleaned, made.p);
+      const double change = norm(made.p, at.reduction);
+      made.p              = std::move(cleaned);
+      made.error          = std::hypot(made.error, change);
+      return change > at.options.trusted_change * size;
+    }
 
     // Makes q orthogonal to the images of the directions of the store and of the own ones.
     void orthogonalise(Own &made) const

@@ -85,6 +85,16 @@ namespace slipstick::qp::detail
       add(-1.0, shift, at.gradient);
     }
 
+    /// Computes F x and the gradient anew.
+    void multiply(const Face &face, Point &at) const
+    {
+      problem.multiply(at.x, at.Fx);
+      ++counts.hessian_multiplications;
+      at.error_of_Fx = rounding_of_product(
+        problem.reduction().sum(std::array<double, 1>{{local_squares(residual_weights(problem, 0), at.x, at.Fx)}})[0]);
+      fill_gradient(face, at);
+    }
+
     /// `next` becomes the solution on the face, up to a part of the present residual.
     /// @param merit natural residual of `now`. @param tolerance of faces, over the reference.
     void solve(const Face &face, const double merit, const double tolerance, const Point &now, Point &next)

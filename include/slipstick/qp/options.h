@@ -73,9 +73,12 @@ namespace slipstick::qp
     unsigned int max_iterations = 300;
     double smallest_curvature   = 1e-15; // F counts as singular if p'Fp / p'p is below this part of its maximum so far
     double rounding             = 1e-14; // a direction reduced to less than this part by orthogonalisation is dependent
-    double progress             = 0.999; // if a step leaves more than this part of the residual ...
-    unsigned int patience       = 10;    // ... this many times in a row, the solve ends
-    double       accuracy       = 0.3; // products are trusted if their rounding error is below this part of the target
+    double exhausted            = 1e-6;  // if less than this part of a direction is new, and it bears less than ...
+    double least_part           = 0.05;  // ... this part of the residual, there are no others
+    double trusted_change = 1e-10; // if cancellation moves a direction by more than this part, F is multiplied again
+    double progress       = 0.999; // if a step leaves more than this part of the residual ...
+    unsigned int patience = 10;    // ... this many times in a row, the solve ends
+    double       accuracy = 0.3;   // products are trusted if their rounding error is below this part of the target
     double       violation_weight =
       1; // weight of violated conditions of a turned face in the residual; |F| is 1, local stiffnesses are larger
   };

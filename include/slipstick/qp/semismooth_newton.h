@@ -174,8 +174,7 @@ namespace slipstick::qp
       {
         if (!(path.merit() <= goal.tolerance * goal.reference))
           return false;
-        next.x  = now.x;
-        next.Fx = now.Fx;
+        next = now;
         faces.fill_gradient(face, next);
         const double left = measure();
         if (!is_solution(face, left))
@@ -188,6 +187,11 @@ namespace slipstick::qp
       // face.
       bool is_solution(const Face &face, double left)
       {
+        if (left <= goal.tolerance && next.error_of_Fx > options.face.accuracy * goal.tolerance * goal.reference)
+          {
+            faces.multiply(face, next);
+            left = measure();
+          }
         if (left <= goal.tolerance)
           left += imbalance(face);
         return left <= goal.tolerance &&

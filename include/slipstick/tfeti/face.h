@@ -60,6 +60,9 @@ namespace slipstick::tfeti
     void                     add_soft_entries(const DistributedVector &r, DistributedVector &z) const;
     void                     soften(DistributedVector &x) const;
 
+    // Whether a = G x is zero up to rounding. Collective.
+    bool is_rounding(const Eigen::VectorXd &a, const DistributedVector &x) const;
+
     const Projector &balancing() const
     {
       return tied ? *tied : *projector;
