@@ -246,11 +246,12 @@ namespace slipstick::qp
       bool is_true(const double target)
       {
         const double trusted = options.accuracy * target;
-        if (error <= trusted)
+        if (error <= trusted || is_replaced)
           return true;
         const double least = rounding_of_product(reduction.sum(std::array<double, 1>{{squares(x, Fx)}})[0]);
         if (!(least <= std::max(trusted, 0.1 * error)))
           return true;
+        is_replaced = true;
         multiply(x, Fx);
         error = least;
         update_residual();
@@ -291,9 +292,10 @@ namespace slipstick::qp
       const std::vector<double> *const D; // null: none
 
       Vector            d, x, Fx, r, w;
-      double            norm_r  = 0;
-      double            error   = 0; // of Fx
-      unsigned int      n_stuck = 0;
+      double            norm_r      = 0;
+      double            error       = 0; // of Fx
+      bool              is_replaced = false;
+      unsigned int      n_stuck     = 0;
       std::vector<Made> made;
       Counts            counts;
     };
