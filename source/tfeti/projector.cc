@@ -440,11 +440,6 @@ namespace slipstick::tfeti
     mask(y);
   }
 
-  void Projector::excess(const DistributedVector &x, DistributedVector &y) const
-  {
-    particular(multiply(x), y);
-  }
-
   void Projector::extend_range(const DistributedVector &x, DistributedVector &y) const
   {
     multiply_transpose(amplitudes(x), y);

@@ -47,10 +47,6 @@ namespace slipstick::tfeti
     /// y = Q x, owned entries; with a metric, the projection of residuals. Not with ties. Collective.
     void project_range(const DistributedVector &x, DistributedVector &y) const;
 
-    /// The least y with G y = G x: the correction that moves x, which satisfies the ties, into the kernel of G.
-    /// Collective.
-    void excess(const DistributedVector &x, DistributedVector &y) const;
-
     /// As project_range(), but on all rows: y = G'a with the a that minimises x - G'a on the active rows. Collective.
     void extend_range(const DistributedVector &x, DistributedVector &y) const;
 
