@@ -25,8 +25,8 @@ namespace slipstick::interface
     // The same for facets of degree 2, where products are of eighth order at most; the first rule is exact for ninth
     // order.
     constexpr unsigned int n_exact_quadratic = 5, n_rational_quadratic = 7;
-    // Where a sliver is covered, means with the functions of the nodes beside it extrapolate; with more than this (about 4
-    // on whole facets, 4 h / w on a strip of width w) gaps would be those of the curvature along the sliver.
+    // Where a sliver is covered, means with the functions of the nodes beside it extrapolate; with more than this (about
+    // 4 on whole facets, 4 h / w on a strip of width w) gaps would be those of the curvature along the sliver.
     constexpr double most_extrapolation = 400;
     // Slopes of gaps are those over at least this fraction of a facet, also where only a sliver of it is covered.
     constexpr double least_slope_length = 0.01;
