@@ -19,10 +19,10 @@ namespace slipstick::interface
     // Geometric gaps below this fraction of the coordinates are rounding.
     constexpr double rounding_of_gaps = 16 * std::numeric_limits<double>::epsilon();
 
-    /// Gap of a pair at a node: geometric or prescribed, plus the offset.
     // A row follows the rotations of both sides if no more than this part of the vector between its points does not.
     constexpr double rounding_of_spans = 1e-6;
 
+    /// Gap of a pair at a node: geometric or prescribed, plus the offset.
     template <int dim>
     double gap_of(const scene::ContactPair<dim> &pair,
                   const dealii::Point<dim>      &x,
