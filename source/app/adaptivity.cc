@@ -139,15 +139,16 @@ namespace slipstick::app
     return dealii::Utilities::MPI::broadcast(mesh.comm, n_marked);
   }
 
-  std::optional<double> worst_error(const std::vector<output::ErrorBar> &bars, const std::vector<std::string> &goals)
+  std::optional<double> worst_error(const std::vector<output::ErrorBar> &bars,
+                                    const std::map<std::string, double> &scales)
   {
     double worst = 0;
     for (const auto &bar : bars)
-      if (std::find(goals.begin(), goals.end(), bar.quantity) != goals.end())
+      if (const auto scale = scales.find(bar.quantity); scale != scales.end())
         {
-          if (!bar.error || bar.value == 0)
+          if (!bar.error || scale->second == 0)
             return {};
-          worst = std::max(worst, std::abs(*bar.error / bar.value));
+          worst = std::max(worst, *bar.error / scale->second);
         }
     return worst;
   }

@@ -153,8 +153,9 @@ namespace slipstick::app
     double     own = 0;
     for (unsigned int p = 0; p < goal.loads.size(); ++p)
       own += goal.loads[p].dot(answer.recovery.u[p]);
-    goal.value  = dealii::Utilities::MPI::sum(own, comm);
-    goal.reason = infinite_at(solver.discrete_scene().probes[probe].body, probes.positions()[probe][0].position);
+    goal.value       = dealii::Utilities::MPI::sum(own, comm);
+    goal.reason      = infinite_at(solver.discrete_scene().probes[probe].body, probes.positions()[probe][0].position);
+    goal.is_infinite = !goal.reason.empty();
     return goal;
   }
 

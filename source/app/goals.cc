@@ -318,7 +318,8 @@ namespace slipstick::app
       goal.value    = answer.contact->checks.energy / 2;
       if (!point_forces.empty())
         {
-          goal.reason = "it is infinite, with " + point_forces.front().what;
+          goal.reason      = "it is infinite, with " + point_forces.front().what;
+          goal.is_infinite = true;
           return goal;
         }
       const bool has_bolts = !solver.discrete_scene().pretensions.empty();
@@ -394,6 +395,7 @@ namespace slipstick::app
           error.note          = functional.note;
           error.reason        = adjoint.is_possible() ? functional.reason : loose;
           error.is_resolvable = adjoint.is_possible() && functional.is_resolvable;
+          error.is_infinite   = functional.is_infinite;
           if (error.reason.empty())
             {
               const auto z = functional.is_of_multipliers

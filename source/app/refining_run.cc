@@ -23,8 +23,10 @@ namespace slipstick::app
     // Cells with large errors in the energy norm are divided, too, if two meshes have not reduced the error of the goals
     // to this fraction.
     constexpr double stagnation = 0.7;
-    // A quantity is zero if its value and its error are below this fraction of the largest one with the same unit.
+    // Presets leave out quantities whose value and error are below this fraction of the largest one with the same unit.
     constexpr double nothing = 1e-5;
+    // The accuracy of a value that is 0 within its error applies to this fraction of the largest one with the same unit.
+    constexpr double scale_of_zero = 0.1;
     // Cells that the refinement of one cell adds, estimated: in the plane eight (nine quadrilaterals replace one), in space
     // seven (eight tetrahedra), and in both the transition cells around them.
     constexpr double cells_for_one = 12;
@@ -94,6 +96,8 @@ namespace slipstick::app
         const std::string missed = solved ? why_to_stop(*steps, summary) : "a mesh was not solved";
         if (!solved || reached || !missed.empty())
           {
+            for (const auto &[quantity, text] : zeros)
+              unknown.push_back(text);
             notes.insert(notes.end(), unknown.begin(), unknown.end());
             steps->finish(rows, notes, reached ? "" : missed);
             steps->print_warnings(log);
@@ -143,7 +147,7 @@ namespace slipstick::app
     find_counted(summary.error_bars, summary.results);
     const auto worst  = options.goals.empty()       ? std::optional<double>(std::sqrt(errors_of(steps).total))
                         : !without_estimate.empty() ? std::optional<double>()
-                                                    : worst_error(summary.error_bars, counted);
+                                                    : worst_error(summary.error_bars, scales);
     is_known          = dealii::Utilities::MPI::broadcast(comm, worst.has_value());
     const auto change = options.goals.empty() ? 0. : change_of_counted(summary.error_bars);
     is_confirmed      = dealii::Utilities::MPI::broadcast(comm, change.has_value());
@@ -174,36 +178,56 @@ namespace slipstick::app
   {
     counted = options.goals;
     unknown.clear();
-    const auto is_zero = [&](const output::ErrorBar &bar) {
-      return std::abs(bar.value) + bar.error.value_or(0.) <= nothing * largest_of_unit(bar.unit, results);
-    };
     if (options.skips_unknown)
       for (const auto &bar : bars)
         if (const auto goal = std::find(counted.begin(), counted.end(), bar.quantity); goal != counted.end())
           {
-            if (!bar.error || is_zero(bar))
+            if (!bar.error || std::abs(bar.value) + *bar.error <= nothing * largest_of_unit(bar.unit, results))
               counted.erase(goal);
             if (!bar.error)
               unknown.push_back("the accuracy leaves out " + bar.quantity + ": " + bar.reason);
           }
+    find_scales(bars, results);
     counted          = dealii::Utilities::MPI::broadcast(comm, counted);
     without_estimate = counted.empty() ? "none of the figures has an estimate" : "";
     may_settle       = true;
     for (const auto &bar : bars)
       {
-        if (std::find(counted.begin(), counted.end(), bar.quantity) == counted.end() || (bar.error && !is_zero(bar)))
+        if (std::find(counted.begin(), counted.end(), bar.quantity) == counted.end() || bar.error)
           continue;
         const auto before = values.find(bar.quantity);
-        may_settle        = may_settle && !bar.error && before != values.end() &&
-                     std::abs(bar.value) <= settling * std::abs(before->second);
-        if (!without_estimate.empty())
-          continue;
-        without_estimate = bar.quantity + (bar.error ? " is 0" : " has no estimate: " + bar.reason);
-        if (bar.error && bar.value != 0)
-          without_estimate += format(" compared with %.4g %s", largest_of_unit(bar.unit, results), bar.unit.c_str());
+        may_settle = may_settle && before != values.end() && std::abs(bar.value) <= settling * std::abs(before->second);
+        if (without_estimate.empty())
+          without_estimate = bar.quantity + " has no estimate: " + bar.reason;
       }
     may_settle       = dealii::Utilities::MPI::broadcast(comm, may_settle);
     without_estimate = dealii::Utilities::MPI::broadcast(comm, without_estimate);
+  }
+
+  // A value that is 0 by symmetry has no relative accuracy.
+  template <int dim>
+  void RefiningRun<dim>::find_scales(const std::vector<output::ErrorBar> &bars, const output::ResultSummary &results)
+  {
+    scales.clear();
+    for (const auto &bar : bars)
+      if (std::find(counted.begin(), counted.end(), bar.quantity) != counted.end())
+        {
+          double &scale = scales[bar.quantity] = std::abs(bar.value);
+          zeros.erase(bar.quantity);
+          const double largest = largest_of_unit(bar.unit, results);
+          if (!bar.error || scale > *bar.error || !(largest > 0))
+            continue;
+          scale = std::max(scale, scale_of_zero * largest);
+          zeros[bar.quantity] =
+            format("%s is 0 within its error of %.2g %s: the accuracy applies to %.3g %s, %g of the "
+                   "largest such figure",
+                   bar.quantity.c_str(),
+                   *bar.error,
+                   bar.unit.c_str(),
+                   scale,
+                   bar.unit.c_str(),
+                   scale_of_zero);
+        }
   }
 
   template <int dim>
@@ -216,8 +240,8 @@ namespace slipstick::app
           const auto before = values.find(bar.quantity);
           if (before == values.end())
             change.reset();
-          else if (change && bar.value != 0)
-            change = std::max(*change, std::abs((bar.value - before->second) / bar.value));
+          else if (const double scale = scales.at(bar.quantity); change && scale > 0)
+            change = std::max(*change, std::abs(bar.value - before->second) / scale);
         }
     for (const auto &bar : bars)
       values[bar.quantity] = bar.value;
@@ -232,8 +256,11 @@ namespace slipstick::app
     const std::string so_far =
       format("the accuracy of %g %% of %s is not reached: ", 100 * options.accuracy, what().c_str()) +
       (is_known ? format("the error is %.2g %% after %zu meshes", 100 * rows.back().error, rows.size())
-                : format("after %zu meshes %s", rows.size(), without_estimate.c_str()));
+                : format("after %zu mesh%s %s", rows.size(), rows.size() == 1 ? "" : "es", without_estimate.c_str()));
     const auto goals = goals_of(steps);
+    if (!is_known && !options.skips_unknown &&
+        std::any_of(goals.begin(), goals.end(), [](const GoalError &goal) { return goal.is_infinite; }))
+      return so_far;
     const bool is_resolvable =
       std::any_of(goals.begin(), goals.end(), [](const GoalError &goal) { return goal.is_resolvable; });
     const bool is_coarse = rows.back().unknowns < least_unknowns_without_estimate<dim>;

@@ -1,16 +1,18 @@
+#include <Eigen/LU>
 #include <slipstick/app/names.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/step_problem.h>
 #include <slipstick/base/exceptions.h>
+#include <slipstick/base/turned.h>
 #include <slipstick/interface/contact_search.h>
 #include <slipstick/interface/held_contact.h>
 #include <slipstick/interface/pair_checks.h>
 #include <slipstick/interface/shared_sides.h>
 #include <slipstick/mechanics/assembly.h>
 #include <slipstick/mechanics/auxiliary_supports.h>
+#include <slipstick/mechanics/inertia_relief.h>
 #include <slipstick/mechanics/loads.h>
 #include <slipstick/mesh/decomposition.h>
-#include <slipstick/tfeti/dense.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -33,6 +35,9 @@ namespace slipstick::app
     // Where the mesh cuts an outline unevenly, loads may do up to this part of their largest work along motions along
     // which those of the scene do none: half a circle of 16 edges refined, 8e-3.
     constexpr double work_of_discretization = 1e-2;
+
+    // Of coefficients of rows, which are of the size of 1.
+    constexpr double rounding_of_coefficients = 1e-9;
 
     constexpr double all_kept = std::numeric_limits<double>::infinity();
 
@@ -142,8 +147,8 @@ namespace slipstick::app
     if (all_bolts)
       all_bolts->add_loads(bolts_so_far.shortening(), loads);
     drop_rounding(loads);
-    if (!balanced.empty())
-      balance(loads);
+    if (!balanced.empty() || still_work.size() > 0)
+      balance(still_work, loads);
     return loads;
   }
 
@@ -153,6 +158,7 @@ namespace slipstick::app
   {
     scene.supports.erase(scene.supports.begin() + n_given, scene.supports.end());
     held_still.clear();
+    still_work.resize(0);
     balanced.clear();
     std::vector<tfeti::RigidMotion> unheld;
     try
@@ -182,29 +188,29 @@ namespace slipstick::app
     held_still = std::move(unheld);
   }
 
-  // Removes the work of the loads along the balanced motions by rigid fields of nodal forces on every body that do no
-  // work along the others.
   template <int dim>
-  void StepProblem<dim>::balance(std::vector<Eigen::VectorXd> &loads) const
+  void StepProblem<dim>::balance(Eigen::VectorXd work, std::vector<Eigen::VectorXd> &loads) const
   {
-    const Eigen::Index n = balanced.front().amplitudes.size(), n_bodies = scene.bodies.size(), k = n / n_bodies;
-    Eigen::MatrixXd    sums = Eigen::MatrixXd::Zero(n, k + 1); // R'R of every body, R'f
-    std::vector<Eigen::MatrixXd> motions;
+    const Eigen::Index n        = work.size() > 0 ? work.size() : balanced.front().amplitudes.size();
+    const Eigen::Index n_bodies = scene.bodies.size(), k = n / n_bodies;
+    Eigen::MatrixXd    sums   = Eigen::MatrixXd::Zero(n, k + 1); // of every body: work of fields and loads
+    const auto         fields = mechanics::rigid_body_forces(scene, *mesh_ptr, *spaces_ptr);
     for (unsigned int p = 0; p < loads.size(); ++p)
       {
-        const auto &system = *subdomains->systems[p];
-        motions.emplace_back(system.kernel() * system.body_modes());
-        sums.block(system.body() * k, 0, k, k) += motions[p].transpose() * motions[p];
-        sums.block(system.body() * k, k, k, 1) += motions[p].transpose() * loads[p];
+        const auto           &system  = *subdomains->systems[p];
+        const Eigen::MatrixXd motions = system.kernel() * system.body_modes();
+        sums.block(system.body() * k, 0, k, k) += motions.transpose() * fields[p];
+        sums.block(system.body() * k, k, k, 1) += motions.transpose() * loads[p];
       }
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, comm);
-    Eigen::VectorXd work = Eigen::VectorXd::Zero(n);
+    if (work.size() == 0)
+      work = Eigen::VectorXd::Zero(n);
     for (const auto &motion : balanced)
       work += motion.amplitudes.dot(sums.col(k)) * motion.amplitudes;
     for (unsigned int p = 0; p < loads.size(); ++p)
       {
         const Eigen::Index first = subdomains->systems[p]->body() * k;
-        loads[p] -= motions[p] * tfeti::shortest_solution(sums.block(first, 0, k, k), work.segment(first, k));
+        loads[p] -= fields[p] * sums.block(first, 0, k, k).partialPivLu().solve(work.segment(first, k));
       }
   }
 
@@ -234,6 +240,7 @@ namespace slipstick::app
     held                = std::move(rows.held);
     interface::refuse_held_penetration(scene, held, comm);
     print_constraints(log, rows.active);
+    const auto resisting = resisting_rows(t);
 
     clock.enter("dual setup");
     dual_ptr.reset();
@@ -241,7 +248,8 @@ namespace slipstick::app
                                                     std::move(rows.active),
                                                     dual_options,
                                                     names_of(scene.bodies),
-                                                    comm);
+                                                    comm,
+                                                    resisting ? &*resisting : nullptr);
     factorization += dual_ptr->set_up().factorization_seconds;
     print_dual(log, *dual_ptr);
   }
@@ -254,11 +262,21 @@ namespace slipstick::app
   }
 
   template <int dim>
+  std::optional<tfeti::Constraints> StepProblem<dim>::resisting_rows(const double t) const
+  {
+    if (scene.supports.size() > n_given) // auxiliary supports hold what is free
+      return std::nullopt;
+    const auto rotating = interface::with_rotating_gaps(scene, *mesh_ptr, *spaces_ptr, *contacts);
+    if (!rotating)
+      return std::nullopt;
+    return interface::contact_rows(scene, *mesh_ptr, *spaces_ptr, *rotating, t, kept_fraction).active;
+  }
+
+  template <int dim>
   typename StepProblem<dim>::Rows StepProblem<dim>::compare(const tfeti::Constraints &rows) const
   {
-    constexpr double rounding = 1e-9; // of coefficients, which are of the size of 1
-    const auto      &present  = dual_ptr->constraints();
-    const bool       is_same  = scene.supports.size() == n_given && rows.label == present.label &&
+    const auto &present = dual_ptr->constraints();
+    const bool  is_same = scene.supports.size() == n_given && rows.label == present.label &&
                          rows.contact_points.size() == present.contact_points.size();
     bool is_moved = !is_same || rows.blocks.size() != present.blocks.size();
     for (unsigned int p = 0; p < rows.blocks.size() && !is_moved; ++p)
@@ -267,7 +285,8 @@ namespace slipstick::app
                              present.blocks[p].begin(),
                              present.blocks[p].end(),
                              [](const auto &a, const auto &b) {
-                               return a.row == b.row && a.dof == b.dof && std::abs(a.value - b.value) <= rounding;
+                               return a.row == b.row && a.dof == b.dof &&
+                                      std::abs(a.value - b.value) <= rounding_of_coefficients;
                              });
     const std::array<unsigned int, 2> own{{is_same ? 0u : 1u, is_moved ? 1u : 0u}};
     std::array<unsigned int, 2>       any{};
@@ -332,6 +351,49 @@ namespace slipstick::app
   {
     clock.enter("assembly");
     dual_ptr->set_step(loads_at(t), dual_ptr->constraints().c);
+  }
+
+  template <int dim>
+  bool StepProblem<dim>::spread_still_forces(const tfeti::DistributedVector &multipliers)
+  {
+    constexpr double rounding = 1e-8; // of all multipliers
+    if (held_still.empty())
+      return false;
+    const auto         &kind  = dual_ptr->constraints().kind;
+    const auto          jumps = dual_ptr->body_motions().jumps(held_still);
+    std::vector<double> work(held_still.size() + 1, 0.); // along the motions; squares of multipliers
+    for (unsigned int r = 0; r < kind.size(); ++r)
+      {
+        const double x = multipliers.local_element(r);
+        work.back() += x * x;
+        for (decltype(jumps)::InnerIterator jump(jumps, r); jump && kind[r] == tfeti::RowKind::prescribed; ++jump)
+          work[jump.col()] += jump.value() * x;
+      }
+    MPI_Allreduce(MPI_IN_PLACE, work.data(), work.size(), MPI_DOUBLE, MPI_SUM, comm);
+    Eigen::VectorXd more = Eigen::VectorXd::Zero(held_still.front().amplitudes.size());
+    for (unsigned int m = 0; m < held_still.size(); ++m)
+      more += work[m] * held_still[m].amplitudes;
+    if (more.norm() <= rounding * std::sqrt(work.back()))
+      return false;
+    still_work = still_work.size() > 0 ? Eigen::VectorXd(still_work + more) : more;
+    return true;
+  }
+
+  template <int dim>
+  Resultant StepProblem<dim>::still_forces() const
+  {
+    Resultant          sum;
+    const unsigned int k = dim + n_rotations<dim>; // motions of a body
+    for (unsigned int b = 0; k * b < still_work.size(); ++b)
+      {
+        const auto                 &frame = held_still.front().frames[b];
+        const auto                  of    = still_work.segment(k * b, k);
+        const std::array<double, 3> force{{-of[0], -of[1], dim == 3 ? -of[k / 2 - 1] : 0.}};
+        sum.add<dim>(force, frame.center);
+        for (unsigned int m = 0; m < n_rotations<dim>; ++m)
+          sum.moment[dim == 2 ? 2 : m] -= frame.length * of[dim + m];
+      }
+    return sum;
   }
 
   template <int dim>

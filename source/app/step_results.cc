@@ -24,6 +24,9 @@ namespace slipstick::app
     // stresses are means over cells, so that the largest may be at a node adjacent to the singular point.
     constexpr double cells_of_singularity = 1.5;
 
+    // What holds motions that nothing resists is warned of if above this part of the largest force.
+    constexpr double warned_still_load = 1e-3;
+
     template <int dim>
     std::array<double, 3> in_space(const dealii::Tensor<1, dim> &x)
     {
@@ -31,6 +34,41 @@ namespace slipstick::app
       for (unsigned int d = 0; d < dim; ++d)
         all[d] = x[d];
       return all;
+    }
+
+    double size(const Resultant &sum)
+    {
+      return std::hypot(sum.force[0], sum.force[1], sum.force[2]);
+    }
+
+    /// Adds what holds motions that nothing resists. No load acts along them, but friction across a gap may turn both
+    /// bodies: its forces act at points of each side, which the loads bring together without turning anything.
+    template <int dim>
+    void add_still_forces(const StepSolver<dim>        &solver,
+                          const StepSolution           &answer,
+                          const std::vector<Resultant> &reactions,
+                          output::ForceSummary         &sums,
+                          Warnings                     &warnings)
+    {
+      const double load = solver.still_load();
+      if (load == 0)
+        return;
+      sums.supports.push_back({"held motions", "support", solver.still_forces()});
+      double largest = 0;
+      for (const auto &node : answer.contact->nodes)
+        largest += std::abs(node.pressure) * node.area;
+      largest = dealii::Utilities::MPI::sum(largest, solver.dual().communicator());
+      for (const auto &of_load : sums.loads)
+        largest = std::max(largest, size(of_load.sum));
+      for (const auto &reaction : reactions)
+        largest = std::max(largest, size(reaction));
+      if (load > warned_still_load * largest)
+        warnings.emplace("held motions",
+                         format("the motions that are set to zero are held by %.3g N, %.2g %% of the largest force: "
+                                "friction acts on two sides across a gap, and the bodies would turn when it closes; "
+                                "add a support against these motions, or mesh the sides without the gap",
+                                load,
+                                100 * load / largest));
     }
 
     using NodeOfPair = TotalSlip::key_type;
@@ -121,6 +159,7 @@ namespace slipstick::app
                                               n_holders);
     for (unsigned int h = 0; h < solver.n_given_supports(); ++h)
       sums.supports.push_back({scene.supports[h].name, "support", reactions[h]});
+    add_still_forces(solver, answer, reactions, sums, warnings);
     for (unsigned int h = n_supports; h < n_holders; ++h)
       sums.foundations.push_back({scene.foundations[h - n_supports].name, "foundation", reactions[h]});
     return sums;
@@ -132,9 +171,9 @@ namespace slipstick::app
                                      TotalSlip                       &total_slip,
                                      std::vector<mechanics::NodeKey> &keys_of_nodes)
   {
-    const auto &scene = solver.discrete_scene();
-    const auto  nodes = gather(solver.mesh().comm, own.nodes);
-    const auto  keys  = gather(solver.mesh().comm, own.keys);
+    const auto                                              &scene = solver.discrete_scene();
+    const auto                                               nodes = gather(solver.mesh().comm, own.nodes);
+    const auto                                               keys  = gather(solver.mesh().comm, own.keys);
     std::vector<std::pair<contact::ContactNode, NodeOfPair>> all;
     for (unsigned int rank = 0; rank < nodes.size(); ++rank)
       for (unsigned int i = 0; i < nodes[rank].size(); ++i)

@@ -220,10 +220,32 @@ namespace slipstick::app
                                                checked(solve_step(step, multiplications_before, false), t));
     if (problem.bolts())
       answer = tighten_bolts(step, multiplications_before, std::move(answer));
+    answer = balance_still_motions(step, multiplications_before, std::move(answer));
     history.add(answer->contact->checks);
     dual_solution.multipliers = answer->recovery.multipliers;
     if (step + 1 < discrete_scene().load_factors.size())
       keep_for_next_step(answer->recovery, t);
+    return answer;
+  }
+
+  template <int dim>
+  std::unique_ptr<StepSolution> StepSolver<dim>::balance_still_motions(const unsigned int  step,
+                                                                       const std::uint64_t multiplications_before,
+                                                                       std::unique_ptr<StepSolution> answer)
+  {
+    constexpr unsigned int most_repetitions = 3; // each leaves the part that the forces change by: about gap over size
+    const double           t                = discrete_scene().load_factors[step];
+    for (unsigned int n = 0; n < most_repetitions && dual_solution.status == qp::Status::converged &&
+                             problem.spread_still_forces(answer->recovery.multipliers);
+         ++n)
+      {
+        problem.reload(t);
+        options.tolerance         = discrete_scene().solver.tolerance;
+        dual_solution.multipliers = answer->recovery.multipliers;
+        answer                    = continue_to_smaller_residual(step,
+                                              multiplications_before,
+                                              checked(solve_step(step, multiplications_before, true), t));
+      }
     return answer;
   }
 

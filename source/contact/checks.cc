@@ -276,9 +276,10 @@ namespace slipstick::contact
 
       void collect_nodes()
       {
+        const double noise = qp::force_rounding * multipliers.linfty_norm();
         for (const auto &point : constraints.contact_points)
           {
-            const auto node = contact_node(dual, point, multipliers, jumps, slip_bound, free);
+            const auto node = contact_node(dual, point, multipliers, jumps, slip_bound, free, noise);
             largest_contact = std::max(
               {largest_contact, std::abs(node.pressure * node.area), std::abs(node.tangential_traction * node.area)});
             largest_gap = std::max(largest_gap, std::abs(point.gap));

@@ -75,7 +75,8 @@ namespace slipstick::contact
                            const tfeti::DistributedVector &multipliers,
                            const tfeti::DistributedVector &jumps,
                            const std::vector<double>      &slip_bound,
-                           const std::vector<bool>        &free)
+                           const std::vector<bool>        &free,
+                           const double                    noise)
   {
     ContactNode node = node_at(point);
     if (point.normal_row != tfeti::invalid_row)
@@ -92,7 +93,10 @@ namespace slipstick::contact
         node.tangential_traction = -tangential / node.area; // on the slave body
         node.slip       = jumps.local_element(point.tangential_row) - dual.constraints().c[point.tangential_row];
         node.slip_bound = slip_bound[point.tangential_row] / node.area;
-        node.status     = status_of(node.is_closed, node.slip_bound, free[point.tangential_row]);
+        // free rows of a node without force may hold a motion that nothing else resists
+        if (free[point.tangential_row] && node.slip_bound == 0 && node.pressure * node.area <= noise)
+          node.is_closed = false;
+        node.status = status_of(node.is_closed, node.slip_bound, free[point.tangential_row]);
       }
     if (point.is_in_space())
       complete_in_space(dual, point, multipliers, jumps, node);

@@ -2,7 +2,6 @@
 #include <slipstick/interface/body_contact.h>
 #include <slipstick/interface/corners.h>
 #include <slipstick/interface/gap_rotation.h>
-#include <slipstick/interface/held_rotation.h>
 #include <slipstick/interface/held_slaves.h>
 #include <slipstick/interface/pair_checks.h>
 
@@ -42,6 +41,13 @@ namespace slipstick::interface
       return outline;
     }
 
+    /// Whether rows act only where the sides meet, so that no distance remains, and the bodies move independently.
+    template <int dim>
+    bool closes_between_bodies(const scene::ContactPair<dim> &pair)
+    {
+      return pair.law.acts_where_closed_alone() && !pair.gap && pair.slave.body != pair.master->body;
+    }
+
     template <int dim>
     std::vector<MortarRow<dim>> rows_of(const scene::Scene<dim>                         &scene,
                                         const mesh::Mesh<dim>                           &mesh,
@@ -75,14 +81,7 @@ namespace slipstick::interface
       check_sides(scene, mesh, pair, sides, all, rows);
       give_held_rows_to_neighbours<dim>(scene, mesh, all, sides.slave, rows);
       if (!mesh::Kinematics<dim>(scene.plane_state).is_revolution()) // bodies of revolution do not rotate
-        {
-          const auto is_held = [&](const unsigned int body) { return supports_hold_rotation(scene, mesh, all, body); };
-          // where rows are closed, a gap of the geometry is, too
-          const bool closes = pair.law.acts_where_closed_alone() && !pair.gap;
-          const bool only_strained =
-            closes && pair.slave.body != pair.master->body && is_held(pair.slave.body) && is_held(pair.master->body);
-          find_rotation_weights(sides.slave, sides.master, !only_strained, rows);
-        }
+        find_rotation_weights(sides.slave, sides.master, !closes_between_bodies(pair), rows);
       return rows;
     }
 
@@ -114,6 +113,52 @@ namespace slipstick::interface
 
       std::map<mechanics::NodeKey, mechanics::NodeKey> parent;
     };
+
+    /// BodyContacts::owner.
+    template <int dim>
+    std::map<mechanics::NodeKey, unsigned int> owners(const std::vector<std::vector<MortarRow<dim>>>  &rows,
+                                                      const std::vector<mechanics::BoundaryPart<dim>> &all)
+    {
+      Groups groups;
+      for (const auto &of_pair : rows)
+        for (const auto &row : of_pair)
+          {
+            groups.join(row.slave, row.slave_weights);
+            groups.join(row.slave, row.master_weights);
+            for (const Weights &weights : row.rotation_weights)
+              groups.join(row.slave, weights);
+          }
+      std::map<mechanics::NodeKey, unsigned int> first; // subdomain, by root
+      for (const auto &part : all)
+        for (unsigned int i = 0; i < part.n_nodes; ++i)
+          if (groups.parent.count(part.keys[i]) != 0)
+            {
+              const auto [entry, is_new] = first.emplace(groups.find(part.keys[i]), part.subdomain);
+              entry->second              = std::min(entry->second, part.subdomain);
+            }
+      std::vector<mechanics::NodeKey> keys;
+      for (const auto &[key, parent] : groups.parent)
+        keys.push_back(key);
+      std::map<mechanics::NodeKey, unsigned int> owner;
+      for (const auto &key : keys)
+        owner[key] = first.at(groups.find(key));
+      return owner;
+    }
+
+    /// Outlines of all bodies in contact with another; empty if there are none.
+    template <int dim>
+    std::vector<mechanics::BoundaryPart<dim>> outlines_in_contact(const scene::Scene<dim>      &scene,
+                                                                  const mesh::Mesh<dim>        &mesh,
+                                                                  const mechanics::Spaces<dim> &spaces)
+    {
+      std::vector<bool> wanted(scene.bodies.size(), false);
+      for (const auto &pair : scene.contacts)
+        if (pair.master)
+          wanted[pair.slave.body] = wanted[pair.master->body] = true;
+      if (std::find(wanted.begin(), wanted.end(), true) == wanted.end())
+        return {};
+      return mechanics::outlines(mesh, spaces, wanted);
+    }
   } // namespace
 
   template <int dim>
@@ -123,44 +168,55 @@ namespace slipstick::interface
   {
     BodyContacts<dim> contacts;
     contacts.rows.resize(scene.contacts.size());
-    std::vector<bool> wanted(scene.bodies.size(), false);
-    for (const auto &pair : scene.contacts)
-      if (pair.master)
-        wanted[pair.slave.body] = wanted[pair.master->body] = true;
-    if (std::find(wanted.begin(), wanted.end(), true) == wanted.end())
-      return contacts;
-    const auto all = mechanics::outlines(mesh, spaces, wanted);
-
-    Groups groups;
+    const auto all = outlines_in_contact(scene, mesh, spaces);
     for (unsigned int k = 0; k < scene.contacts.size(); ++k)
       if (scene.contacts[k].master)
-        {
-          contacts.rows[k] = rows_of(scene, mesh, scene.contacts[k], all);
-          for (const auto &row : contacts.rows[k])
-            {
-              groups.join(row.slave, row.slave_weights);
-              groups.join(row.slave, row.master_weights);
-              for (const Weights &weights : row.rotation_weights)
-                groups.join(row.slave, weights);
-            }
-        }
-
-    std::map<mechanics::NodeKey, unsigned int> first; // subdomain, by root
-    for (const auto &edge : all)
-      for (unsigned int i = 0; i < edge.n_nodes; ++i)
-        if (groups.parent.count(edge.keys[i]) != 0)
-          {
-            const auto [entry, is_new] = first.emplace(groups.find(edge.keys[i]), edge.subdomain);
-            entry->second              = std::min(entry->second, edge.subdomain);
-          }
-    std::vector<mechanics::NodeKey> keys;
-    for (const auto &[key, parent] : groups.parent)
-      keys.push_back(key);
-    for (const auto &key : keys)
-      contacts.owner[key] = first.at(groups.find(key));
+        contacts.rows[k] = rows_of(scene, mesh, scene.contacts[k], all);
+    contacts.owner = owners(contacts.rows, all);
     return contacts;
   }
 
+  template <int dim>
+  std::optional<BodyContacts<dim>> with_rotating_gaps(const scene::Scene<dim>      &scene,
+                                                      const mesh::Mesh<dim>        &mesh,
+                                                      const mechanics::Spaces<dim> &spaces,
+                                                      const BodyContacts<dim>      &contacts)
+  {
+    std::vector<unsigned int> changed;
+    for (unsigned int k = 0; k < scene.contacts.size(); ++k)
+      if (const auto &pair = scene.contacts[k]; pair.master && pair.law.has_tangential_row() &&
+                                                closes_between_bodies(pair) &&
+                                                !mesh::Kinematics<dim>(scene.plane_state).is_revolution())
+        changed.push_back(k);
+    if (changed.empty())
+      return std::nullopt;
+    const auto        all    = outlines_in_contact(scene, mesh, spaces);
+    BodyContacts<dim> result = contacts;
+    bool              any    = false;
+    for (const unsigned int k : changed)
+      {
+        const auto &pair = scene.contacts[k];
+        find_rotation_weights(mechanics::parts_on(mesh, all, pair.slave),
+                              mechanics::parts_on(mesh, all, *pair.master),
+                              true,
+                              result.rows[k]);
+        for (const auto &row : result.rows[k])
+          any = any || !row.rotation_weights[0].empty();
+      }
+    if (!any)
+      return std::nullopt;
+    result.owner = owners(result.rows, all);
+    return result;
+  }
+
+  template std::optional<BodyContacts<2>> with_rotating_gaps(const scene::Scene<2> &,
+                                                             const mesh::Mesh<2> &,
+                                                             const mechanics::Spaces<2> &,
+                                                             const BodyContacts<2> &);
+  template std::optional<BodyContacts<3>> with_rotating_gaps(const scene::Scene<3> &,
+                                                             const mesh::Mesh<3> &,
+                                                             const mechanics::Spaces<3> &,
+                                                             const BodyContacts<3> &);
   template BodyContacts<2> pair_bodies(const scene::Scene<2> &, const mesh::Mesh<2> &, const mechanics::Spaces<2> &);
   template BodyContacts<3> pair_bodies(const scene::Scene<3> &, const mesh::Mesh<3> &, const mechanics::Spaces<3> &);
 } // namespace slipstick::interface

@@ -1,4 +1,5 @@
 #include <slipstick/base/box_tree.h>
+#include <slipstick/base/turned.h>
 #include <slipstick/interface/gap_rotation.h>
 #include <slipstick/tfeti/dense.h>
 
@@ -23,20 +24,6 @@ namespace slipstick::interface
     constexpr double most_cells = dim == 2 ? 10 : 4;
     // Rotations that move the nodes by less than this part of the points of the row (squared) are not determined by them.
     constexpr double undetermined_rotation = 1e-6;
-
-    /// The vector times each generator of rotations.
-    template <int dim>
-    std::array<dealii::Tensor<1, dim>, dim == 2 ? 1 : 3> turned(const dealii::Tensor<1, dim> &x)
-    {
-      std::array<dealii::Tensor<1, dim>, dim == 2 ? 1 : 3> result;
-      for (unsigned int k = 0; k < result.size(); ++k)
-        {
-          const unsigned int a = dim == 2 ? 0 : (k + 1) % 3, b = dim == 2 ? 1 : (k + 2) % 3;
-          result[k][a] = -x[b];
-          result[k][b] = x[a];
-        }
-      return result;
-    }
 
     /// Of the nodes with weights in a row.
     struct NodeExtent

@@ -1,3 +1,4 @@
+#include <slipstick/base/turned.h>
 #include <slipstick/mechanics/rigid_modes.h>
 
 #include <deal.II/base/mpi.h>
@@ -27,16 +28,6 @@ namespace slipstick::mechanics
                           : element.mapping->transform_unit_to_real_cell(cell, element.scalar->unit_support_point(i)));
         }
       return points;
-    }
-    /// Displacement of @p r under a unit rotation; in space about axis number @p m.
-    template <int dim>
-    dealii::Tensor<1, dim> rotation(const unsigned int m, const dealii::Tensor<1, dim> &r)
-    {
-      dealii::Tensor<1, dim> moved;
-      const unsigned int     a = dim == 2 ? 0 : (m + 1) % dim, b = dim == 2 ? 1 : (m + 2) % dim; // rotates a towards b
-      moved[a] = -r[b];
-      moved[b] = r[a];
-      return moved;
     }
   } // namespace
 
@@ -106,13 +97,13 @@ namespace slipstick::mechanics
         const dealii::Tensor<1, dim> r = (points[i] - own.center) / own.length;
         system.kernel(i, i % dim)      = 1;
         for (unsigned int m = dim; m < k; ++m)
-          system.kernel(i, m) = rotation<dim>(m - dim, r)[i % dim];
+          system.kernel(i, m) = turned(r)[m - dim][i % dim];
       }
     // rotation about the body's centre = scaled own rotation + translation of the own centre
     const dealii::Tensor<1, dim> offset = (own.center - body.center) / body.length;
     for (unsigned int m = dim; m < k; ++m)
       {
-        const dealii::Tensor<1, dim> moved = rotation<dim>(m - dim, offset);
+        const dealii::Tensor<1, dim> moved = turned(offset)[m - dim];
         for (unsigned int d = 0; d < dim; ++d)
           system.body_modes(d, m) = moved[d];
         system.body_modes(m, m) = own.length / body.length;

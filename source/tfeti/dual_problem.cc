@@ -40,7 +40,8 @@ namespace slipstick::tfeti
                            Constraints                     constraints,
                            const DualOptions              &options,
                            const std::vector<std::string> &body_names,
-                           const MPI_Comm                  comm)
+                           const MPI_Comm                  comm,
+                           const Constraints              *resisting)
     : comm(comm)
     , reduce(comm)
     , rows(std::move(constraints))
@@ -61,8 +62,9 @@ namespace slipstick::tfeti
     });
     cost.factorization_seconds = parts->factorization_seconds() - seconds_before;
     F      = std::make_unique<DualOperator>(systems, gluing, rows.rows, explicit_blocks ? &parts->inverses : nullptr);
-    bodies = std::make_unique<BodyMotions>(systems, gluing, rows, body_names, comm);
-    require_support(bodies->free({}), body_names);
+    bodies = std::make_unique<BodyMotions>(systems, rows, body_names, comm);
+    require_support(resisting ? BodyMotions(systems, *resisting, body_names, comm).free({}) : bodies->free({}),
+                    body_names);
     loose = std::make_unique<LooseBodies>(*bodies, rows, comm);
     if (options.preconditioner == Preconditioner::lumped || options.preconditioner == Preconditioner::dirichlet)
       {

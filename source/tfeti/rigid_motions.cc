@@ -66,7 +66,6 @@ namespace slipstick::tfeti
 
     /// Parts of all rows that this rank owns, except gluing rows, sorted by row.
     std::vector<RowPart> parts_of_owned_rows(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
-                                             const std::vector<LocalGluing>                      &gluing,
                                              const Constraints                                   &constraints,
                                              const MPI_Comm                                       comm)
     {
@@ -77,13 +76,12 @@ namespace slipstick::tfeti
       for (unsigned int p = 0; p < subdomains.size(); ++p)
         {
           const Eigen::MatrixXd motions = subdomains[p]->kernel() * subdomains[p]->body_modes();
-          for (const auto &entry : gluing[p].entries)
+          for (const auto &entry : constraints.blocks[p])
             {
               if (entry.row < n_owned && is_gluing(constraints, entry.row))
                 continue;
-              const Eigen::VectorXd share =
-                entry.value * motions.row(subdomains[p]->touched()[entry.touched]).transpose();
-              RowPart part;
+              const Eigen::VectorXd share = entry.value * motions.row(entry.dof).transpose();
+              RowPart               part;
               part.row  = constraints.rows->local_to_global(entry.row);
               part.body = subdomains[p]->body();
               part.values.assign(share.data(), share.data() + share.size());
@@ -109,7 +107,6 @@ namespace slipstick::tfeti
   } // namespace
 
   BodyMotions::BodyMotions(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains_,
-                           const std::vector<LocalGluing>                      &gluing,
                            const Constraints                                   &constraints,
                            const std::vector<std::string>                      &names,
                            const MPI_Comm                                       comm_)
@@ -123,7 +120,7 @@ namespace slipstick::tfeti
     , n_motions(motions_of_body * names.size())
     , frames(frames_of_bodies(subdomains, names.size(), comm))
   {
-    for (const auto &part : parts_of_owned_rows(subdomains, gluing, constraints, comm))
+    for (const auto &part : parts_of_owned_rows(subdomains, constraints, comm))
       shares.push_back({constraints.rows->global_to_local(part.row),
                         part.body,
                         Eigen::Map<const Eigen::VectorXd>(part.values.data(), part.values.size())});

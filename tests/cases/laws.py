@@ -42,7 +42,8 @@ class Cohesion(unittest.TestCase):
                 largest = max(row['pressure'] for row in result.contact)
                 for row in result.contact:
                     if row['pressure'] < 1e-12 * largest:
-                        self.assertEqual((row['tangential_traction'], row['slip_bound']), (0, 0), row)
+                        self.assertLess(abs(row['tangential_traction']), 1e-12 * largest, row)
+                        self.assertEqual(row['slip_bound'], 0, row)
                         self.assertIn(row['status'], ('open', 'slip') if row['pair'] == 'c0' else ('open', ), row)
 
     def test_blocks_that_lose_contact(self):

@@ -199,6 +199,10 @@ namespace slipstick::random
         const auto summary     = nlohmann::json::parse(content(directory + "/summary.json"));
         result.multiplications = summary["solver"]["hessian_multiplications"].get<unsigned long long>();
         result.fallbacks       = summary["solver"]["fallbacks"].get<unsigned int>();
+        for (const auto &support : summary["results"]["supports"])
+          if (support["support"] == "held motions")
+            result.still_load = std::hypot(support["force"][0].get<double>(), support["force"][1].get<double>()) +
+                                std::abs(support["moment"].get<double>()) / problem.size;
         for (const auto &warning : summary["warnings"])
           result.holds_motions |= warning.get<std::string>().rfind("nothing resists", 0) == 0;
         double worst = 0;

@@ -20,6 +20,7 @@ namespace slipstick::random
     unsigned int       fallbacks       = 0;
     std::string        worst_check;
     bool               holds_motions = false; // that nothing resists, with a warning
+    double             still_load    = 0;     // of the forces that hold them [N]
   };
 
   /// Solves @p scene with app::run in @p directory, which is overwritten. Displacements come from the .vtu files (single

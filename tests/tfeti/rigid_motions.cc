@@ -15,19 +15,17 @@ namespace
   {
     const Torn                                           torn(scene);
     const auto                                           session = std::make_shared<tfeti::CholmodSession>();
-    std::vector<tfeti::LocalGluing>                      gluing;
     std::vector<std::unique_ptr<tfeti::SubdomainSystem>> systems;
     for (unsigned int p = 0; p < torn.matrices.size(); ++p)
       {
-        auto [local, touched] = tfeti::LocalGluing::make(torn.constraints.blocks[p]);
-        gluing.push_back(local);
+        const auto touched = tfeti::LocalGluing::make(torn.constraints.blocks[p]).second;
         systems.push_back(std::make_unique<tfeti::SubdomainSystem>(session, torn.matrices[p], touched, false));
       }
     std::vector<bool> active;
     if (takes_part)
       for (unsigned int r = 0; r < torn.constraints.kind.size(); ++r)
         active.push_back(takes_part(torn, r));
-    return tfeti::BodyMotions(systems, gluing, torn.constraints, body_names(scene), MPI_COMM_WORLD).free(active);
+    return tfeti::BodyMotions(systems, torn.constraints, body_names(scene), MPI_COMM_WORLD).free(active);
   }
 
   std::string description(const Scene &scene, const tfeti::RigidMotion &motion)

@@ -5,6 +5,7 @@
 #include <slipstick/output/summary.h>
 #include <slipstick/scene/adaptivity.h>
 
+#include <map>
 #include <optional>
 
 namespace slipstick::app
@@ -50,6 +51,7 @@ namespace slipstick::app
   template <int dim>
   std::size_t mark(const mesh::Mesh<dim> &mesh, const CellErrors &errors, mesh::Refinement &refinement);
 
-  /// The largest relative error of the goals; nothing if one of them has no estimate. On rank 0.
-  std::optional<double> worst_error(const std::vector<output::ErrorBar> &bars, const std::vector<std::string> &goals);
+  /// The largest error of the goals over their scales; nothing if one of them has no estimate. On rank 0.
+  std::optional<double> worst_error(const std::vector<output::ErrorBar> &bars,
+                                    const std::map<std::string, double> &scales);
 } // namespace slipstick::app

@@ -21,6 +21,7 @@ namespace slipstick::app
     bool                         is_of_multipliers = true;
     double                       local_error       = 0;     // in addition to that of the adjoint problem, not negative
     bool                         is_resolvable     = false; // finer cells remove the reason
+    bool                         is_infinite       = false; // the reason: no mesh has an estimate
     std::string                  note              = "";    // what the quantity covers, if its name does not say it
   };
 

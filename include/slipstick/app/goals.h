@@ -18,6 +18,7 @@ namespace slipstick::app
     bool                         is_known = false;
     std::string                  reason;                // why there is no estimate
     bool                         is_resolvable = false; // finer cells remove the reason
+    bool                         is_infinite   = false; // the reason: no mesh has an estimate
     double                       value         = 0;     // of the quantity
     double                       correction    = 0;     // sum over the cells, to be added to the value
     double                       absolute      = 0;     // sum of the magnitudes

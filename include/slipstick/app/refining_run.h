@@ -37,6 +37,9 @@ namespace slipstick::app
     /// Finds the goals with estimates, and the reasons why others have none. Collective; bars are those of rank 0.
     void find_counted(const std::vector<output::ErrorBar> &bars, const output::ResultSummary &results);
 
+    /// Finds what the errors of the counted goals are compared with.
+    void find_scales(const std::vector<output::ErrorBar> &bars, const output::ResultSummary &results);
+
     std::vector<GoalError> goals_of(const Run<dim> &steps) const;
 
     /// The largest relative change of the counted goals from the previous mesh, which bars on coarse meshes may
@@ -66,16 +69,18 @@ namespace slipstick::app
     std::vector<output::MeshRow>    rows;
     std::vector<LeftOut<dim>>       left_out;
     std::vector<std::string>        notes;
-    std::vector<std::string>        counted;            // goals with an estimate ...
-    std::vector<std::string>        unknown;            // ... and on rank 0 why the others have none
-    std::string                     without_estimate;   // a counted goal and the reason; empty: none
-    bool                            may_settle = false; // values without an estimate grow little or not at all
-    unsigned int                    n_without  = 0;     // consecutive meshes
-    std::map<std::string, double>   values;             // on rank 0, on the previous mesh
-    double                          bar_over_error = 1;
-    bool                            is_known       = false; // the error
-    bool                            is_accurate    = false; // that error ...
-    bool                            is_confirmed   = false; // ... and there is a previous mesh to compare with
-    bool                            reached        = false;
+    std::vector<std::string>        counted;  // goals with an estimate ...
+    std::vector<std::string>        unknown;  // ... and on rank 0 why the others have none
+    std::map<std::string, double>   scales;   // on rank 0: magnitudes of the counted goals, or of what is 0 beside them
+    std::map<std::string, std::string> zeros; // on rank 0: counted goals that are 0 within their errors, in words
+    std::string                        without_estimate;   // a counted goal and the reason; empty: none
+    bool                               may_settle = false; // values without an estimate grow little or not at all
+    unsigned int                       n_without  = 0;     // consecutive meshes
+    std::map<std::string, double>      values;             // on rank 0, on the previous mesh
+    double                             bar_over_error = 1;
+    bool                               is_known       = false; // the error
+    bool                               is_accurate    = false; // that error ...
+    bool                               is_confirmed   = false; // ... and there is a previous mesh to compare with
+    bool                               reached        = false;
   };
 } // namespace slipstick::app

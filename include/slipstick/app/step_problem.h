@@ -2,6 +2,7 @@
 #pragma once
 
 #include <slipstick/base/log.h>
+#include <slipstick/base/resultant.h>
 #include <slipstick/interface/contact_constraints.h>
 #include <slipstick/mechanics/bolts.h>
 #include <slipstick/mechanics/tightening.h>
@@ -141,6 +142,20 @@ namespace slipstick::app
     {
       return held_still;
     }
+    /// Spreads what the auxiliary supports bear in this solution over the bodies, as inertia does, so
+    /// that the choice of these supports does not matter: friction across gaps may do work along the motions (at each
+    /// side it acts at undeformed points). The loads must then be set again. Collective.
+    /// @return whether it was more than rounding.
+    bool spread_still_forces(const tfeti::DistributedVector &multipliers);
+
+    /// The resultant of these fields.
+    Resultant still_forces() const;
+    /// Their size [N].
+    double still_load() const
+    {
+      return still_work.size() > 0 ? still_work.norm() : 0.;
+    }
+
     /// Null if the scene has none.
     const mechanics::Bolts<dim> *bolts() const
     {
@@ -171,8 +186,9 @@ namespace slipstick::app
     void make_dual(const double t);
     void make_dual_as_it_is(const double t);
 
-    /// Subtracts the parts of loads along `balanced`.
-    void balance(std::vector<Eigen::VectorXd> &loads) const;
+    /// Subtracts body forces equal to rigid motions from the loads: with this work along the motions of all
+    /// bodies and, along `balanced`, all work that the loads do there.
+    void balance(Eigen::VectorXd work, std::vector<Eigen::VectorXd> &loads) const;
 
     /// Loads of this rank's subdomains, including bolts, with rounding set to zero.
     std::vector<Eigen::VectorXd> loads_at(const double t);
@@ -185,6 +201,10 @@ namespace slipstick::app
 
     /// The contact rows at load factor t, except pruned ones.
     interface::ContactRows contact_rows(const double t);
+
+    /// Rows that tell which motions nothing resists, if others than these: friction across a gap resists rotations of
+    /// both bodies as a whole by the gap. Collective.
+    std::optional<tfeti::Constraints> resisting_rows(const double t) const;
 
     scene::Scene<dim>        scene;
     const Log               &log;
@@ -206,12 +226,13 @@ namespace slipstick::app
     unsigned int                        n_given; // number of supports
     std::string                         unheld_motions;
     std::vector<tfeti::RigidMotion>     held_still;
-    bool                                is_undriven = false;
-    std::vector<tfeti::RigidMotion>     balanced; // motions along which the loads of the scene do no work
-    mechanics::Tightening               bolts_so_far;
-    double                              kept_fraction;
-    double                              largest_load_so_far = 0; // [N]
-    double                              load_factor_of_rows = 0;
-    double                              factorization       = 0; // [s]
+    Eigen::VectorXd                 still_work; // of what is spread over the bodies, along the motions of all bodies
+    bool                            is_undriven = false;
+    std::vector<tfeti::RigidMotion> balanced; // motions along which the loads of the scene do no work
+    mechanics::Tightening           bolts_so_far;
+    double                          kept_fraction;
+    double                          largest_load_so_far = 0; // [N]
+    double                          load_factor_of_rows = 0;
+    double                          factorization       = 0; // [s]
   };
 } // namespace slipstick::app

@@ -96,6 +96,15 @@ namespace slipstick::app
     {
       return problem.unheld();
     }
+    /// What holds these motions: resultant, and size [N].
+    Resultant still_forces() const
+    {
+      return problem.still_forces();
+    }
+    double still_load() const
+    {
+      return problem.still_load();
+    }
     double factorization_seconds() const
     {
       return problem.factorization_seconds();
@@ -125,6 +134,11 @@ namespace slipstick::app
     std::unique_ptr<StepSolution> tighten_bolts(const unsigned int            step,
                                                 const std::uint64_t           multiplications_before,
                                                 std::unique_ptr<StepSolution> answer);
+
+    /// Repeats the step until auxiliary supports bear nothing.
+    std::unique_ptr<StepSolution> balance_still_motions(const unsigned int            step,
+                                                        const std::uint64_t           multiplications_before,
+                                                        std::unique_ptr<StepSolution> answer);
 
     /// Recovers the displacement of the solution. Its status becomes `stagnated` if its rows do not hold the bodies
     /// although others may.

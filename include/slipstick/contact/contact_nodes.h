@@ -9,13 +9,14 @@ namespace slipstick::contact
   /// A contact node with the data that do not depend on the solution: pair, position, normal, areas and initial gap.
   ContactNode node_at(const tfeti::ContactPoint &point);
 
-  /// A contact node from its contact force and displacement jump.
+  /// A contact node from its contact force and displacement jump. @param noise forces up to this are rounding.
   ContactNode contact_node(const tfeti::DualProblem       &dual,
                            const tfeti::ContactPoint      &point,
                            const tfeti::DistributedVector &multipliers,
                            const tfeti::DistributedVector &jumps,
                            const std::vector<double>      &slip_bound,
-                           const std::vector<bool>        &free);
+                           const std::vector<bool>        &free,
+                           const double                    noise);
 
   /// A node of a bonded pair: it sticks whatever its tractions; a row that is implied by others carries no traction.
   ContactNode bonded_node(const tfeti::DualProblem       &dual,

@@ -3,6 +3,8 @@
 
 #include <slipstick/interface/mortar.h>
 
+#include <optional>
+
 namespace slipstick::interface
 {
   /// All pairs of bodies, stored on every rank.
@@ -24,4 +26,12 @@ namespace slipstick::interface
   BodyContacts<dim> pair_bodies(const scene::Scene<dim>      &scene,
                                 const mesh::Mesh<dim>        &mesh,
                                 const mechanics::Spaces<dim> &spaces);
+
+  /// The same with rows that follow the rotations of both sides across gaps that close between two bodies, too
+  /// (gap_rotation.h); none if these are the same. Collective.
+  template <int dim>
+  std::optional<BodyContacts<dim>> with_rotating_gaps(const scene::Scene<dim>      &scene,
+                                                      const mesh::Mesh<dim>        &mesh,
+                                                      const mechanics::Spaces<dim> &spaces,
+                                                      const BodyContacts<dim>      &contacts);
 } // namespace slipstick::interface

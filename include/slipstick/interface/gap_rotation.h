@@ -2,8 +2,11 @@
 //
 // Where the points of a row are apart by r (slave minus master), a rotation omega of both bodies as a whole makes them
 // move by omega x r relative to each other. Rows subtract it, with the rotations of both sides around their points, so
-// that they resist no rigid motion and their forces have no moment. Where a gap closes between bodies whose
-// supports hold their rotations, it follows none: where points meet, r is zero (doc/decisions/0157).
+// that they resist no rigid motion and their forces have no moment.
+//
+// Where a gap closes between two bodies, their points meet: the distance is zero then, each body is in equilibrium in its
+// own frame, and the rows that are solved with follow no rotation across it (doc/decisions/0158). Only motions that
+// nothing holds are found with rows that do.
 #pragma once
 
 #include <slipstick/interface/mortar_row.h>

@@ -67,11 +67,13 @@ namespace slipstick::tfeti
 
     /// As above, with @p subdomains taken over from a problem with other rows: only those whose touched unknowns differ
     /// are factorised again. No other problem may use them at the same time.
+    /// @param resisting rows that tell which rigid motions nothing resists, if these are others.
     DualProblem(std::shared_ptr<Subdomains>     subdomains,
                 Constraints                     constraints,
                 const DualOptions              &options,
                 const std::vector<std::string> &body_names,
-                const MPI_Comm                  comm);
+                const MPI_Comm                  comm,
+                const Constraints              *resisting = nullptr);
 
     /// Starts another load step: loads f_p of this rank's subdomains [N] and right-hand sides c of the owned rows [mm].
     /// K, B and everything that depends only on them are kept. Collective.

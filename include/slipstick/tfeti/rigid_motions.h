@@ -56,7 +56,6 @@ namespace slipstick::tfeti
   public:
     /// @param subdomains must outlive this. @param names of all bodies. Collective.
     BodyMotions(const std::vector<std::unique_ptr<SubdomainSystem>> &subdomains,
-                const std::vector<LocalGluing>                      &gluing,
                 const Constraints                                   &constraints,
                 const std::vector<std::string>                      &names,
                 const MPI_Comm                                       comm);
