@@ -2,6 +2,7 @@
 run: disconnected and hinged subdomains, nodes with several conditions, overhangs, curved interfaces, nothing to do,
 fits, bounds on both sides."""
 
+import pathlib
 import unittest
 
 from sweep import FLOOR, STEEL, Extremes, Table, audit, count, pair, scenes, shipped, solve, stack
@@ -219,6 +220,27 @@ class BreakingPoints(Extremes):
                                         stack(box={'Young modulus': repr(2.1e5 * ratio)},
                                               contact={'Friction coefficient': mu}), most=110)
                 self.in_balance(result)
+
+    def test_blocks_that_slip_nearly_everywhere(self):
+        """The one node that sticks was found by chance: 38, 240 and 131 to 974 multiplications, most with a fallback."""
+        def blocks(friction):
+            return scenes.box('blocks', plane_state='plane strain', materials={
+                'hard': {'Young modulus': '17000', 'Poisson ratio': '0.3'}, 'soft': {'Young modulus': '2200', 'Poisson ratio': '0.45'}},
+                bodies={'low': {'Origin': '-5, -2', 'Size': '10, 2', 'Cells': '16, 5', 'Material': 'hard'},
+                        'up': {'Origin': '-3, 0', 'Size': '6, 5', 'Cells': '7, 5', 'Material': 'soft'}},
+                supports={'floor': {'Boundary': 'low/bottom', 'Displacement x': '0', 'Displacement y': '0'}},
+                tractions={'press': {'Boundary': 'up/top', 'Traction y': '-7.6'},
+                           'shear': {'Boundary': 'up/left', 'Traction x': 3 * friction}},
+                contacts={'c': {'Slave': 'up/bottom', 'Master': 'low/top', 'Law': 'Coulomb', 'Friction coefficient': friction}},
+                Decomposition={'Method': 'METIS'}, Solver={'Tolerance': '1e-8'}, Output={'VTU': 'false'})
+
+        for case, most in ((blocks(0.1), 30), (blocks(0.03), 30), (pathlib.Path(__file__).parent / 'three_blocks_polyline.prm', 150)):
+            with self.subTest(case):
+                result = solve(case)
+                self.assertEqual(result.status, 0, result)
+                solver = result.summary['solver']
+                self.assertEqual(solver['fallbacks'], 0)
+                self.assertLessEqual(solver['hessian_multiplications'], most)
 
     def test_units(self):
         table = Table('units')

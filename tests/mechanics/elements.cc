@@ -556,8 +556,10 @@ namespace
         for (const unsigned int n : {1, 2, 3, 4})
           EXPECT_LT(asymmetry(element.cell_quadrature(n)), 1e-13) << dim << ' ' << n;
         if constexpr (dim == 3)
-          for (const unsigned int n : {1, 2, 3, 4})
-            EXPECT_LT(asymmetry(element.face_quadrature(n)), 1e-13) << n;
+          {
+            for (const unsigned int n : {1, 2, 3, 4})
+              EXPECT_LT(asymmetry(element.face_quadrature(n)), 1e-13) << n;
+          }
       }
     // exact for squares: the integral of x^2 and of x y
     const auto rule = mechanics::Element<dim>(cell, 2).cell_quadrature(2);

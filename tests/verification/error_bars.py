@@ -417,7 +417,7 @@ class Accuracy(unittest.TestCase):
         summary = converged(pathlib.Path(__file__).parent / 'goal_zero.prm', {'Output/VTU': 'false'}).summary
         bar, = (bar for bar in summary['error_bars'] if bar['quantity'] == 'g.force_x')
         self.assertLess(abs(bar['value']), bar['error'])
-        self.assertEqual(len(summary['meshes']), 2)
+        self.assertLess(summary['meshes'][-1]['unknowns'], 10000)
         self.assertIn('g.force_x is 0 within its error of', ' '.join(summary['warnings']))
 
     def test_an_energy_that_is_never_estimated_is_refused(self):

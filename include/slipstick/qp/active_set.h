@@ -21,7 +21,8 @@ namespace slipstick::qp
     // An imbalance below this part of all forces moves no body: the face problem determines the rest more accurately
     // than points on springs do (doc/decisions/0091). ...
     constexpr double tolerated_imbalance = 0.1;
-    // ... Once a step was cut in vain, the limit is this part or, if that is less, the natural residual.
+    // ... Once a step was cut in vain, the limit is this part or, if that is less, this part of the natural residual,
+    // which the force of a single node beyond its bound may be (doc/decisions/0159).
     constexpr double fine_imbalance = 0.01;
 
     /// The natural map x -> proj(x - s g) of an admissible set, and the active set that it determines. s is `step` over
@@ -143,7 +144,7 @@ namespace slipstick::qp
       /// @param residual the natural residual over that of zero forces
       void approach(const double residual)
       {
-        finest_imbalance = std::min(finest_imbalance, residual);
+        finest_imbalance = std::min(finest_imbalance, fine_imbalance * residual);
       }
 
       /// Sets the active set to that of x - s g. @return whether it has changed on any process.
