@@ -70,7 +70,7 @@ namespace slipstick::app
       return format(
         "Contact %s: at (%.6g, %.6g) straight edges deviate by %.4g mm from an arc, which is not small compared with %s "
         "of %.4g mm, so that pressures are those of a polygon; set Outline = smooth or a larger Corner angle for the "
-        "bodies, or use a finer mesh or one of second order (if the corners are intended: Outline = polygon)",
+        "bodies, or use a finer mesh or one of second order (if the corners are intended, the pressures are, too)",
         pair.name.c_str(),
         worst[1],
         worst[2],

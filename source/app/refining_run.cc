@@ -255,7 +255,7 @@ namespace slipstick::app
       return "";
     const std::string so_far =
       format("the accuracy of %g %% of %s is not reached: ", 100 * options.accuracy, what().c_str()) +
-      (is_known ? format("the error is %.2g %% after %zu meshes", 100 * rows.back().error, rows.size())
+      (is_known ? format("the error is %.3g %% after %zu meshes", 100 * rows.back().error, rows.size())
                 : format("after %zu mesh%s %s", rows.size(), rows.size() == 1 ? "" : "es", without_estimate.c_str()));
     const auto goals = goals_of(steps);
     if (!is_known && !options.skips_unknown &&

@@ -1,4 +1,3 @@
-#include <Eigen/LU>
 #include <slipstick/app/names.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/step_problem.h>
@@ -13,6 +12,7 @@
 #include <slipstick/mechanics/inertia_relief.h>
 #include <slipstick/mechanics/loads.h>
 #include <slipstick/mesh/decomposition.h>
+#include <slipstick/tfeti/dense.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -210,7 +210,7 @@ namespace slipstick::app
     for (unsigned int p = 0; p < loads.size(); ++p)
       {
         const Eigen::Index first = subdomains->systems[p]->body() * k;
-        loads[p] -= fields[p] * sums.block(first, 0, k, k).partialPivLu().solve(work.segment(first, k));
+        loads[p] -= fields[p] * tfeti::shortest_solution(sums.block(first, 0, k, k), work.segment(first, k));
       }
   }
 
