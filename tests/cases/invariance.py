@@ -84,6 +84,11 @@ class Invariance(unittest.TestCase):
     def test_more_ranks_than_subdomains(self):
         self.assert_same(box(), box('none', 3), 'one subdomain on 3 ranks')
 
+    def test_steps_that_are_cut_on_eight_ranks(self):
+        """Some ranks took part in an assignment of vectors, others did not: status 1."""
+        converged(shipped('lap_joint'), {'Decomposition/Method': 'METIS', 'Decomposition/Subdomains': 8, 'Output/VTU': 'false',
+                                         'Solver/Tolerance': '1e-11', 'Discretization/Refinements': 0}, ranks=8)
+
     def test_copies_of_a_node_agree(self):
         values = displacement('METIS', 2)
         self.assertGreater(max(len(copies) for copies in values.values()), 1)

@@ -72,11 +72,14 @@ namespace slipstick::qp::detail
       double       t                       = 1;
       while (!(residual_of_step <= (1 - options->sufficient_decrease * t) * bound))
         {
-          nearest_refused = t < 1 ? std::move(end_of_step) : to;
+          if (t < 1)
+            nearest_refused.emplace(*std::move(end_of_step));
+          else
+            nearest_refused.emplace(to);
           t *= options->backtracking;
           if (t < least_part_of_step)
             return 0;
-          end_of_step = to;
+          end_of_step.emplace(to); // an assignment to a vector that was moved from is collective on some ranks only
           combine(1 - t, from.x, t, end_of_step->x);
           combine(1 - t, from.gradient, t, end_of_step->gradient);
           residual_of_step = set.natural_residual(end_of_step->x, end_of_step->gradient);
