@@ -189,17 +189,18 @@ namespace slipstick::app
   }
 
   template <int dim>
-  void StepProblem<dim>::balance(Eigen::VectorXd work, std::vector<Eigen::VectorXd> &loads) const
+  void StepProblem<dim>::balance(Eigen::VectorXd work, std::vector<Eigen::VectorXd> &loads)
   {
+    if (!inertia)
+      inertia = mechanics::rigid_body_forces(scene, *mesh_ptr, *spaces_ptr);
     const Eigen::Index n        = work.size() > 0 ? work.size() : balanced.front().amplitudes.size();
     const Eigen::Index n_bodies = scene.bodies.size(), k = n / n_bodies;
-    Eigen::MatrixXd    sums   = Eigen::MatrixXd::Zero(n, k + 1); // of every body: work of fields and loads
-    const auto         fields = mechanics::rigid_body_forces(scene, *mesh_ptr, *spaces_ptr);
+    Eigen::MatrixXd    sums = Eigen::MatrixXd::Zero(n, k + 1); // of every body: work of body forces and loads
     for (unsigned int p = 0; p < loads.size(); ++p)
       {
         const auto           &system  = *subdomains->systems[p];
         const Eigen::MatrixXd motions = system.kernel() * system.body_modes();
-        sums.block(system.body() * k, 0, k, k) += motions.transpose() * fields[p];
+        sums.block(system.body() * k, 0, k, k) += motions.transpose() * (*inertia)[p];
         sums.block(system.body() * k, k, k, 1) += motions.transpose() * loads[p];
       }
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, comm);
@@ -210,7 +211,7 @@ namespace slipstick::app
     for (unsigned int p = 0; p < loads.size(); ++p)
       {
         const Eigen::Index first = subdomains->systems[p]->body() * k;
-        loads[p] -= fields[p] * tfeti::shortest_solution(sums.block(first, 0, k, k), work.segment(first, k));
+        loads[p] -= (*inertia)[p] * tfeti::shortest_solution(sums.block(first, 0, k, k), work.segment(first, k));
       }
   }
 
@@ -383,15 +384,22 @@ namespace slipstick::app
   Resultant StepProblem<dim>::still_forces() const
   {
     Resultant          sum;
-    const unsigned int k = dim + n_rotations<dim>; // motions of a body
+    const unsigned int k = mesh::Kinematics<dim>(scene.plane_state).n_rigid_motions(); // of a body
     for (unsigned int b = 0; k * b < still_work.size(); ++b)
       {
-        const auto                 &frame = held_still.front().frames[b];
-        const auto                  of    = still_work.segment(k * b, k);
-        const std::array<double, 3> force{{-of[0], -of[1], dim == 3 ? -of[k / 2 - 1] : 0.}};
+        const auto &frame = held_still.front().frames[b];
+        const auto  work  = still_work.segment(k * b, k);
+        if (k == 1) // of revolution: along the axis
+          {
+            sum.force[1] -= work[0];
+            continue;
+          }
+        std::array<double, dim> force;
+        for (unsigned int d = 0; d < dim; ++d)
+          force[d] = -work[d];
         sum.add<dim>(force, frame.center);
         for (unsigned int m = 0; m < n_rotations<dim>; ++m)
-          sum.moment[dim == 2 ? 2 : m] -= frame.length * of[dim + m];
+          sum.moment[dim == 2 ? 2 : m] -= frame.length * work[dim + m];
       }
     return sum;
   }

@@ -142,10 +142,9 @@ namespace slipstick::app
     {
       return held_still;
     }
-    /// Spreads what the auxiliary supports bear in this solution over the bodies, as inertia does, so
-    /// that the choice of these supports does not matter: friction across gaps may do work along the motions (at each
-    /// side it acts at undeformed points). The loads must then be set again. Collective.
-    /// @return whether it was more than rounding.
+    /// Spreads what the auxiliary supports bear in this solution over the bodies, as inertia does, so that the choice of
+    /// these supports does not matter: friction across gaps may do work along the motions (at each side it acts at
+    /// undeformed points). The loads must then be set again. Collective. @return whether it was more than rounding.
     bool spread_still_forces(const tfeti::DistributedVector &multipliers);
 
     /// The resultant of these fields.
@@ -188,7 +187,7 @@ namespace slipstick::app
 
     /// Subtracts body forces equal to rigid motions from the loads: with this work along the motions of all
     /// bodies and, along `balanced`, all work that the loads do there.
-    void balance(Eigen::VectorXd work, std::vector<Eigen::VectorXd> &loads) const;
+    void balance(Eigen::VectorXd work, std::vector<Eigen::VectorXd> &loads);
 
     /// Loads of this rank's subdomains, including bolts, with rounding set to zero.
     std::vector<Eigen::VectorXd> loads_at(const double t);
@@ -218,6 +217,7 @@ namespace slipstick::app
     std::unique_ptr<mechanics::Spaces<dim>>     spaces_ptr;
     std::optional<interface::BodyContacts<dim>> contacts;
     std::shared_ptr<tfeti::Subdomains>          subdomains;
+    std::optional<std::vector<Eigen::MatrixXd>> inertia; // mechanics::rigid_body_forces(), once they are needed
     std::optional<mechanics::Bolts<dim>>        all_bolts;
 
     std::unique_ptr<tfeti::DualProblem> dual_ptr;

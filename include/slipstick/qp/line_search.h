@@ -79,7 +79,9 @@ namespace slipstick::qp::detail
           t *= options->backtracking;
           if (t < least_part_of_step)
             return 0;
-          end_of_step.emplace(to); // an assignment to a vector that was moved from is collective on some ranks only
+          // Not assigned: deal.II compares the partitioners of two vectors collectively unless both share one object,
+          // and after moves some ranks shared it while others did not.
+          end_of_step.emplace(to);
           combine(1 - t, from.x, t, end_of_step->x);
           combine(1 - t, from.gradient, t, end_of_step->gradient);
           residual_of_step = set.natural_residual(end_of_step->x, end_of_step->gradient);
