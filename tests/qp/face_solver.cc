@@ -240,6 +240,27 @@ TEST(FaceSolver, a_regularised_singular_face_has_one_solution)
       }
 }
 
+TEST(FaceSolver, errors_of_stored_products_are_not_inherited)
+{
+  // Products of stored directions with errors of one per cent, as left by many combinations of directions.
+  for (unsigned int seed = 0; seed < 20; ++seed)
+    {
+      Held                   p(seed, 12, 0);
+      DirectionStore<Vector> store(100);
+      for (unsigned int k = 0; k < 4; ++k)
+        {
+          const Vector direction = p.random.vector(12);
+          Vector       product = p.problem.F * direction, error = p.random.vector(12);
+          add(0.01 * length(product) / length(error), error, product);
+          store.push(direction, product, 0.01 * length(product), nullptr, SerialReduction());
+        }
+      p.solve({}, tied, store, 1e-8);
+      ASSERT_GT(store.size(), 4u);
+      for (std::size_t j = 4; j < store.size(); ++j)
+        EXPECT_LT(distance(store[j].Fp, p.problem.F * store[j].p), 1e-3 * length(store[j].Fp)) << seed << ", " << j;
+    }
+}
+
 TEST(FaceSolver, products_are_those_of_F_where_that_is_nearly_singular)
 {
   // Forces that F hardly distinguishes from zero, as on rows that nearly depend on each other: when directions are made
@@ -391,6 +412,28 @@ TEST(ActiveSet, natural_residual_is_zero_at_solutions_alone)
       EXPECT_TRUE(i == 0 || i == 3 || set.natural_residual(moved, g) > 0.01) << i;
       EXPECT_GT(set.natural_residual(x, pulled), 0.01) << i;
     }
+}
+
+TEST(ActiveSet, wrong_slip_counts_no_more_than_the_force_that_it_changes)
+{
+  const Unweighted                      problem;
+  const NodeSet                         coulomb{0, 0.5};
+  detail::ActiveSet<Vector, Unweighted> plane(problem, 2., {{{0, -9}, {infinity, 9}}, {{1, 0, coulomb}}}, 3.);
+  const Vector                          weak{1e-12, -5e-13}, strong{1, -0.5};
+  for (const auto &[x, most] : {std::pair<Vector, double>(weak, 2e-12), std::pair<Vector, double>(strong, 1.)})
+    {
+      plane.predict(x, {0, 1});
+      ASSERT_EQ(plane.sides(), (detail::Sides{0, -1}));
+      EXPECT_NEAR(plane.residuals(x, {0, -1})[0], most, 1e-12 * most);
+    }
+  detail::ActiveSet<Vector, Unweighted> space(problem, 2., {{{0, -9, -9}, {infinity, 9, 9}}, {{1, 0, coulomb, 2}}}, 3.);
+  space.predict({1e-12, 5e-13, 0}, {0, -1, 0});
+  ASSERT_EQ(space.sides(), (detail::Sides{0, 1, 1})); // the direction of so small a force is held
+  EXPECT_LT(space.residuals({1e-12, 5e-13, 0}, {0, 1, 0})[0], 2.1e-12);
+  space.predict({0, 0, 0}, {1, 0.3, 0.4}); // open
+  space.release({false, true, false});     // to hold a body
+  EXPECT_LT(space.residuals({0, 0, 0}, {1, 0, 0.4})[0], 1e-15);
+  EXPECT_NEAR(space.residuals({0, 0, 0}, {1, 0.1, 0.4})[0], 0.1, 1e-12);
 }
 
 TEST(ActiveSet, entries_pass_from_bound_to_bound_by_way_of_the_inside)

@@ -62,18 +62,18 @@ TEST(LineSearch, FindsNothingInTheWrongDirection)
   EXPECT_LT(std::abs(search.line.refused().x[0]), 1e-8);
 }
 
-TEST(LineSearch, ComparesWithTheLargestOfTheLastResiduals)
+TEST(LineSearch, ComparesWithTheResidualOfThePresentPoint)
 {
   Search search;
-  search.line.begin(3);
-  search.line.move_to(1);
+  search.line.begin(0.5);
+  search.line.move_to(3);     // a whole step that was taken although it raised the residual
   EXPECT_EQ(search.to(3), 1); // a residual of 2, less than 3
-  for (unsigned int k = 0; k + 1 < search.options.memory; ++k)
-    search.line.move_to(1);
+  search.line.move_to(1);
   EXPECT_LT(search.to(3), 1); // the 3 is forgotten
-  EXPECT_EQ(search.line.least(), 1);
+  EXPECT_EQ(search.line.least(), 0.5);
   search.line.rescale(4);
   EXPECT_EQ(search.line.present(), 4);
+  EXPECT_EQ(search.line.least(), 2);
   EXPECT_EQ(search.to(3), 1);
 }
 
@@ -113,7 +113,7 @@ namespace
   };
 } // namespace
 
-TEST(Watchdog, WholeStepsEndBelowTheBoundOfTheLineSearch)
+TEST(Watchdog, WholeStepsEndBelowTheResidualWhereTheyBegan)
 {
   WholeSteps steps;
   ASSERT_TRUE(steps.cut(-49)); // residual 50

@@ -21,8 +21,8 @@ namespace slipstick::qp
     // An imbalance below this part of all forces moves no body: the face problem determines the rest more accurately
     // than points on springs do (doc/decisions/0091). ...
     constexpr double tolerated_imbalance = 0.1;
-    // ... Once a step was cut in vain, the limit is this part or, if that is less, this part of the natural residual,
-    // which the force of a single node beyond its bound may be (doc/decisions/0159).
+    // ... Once no step lowered the residual, the limit is this part or, if that is less, this part of the natural
+    // residual, which the force of a single node beyond its bound may be (doc/decisions/0159).
     constexpr double fine_imbalance = 0.01;
 
     /// The natural map x -> proj(x - s g) of an admissible set, and the active set that it determines. s is `step` over
@@ -31,8 +31,8 @@ namespace slipstick::qp
     /// Bodies that are held by contact alone move until s g balances their loads. How far they move depends on s, which
     /// should then be the stiffness of the points in contact: the norm of F on these entries grows with their number,
     /// and where bodies are soft as a whole (a ring of revolution, a beam) even a single point is stiffer than that
-    /// (doc/decisions/0142). If s is too stiff, bodies rest on few points. Therefore s is halved after steps that do not
-    /// lower the residual, but never below the value for all entries.
+    /// (doc/decisions/0142). If s is too stiff, bodies rest on few points. Therefore s is halved where no step lowers
+    /// the residual, but never below the value for all entries.
     template <typename Vector, typename Problem>
     class ActiveSet
     {
@@ -189,7 +189,8 @@ namespace slipstick::qp
         return std::sqrt(problem.reduction().sum(std::array<double, 1>{{sum}})[0]);
       }
 
-      /// |gP| (weighted), and |PFP| times the distance of x from its bounds, or from the bound at which it is held:
+      /// |gP| (weighted; at bounds at most |PFP| times the width, since no other force in between differs by more), and
+      /// |PFP| times the distance of x from its bounds, or from the bound at which it is held:
       /// this limits the increase of |gP| when x is moved there.
       std::array<double, 2> residuals(const Vector &x, const Vector &g)
       {
@@ -205,10 +206,13 @@ namespace slipstick::qp
                          gi = g.begin()[i];
             const double gp = active[i] == 0 ? gi : !(l < u) ? 0. : active[i] < 0 ? std::min(gi, 0.) : std::max(gi, 0.);
             const double out = xi - (active[i] < 0 ? l : active[i] > 0 ? u : clip(xi, l, u));
-            sum[0] += weight(i) * weight(i) * gp * gp;
+            const double r   = active[i] == 0 ? weight(i) * gp : std::min(weight(i) * std::abs(gp), norm * (u - l));
+            sum[0] += r * r;
             sum[1] += out * out; // without weight: F out decreases as the weight increases
           }
-        discs.add_residuals(x, g, active, set.box, sum);
+        discs.add_residuals(x, g, active, set.box, norm, sum);
+        if (has_jumps)
+          sum[0] += squared_residual_of_pressed(x, g);
         sum = problem.reduction().sum(sum);
         return {{std::sqrt(sum[0]), norm * std::sqrt(sum[1])}};
       }
@@ -348,6 +352,23 @@ namespace slipstick::qp
             set_radius(bound, 0, active, set.box);
       }
 
+      // Square of the residual of nodes that were predicted open and whose bounds jumped to 0, but that are pressed at
+      // x: the normal entry was freed to hold a body. Their tangential forces are 0, so that they should stick.
+      double squared_residual_of_pressed(const Vector &x, const Vector &g) const
+      {
+        const double least = least_force(x);
+        double       sum   = 0;
+        for (const PressureBound &bound : set.pressure_bounds)
+          if (is_open[bound.tangential] && x.begin()[bound.normal] > least)
+            {
+              const double slip =
+                             std::hypot(g.begin()[bound.tangential], bound.is_disc() ? g.begin()[bound.second] : 0.),
+                           most = norm * 2 * bound.forces.closed_radius(x.begin()[bound.normal]);
+              sum += std::pow(std::min(weight(bound.tangential) * slip, most), 2);
+            }
+        return sum;
+      }
+
       // moved -= stiffness times the jumps of the body motions for which the projected forces balance the loads. An
       // entry at its bound that the gradient moves inwards counts with at most the value of the bound: its force is
       // determined by the face problem, and it must not push a body off the other entries that carry its loads. For the
@@ -422,7 +443,7 @@ namespace slipstick::qp
       double                step;
       double                softening        = 1;              // factor on s, <= 1
       double                finest_imbalance = fine_imbalance; // fine limit of imbalances that move no body, ...
-      bool                  is_fine          = false;          // ... used once a step was cut in vain
+      bool                  is_fine          = false;          // ... used once no step lowered the residual
       AdmissibleSet<Vector> set;
       const double         *weights;
       std::vector<bool>     bounded;

@@ -11,6 +11,10 @@
 
 namespace slipstick::qp::detail
 {
+  // If the rounding error of the product of a direction, made orthogonal to others, is above this part of its image, F
+  // is multiplied again: directions are combined from earlier ones, and their errors grow exponentially otherwise.
+  constexpr double trusted_error = 1e-4;
+
   /// The residual is minimised on the combinations of stored directions and on new directions, whose images
   /// q = weighted P (F + C + eps D) p are orthonormal. Those stored directions of a turned face that violate its
   /// conditions slightly serve as part of the preconditioner.
@@ -45,14 +49,14 @@ namespace slipstick::qp::detail
       Own    made = with_image(std::move(p));
       double size = norm(made.q, at.reduction);
       orthogonalise(made);
-      if (clean(made))
+      if (clean(made) || made.error > trusted_error * norm(made.q, at.reduction))
         {
           made = with_image(std::move(made.p));
           size = norm(made.q, at.reduction);
           orthogonalise(made);
         }
       const double length = norm(made.q, at.reduction);
-      if (!(length > at.options.rounding * size))
+      if (!(length > at.options.rounding * size) || made.error > trusted_error * length)
         return Status::stagnated;
       for (Vector *v : {&made.p, &made.Fp, &made.q})
         combine(1. / length, *v, 0., *v);

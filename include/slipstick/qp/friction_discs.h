@@ -86,17 +86,20 @@ namespace slipstick::qp::detail
     }
 
     /// Adds the squares of the weighted |gP| and of the distance of x from its disc, or from the circle of a slipping
-    /// node.
+    /// node. What |gP| of entries at bounds may count is |F| times the diameter of the disc.
     void add_residuals(const Vector          &x,
                        const Vector          &g,
                        const Sides           &sides,
                        const Box<Vector>     &box,
+                       const double           norm_of_F,
                        std::array<double, 2> &sum) const
     {
       for (const Turn &disc : all)
         {
-          const auto [gp, out] = residuals_on(disc, radius_of(disc, box), x, g, sides);
-          sum[0] += weight(disc.first) * weight(disc.first) * gp * gp;
+          const double radius          = radius_of(disc, box);
+          const auto [free, held, out] = residuals_on(disc, radius, x, g, sides);
+          sum[0] += std::pow(weight(disc.first) * free, 2) +
+                    std::pow(std::min(weight(disc.first) * held, norm_of_F * 2 * radius), 2);
           sum[1] += out * out;
         }
     }
@@ -166,6 +169,8 @@ namespace slipstick::qp::detail
           if (disc.compliance * weight(disc.second) > rigid_compliance)
             sides[disc.second] = 1; // at 0
           slipping.push_back(disc);
+          if (sides[disc.second] != 0)
+            slipping.back().compliance = 0; // without effect on a held entry, except for its rounding errors
           set_radius(bounds[k], radius, sides, box);
         }
     }
@@ -199,22 +204,24 @@ namespace slipstick::qp::detail
       x2 *= radius / size;
     }
 
-    // |gP| and the distance of x from where it should be.
-    std::pair<double, double> residuals_on(const Turn   &disc,
-                                           const double  radius,
-                                           const Vector &x,
-                                           const Vector &g,
-                                           const Sides  &sides) const
+    // |gP| of free entries and of those at bounds, and the distance of x from where it should be.
+    std::array<double, 3> residuals_on(const Turn   &disc,
+                                       const double  radius,
+                                       const Vector &x,
+                                       const Vector &g,
+                                       const Sides  &sides) const
     {
       const double x1 = x.begin()[disc.first], x2 = x.begin()[disc.second], g1 = g.begin()[disc.first],
                    g2 = g.begin()[disc.second], size = std::hypot(x1, x2);
-      if (sides[disc.first] == 0)
-        return {std::hypot(g1, g2), std::max(0., size - radius)};
+      if (sides[disc.first] == 0 && sides[disc.second] == 0)
+        return {{std::hypot(g1, g2), 0., std::max(0., size - radius)}};
+      if (sides[disc.first] == 0) // was freed to hold a body
+        return {{std::abs(g1), std::abs(g2), std::max(0., size - radius)}};
       if (!(radius > 0))
-        return {0., size};
+        return {{0., 0., size}};
       const double c = size > 0 ? x1 / size : disc.cosine, s = size > 0 ? x2 / size : disc.sine;
       const double across = (c * g2 - s * g1) * disc.softness(weight(disc.second));
-      return {std::hypot(std::max(0., c * g1 + s * g2), across), size - radius};
+      return {{0., std::hypot(std::max(0., c * g1 + s * g2), across), size - radius}};
     }
 
     const double *const        weights; // null: all 1

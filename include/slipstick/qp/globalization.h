@@ -52,11 +52,15 @@ namespace slipstick::qp::detail
       , predicted_from(zero_like(now_.x))
     {}
 
-    /// Predicts the set from the start, whose gradient is known.
+    /// Starts from a point whose gradient is known. The present set, which was predicted from the start, is kept unless
+    /// the start is rough: at the end of a load step the set is the right one, and if loads grow in proportion, it remains
+    /// so, while the gradient with the new loads predicts another.
     void begin()
     {
       line.begin(set.natural_residual(now.x, now.gradient));
-      predict(now);
+      predicted_from = now.gradient;
+      if (is_rough)
+        predict(now);
     }
 
     /// Natural residual of the present point.
@@ -192,8 +196,6 @@ namespace slipstick::qp::detail
         }
       if (line.found() < line.least())
         stop.propose(next, line.found() / reference);
-      if (!(line.found() < line.present()) && (t == 1 || !set.balance_finely()))
-        set.soften();
       go_to_next(line.found());
     }
 

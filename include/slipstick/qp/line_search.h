@@ -8,12 +8,11 @@
 #include <algorithm>
 #include <optional>
 #include <utility>
-#include <vector>
 
 namespace slipstick::qp::detail
 {
-  /// Nonmonotone line search (Grippo, Lampariello, Lucidi 1986): a step must end below the largest natural residual of
-  /// the last points.
+  /// A step must end below the natural residual of the present point, by a part that grows with its length (Armijo
+  /// 1966).
   /// @tparam Set with natural_residual(x, gradient), as ActiveSet
   template <typename Vector, typename Set>
   class LineSearch
@@ -29,48 +28,42 @@ namespace slipstick::qp::detail
     /// Starts from a first point, or from one whose residual cannot be compared with earlier ones.
     void begin(const double residual)
     {
-      residuals = {residual};
+      at_present = smallest = residual;
     }
 
-    /// Adds the residual of the point to which the method has moved.
+    /// The method has moved to a point with this residual.
     void move_to(const double residual)
     {
-      residuals.push_back(residual);
+      at_present = residual;
+      smallest   = std::min(smallest, residual);
     }
 
     /// Converts the residuals so far to another measure.
     void rescale(const double factor)
     {
-      for (double &residual : residuals)
-        residual *= factor;
+      at_present *= factor;
+      smallest *= factor;
     }
 
     /// Natural residual of the present point.
     double present() const
     {
-      return residuals.back();
+      return at_present;
     }
 
-    /// The largest of the last residuals, below which a step must end.
-    double most() const
-    {
-      const std::size_t n = std::min<std::size_t>(residuals.size(), options->memory);
-      return *std::max_element(residuals.end() - n, residuals.end());
-    }
-
+    /// The smallest natural residual of all points.
     double least() const
     {
-      return *std::min_element(residuals.begin(), residuals.end());
+      return smallest;
     }
 
     /// Length t <= 1 of a step from one point towards the other, found by backtracking, for which the residual falls
-    /// below the largest of the last ones; 0 if there is none.
+    /// below that of the present point; 0 if there is none.
     double search(Set &set, const Point &from, const Point &to)
     {
       residual_of_step = residual_of_whole = set.natural_residual(to.x, to.gradient);
-      const double bound                   = most();
-      double       t                       = 1;
-      while (!(residual_of_step <= (1 - options->sufficient_decrease * t) * bound))
+      double t                             = 1;
+      while (!(residual_of_step <= (1 - options->sufficient_decrease * t) * at_present))
         {
           if (t < 1)
             nearest_refused.emplace(*std::move(end_of_step));
@@ -118,7 +111,7 @@ namespace slipstick::qp::detail
     static constexpr double least_part_of_step = 1e-10;
 
     const NewtonOptions *options;
-    std::vector<double>  residuals; // of all points
+    double               at_present = 0, smallest = 0;
     double               residual_of_step = 0, residual_of_whole = 0;
     std::optional<Point> end_of_step, nearest_refused;
   };

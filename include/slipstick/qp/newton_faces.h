@@ -22,6 +22,8 @@ namespace slipstick::qp::detail
   // Length of a step along M r: eigenvalues of F M are 1 to about 5 (first steps of conjugate gradients: 0.15 to
   // 0.5).
   constexpr double descent_step = 0.3;
+  // A face is solved to no less than this times the rounding error of F x at its start.
+  constexpr double rounding_of_residual = 10;
 
   /// Solves faces of the present set, with the directions of all earlier ones. How the problem and its faces must look:
   /// semismooth_newton.h.
@@ -116,7 +118,8 @@ namespace slipstick::qp::detail
       const double target =
         std::min(std::max(options.last_forcing * tolerance * goal.reference,
                           (is_singular ? options.singular_forcing : options.forcing) * std::min(first, merit)),
-                 options.sharpening * solved.least_of_earlier(set.sides(), problem.reduction()));
+                 std::max(rounding_of_residual * now.error_of_Fx,
+                          options.sharpening * solved.least_of_earlier(set.sides(), problem.reduction())));
       auto result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
       if (is_singular || has_wide_stiffnesses)
         solved.add(set.sides(), result.residual);

@@ -101,15 +101,14 @@ namespace slipstick::qp
     double       wide_stiffnesses  = 1e6; // ... if stiffnesses of rows differ by more than this, or F may be singular
     double       largest_regularization = 1e-4; // over the diagonal of F
     double       gaps_over_forces       = 10;   // largest |gP| over tolerance times |PFP| times the forces
-    unsigned int memory = 6; // a step must end below the largest of this number of last natural residuals ...
-    double       sufficient_decrease  = 1e-2; // ... by this part times the step length; ...
-    double       backtracking         = 0.5;  // ... otherwise the length is multiplied by this, ...
-    double       shortest_step        = 1e-3; // ... down to this; then whole steps and other sets are tried
-    double       largest_rise         = 100;  // residual after the first whole step over that before, ...
-    double       least_progress       = 0.5;  // ... and the same for those that follow it
-    double       longest_leap         = 1e4;  // the same for the single step from a rough start
-    unsigned int max_outer_iterations = 100;
-    unsigned int n_directions         = 200; // number of directions stored with their products
+    double       sufficient_decrease    = 1e-2; // a step must lower the natural residual by this part times its length;
+    double       backtracking           = 0.5;  // ... otherwise the length is multiplied by this, ...
+    double       shortest_step          = 1e-3; // ... down to this; then whole steps and other sets are tried
+    double       largest_rise           = 100;  // residual after the first whole step over that before, ...
+    double       least_progress         = 0.5;  // ... and the same for those that follow it
+    double       longest_leap           = 1e4;  // the same for the single step from a rough start
+    unsigned int max_outer_iterations   = 100;
+    unsigned int n_directions           = 200; // number of directions stored with their products
     FaceSolverOptions face;
   };
 

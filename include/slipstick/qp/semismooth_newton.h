@@ -4,8 +4,7 @@
 // others (Hintermueller, Ito, Kunisch 2003; bounds that follow the solution, Coulomb friction: Alart, Curnier 1991). A
 // Newton step solves the linear problem of the face that the projection determines: entries at bounds are held there,
 // slipping ones are tied to their normal force. F x is known at both ends of a step, so that the norm of the residual
-// along the step costs no multiplication: the line search (nonmonotone: Grippo, Lampariello, Lucidi 1986) takes vector
-// operations only.
+// along the step costs no multiplication: the line search takes vector operations only.
 //
 // In addition to the members of the Problem of types.h it needs
 //   `auto face(const std::vector<bool> &free, const std::vector<Tie> &ties, const std::vector<Turn> &turns) const`

@@ -12,7 +12,7 @@ namespace slipstick::qp::detail
 {
   /// Watchdog technique (Chamberlain, Powell, Lemarechal, Pedersen 1982): the set at the end of a whole step is often
   /// much better than its residual suggests. Whole steps continue while each but the first reduces the residual by a
-  /// fixed factor, until it is below the bound of the line search where they began. Otherwise the method returns to
+  /// fixed factor, until it is below the residual where they began. Otherwise the method returns to
   /// that point, so that it converges as with the line search alone. See doc/decisions/0128.
   template <typename Vector, typename Set>
   class Watchdog
@@ -53,7 +53,7 @@ namespace slipstick::qp::detail
     /// takes over.
     bool continues(const LineSearch<Vector, Set> &line)
     {
-      if (!(line.whole() <= (1 - options->sufficient_decrease) * start->line.most()))
+      if (!(line.whole() <= (1 - options->sufficient_decrease) * start->line.present()))
         return line.whole() <= options->least_progress * line.present();
       start.reset();
       n_cut = n_to_wait = 0;
