@@ -49,13 +49,14 @@ namespace slipstick::qp::detail
       Own    made = with_image(std::move(p));
       double size = norm(made.q, at.reduction);
       orthogonalise(made);
-      if (clean(made) || made.error > trusted_error * norm(made.q, at.reduction))
+      double length = norm(made.q, at.reduction);
+      if (clean(made) || made.error > trusted_error * length)
         {
           made = with_image(std::move(made.p));
           size = norm(made.q, at.reduction);
           orthogonalise(made);
+          length = norm(made.q, at.reduction);
         }
-      const double length = norm(made.q, at.reduction);
       if (!(length > at.options.rounding * size) || made.error > trusted_error * length)
         return Status::stagnated;
       for (Vector *v : {&made.p, &made.Fp, &made.q})

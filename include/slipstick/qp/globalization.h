@@ -58,9 +58,10 @@ namespace slipstick::qp::detail
     void begin()
     {
       line.begin(set.natural_residual(now.x, now.gradient));
-      predicted_from = now.gradient;
       if (is_rough)
         predict(now);
+      else
+        predicted_from = now.gradient; // where whole steps from here fail, this predicts the set
     }
 
     /// Natural residual of the present point.
@@ -212,7 +213,7 @@ namespace slipstick::qp::detail
       predict(at.x, at.gradient);
     }
 
-    // Natural residuals with different s cannot be compared. Those of the last steps are therefore scaled by the
+    // Natural residuals with different s cannot be compared. Those of earlier points are therefore scaled by the
     // factor by which the residual of the present point changes with s.
     void predict(const Vector &at, const Vector &gradient)
     {

@@ -12,8 +12,8 @@ namespace slipstick::qp::detail
 {
   /// Watchdog technique (Chamberlain, Powell, Lemarechal, Pedersen 1982): the set at the end of a whole step is often
   /// much better than its residual suggests. Whole steps continue while each but the first reduces the residual by a
-  /// fixed factor, until it is below the residual where they began. Otherwise the method returns to
-  /// that point, so that it converges as with the line search alone. See doc/decisions/0128.
+  /// fixed factor, until it is below the residual where they began. Otherwise the method returns to that point, so that
+  /// it converges as with the line search alone. See doc/decisions/0128.
   template <typename Vector, typename Set>
   class Watchdog
   {
