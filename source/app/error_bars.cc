@@ -22,8 +22,18 @@ namespace slipstick::app
     // printed.
     constexpr double nothing = 1e-9;
 
+    // The error of a quantity that is exact is that of another place whose value may exceed it: it is at most this many
+    // error bars smaller. Bars are meant to contain a fifth of the error at least.
+    constexpr double most_bars = 5;
+
     constexpr const char *peak_at_one_node =
       "a peak at a single node: it grows with every refinement (a corner, an edge) or needs a finer mesh";
+
+    double bar_of(const GoalError &goal)
+    {
+      const double bar = std::max(std::abs(goal.correction), least_part * goal.absolute) + goal.local;
+      return goal.shortfall < most_bars * bar ? bar : 0.;
+    }
 
     bool sticks(const ContactNode &node)
     {
@@ -124,7 +134,7 @@ namespace slipstick::app
       {
         bars.push_back({goal.quantity, goal.unit, goal.value, {}, goal.reason, goal.note});
         if (goal.is_known)
-          bars.back().error = std::max(std::abs(goal.correction), least_part * goal.absolute) + goal.local;
+          bars.back().error = bar_of(goal);
       }
     const auto printed = figures(results), largest = largest_of_units(bars);
     for (auto &bar : bars)

@@ -15,6 +15,9 @@ namespace slipstick::app
     // Point forces below this fraction of the largest force are neglected: most point supports only hold rigid motions.
     constexpr double negligible_reaction = 1e-3;
 
+    // A support moves a node if it prescribes this part of the square of its displacement.
+    constexpr double most_of_square = 0.5;
+
     // Places that differ by less than this fraction of their coordinates are the same.
     constexpr double same_place = 1e-9;
 
@@ -306,35 +309,73 @@ namespace slipstick::app
   }
 
   template <int dim>
+  std::vector<Eigen::VectorXd> Functionals<dim>::prescribed_squares() const
+  {
+    tfeti::DistributedVector given(rows.rows), shared(rows.interface_dofs);
+    for (unsigned int r = 0; r < n_rows; ++r)
+      given.local_element(r) = rows.kind[r] == tfeti::RowKind::prescribed ? rows.c[r] * rows.c[r] : 0.;
+    given.update_ghost_values();
+    const auto                  &u = answer.recovery.u;
+    std::vector<Eigen::VectorXd> squares;
+    for (unsigned int p = 0; p < u.size(); ++p)
+      {
+        squares.push_back(Eigen::VectorXd::Zero(u[p].size() / dim));
+        std::vector<unsigned int> interface_dof(u[p].size(), tfeti::invalid_row);
+        for (const auto &entry : rows.interface_blocks[p])
+          interface_dof[entry.dof] = entry.interface_dof;
+        for (const auto &entry : rows.blocks[p])
+          if (const double square = given.local_element(entry.row); square > 0)
+            shared.local_element(interface_dof[entry.dof]) += entry.value * entry.value * square;
+      }
+    shared.compress(dealii::VectorOperation::add);
+    shared.update_ghost_values();
+    for (unsigned int p = 0; p < u.size(); ++p)
+      for (const auto &entry : rows.interface_blocks[p])
+        squares[p][entry.dof / dim] += shared.local_element(entry.interface_dof);
+    return squares;
+  }
+
+  template <int dim>
   Functional Functionals<dim>::displacement() const
   {
-    Functional   goal{"max_displacement", "mm", 0, {}, {}, {}, false};
-    double       largest = -1;
-    unsigned int at_p = 0, at_node = 0;
-    const auto  &u = answer.recovery.u;
+    struct Place
+    {
+      double       size = 0;
+      unsigned int p = 0, node = 0;
+    };
+    Functional  goal{"max_displacement", "mm", 0, {}, {}, {}, false};
+    Place       all, free; // the largest of all nodes, and of those that no support moves
+    const auto &u       = answer.recovery.u;
+    const auto  squares = prescribed_squares();
     for (unsigned int p = 0; p < u.size(); ++p)
       {
         goal.loads.push_back(Eigen::VectorXd::Zero(u[p].size()));
         for (unsigned int i = 0; i < u[p].size() / dim; ++i)
-          if (const double size = u[p].template segment<dim>(dim * i).norm(); size > largest)
-            {
-              largest = size;
-              at_p    = p;
-              at_node = i;
-            }
+          {
+            const double size = u[p].template segment<dim>(dim * i).norm();
+            if (size > all.size)
+              all = {size, p, i};
+            if (size > free.size && squares[p][i] < most_of_square * size * size)
+              free = {size, p, i};
+          }
       }
-    goal.value              = dealii::Utilities::MPI::max(largest, comm);
-    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(comm);
-    const unsigned int best = dealii::Utilities::MPI::min(largest == goal.value ? rank : tfeti::invalid_row, comm);
+    goal.value = dealii::Utilities::MPI::max(all.size, comm);
     if (!(goal.value > 0))
       {
         goal.reason = "nothing moves";
         return goal;
       }
+    // a prescribed displacement has no error, but that of another node may exceed it
+    const double       largest_free = dealii::Utilities::MPI::max(free.size, comm);
+    const Place       &at           = largest_free > 0 ? free : all;
+    const double       size         = largest_free > 0 ? largest_free : goal.value;
+    const unsigned int rank         = dealii::Utilities::MPI::this_mpi_process(comm);
+    const unsigned int best         = dealii::Utilities::MPI::min(at.size == size ? rank : tfeti::invalid_row, comm);
+    goal.shortfall                  = goal.value - size;
     if (best == rank)
       {
-        goal.loads[at_p].template segment<dim>(dim * at_node) = u[at_p].template segment<dim>(dim * at_node) / largest;
-        goal.reason = infinite_at(solver.mesh().subdomains[at_p]->body, position_of(at_p, at_node));
+        goal.loads[at.p].template segment<dim>(dim * at.node) = u[at.p].template segment<dim>(dim * at.node) / size;
+        goal.reason = infinite_at(solver.mesh().subdomains[at.p]->body, position_of(at.p, at.node));
       }
     goal.reason = dealii::Utilities::MPI::broadcast(comm, goal.reason, best);
     return goal;

@@ -392,6 +392,7 @@ namespace slipstick::app
           error.unit          = functional.unit;
           error.value         = functional.value;
           error.local         = functional.local_error;
+          error.shortfall     = functional.shortfall;
           error.note          = functional.note;
           error.reason        = adjoint.is_possible() ? functional.reason : loose;
           error.is_resolvable = adjoint.is_possible() && functional.is_resolvable;

@@ -1,5 +1,6 @@
 """Tolerances from 1e-2 to 1e-13: what is reached, or that it cannot be; the same input gives the same bits."""
 
+import pathlib
 import unittest
 
 from sweep import QUIET, Extremes, Table, figures, shipped, solve, stack
@@ -37,6 +38,19 @@ class Accuracy(Extremes):
             self.converges(table, 'Hertz, {:g}'.format(tolerance), shipped('hertz'), {'Solver/Tolerance': tolerance}, checks=0.05)
             self.converges(table, 'box on a circle, {:g}'.format(tolerance), shipped('box_on_circle'),
                            {**BLOCKS, 'Solver/Tolerance': tolerance}, checks=0.05)
+
+    def test_largest_displacement_where_a_support_moves(self):
+        """The coarse mesh has its largest displacement at the support; the right one, 0.0314 (degree 2), is elsewhere."""
+        case = pathlib.Path(__file__).parent / 'prescribed_maximum.prm'
+        bars = {}
+        for degree in (1, 2):
+            result = solve(case, {'Discretization/Degree': degree, 'Output/VTU': 'false'})
+            self.assertEqual(result.status, 0, result)
+            bars[degree] = next(bar for bar in result.summary['error_bars'] if bar['quantity'] == 'max_displacement')
+        self.assertAlmostEqual(bars[1]['value'], 0.03, delta=1e-7)
+        missing = abs(bars[1]['value'] - bars[2]['value'])
+        self.assertLess(missing / 6, bars[1]['error'])
+        self.assertLess(bars[1]['error'], missing)
 
     def test_tolerance_that_rounding_forbids(self):
         """The message names the tolerance that can be reached, and it can."""

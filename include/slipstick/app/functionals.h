@@ -20,6 +20,7 @@ namespace slipstick::app
     std::string                  reason;    // why there is no estimate; empty: there is one
     bool                         is_of_multipliers = true;
     double                       local_error       = 0;     // in addition to that of the adjoint problem, not negative
+    double                       shortfall         = 0;     // of a place with an error, if the value itself has none
     bool                         is_resolvable     = false; // finer cells remove the reason
     bool                         is_infinite       = false; // the reason: no mesh has an estimate
     std::string                  note              = "";    // what the quantity covers, if its name does not say it
@@ -88,7 +89,11 @@ namespace slipstick::app
     /// Whether the support holds anything along this axis.
     bool holds(const Functional &reaction) const;
 
-    /// Displacement in the direction of the largest displacement, at its node.
+    /// Sum of the squares of the prescribed components, of the nodes of each subdomain of this rank [mm^2].
+    std::vector<Eigen::VectorXd> prescribed_squares() const;
+
+    /// The largest displacement; errors are those of the largest one at a node that no support moves, along its
+    /// direction.
     Functional displacement() const;
 
     const StepSolver<dim>          &solver;

@@ -23,6 +23,7 @@ namespace slipstick::app
     double                       correction    = 0;     // sum over the cells, to be added to the value
     double                       absolute      = 0;     // sum of the magnitudes
     double                       local         = 0;     // in addition to the cells: Functional::local_error
+    double                       shortfall     = 0;     // Functional::shortfall
     std::string                  note;                  // Functional::note
     std::vector<Eigen::VectorXd> cells;                 // by subdomain of this rank: contributions of the cells
   };
